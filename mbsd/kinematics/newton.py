@@ -29,7 +29,7 @@ from mbsd.compiling.jit import inlined, kernel
 from mbsd.equations.assembly import evaluate_gamma, evaluate_nu, evaluate_position
 from mbsd.kinematics.elimination import factorise, solve
 from mbsd.kinematics.law_step import jumps
-from mbsd.kinematics.predictor import quintic_factors
+from mbsd.kinematics.predictor import quintic_factors, quintic_value
 
 TOLERANCE = 1e-12
 """Tolerance of a Newton correction, relative to the mechanism's size (m) and to 1 rad."""
@@ -55,18 +55,9 @@ DONE, NO_CONTRACTION, BRANCH_DOUBT, SINGULAR = 0, 1, 2, 3
 @inlined
 def _predict(q, v, a, t, k, time, out):
     """Pose at ``time`` from results 0 .. k-1: the quintic through the last two, or the last alone."""
-    from_q, from_v, from_a, earlier_v, earlier_a = quintic_factors(t, k, time)
-    last = k - 1
-    before = max(k - 2, 0)
+    factors = quintic_factors(t, k, time)
     for c in range(3, q.shape[1]):
-        out[c] = (
-            q[last, c]
-            + from_q * (q[before, c] - q[last, c])
-            + from_v * v[last, c]
-            + earlier_v * v[before, c]
-            + from_a * a[last, c]
-            + earlier_a * a[before, c]
-        )
+        out[c] = quintic_value(factors, k, q, v, a, c)
 
 
 @kernel

@@ -32,3 +32,19 @@ def quintic_factors(t, k, time):
         earlier_v = h * p1
         earlier_a = h * h * p2
     return from_q, from_v, from_a, earlier_v, earlier_a
+
+
+@inlined
+def quintic_value(factors, k, q, v, a, c):
+    """Coordinate c of the pose that these factors tell, from poses k - 1 and k - 2 in q, v, a (T, 3 nb)."""
+    from_q, from_v, from_a, earlier_v, earlier_a = factors
+    last = k - 1
+    before = max(k - 2, 0)
+    return (
+        q[last, c]
+        + from_q * (q[before, c] - q[last, c])
+        + from_v * v[last, c]
+        + earlier_v * v[before, c]
+        + from_a * a[last, c]
+        + earlier_a * a[before, c]
+    )

@@ -118,11 +118,10 @@ def draw_belt(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str])
     gap = j - i
     length = float(np.hypot(*gap))
     other = -r_j if joint.params.get("crossed") else r_j
-    if length > abs(r_i - other):
-        line, lean = math.atan2(gap[1], gap[0]), math.acos((r_i - other) / length)
-        for side in (1, -1):
-            normal = np.array([math.cos(line + side * lean), math.sin(line + side * lean)])
-            with canvas.on(along_line(joint.i, joint.j)):
-                canvas.line([i + r_i * normal, j + other * normal], INK, 1.8, order=3)
     with canvas.on(along_line(joint.i, joint.j)):
+        if length > abs(r_i - other):
+            line, lean = math.atan2(gap[1], gap[0]), math.acos((r_i - other) / length)
+            for side in (1, -1):
+                normal = np.array([math.cos(line + side * lean), math.sin(line + side * lean)])
+                canvas.line([i + r_i * normal, j + other * normal], INK, 1.8, order=3)
         canvas.label(joint.name, (i + j) / 2, 0.6)

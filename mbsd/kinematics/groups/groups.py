@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 DRIVEN, WELDED, RRR, RRP, RPR, YOKE, PRP, ROD, SLIDE = range(9)
 """Kinds; blocks.py has two more."""
 NUMBERS = 14
-LEADER_A, LEADER_B, WATCHED = range(3)
-"""Columns of Groups.turning."""
+WATCHED = 2
+"""Last column of Groups.turning."""
 FIRST, SECOND, K1, K2, LAW, COORDINATE, KIND, THIRD = range(8)
 """Columns of Groups.group: bodies A and B, known bodies, law of a driver, coordinate, kind, and the third
 known body of a train; -1 or law 0 for none. The first four are those of Groups.body."""

@@ -27,7 +27,7 @@ REFERENCE = 0.12
 
 def material(surface: SurfaceSpec, name: str, radius: float = REFERENCE) -> Any:
     """The Blender material of a surface in a picture of a machine of this ``radius`` (m)."""
-    made, graph = _new(name)
+    made, graph = new_material(name)
     shader = FINISHES[surface.finish](graph, surface, max(1.0, radius / REFERENCE))
     output = graph.add("OutputMaterial", Surface=shader)
     output.target = "CYCLES"
@@ -36,7 +36,7 @@ def material(surface: SurfaceSpec, name: str, radius: float = REFERENCE) -> Any:
 
 def flat(colour: tuple[float, float, float], name: str) -> Any:
     """A material that is this colour in any light."""
-    made, graph = _new(name)
+    made, graph = new_material(name)
     graph.add("OutputMaterial", Surface=graph.add("Emission", Color=colour, Strength=1.0).outputs[0])
     made.cycles.emission_sampling = "NONE"
     return made
@@ -44,13 +44,14 @@ def flat(colour: tuple[float, float, float], name: str) -> Any:
 
 def ink(light: bool) -> Any:
     """Paint in what is engraved."""
-    made, graph = _new("ink")
+    made, graph = new_material("ink")
     colour = (0.60, 0.60, 0.585) if light else (0.012, 0.012, 0.013)
     graph.add("OutputMaterial", Surface=_principled(graph, Base_Color=colour, Roughness=0.6))
     return made
 
 
-def _new(name: str) -> tuple[Any, Graph]:
+def new_material(name: str) -> tuple[Any, Graph]:
+    """A material of Blender, and its empty graph."""
     import bpy
 
     made = bpy.data.materials.new(name)

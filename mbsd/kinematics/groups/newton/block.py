@@ -27,13 +27,14 @@ from mbsd.kinematics.groups.blocks import (
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.groups.newton.call import PYTHON, SIGNATURE
 from mbsd.kinematics.groups.newton.fused import fused
-from mbsd.kinematics.groups.newton.guard import extrapolated, in_doubt
+from mbsd.kinematics.groups.newton.guard import in_doubt
 from mbsd.kinematics.groups.newton.iteration import iterate
 from mbsd.kinematics.groups.newton.matrix import held, solve
 from mbsd.kinematics.groups.newton.records import Block, History, Motion, Work
 from mbsd.kinematics.groups.newton.rows import bend_of, move, read_unknowns
 from mbsd.kinematics.law_step import jumps
 from mbsd.kinematics.newton import ROUNDING
+from mbsd.kinematics.predictor import quintic_factors, quintic_value
 
 LONG = 1 << 40
 """For arrays whose length does not matter."""
@@ -44,9 +45,10 @@ def predict(k, block, history):
     """Fill row k of q for the block's bodies."""
     tree = block.tree
     q = history.q
+    factors = quintic_factors(history.times, k, history.times[k]) if k > 0 else (0.0, 0.0, 0.0, 0.0, 0.0)
     for e in range(block.head[BODIES]):
         for c in range(3 * tree[e, BODY], 3 * tree[e, BODY] + 3):
-            q[k, c] = history.start[c] if k == 0 else extrapolated(history.times, k, q, history.v, history.a, c)
+            q[k, c] = history.start[c] if k == 0 else quintic_value(factors, k, q, history.v, history.a, c)
 
 
 @fused

@@ -1,4 +1,4 @@
-"""The prediction of a block's pose from the two before it, and the guard of its branch."""
+"""The guard of a block's branch: whether a step is doubted."""
 
 from __future__ import annotations
 
@@ -7,23 +7,6 @@ from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
 from mbsd.kinematics.groups.newton.fused import fused
 from mbsd.kinematics.groups.newton.matrix import extent, turns_too_far
 from mbsd.kinematics.newton import CONTRACTS, SUSPICIOUS, heads_for_zero
-from mbsd.kinematics.predictor import quintic_factors
-
-
-@fused
-def extrapolated(times, k, q, v, a, c):
-    """Coordinate c at row k."""
-    from_q, from_v, from_a, earlier_v, earlier_a = quintic_factors(times, k, times[k])
-    last = k - 1
-    before = max(k - 2, 0)
-    return (
-        q[last, c]
-        + from_q * (q[before, c] - q[last, c])
-        + from_v * v[last, c]
-        + earlier_v * v[before, c]
-        + from_a * a[last, c]
-        + earlier_a * a[before, c]
-    )
 
 
 @fused

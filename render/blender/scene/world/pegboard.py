@@ -7,8 +7,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from render.blender.scene.materials import material
-from render.blender.scene.nodes import Graph
+from render.blender.scene.materials import material, new_material
 from render.blender.scene.world.ground import glow
 from render.blender.scene.world.shapes import Thing
 from render.film.scene import SurfaceSpec
@@ -49,12 +48,8 @@ def build(thing: Thing, colour: Colour, away: float, clear: float, bounce: float
 
 def _board(colour: Colour, radius: float, bounce: float) -> Any:
     """Painted hardboard; its holes are black."""
-    import bpy
-
-    made = bpy.data.materials.new("pegboard")
-    made.use_nodes = True
+    made, graph = new_material("pegboard")
     made.cycles.emission_sampling = "NONE"
-    graph = Graph(made.node_tree).clear()
     place = graph.add("TexCoord").outputs["Object"]
     split = graph.add("SeparateXYZ", Vector=place)
     offsets = []
@@ -79,11 +74,7 @@ def _board(colour: Colour, radius: float, bounce: float) -> Any:
 
 def _paint(colour: Colour) -> Any:
     """Mat paint: what runs along the whole wall meets most of the light that bounces, so it mirrors nothing."""
-    import bpy
-
-    made = bpy.data.materials.new("batten")
-    made.use_nodes = True
-    graph = Graph(made.node_tree).clear()
+    made, graph = new_material("batten")
     graph.add("OutputMaterial", Surface=graph.add("BsdfDiffuse", Color=colour).outputs[0])
     return made
 

@@ -41,6 +41,13 @@ class Graph:
             self.set(node, index, value)
         return node.outputs[0]
 
+    def vector(self, operation: str, *values: Any, **inputs: Any) -> Any:
+        """The result of a Vector Math node that is a vector."""
+        node = self.add("VectorMath", {"operation": operation}, **inputs)
+        for index, value in enumerate(values):
+            self.set(node, index, value)
+        return node.outputs["Vector"]
+
     def mixed(self, ray: str, others: Any, these: Any) -> Any:
         """The shader ``these`` for rays of one sort, e.g. "Is Camera Ray", and ``others`` for all else."""
         mix = self.add("MixShader")

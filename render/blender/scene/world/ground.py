@@ -87,39 +87,27 @@ def _painted(graph: Graph, ground: Ground, place: Any) -> Any:
 def _wood(graph: Graph, ground: Ground, place: Any) -> Any:
     """Boards across the picture, each of another tone, with the fibres of its own piece of the tree."""
     split = graph.add("SeparateXYZ", Vector=place)
-    across = graph.math("DIVIDE", graph.math("ADD", split.outputs["Y"], 0.23), BOARD)
+    across = graph.math("MULTIPLY_ADD", split.outputs["Y"], 1 / BOARD, 0.23 / BOARD)
     row = graph.math("FLOOR", across)
-    shift = graph.math("MULTIPLY", graph.math("FRACT", graph.math("MULTIPLY", row, 0.377)), BOARD_LENGTH)
-    along = graph.math("DIVIDE", graph.math("ADD", graph.math("ADD", split.outputs["X"], shift), 2.1), BOARD_LENGTH)
-    column = graph.math("FLOOR", along)
-    number = graph.math("ADD", graph.math("MULTIPLY", row, 7.31), graph.math("MULTIPLY", column, 3.17))
+    along = graph.math("MULTIPLY_ADD", split.outputs["X"], 1 / BOARD_LENGTH, 2.1 / BOARD_LENGTH)
+    along = graph.math("ADD", along, graph.math("FRACT", graph.math("MULTIPLY", row, 0.377)))
+    column = graph.math("MULTIPLY", graph.math("FLOOR", along), 3.17)
+    number = graph.math("MULTIPLY_ADD", row, 7.31, column)
     chance = graph.add("TexWhiteNoise", {"noise_dimensions": "1D"}, W=number).outputs["Value"]
-    own = graph.add("CombineXYZ", X=graph.math("MULTIPLY", chance, 31.0), Y=graph.math("MULTIPLY", chance, 17.0))
-    moved = graph.add("VectorMath", {"operation": "ADD"})
-    graph.set(moved, 0, place)
-    graph.set(moved, 1, own.outputs[0])
-    rings = _noise(graph, moved.outputs[0], (0.55, 4.2, 4.2), 0.0)
-    bands = graph.math("FRACT", graph.math("MULTIPLY", rings, 9.0))
-    bands = graph.math("PINGPONG", bands, 0.5)
-    fibres = _noise(graph, moved.outputs[0], (3.0, 120.0, 120.0), 0.0)
-    part = graph.math("ADD", graph.math("MULTIPLY", bands, 0.85), graph.math("MULTIPLY", fibres, 0.45))
-    part = graph.math("ADD", part, graph.math("MULTIPLY", graph.math("SUBTRACT", chance, 0.5), 0.42))
-    dark, light = ground.other, ground.colour
-    colour = graph.ramp(part, [(0.05, light), (0.95, dark)])
-    edge = graph.math("PINGPONG", graph.math("FRACT", across), 0.5)
-    end = graph.math("PINGPONG", graph.math("FRACT", along), 0.5)
-    gap = graph.math(
-        "MINIMUM",
-        graph.math("DIVIDE", edge, GAP / BOARD),
-        graph.math("DIVIDE", end, GAP / BOARD_LENGTH),
-    )
-    gap = graph.math("MINIMUM", gap, 1.0)
-    shade = graph.add(
-        "VectorMath", {"operation": "SCALE"}, Scale=graph.math("ADD", 0.12, graph.math("MULTIPLY", gap, 0.88))
-    )
-    graph.set(shade, 0, colour)
-    rough = graph.math("ADD", ground.roughness - 0.06, graph.math("MULTIPLY", fibres, 0.18))
-    return _principled(graph, Base_Color=shade.outputs[0], Roughness=rough)
+    moved = graph.vector("MULTIPLY_ADD", chance, (31.0, 17.0, 0.0), place)
+    rings = _noise(graph, moved, (0.55, 4.2, 4.2), 0.0)
+    bands = graph.math("PINGPONG", graph.math("MULTIPLY", rings, 9.0), 0.5)
+    fibres = _noise(graph, moved, (3.0, 120.0, 120.0), 0.0)
+    part = graph.math("MULTIPLY_ADD", chance, 0.42, -0.21)
+    part = graph.math("MULTIPLY_ADD", fibres, 0.45, part)
+    part = graph.math("MULTIPLY_ADD", bands, 0.85, part)
+    colour = graph.ramp(part, [(0.05, ground.colour), (0.95, ground.other)])
+    edge = graph.math("MULTIPLY", graph.math("PINGPONG", across, 0.5), BOARD / GAP)
+    end = graph.math("MULTIPLY", graph.math("PINGPONG", along, 0.5), BOARD_LENGTH / GAP)
+    gap = graph.math("MINIMUM", graph.math("MINIMUM", edge, end), 1.0)
+    shade = graph.vector("SCALE", colour, Scale=graph.math("MULTIPLY_ADD", gap, 0.88, 0.12))
+    rough = graph.math("MULTIPLY_ADD", fibres, 0.18, ground.roughness - 0.06)
+    return _principled(graph, Base_Color=shade, Roughness=rough)
 
 
 def _concrete(graph: Graph, ground: Ground, place: Any) -> Any:

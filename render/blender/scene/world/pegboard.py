@@ -51,22 +51,15 @@ def _board(colour: Colour, radius: float, bounce: float) -> Any:
     made, graph = new_material("pegboard")
     made.cycles.emission_sampling = "NONE"
     place = graph.add("TexCoord").outputs["Object"]
-    split = graph.add("SeparateXYZ", Vector=place)
-    offsets = []
-    for axis in ("X", "Z"):
-        part = graph.math("FRACT", graph.math("DIVIDE", split.outputs[axis], PITCH * radius))
-        offsets.append(graph.math("POWER", graph.math("SUBTRACT", part, 0.5), 2.0))
-    apart = graph.math("MULTIPLY", graph.math("SQRT", graph.math("ADD", *offsets)), PITCH)
+    cell = graph.vector("MULTIPLY", place, (1 / (PITCH * radius), 0.0, 1 / (PITCH * radius)))
+    middle = graph.vector("SUBTRACT", graph.vector("FRACTION", cell), (0.5, 0.0, 0.5))
+    apart = graph.add("VectorMath", {"operation": "LENGTH"}, Vector=middle).outputs["Value"]
     solid = graph.add(
-        "MapRange", {"interpolation_type": "SMOOTHSTEP"}, Value=apart, From_Min=HOLE * 0.9, From_Max=HOLE * 1.1
-    )
-    shade = graph.add(
-        "VectorMath",
-        {"operation": "SCALE"},
-        Scale=graph.math("ADD", 0.16, graph.math("MULTIPLY", solid.outputs[0], 0.84)),
-    )
-    graph.set(shade, 0, colour)
-    shader = graph.add("BsdfDiffuse", Color=shade.outputs[0])
+        "MapRange", {"interpolation_type": "SMOOTHSTEP"}, Value=apart,
+        From_Min=0.9 * HOLE / PITCH, From_Max=1.1 * HOLE / PITCH, To_Min=0.16,
+    )  # fmt: skip
+    shade = graph.vector("SCALE", colour, Scale=solid.outputs[0])
+    shader = graph.add("BsdfDiffuse", Color=shade)
     surface = graph.mixed("Is Camera Ray", glow(graph, colour, bounce), shader.outputs[0])
     graph.add("OutputMaterial", Surface=surface)
     return made

@@ -1,12 +1,12 @@
 # The face of the project: `make help` lists what there is. GNU make 3.81 and a POSIX shell are enough.
 
-# Twelve frames on one sheet are small: drafts, unless PRESET says otherwise.
-SHEET_PRESET := $(if $(filter undefined,$(origin PRESET)),draft,$(value PRESET))
-PRESET ?= preview
+PRESET ?=
 ASPECT ?=
 FRAME ?= 0
 FRAMES ?=
 NAME ?=
+FILE ?=
+AS ?=
 KIND ?=
 VIEW ?=
 SHOW ?=
@@ -22,6 +22,8 @@ WATTS ?=
 STRICT ?=
 ANYWAY ?=
 SEED ?= 1
+PLAN ?=
+MECHANISMS ?=
 CLUSTER ?=
 CLUSTER_TLS ?=
 PYTEST ?= -n 2 --dist loadscope --no-loadscope-reorder
@@ -33,6 +35,8 @@ override ASPECT := $(value ASPECT)
 override FRAME := $(value FRAME)
 override FRAMES := $(value FRAMES)
 override NAME := $(value NAME)
+override FILE := $(value FILE)
+override AS := $(value AS)
 override KIND := $(value KIND)
 override VIEW := $(value VIEW)
 override SHOW := $(value SHOW)
@@ -48,15 +52,19 @@ override SEED := $(value SEED)
 override STRICT := $(filter-out 0,$(value STRICT))
 override WATTS := $(value WATTS)
 override ANYWAY := $(value ANYWAY)
+override MECHANISMS := $(value MECHANISMS)
+override PLAN := $(value PLAN)
 override CLUSTER := $(value CLUSTER)
 override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
-export PRESET SHEET_PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
-export CLUSTER CLUSTER_TLS ANYWAY STRICT
+export FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
+export CLUSTER CLUSTER_TLS ANYWAY STRICT PLAN MECHANISMS
 
 PRESETS := draft preview production final
+ifneq ($(PRESET),)
 ifneq ($(words $(PRESET)) $(filter $(PRESETS),$(PRESET)),1 $(PRESET))
 $(error PRESET=$(PRESET) is not a preset; choose one of: $(PRESETS))
+endif
 endif
 
 ASPECTS := 16:9 1:1 4:5 9:16
@@ -67,10 +75,9 @@ endif
 endif
 
 PYTHON := .venv/bin/python
-STAGE = $(PYTHON) -m mechanisms
-PICTURE = $(PYTHON) -m render
-NIGHT = $(PYTHON) -m studio.night
-OF_NIGHT = --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} --only="$$ONLY" --show="$$SHOW" --spectra="$$SPECTRA" --watts="$$WATTS" --anyway="$$ANYWAY" --python="$(PYTHON)"
+# The program `mbsd`, of which this file is a face: it reads PRESET, ONLY and the like from the environment.
+MBSD = $(PYTHON) -m studio.command
+export MBSD_FACE := make
 # install compiles the kernels in the background; these want all of them, and nothing else running.
 ALL_KERNELS = @$(PYTHON) -m tools.compiling wait
 PROGRAMS_OF_TESTS = @$(PYTHON) -m shared.system --for-tests || case "$${STRICT:-$$CI}" in ""|0) ;; *) false ;; esac
@@ -84,163 +91,128 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers keep-numbers record-numbers schema docs study-engines study-run-up readme-loop integrators wheel lock clean clean-all always
-
-# A stage with nothing to do ends at once, so each target simply runs the stages it stands on.
-define upto_motion
-@$(STAGE) parts "$$MECHANISM"
-@$(STAGE) solve "$$MECHANISM"
-endef
-# Motion and plots go on where there are no automatic parts.
-define upto_bare_motion
-@$(STAGE) parts "$$MECHANISM" --or-none
-@$(STAGE) solve "$$MECHANISM"
-endef
-define upto_shot
-$(upto_motion)
-@$(STAGE) shot "$$MECHANISM"
-endef
-SPECTRA_IF_ANY = $${SPECTRA:+--spectra="$$SPECTRA"}
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers keep-numbers record-numbers schema docs study-engines study-run-up readme-loop integrators wheel lock clean clean-all always
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
 	@echo "ASPECT=16:9|1:1|4:5|9:16 on these targets: the shape of the picture, composed for it (16:9 by default)."
 	@echo "SHOW=reactions,forces,velocities,accelerations,title on these targets: arrows and words in the picture."
 	@echo "SPECTRA=\"shaking force,motor\" on run-, plot- and compare-<name>, run-all and all: spectra of these."
+	@echo "MECHANISMS=~/machines on these targets: a folder of your own; results are put into its out/."
 	@echo "A mechanism's name takes hyphens or underscores: run-four-bar, run-four_bar."
 	@echo
 	@sed -n 's/^\([a-z][a-z-]*\)-%:[^#]*## /\1-<name>|/p; s/^\([a-z][a-z-]*\):[^#]*## /\1|/p' Makefile \
 	| awk -F'|' '{ printf "  %-18s %s\n", $$1, $$2 }'
 
 run-%: libraries always ## everything of one mechanism: parts, motion, clearance, report, plots, GLB, poster, film
-	$(upto_motion)
-	@$(STAGE) clearance "$$MECHANISM"
-	@$(STAGE) shot "$$MECHANISM"
-	@$(PICTURE) report "$$MECHANISM"
-	@$(PICTURE) plots "$$MECHANISM" $(SPECTRA_IF_ANY)
-	@$(PICTURE) glb "$$MECHANISM"
-	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
-	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
+	@$(MBSD) run -- "$$MECHANISM"
 
-run-all: libraries ## run-<name> for every mechanism or ONLY=four_bar,slider_crank; goes on after a failure
-	@$(NIGHT) run $(OF_NIGHT)
+run-all: libraries ## the same of every mechanism; goes on after a failure or ONLY=four_bar,slider_crank
+	@$(MBSD) all
 
 all: run-all ## the same
 
-overnight: libraries ## the same in the background, also after the logout; WATTS=85 tells the energy it takes
-	@$(NIGHT) start $(OF_NIGHT)
+overnight: libraries ## all of it in the background, also after the logout; WATTS=85 tells the energy it takes
+	@$(MBSD) overnight
 
-status: ## what every film is at: frames, seconds a frame, time left, last error
-	@$(NIGHT) status
+status:  ## what every film is at: frames, seconds a frame, time left, last error
+	@$(MBSD) status
 
-stop: ## end make overnight or make all after the frame in flight; the same command goes on from there
-	@$(NIGHT) stop
+stop:  ## end that after the frame in flight; the same command goes on from there
+	@$(MBSD) stop
+
+check-%: install always ## what in a model looks as if it was not meant, before anything is made
+	@$(MBSD) check -- "$$MECHANISM"
 
 parts-%: libraries always ## the solids: out/<name>/parts/ (STL, STEP, parts.json)
-	@$(STAGE) parts "$$MECHANISM"
+	@$(MBSD) parts -- "$$MECHANISM"
 
 print-%: libraries always ## plates to print (3MF, STL), outlines to cut (DXF), lists; BED=220x220 GAP=5 in mm
-	@$(STAGE) parts "$$MECHANISM"
-	@$(STAGE) print "$$MECHANISM" --bed="$$BED" --gap="$$GAP"
+	@$(MBSD) print -- "$$MECHANISM"
 
 solve-%: install always ## the motion: out/<name>/data.json
-	$(upto_bare_motion)
+	@$(MBSD) solve -- "$$MECHANISM"
 
-animate-%: install always ## the moving skeleton, VIEW=forces,reactions,velocities,...: animation.mp4, .gif
-	@$(STAGE) animate "$$MECHANISM" --view="$$VIEW"
+animate-%: install always ## the moving skeleton with its arrows: animation.mp4, .gif; VIEW=forces,reactions,...
+	@$(MBSD) animate -- "$$MECHANISM"
 
 clearance-%: libraries always ## proof that no two parts touch over the whole motion: clearance.json
-	$(upto_motion)
-	@$(STAGE) clearance "$$MECHANISM"
+	@$(MBSD) clearance -- "$$MECHANISM"
 
-plot-%: install always ## the plots, SPECTRA="shaking force,motor" with spectra of these: out/<name>/plots/
-	$(upto_bare_motion)
-	@$(PICTURE) plots "$$MECHANISM" $(SPECTRA_IF_ANY)
+plot-%: install always ## the plots: out/<name>/plots/; SPECTRA="shaking force,motor" adds theirs
+	@$(MBSD) plot -- "$$MECHANISM"
 
 report-%: install always ## what was found, in sentences and tables: out/<name>/report.md
-	$(upto_bare_motion)
-	@$(PICTURE) report "$$MECHANISM"
+	@$(MBSD) report -- "$$MECHANISM"
 
 compare-%: install always ## the motions of all its variants on the same pages: out/<name>/compare/
-	@names=$$($(STAGE) variants "$$MECHANISM") || exit; for one in $$names; do \
-	$(STAGE) parts "$$one" --or-none && $(STAGE) solve "$$one" || exit; done
-	@$(PICTURE) compare "$$MECHANISM" $(SPECTRA_IF_ANY)
+	@$(MBSD) compare -- "$$MECHANISM"
 
 glb-%: libraries always ## the parts with their motion in one file for any glTF viewer: out/<name>/<name>.glb
-	$(upto_shot)
-	@$(PICTURE) glb "$$MECHANISM"
+	@$(MBSD) glb -- "$$MECHANISM"
 
 view-%: install always ## one HTML page with the machine, its forces and its plots: out/<name>/view.html
-	$(upto_bare_motion)
-	@$(STAGE) shot "$$MECHANISM"
-	@$(PICTURE) view "$$MECHANISM"
+	@$(MBSD) view -- "$$MECHANISM"
 
 live-%: install always ## a page that follows the editor: sliders, dragging, fits to a path; prints its address
-	@$(PYTHON) -m studio.live "$$MECHANISM"
+	@$(MBSD) live -- "$$MECHANISM"
 
 poster-%: libraries always ## one picture at its best: out/<name>/poster.png
-	$(upto_shot)
-	@$(PICTURE) poster "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
+	@$(MBSD) poster -- "$$MECHANISM"
 
-contact-%: libraries always ## a sheet of twelve frames, drafts if no PRESET is given: out/<name>/contact.png
-	$(upto_shot)
-	@$(PICTURE) contact "$$MECHANISM" --preset "$$SHEET_PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
+contact-%: libraries always ## a sheet of twelve frames, drafts if nothing else is asked: out/<name>/contact.png
+	@$(MBSD) contact -- "$$MECHANISM"
 
-still-%: libraries always ## one frame of the film, FRAME=15 (from 0): out/<name>/stills/
-	$(upto_shot)
-	@$(PICTURE) still "$$MECHANISM" --frame="$$FRAME" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
+still-%: libraries always ## one frame of the film: out/<name>/stills/; FRAME=15 (from 0)
+	@$(MBSD) still -- "$$MECHANISM"
 
 frames-%: libraries always ## the frames of the film: out/<name>/frames/<preset>/
-	$(upto_shot)
-	@$(PICTURE) frames "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
+	@$(MBSD) frames -- "$$MECHANISM"
 
 film-%: libraries always ## the film: out/films/<name>-<preset>.mp4
-	$(upto_shot)
-	@$(PICTURE) film "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
+	@$(MBSD) film -- "$$MECHANISM"
 
 scene-ui-%: libraries always ## open the scene in an installed Blender
-	$(upto_shot)
-	@$(PICTURE) scene-ui "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
+	@$(MBSD) scene-ui -- "$$MECHANISM"
 
 scene-%: libraries always ## save the scene: out/<name>/<name>.blend
-	$(upto_shot)
-	@$(PICTURE) scene "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} $${SHOW:+--show="$$SHOW"}
+	@$(MBSD) scene -- "$$MECHANISM"
 
-verify-%: libraries always ## solids, motion, some frames (FRAMES=0,30) and the film made again in scratch and compared
-	@$(PYTHON) -m studio.verify "$$MECHANISM" --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} --frames="$$FRAMES" $${SHOW:+--show="$$SHOW"}
+verify-%: libraries always ## solids, motion, some frames and the film made again in scratch and compared; FRAMES=0,30
+	@$(MBSD) verify -- "$$MECHANISM"
 
-view-all: install ## all pages (ONLY=four_bar,pendulum) and a picture of each by Chromium: view.html, view.png
-	@$(PYTHON) -m studio.pages --only="$$ONLY"
+view-all: install ## all pages and a picture of each by Chromium: view.html, view.png; ONLY=four_bar,pendulum
+	@$(MBSD) view-all
 
 view-engines: install ## pages used in Firefox and Safari's engine: a small four-bar, or ONLY=four_bar,pendulum
 	@$(PYTHON) -m tools.engines --name="$$ONLY"
 
-gallery: libraries ## posters of all mechanisms (PRESET) and the page that shows them: docs/gallery/
-	@for file in mechanisms/*/mechanism.py; do one=$${file%/mechanism.py}; one=$${one#mechanisms/}; \
-	"$(MAKE)" --no-print-directory "clearance-$$one" || echo "gallery: no clearance of $$one" >&2; \
-	"$(MAKE)" --no-print-directory "poster-$$one" PRESET="$$PRESET" ASPECT=16:9 || echo "gallery: no poster of $$one" >&2; done
-	@$(PICTURE) gallery
+gallery: libraries ## posters of all mechanisms and the page that shows them: docs/gallery/
+	@$(MBSD) gallery
 
-showreel: install ## the finished films of PRESET, each under its title, as one; ONLY=four_bar,geneva_drive
-	@$(PICTURE) showreel --preset "$$PRESET" $${ASPECT:+--aspect="$$ASPECT"} --only="$$ONLY" $${SHOW:+--show="$$SHOW"}
+showreel: install ## the finished films, each under its title, as one; ONLY=four_bar,geneva_drive
+	@$(MBSD) showreel
 
 fetch: install ## bring the films of another machine home, what changed alone: HOST=user@machine FOLDER=mbsd
-	@$(PYTHON) -m studio.fetch --folder="$$FOLDER" -- "$$HOST"
+	@$(MBSD) fetch -- "$$HOST"
 
-scheduler: install ## of a cluster: CLUSTER=tcp://127.0.0.1:8786 is its address; HOST=address for other machines
-	@$(PYTHON) -m shared.cluster scheduler --host="$$HOST"
+scheduler: install ## scheduler of a cluster; it prints its address; HOST=address for other machines
+	@$(MBSD) scheduler
 
-worker: install ## frames and parts for whoever gives the same CLUSTER=tcp://scheduler:8786; HOST=its own address
-	@$(PYTHON) -m shared.cluster worker --host="$$HOST" -- "$$CLUSTER"
+worker: install ## makes frames and parts for whoever asks the same scheduler: CLUSTER=tcp://scheduler:8786
+	@$(MBSD) worker -- "$$CLUSTER"
 
-certificates: install ## CLUSTER_TLS=folder: so that a cluster on several machines lets nobody else in
-	@$(PYTHON) -m shared.cluster certificates -- "$$CLUSTER_TLS"
+certificates: install ## certificates, so that a cluster lets nobody else in: CLUSTER_TLS=folder
+	@$(MBSD) certificates -- "$$CLUSTER_TLS"
 
 new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
-	@$(STAGE) new --kind="$${KIND:-driven}" -- "$$NAME"
+	@$(MBSD) new -- "$$NAME"
+
+import: install ## a mechanism of Linkage, PMKS, PMKS+, pylinkage or an .asmt assembly: FILE=walker.linkage2 AS=walker
+	@$(MBSD) import -- "$$FILE"
 
 list: install ## the mechanisms and what is made of them
-	@$(STAGE) list
+	@$(MBSD) list
 
 check: install ## versions, system libraries, render device, disk space
 	@$(PYTHON) -m tools.check
@@ -290,7 +262,7 @@ bench-live: install ## from a slider of the live page to the picture, in Chromiu
 	@$(PYTHON) -m benchmarks live --name "$${NAME:-four_bar}" --count "$${N:-40}"
 
 bench-film: install ## what a film costs beside Cycles alone, a plain script, one core; NAME=four_bar N=60 frames
-	@$(PYTHON) -m benchmarks film --name "$${NAME:-four_bar}" --preset "$$PRESET" --frames "$${N:-60}"
+	@$(PYTHON) -m benchmarks film --name "$${NAME:-four_bar}" --preset "$${PRESET:-preview}" --frames "$${N:-60}"
 
 check-numbers: install ## raw bytes of 300 runs against those recorded, or WITHIN=1e-9 of those kept; ONLY="gallery four_bar"
 	$(ALL_KERNELS)
@@ -334,9 +306,7 @@ study-run-up: install ## engines on mounts run through resonance, 120 simulation
 	@$(PYTHON) -m tools.engine_run_up
 
 readme-loop: libraries ## the loop at the top of README.md, filmed by the page in Chromium: docs/readme_loop.webp
-	@$(STAGE) parts four_bar
-	@$(STAGE) solve four_bar
-	@$(STAGE) shot four_bar
+	@$(MBSD) view four_bar
 	@$(PYTHON) -m tools.readme_loop
 
 integrators: install ## measure the integrators again, for docs/integrators.md: order, cost, 10 000 periods (5 minutes)
@@ -344,7 +314,7 @@ integrators: install ## measure the integrators again, for docs/integrators.md: 
 	@$(PYTHON) -m tools.integrators
 	@$(PYTHON) -m tools.figures integrators
 
-wheel: install ## the solver alone as sdist and wheel: dist/; KERNELS=1: a wheel with compiled kernels, too
+wheel: install ## mbsd with all rooms as sdist and wheel: dist/; KERNELS=1: a wheel with compiled kernels, too
 	@$(PYTHON) -m tools.wheel $${KERNELS:+--kernels}
 
 lock: ## choose versions anew within pyproject.toml: requirements.lock, requirements-bench.lock

@@ -1,22 +1,33 @@
-"""``python -m mbsd compile``: compile all kernels now, so that the first real run does not wait for it.
+"""The program ``mbsd``: ``mbsd run excavator``, and all that ``mbsd --help`` lists; also as ``python -m mbsd``.
 
-Each part solves a small mechanism that uses some entry points, in a process of its own: as many at a time as there are
-cores. What two parts share is compiled by whoever comes first. Kernels that they might call are compiled, too.
+``mbsd compile`` compiles all kernels now, so that the first real run does not wait for it. Each part of that solves a
+small mechanism that uses some entry points, in a process of its own: as many at a time as there are cores. What two
+parts share is compiled by whoever comes first. Kernels that they might call are compiled, too.
 """
 
 from __future__ import annotations
 
 import logging
 import os
+import runpy
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from mbsd import Mechanism, constant_rate
+if TYPE_CHECKING:
+    from mbsd import Mechanism
+
+STUDIO = "studio.command.__main__"
+"""The program beside the solver, where its rooms are there."""
 
 
 def _driven() -> Mechanism:
+    from mbsd import Mechanism, constant_rate
+
     m = Mechanism("compile")
     crank = m.bar("crank", 1.0, mass=1.0)
     m.revolute("A", m.ground.at(0, 0), crank.start)
@@ -31,6 +42,8 @@ def _reference() -> None:
 
 def _independent() -> None:
     """Simulations in independent coordinates."""
+    from mbsd import Mechanism
+
     free = Mechanism("free")
     rod = free.bar("rod", 1.0, mass=1.0)
     free.revolute("A", free.ground.at(0, 0), rod.start)
@@ -43,6 +56,7 @@ def _newton() -> None:
 
     import numpy as np
 
+    from mbsd import Mechanism, constant_rate
     from mbsd.kinematics.march import march_along
     from mbsd.kinematics.prepare import prepare
 
@@ -82,7 +96,7 @@ PARTS: dict[str, Callable[[], None]] = {
 
 
 def main() -> int:
-    """Compile all parts. Returns 1 where one of them failed."""
+    """Compile all parts, which returns 1 where one of them failed; all other commands are the program's."""
     match sys.argv[1:]:
         case ["compile"]:
             started = time.perf_counter()
@@ -98,9 +112,28 @@ def main() -> int:
             PARTS[part]()
             compile_all()
         case _:
-            print("usage: python -m mbsd compile", file=sys.stderr)
-            return 2
+            return _studio()
     return 0
+
+
+def _studio() -> int:
+    """Run the program in this process; 2 where its rooms or packages are not installed."""
+    rooms = Path(__file__).parent / "rooms"
+    if not rooms.is_dir():
+        rooms = Path(__file__).parent.parent  # a clone
+    if (rooms / "studio" / "command").is_dir():
+        if find_spec("msgspec") is None:
+            print("mbsd: error: this needs more packages: pip install 'mbsd[studio]'", file=sys.stderr)
+            return 2
+        sys.path.insert(0, str(rooms))
+        os.environ.setdefault("MBSD_FACE", "mbsd")
+        runpy.run_module(STUDIO, run_name="__main__", alter_sys=True)
+        return 0
+    print(
+        "usage: mbsd compile\nthe solver alone is installed; pip install 'mbsd[studio]' brings all else",
+        file=sys.stderr,
+    )
+    return 2
 
 
 def _all_at_once(cores: int) -> bool:

@@ -6,7 +6,7 @@ import argparse
 import importlib
 
 from shared.stage.console import run_cli
-from shared.stage.paths import compared, known_name, mechanism_folder, owner_of, variants_in
+from shared.stage.paths import compared, known_name, mechanism_file, owner_of, variants_in
 
 STAGES = {
     "parts": ("mechanisms.stages.parts.stage", "make the solids: STL, STEP and parts.json"),
@@ -35,11 +35,17 @@ def main() -> int | None:
     fresh = commands.add_parser("new", help="a new mechanism that already runs")
     fresh.add_argument("name", help="folder to make")
     fresh.add_argument("--kind", default="driven", help="driven or simulated")
+    fresh.add_argument("--single", action="store_true", help="one file in place of a folder; for a folder of one's own")
     of = commands.add_parser(
         "variants", help="the names of a mechanism and its variants, a line each; it must have some"
     )
     of.add_argument("name", help="mechanism")
-    commands.add_parser("list", help="the mechanisms and what is made of them")
+    looked = commands.add_parser("check", help="what in a model looks as if it was not meant")
+    looked.add_argument("name", help="mechanism; four-bar and four_bar are one")
+    looked.add_argument("--json", action="store_true", help="for other programs")
+    every = commands.add_parser("list", help="the mechanisms and what is made of them")
+    every.add_argument("--names", action="store_true", help="names alone, a line each")
+    every.add_argument("--json", action="store_true", help="for other programs")
     arguments = parser.parse_args()
     if arguments.command in STAGES:
         name, stage = known_name(arguments.name), importlib.import_module(STAGES[arguments.command][0])
@@ -50,19 +56,23 @@ def main() -> int | None:
         return stage.run_or_none(name) if getattr(arguments, "or_none", False) else stage.run(name)
     if arguments.command == "variants":
         owner = owner_of(arguments.name)
-        if not variants_in(mechanism_folder(owner) / "mechanism.py"):
+        if not variants_in(mechanism_file(owner)):
             from mechanisms.stages.loading import loading
 
             loading.load(owner, "mechanism")  # where it cannot be read, that is reported
         print(owner, *(f"{owner}-{variant}" for variant in compared(owner)), sep="\n")
         return None
+    if arguments.command == "check":
+        from mechanisms.stages import checking
+
+        return checking.run(arguments.name, arguments.json)
     if arguments.command == "new":
         from mechanisms.stages.new import new
 
-        return new.run(arguments.name, arguments.kind)
+        return new.run(arguments.name, arguments.kind, arguments.single)
     from mechanisms.stages import listing
 
-    return listing.run()
+    return listing.run(arguments.names, arguments.json)
 
 
 if __name__ == "__main__":

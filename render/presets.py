@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from shared.stage.errors import UserError
+from shared.stage.face import said
 
 
 @dataclass(frozen=True)
@@ -42,9 +43,9 @@ class Preset:
 
     @property
     def asked(self) -> str:
-        """The words of make that ask for it: ``PRESET=preview ASPECT=9:16``."""
+        """The words that ask for it: ``PRESET=preview ASPECT=9:16`` of make, ``--preset preview`` of mbsd."""
         base, _, shape = self.name.partition("-")
-        return f"PRESET={base}" + (f" ASPECT={shape.replace('x', ':')}" if shape else "")
+        return said(preset=base, **({"aspect": shape.replace("x", ":")} if shape else {}))
 
     def framed(self, aspect: str) -> Preset:
         """The same in another aspect of :data:`ASPECTS`: its shorter side keeps its pixels.

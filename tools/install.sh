@@ -81,6 +81,17 @@ for packages in .venv/lib/python3*/site-packages; do
     fi
 done
 
+# The program by its name: `.venv/bin/mbsd run excavator` in any folder, also through a link to it. -P: a user's folder
+# may hold files with names of ours.
+if [ -d .venv/bin ] && [ ! -f .venv/bin/mbsd ]; then
+    cat >.venv/bin/mbsd <<'PROGRAM'
+#!/bin/sh
+place=$(readlink -f "$0" 2>/dev/null || echo "$0")
+exec "$(dirname "$place")/python" -P -m mbsd "$@"
+PROGRAM
+    chmod +x .venv/bin/mbsd
+fi
+
 # Who commits with checks gets them from this clone, too.
 hook=.git/hooks/pre-commit
 if grep -qs '^INSTALL_PYTHON=' $hook && ! grep -qF "$(pwd -P)/.venv/bin/python" $hook; then

@@ -26,6 +26,7 @@ from mbsd.drawing.symbols.reach import reach
 from mbsd.drawing.symbols.touching import contact_reach, draw_contacts
 from mbsd.drawing.symbols.wheels import rim_of, ring_gear
 from mbsd.model.body import Marker
+from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def draw_on(
         with canvas.on(GROUND):
             _frame(canvas, pose, "ground", 2.6)
     for joint in (*m.joints.values(), *m.drivers.values()):
-        side = free_side(_leaving(m, pose, points, joint.j, unit)) if sides is None else sides[joint.name]
+        side = free_side(_directions(m, pose, points, joint, unit)) if sides is None else sides[joint.name]
         draw_joint(canvas, Place(joint, pose, colours, side))
     for force in m.forces.values():
         draw_force(canvas, force, pose, list(m.joints.values()))
@@ -132,8 +133,17 @@ def steady_sides(m: Model, poses: Sequence[Pose], unit: float) -> dict[str, np.n
     for pose in poses:
         points = {name: _points(m, pose, name) for name in m.bodies}
         for joint in (*m.joints.values(), *m.drivers.values()):
-            leaving.setdefault(joint.name, []).extend(_leaving(m, pose, points, joint.j, unit))
+            leaving.setdefault(joint.name, []).extend(_directions(m, pose, points, joint, unit))
     return {name: free_side(directions) for name, directions in leaving.items()}
+
+
+def _directions(m: Model, pose: Pose, points: dict[str, np.ndarray], joint: Joint, unit: float) -> list[float]:
+    """Angles (rad) at which links leave the place where ground's sign goes; of a rod, the rod itself."""
+    if "distance" in joint.kind.constraints and "ground" in joint.bodies:
+        gap = pose.place(joint.j) - pose.place(joint.i)
+        along = gap if joint.i.body.name == "ground" else -gap
+        return [math.atan2(along[1], along[0])]
+    return _leaving(m, pose, points, joint.j, unit)
 
 
 def _points(m: Model, pose: Pose, name: str) -> np.ndarray:

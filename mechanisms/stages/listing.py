@@ -7,7 +7,7 @@ import ast
 import msgspec
 
 from shared.stage.console import warn
-from shared.stage.paths import NAME_RULE, Out, mechanism_folder, mechanism_names, out_root, unfit_folders, variants_in
+from shared.stage.paths import NAME_RULE, Out, mechanism_file, mechanism_names, out_root, unfit_names, variants_in
 
 
 class _Diagnostics(msgspec.Struct):
@@ -18,24 +18,52 @@ class _Solved(msgspec.Struct):
     diagnostics: _Diagnostics
 
 
-def run() -> None:
-    """Print a line for each mechanism: name, degrees of freedom (once solved), first line of its docstring, files."""
+def run(names: bool = False, as_json: bool = False) -> None:
+    """Print a line for each mechanism: name, degrees of freedom (once solved), first line of its docstring, files.
+
+    ``names``: names alone, of variants as well; ``as_json``: all of it for other programs.
+    """
+    if names:
+        print(*_all_names(), sep="\n")
+        return
+    if as_json:
+        print(msgspec.json.encode([_entry(name) for name in _all_names()]).decode())
+        return
     for name in mechanism_names():
         made = ", ".join(_made(name)) or "nothing yet"
         print(f"{name.replace('_', '-'):<24} {_title(name)}\n{'':<24} {_freedom(name)}made: {made}")
-        for variant in variants_in(mechanism_folder(name) / "mechanism.py"):
+        for variant in variants_in(mechanism_file(name)):
             made = ", ".join(_made(f"{name}-{variant}")) or "nothing yet"
             print(f"{'':<24} {name}-{variant}: made: {made}".replace("_", "-"))
-    for folder in unfit_folders():
-        warn("list", f"mechanisms/{folder!r} is left out, because that cannot name a mechanism: {NAME_RULE}")
+    for folder in unfit_names():
+        warn("list", f"{folder!r} is left out, because that cannot name a mechanism: {NAME_RULE}")
+
+
+def _all_names() -> list[str]:
+    """Mechanisms, each followed by its variants."""
+    names = []
+    for name in mechanism_names():
+        names += [name, *(f"{name}-{variant}" for variant in variants_in(mechanism_file(name)))]
+    return names
+
+
+def _entry(name: str) -> dict[str, object]:
+    out = Out(name)
+    return {
+        "name": name,
+        "title": _title(name),
+        "file": str(mechanism_file(name)),
+        "out": str(out.folder),
+        "made": _made(name),
+    }
 
 
 def _title(name: str) -> str:
     """First line of mechanism.py's docstring, read without running the file."""
     try:
-        docstring = ast.get_docstring(ast.parse((mechanism_folder(name) / "mechanism.py").read_text()))
+        docstring = ast.get_docstring(ast.parse((mechanism_file(name)).read_text()))
     except SyntaxError as error:
-        return f"(mechanism.py does not parse: line {error.lineno}: {error.msg})"
+        return f"({mechanism_file(name).name} does not parse: line {error.lineno}: {error.msg})"
     return (docstring or "(no docstring)").splitlines()[0]
 
 

@@ -11,6 +11,7 @@ from render.film.inputs import named, stage_key
 from render.presets import Preset
 from shared.stage.console import say
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.paths import Out
 from shared.stage.stages import Stage
 
@@ -88,5 +89,5 @@ def find_blender() -> str:
                 return str(program)
     raise UserError(
         "no installed Blender was found to open the scene in; install Blender 5.2 or newer (blender.org), "
-        "or set BLENDER to its program. make scene-<name> saves the .blend without it"
+        f"or set BLENDER to its program. {to_run('scene', '<name>')} saves the .blend without it"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from render.gallery.page import Entry, page, sentences
@@ -12,10 +13,11 @@ from shared.contract import read_motion, read_parts
 from shared.contract.clearance import read_clearance
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.files import write_bytes
-from shared.stage.paths import ROOT, Out, mechanism_names
+from shared.stage.paths import ROOT, Out, in_workshop, mechanism_file, mechanism_names, out_root
 
-FOLDER = ROOT / "docs" / "gallery"
+FOLDER = out_root() / "gallery" if in_workshop() else ROOT / "docs" / "gallery"
 STRIP = "strip.jpg"
 """All posters in one picture, for the README."""
 
@@ -30,22 +32,23 @@ def run(folder: Path = FOLDER) -> int:
     for name in names:
         out = Out(name)
         if not (out.poster.is_file() and out.motion.is_file()):
-            warn("gallery", f"{name} is left out: it has no poster; make poster-{name.replace('_', '-')}")
+            warn("gallery", f"{name} is left out: it has no poster; {to_run('poster', name)}")
             continue
         motion = read_motion(out.motion, name)
         parts = read_parts(out.parts, name) if out.parts.is_file() else None
         clearance = read_clearance(out.clearance) if parts is not None and out.clearance.is_file() else None
         posters[f"{name}.jpg"] = small_poster(out.poster)
-        entries.append(Entry(name, sentences(description(name)), facts(motion, parts, clearance)))
+        place = os.path.relpath(mechanism_file(name), folder)
+        entries.append(Entry(name, sentences(description(name)), facts(motion, parts, clearance), place))
     if not entries:
-        raise UserError("no mechanism has a poster; run make gallery, which makes them")
+        raise UserError(f"no mechanism has a poster; run {to_run('gallery')}, which makes them")
     posters[STRIP] = strip(list(posters.values()))
     for file, content in posters.items():
         if not (folder / file).is_file() or (folder / file).read_bytes() != content:
             write_bytes(folder / file, content)
     for older in set(folder.glob("*.jpg")) - {folder / file for file in posters}:
         older.unlink()
-    write_bytes(folder / "README.md", page(entries).encode())
+    write_bytes(folder / "README.md", page(entries, in_workshop()).encode())
     size = max(map(len, posters.values())) / 1000
     say("gallery", f"{len(entries)} mechanisms in {folder / 'README.md'}, pictures up to {size:.0f} kB")
     return int(len(entries) < len(names))

@@ -6,6 +6,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from shared.stage.face import to_run
+
 LONGEST = 2
 """Sentences of each."""
 UNSAID = ("SI units.", "SI units and radians.")
@@ -18,24 +20,26 @@ class Entry:
     name: str
     said: str
     facts: list[str]
+    file: str
+    """Its mechanism.py, seen from the page."""
 
 
-def page(entries: Sequence[Entry]) -> str:
-    """The whole page, in the order of the names."""
-    lines = [
-        "# Gallery",
-        "",
+def page(entries: Sequence[Entry], own: bool = False) -> str:
+    """The whole page, in the order of the names; ``own``: of the machines of a user's own folder."""
+    first = [
         "Every mechanism of `mechanisms/` as it comes out of its short file: `make run-<name>` makes the film,",
         "the parts and the numbers of one, `make gallery` this page.",
     ]
+    lines = ["# Gallery", "", *([f"`{to_run('gallery')}` makes this page."] if own else first)]
     for entry in entries:
         title = entry.name.replace("_", " ")
         title = title[:1].upper() + title[1:]
-        folder = f"../../mechanisms/{entry.name}/mechanism.py"
         lines += ["", f"## {title}", "", f"![{title}]({entry.name}.jpg)", ""]
         lines += [entry.said, ""] if entry.said else []
-        page_of = f"[the page](../view.md): `make view-{entry.name.replace('_', '-')}`"
-        lines += [f"{' · '.join(entry.facts)} · [mechanism.py]({folder}) · {page_of}"]
+        page_of = (
+            f"`{to_run('view', entry.name)}`" if own else f"[the page](../view.md): `{to_run('view', entry.name)}`"
+        )
+        lines += [f"{' · '.join(entry.facts)} · [{entry.file.rpartition('/')[2]}]({entry.file}) · {page_of}"]
     return "\n".join(lines) + "\n"
 
 

@@ -10,6 +10,7 @@ from shared.contract import Motion, read_motion
 from shared.contract.skeleton import read_skeleton
 from shared.stage.console import say
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.files import sources_hash, whole_file
 from shared.stage.paths import ROOT, Out, variant_of
 from shared.stage.stages import Stage, contract_sources, key_of, versions
@@ -32,8 +33,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     motion, skeleton = read_motion(out.motion, out.name), read_skeleton(out.skeleton)
     if skeleton.provenance != motion.provenance:
         raise UserError(
-            f"{out.name}: {out.skeleton} is of another motion than {out.motion.name}; "
-            f"run make solve-{out.name.replace('_', '-')}"
+            f"{out.name}: {out.skeleton} is of another motion than {out.motion.name}; run {to_run('solve', out.name)}"
         )
     names = [*plots_of(motion), *_spectra(motion, out.name, spectra, every)]
     outputs = {plot: out.plots / f"{plot}.png" for plot in names}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 
 from shared.stage.errors import UserError
-from shared.stage.paths import mechanism_folder
+from shared.stage.paths import mechanism_file, shown_file
 
 FORM = 'write names in quotes: SPECTRA = ("shaking force", "motor")'
 
@@ -17,7 +17,7 @@ def spectra_asked(name: str, words: str = "") -> list[str]:
     """
     if words.strip():
         return list(dict.fromkeys(word.strip() for word in words.split(",") if word.strip()))
-    file = mechanism_folder(name) / "mechanism.py"
+    file = mechanism_file(name)
     try:
         tree = ast.parse(file.read_bytes())
     except (OSError, SyntaxError, ValueError):
@@ -25,7 +25,7 @@ def spectra_asked(name: str, words: str = "") -> list[str]:
     for statement in tree.body:
         targets = getattr(statement, "targets", [getattr(statement, "target", None)])
         if any(isinstance(target, ast.Name) and target.id == "SPECTRA" for target in targets):
-            return _names(statement, f"mechanisms/{file.parent.name}/mechanism.py:{statement.lineno}")
+            return _names(statement, f"{shown_file(name)}:{statement.lineno}")
     return []
 
 

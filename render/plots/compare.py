@@ -12,6 +12,7 @@ from render.plots.asked import spectra_asked
 from shared.contract import Motion, read_motion
 from shared.stage.console import say
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.files import sources_hash, whole_file
 from shared.stage.paths import Out, compared, owner_of
 from shared.stage.stages import Stage, key_of, versions
@@ -28,8 +29,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     files = {"as it is": out.motion} | {variant: Out(f"{owner}-{variant}").motion for variant in compared(owner)}
     for variant, file in files.items():
         if not file.is_file():
-            target = owner.replace("_", "-")
-            raise UserError(f"{owner}: {file} of '{variant}' is missing; run make compare-{target}")
+            raise UserError(f"{owner}: {file} of '{variant}' is missing; run {to_run('compare', owner)}")
     asked = spectra_asked(owner, spectra)
     key = key_of(
         asked,

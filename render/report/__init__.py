@@ -14,7 +14,7 @@ from shared.contract import Motion, Parts, read_motion, read_parts
 from shared.contract.clearance import Clearance, read_clearance
 from shared.stage.console import say
 from shared.stage.files import sources_hash, write_bytes
-from shared.stage.paths import Out, mechanism_folder
+from shared.stage.paths import Out, mechanism_file
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 READ = [*contract_sources("clearance"), *FRAME_SOURCES]
@@ -75,6 +75,6 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
 def description(name: str) -> str:
     """The docstring of mechanism.py, read without running it; empty where there is none."""
     try:
-        return ast.get_docstring(ast.parse((mechanism_folder(name) / "mechanism.py").read_text())) or ""
+        return ast.get_docstring(ast.parse((mechanism_file(name)).read_text())) or ""
     except (SyntaxError, OSError):
         return ""

@@ -14,7 +14,8 @@ from render.showreel.card import Title
 from render.showreel.join import join
 from shared.stage.console import duration, say
 from shared.stage.errors import UserError
-from shared.stage.paths import Out, known_name, mechanism_folder, mechanism_names, out_root, variants_in
+from shared.stage.face import to_run
+from shared.stage.paths import Out, known_name, mechanism_file, mechanism_names, out_root, variants_in
 
 NAME = "showreel"
 
@@ -28,9 +29,9 @@ def run(preset: Preset, only: str = "", show: str = "") -> Path:
     films = {name: film for name in names if (film := named(Out(name).film(preset.name), show)).is_file()}
     left = [name for name in names if name not in films]
     if not films or (only.strip() and left):
-        first = (left or ["<name>"])[0].replace("_", "-")
         wanted = ", ".join(left) if only.strip() else "any mechanism"
-        raise UserError(f"showreel: there is no film of {wanted} at {preset.name}; make film-{first} {preset.asked}")
+        remedy = f"{to_run('film', (left or ['<name>'])[0])} {preset.asked}"
+        raise UserError(f"showreel: there is no film of {wanted} at {preset.name}; {remedy}")
     if any("-" not in name for name in left):
         missing = [name for name in left if "-" not in name]  # a variant's film is one that somebody asked for
         say("showreel", f"left out, since they have no film of {preset.name}: {', '.join(missing)}")
@@ -65,6 +66,6 @@ def title_of(name: str) -> Title:
 def _all_names() -> list[str]:
     names = []
     for owner in mechanism_names():
-        variants = variants_in(mechanism_folder(owner) / "mechanism.py")
+        variants = variants_in(mechanism_file(owner))
         names += [owner, *(f"{owner}-{variant}" for variant in variants)]
     return names

@@ -20,10 +20,10 @@ import msgspec
 from shared.stage import jsonfile
 from shared.stage.console import say
 from shared.stage.errors import UserError
-from shared.stage.paths import ROOT
+from shared.stage.paths import cache_root
 
 PAGE = Path(__file__).parent / "page"
-CACHE = ROOT / ".cache" / "page"
+CACHE = cache_root() / "page"
 LOCKED = ("package.json", "package-lock.json", ".npmrc")
 LICENSED = {"three": "three.js", "uplot": "µPlot"}
 """What is in the bundle, by its folder in node_modules."""

@@ -14,6 +14,7 @@ from shared.contract.shot import Shot, read_shot
 from shared.contract.skeleton import read_skeleton
 from shared.contract.spanning import with_rods
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.paths import Out
 
 
@@ -21,13 +22,10 @@ def read_payload(out: Out) -> dict[str, Any]:
     """The whole payload of a mechanism. Raises UserError for files that do not fit together."""
     motion, skeleton = read_motion(out.motion, out.name), read_skeleton(out.skeleton)
     if skeleton.moving is None:
-        raise UserError(
-            f"{out.name}: {out.skeleton} is of an earlier version; run make solve-{out.name.replace('_', '-')} again"
-        )
+        raise UserError(f"{out.name}: {out.skeleton} is of an earlier version; run {to_run('solve', out.name)} again")
     if skeleton.provenance.inputs != motion.provenance.inputs:
         raise UserError(
-            f"{out.name}: {out.skeleton} is not of the motion in {out.motion}; "
-            f"run make solve-{out.name.replace('_', '-')} again"
+            f"{out.name}: {out.skeleton} is not of the motion in {out.motion}; run {to_run('solve', out.name)} again"
         )
     shot = read_shot(out.shot) if out.shot.is_file() else Shot()
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 
 if TYPE_CHECKING:
     from distributed import Client, Security
@@ -73,8 +74,8 @@ def connected(where: str = "") -> Iterator[Client]:
         client = Client(where, security=security(), timeout=TIMEOUT, set_as_default=False)
     except (OSError, ValueError, TypeError, RuntimeError) as error:
         raise UserError(
-            f"no scheduler answers at CLUSTER={where} ({error}); start one with make scheduler, or leave CLUSTER out "
-            "to work on this machine alone"
+            f"no scheduler answers at CLUSTER={where} ({error}); start one with {to_run('scheduler')}, or leave "
+            "CLUSTER out to work on this machine alone"
         ) from error
     try:
         yield client

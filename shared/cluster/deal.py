@@ -21,6 +21,7 @@ from shared.cluster.identity import PACKAGES, asker, differences, identity, toge
 from shared.cluster.shares import stolen, unclaimed
 from shared.stage.console import duration, say, warn
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -131,7 +132,7 @@ class Deal:
         silent = time.monotonic() - self._answered
         if silent > WAIT:
             raise UserError(f"the scheduler has been silent for {duration(silent)}; nothing was lost, start it again "
-                            "(make scheduler), and then the same command")  # fmt: skip
+                            f"({to_run('scheduler')}), and then the same command")  # fmt: skip
         self._report(f"the scheduler does not answer; it is given {WAIT:.0f} s")
 
     def _refuse_none(self) -> None:
@@ -150,11 +151,11 @@ class Deal:
         if none_left or without >= longest:
             raise UserError(
                 f"no worker of the cluster can do this{shown or ', for there is none'}; start workers "
-                "with the same lock file and sources (make worker), or leave CLUSTER out"
+                f"with the same lock file and sources ({to_run('worker')}), or leave CLUSTER out"
             )
         if without >= SOON:
             what = "all workers are silent" if stalled else "there is no worker that can do this"
-            self._report(f"{what}{shown}; one is given {duration(longest)} to come (make worker)")
+            self._report(f"{what}{shown}; one is given {duration(longest)} to come ({to_run('worker')})")
 
     def _report(self, text: str) -> None:
         if text != self._reported:

@@ -29,6 +29,7 @@ from shared.contract.parts import PARTS_UNITS, BodyParts, End, Held, Mass, Parts
 from shared.contract.vibration import Harmonics, Vibration
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 
 __all__ = [
     "CONVENTIONS_OF",
@@ -94,7 +95,7 @@ def read_parts(path: Path, mechanism: str | None = None) -> Parts:
             if not (path.parent / piece.stl).is_file():
                 raise UserError(
                     f"{path}: bodies.{body}.pieces.{name}.stl names {piece.stl}, which is missing; "
-                    f"run make parts-{parts.mechanism.replace('_', '-')}"
+                    f"run {to_run('parts', parts.mechanism)}"
                 )
     return parts
 

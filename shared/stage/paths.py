@@ -14,15 +14,52 @@ from shared.stage.memory import recalled
 from shared.stage.suggestions import did_you_mean
 
 ROOT = Path(__file__).resolve().parents[2]
-MECHANISMS = ROOT / "mechanisms"
+"""The folder that holds the rooms: the clone, or the one that an installed package brings them in."""
+SOLVER = ROOT / "mbsd" if (ROOT / "mbsd").is_dir() else ROOT.parent
+"""The package ``mbsd``: beside the other rooms in a clone, around them where it is installed."""
+WORKSHOP = "MBSD_WORKSHOP"
+"""Environment variable that names a user's own folder of machines; without it they are those of the clone."""
+
+
+def in_workshop() -> bool:
+    """Whether machines are those of a user's own folder."""
+    return bool(os.environ.get(WORKSHOP))
+
+
+def _machines() -> Path:
+    own = os.environ.get(WORKSHOP)
+    return Path(os.path.abspath(os.path.expanduser(own))) if own else ROOT / "mechanisms"
+
+
+def work_in(folder: Path) -> None:
+    """From now on machines are those of a user's folder, in this process and in those that it starts.
+
+    Before what loads the author's code is imported, which keeps the folder.
+    """
+    global MECHANISMS
+    os.environ[WORKSHOP] = str(folder)
+    MECHANISMS = _machines()
+
+
+MECHANISMS = _machines()
+"""The folder of machines: each a folder with a mechanism.py; in a user's own one also single files, or itself."""
+RESERVED = ("stages", "automatic")
+"""Names that the package of the machines needs for itself."""
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 """The name of a mechanism: its folder, Python package and make target."""
 NAME_RULE = "write lower-case letters, digits and underscores (or hyphens), a letter first"
 
 
 def out_root() -> Path:
-    """The folder of all results: ``$MBSD_OUT`` if set, else ``out`` in the project."""
-    return Path(os.environ.get("MBSD_OUT") or ROOT / "out")
+    """The folder of all results: ``$MBSD_OUT`` if set, else ``out`` in the clone or in the user's folder."""
+    return Path(os.environ.get("MBSD_OUT") or (MECHANISMS if in_workshop() else ROOT) / "out")
+
+
+def cache_root() -> Path:
+    """The folder of what is kept for the next time: ``.cache`` in the clone, else the user's cache folder."""
+    if (ROOT / "Makefile").is_file():
+        return ROOT / ".cache"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "mbsd"
 
 
 def refuse_links(path: Path) -> None:
@@ -63,13 +100,13 @@ def mechanism_name(name: str) -> str:
         raise UserError(
             f"{name!r} is not the name of a mechanism: {NAME_RULE}; there is: {', '.join(mechanism_names()) or 'none'}"
         )
-    if (MECHANISMS / canonical / "mechanism.py").is_file():
+    if _source(canonical) is not None:
         return canonical
     meant = [
         f"{owner}-{variant}"
         for owner in mechanism_names()
         if canonical.startswith(f"{owner}_")
-        for variant in variants_in(MECHANISMS / owner / "mechanism.py")
+        for variant in _variants_of(owner)
         if canonical == f"{owner}_{variant}"
     ]
     if len(meant) > 1:
@@ -105,7 +142,7 @@ def variants_in(file: Path) -> list[str]:
 def compared(name: str) -> list[str]:
     """A mechanism's variants, for pages beside each other; raises UserError for one without."""
     owner = owner_of(name)
-    variants = variants_in(mechanism_folder(owner) / "mechanism.py")
+    variants = variants_in(mechanism_file(owner))
     if not variants:
         raise UserError(
             f'{owner}: there is nothing to compare; write VARIANTS = {{"name": {{"field": value}}}} beside build() in '
@@ -115,30 +152,98 @@ def compared(name: str) -> list[str]:
 
 
 def mechanism_names() -> list[str]:
-    """Every mechanism: a folder of ``mechanisms/`` with a fit name that holds a ``mechanism.py``."""
-    return [name for name in _folders() if NAME.fullmatch(name)]
+    """Every mechanism: a folder with a fit name that holds a ``mechanism.py``; in a user's own folder also a file with
+    a function ``build``, and that folder itself.
+    """
+    return [name for name in _names() if NAME.fullmatch(name) and name not in RESERVED]
 
 
-def unfit_folders() -> list[str]:
-    """Names of folders that hold a ``mechanism.py`` but cannot be a mechanism's name."""
-    return [name for name in _folders() if not NAME.fullmatch(name)]
+def unfit_names() -> list[str]:
+    """Names of folders and files that hold a mechanism but cannot be the name of one."""
+    return [name for name in _names() if not NAME.fullmatch(name) or name in RESERVED]
 
 
-def _folders() -> list[str]:
-    return sorted(p.parent.name for p in MECHANISMS.glob("*/mechanism.py"))
+def _names() -> list[str]:
+    names = {path.parent.name for path in MECHANISMS.glob("*/mechanism.py")}
+    if in_workshop():
+        names |= {
+            path.stem for path in MECHANISMS.glob("*.py") if path.name != "mechanism.py" and defines(path, "build")
+        }
+        if (MECHANISMS / "mechanism.py").is_file():
+            names.add(_own_name())
+    return sorted(names)
+
+
+def _own_name() -> str:
+    """The name of a mechanism whose files lie in the user's folder itself."""
+    name = re.sub(r"[^a-z0-9]+", "_", MECHANISMS.name.lower()).strip("_")
+    return name if NAME.fullmatch(name) else f"machine_{name}".rstrip("_")
+
+
+def defines(file: Path, name: str) -> bool:
+    """Whether a Python file defines this name at its top level, by its text: it need not parse."""
+    try:
+        text = file.read_text("utf-8", errors="replace")
+    except OSError:
+        return False
+    return re.search(rf"^(def\s+{name}\b|{name}\s*[:=])", text, re.MULTILINE) is not None
+
+
+def _source(owner: str) -> Path | None:
+    """The file that defines this mechanism's model, if there is one."""
+    file = MECHANISMS / owner / "mechanism.py"
+    if file.is_file():
+        return file
+    if not in_workshop() or owner in RESERVED:
+        return None
+    if (single := MECHANISMS / f"{owner}.py").is_file():
+        return single
+    own = MECHANISMS / "mechanism.py"
+    return own if own.is_file() and owner == _own_name() else None
+
+
+def is_single_file(name: str) -> bool:
+    """Whether all that a mechanism says stands in one file, ``excavator.py``."""
+    source = _source(owner_of(name))
+    return source is not None and source.name != "mechanism.py"
+
+
+def mechanism_file(name: str, file: str = "mechanism") -> Path:
+    """The file of a mechanism or variant that holds its ``mechanism``, ``parts`` or ``shot``; it need not be there.
+
+    Raises UserError as :func:`mechanism_folder`.
+    """
+    folder = mechanism_folder(name)
+    return folder / f"{owner_of(name)}.py" if is_single_file(name) else folder / f"{file}.py"
+
+
+def shown_file(name: str, file: str = "mechanism") -> str:
+    """The same as users know it: ``mechanisms/four_bar/parts.py``, ``excavator.py``; of any name, also of none."""
+    owner = name.partition("-")[0]
+    if not in_workshop():
+        return f"mechanisms/{owner}/{file}.py"
+    source = _source(owner)
+    if source is None or source.parent != MECHANISMS:
+        return f"{owner}/{file}.py"
+    return f"{file}.py" if source.name == "mechanism.py" else source.name
+
+
+def _variants_of(owner: str) -> list[str]:
+    source = _source(owner)
+    return variants_in(source) if source is not None else []
 
 
 def mechanism_folder(name: str) -> Path:
     """The folder of a mechanism or of a variant's; raises UserError with the known names if there is none."""
-    folder = MECHANISMS / owner_of(name)
-    if not (folder / "mechanism.py").is_file():
+    source = _source(owner_of(name))
+    if source is None:
         known, name = mechanism_names(), mechanism_name(name)
         _refuse_unknown_variant(name, known)
         raise UserError(
-            f"there is no mechanism '{name}' in mechanisms/; there is: {', '.join(known) or 'none'}"
-            f"{did_you_mean(name, known)}"
+            f"there is no mechanism '{name}' in {MECHANISMS if in_workshop() else 'mechanisms/'}; there is: "
+            f"{', '.join(known) or 'none'}{did_you_mean(name, known)}"
         )
-    return folder
+    return source.parent
 
 
 def known_name(name: str) -> str:
@@ -150,7 +255,7 @@ def known_name(name: str) -> str:
 def _refuse_unknown_variant(name: str, known: Iterable[str]) -> None:
     """Raise UserError where ``name`` begins with a mechanism that has variants, none of which it is."""
     for owner in sorted(known, key=len, reverse=True):
-        variants = variants_in(MECHANISMS / owner / "mechanism.py")
+        variants = _variants_of(owner)
         if name.startswith(f"{owner}_") and variants:
             other = name.removeprefix(f"{owner}_")
             raise UserError(

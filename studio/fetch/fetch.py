@@ -92,7 +92,7 @@ def _locked(folder: Path) -> Iterator[int]:
             os.close(handle)
             handle = -1
             if time.monotonic() >= end:
-                raise UserError("fetch: another make fetch brings films into this folder; wait for it or stop it")
+                raise UserError("fetch: another fetch brings films into this folder; wait for it or stop it")
             time.sleep(0.1)
     finally:
         if handle >= 0:

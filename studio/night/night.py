@@ -7,6 +7,7 @@ import time
 
 from shared.stage.console import duration
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.paths import NAME_RULE, ROOT
 from studio.night.coordinator import Coordinator
 from studio.night.files.log import Log
@@ -59,7 +60,9 @@ def _last_words(
     left = len(asked.names) - done - len(failed)
     words = f"{done} done" + (f", {left} not finished" if left else "")
     if bad:
-        log.fail(f"{words}, failed: {' '.join(bad)}; their errors stand above, make status tells the last of each")
+        log.fail(
+            f"{words}, failed: {' '.join(bad)}; their errors stand above, {to_run('status')} tells the last of each"
+        )
     if not finished:
         log.say(f"stopped as asked after {duration(seconds)}: {words}; the same command goes on from here")
         return STOPPED

@@ -11,6 +11,7 @@ from render.frames import encode
 from render.frames.store import FrameIndex, FrameStore
 from render.presets import Preset
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from studio.verify.finding import Finding
 
 PATIENCE = 3600.0
@@ -54,5 +55,5 @@ def decoded(film: Path) -> list[str]:
     done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=PATIENCE)
     if done.returncode or done.stderr.strip():
         said = (done.stderr.strip().splitlines() or [f"code {done.returncode}"])[-1]
-        raise UserError(f"{film} does not decode ({said}); remove it, and make film-<name> writes it again")
+        raise UserError(f"{film} does not decode ({said}); remove it, and {to_run('film', '<name>')} writes it again")
     return [re.split(r",\s*", line)[-1] for line in done.stdout.splitlines() if line and not line.startswith("#")]

@@ -19,6 +19,7 @@ from render.frames.store import FrameIndex, FrameStore
 from render.presets import Preset
 from shared.stage.console import fail, say
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.paths import ROOT, Out, out_root
 from studio.verify import again, files, film, pictures
 from studio.verify.finding import Finding
@@ -31,7 +32,7 @@ def run(name: str, preset: Preset, frames: str = "", show: str = "") -> int:
     """
     out = Out(name)
     if not out.motion.is_file():
-        raise UserError(f"{out.name}: {out.motion} is not there; make run-{_hyphens(out.name)} first")
+        raise UserError(f"{out.name}: {out.motion} is not there; {to_run('run', out.name)} first")
     home = out_root() / ".verify"
     try:
         with scratch_folder(home) as scratch:
@@ -60,7 +61,7 @@ def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -
         if path.is_file() and (solids or path != out.shot):
             findings.append(files.compared(f"{what} ({path.name})", path, made / path.name))
     if index is None or not solids:
-        hint = f"make film-{_hyphens(out.name)} {preset.asked} first"
+        hint = f"{to_run('film', out.name)} {preset.asked} first"
         return [*findings, Finding("frames and film", "missing", f"none of {preset.name} are there; {hint}")]
     return [*findings, *_of_pictures(out, preset, index, wanted, show, scratch)]
 
@@ -109,7 +110,7 @@ def _sum(name: str, findings: list[Finding]) -> int:
     if counts["missing"]:
         words.append(f"{counts['missing']} not compared")
     if counts["outdated"]:
-        words.append(f"{counts['outdated']} made from other inputs: make run-{_hyphens(name)}, then again")
+        words.append(f"{counts['outdated']} made from other inputs: {to_run('run', name)}, then again")
     if counts["differs"]:
         words.append(f"{counts['differs']} different")
     say("verify", f"{name}: {', '.join(words)}")

@@ -220,7 +220,7 @@ def test_a_computed_parameter_makes_the_text_of_its_file_count(
     folder.mkdir()
     (folder / "mechanism.py").write_text("class Params: ...\n")
     (folder / "parts.py").write_text("from .mechanism import Params\ndef parts(p: Params): ...\n")
-    monkeypatch.setattr(parts_stage, "mechanism_folder", lambda _: folder)
+    monkeypatch.setattr(parts_stage, "mechanism_file", lambda _, file="mechanism": folder / f"{file}.py")
     for module in [module for module in sys.modules if module.startswith("mechanisms.four_bar")]:
         monkeypatch.delitem(sys.modules, module)  # the real one, which an earlier test may have loaded
     nothing, by_hand = Inputs(), parts_stage._Wish(by_itself=False, mount=None)

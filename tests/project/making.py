@@ -23,6 +23,6 @@ def run(*command: str, cwd: Path = ROOT, **environment: str) -> subprocess.Compl
 
 def planned(*arguments: str) -> list[str]:
     """The stages that make would run, in order: ``parts four_bar``."""
-    done = run("make", "-o", "install", "PYTHON=echo", *arguments)
+    done = run("make", "-o", "install", "-o", "libraries", "PLAN=1", *arguments)
     assert done.returncode == 0, done.stderr
-    return re.findall(r"-m (?:mechanisms|render) (.*)", done.stdout)
+    return re.findall(r"^(?:mechanisms|render) (.*)$", done.stdout, flags=re.MULTILINE)

@@ -1,1 +1,1 @@
-"""The solver alone as sdist and wheels."""
+"""mbsd with all its rooms as sdist and wheels."""

@@ -21,23 +21,15 @@ from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from tools.wheel.kernels import compile_into
 
-BESIDE = ("pyproject.toml", "README.md", "LICENSE")
+BESIDE = ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE")
 EARLIEST = 315532800
 """s: 1980, before which zip files have no times."""
-PLATFORM = """
-from setuptools import Distribution, setup
-
-class WithMachineCode(Distribution):
-    def has_ext_modules(self):
-        return True
-
-setup(distclass=WithMachineCode)
-"""
-"""Beside the sources of a wheel with kernels: its tag names Python and platform."""
+ROOMS = ("mechanisms", "render", "shared", "studio")
+"""What the wheel brings besides the solver (setup.py)."""
 
 
 def build(root: Path, out: Path) -> list[Path]:
-    """The sdist and the wheel of the solver in the clone ``root``, written to ``out``."""
+    """The sdist and the wheel of the clone ``root``, written to ``out``."""
     with _unpacked(root) as (sdist, sources):
         wheel = _backend("build_wheel", sources)
         return [_put(file, out) for file in (sdist, wheel)]
@@ -52,7 +44,6 @@ def build_with_kernels(root: Path, out: Path, fill: Callable[[Path, Path], None]
         kernels = sources / "mbsd" / "kernels"
         fill(kernels, sources)
         (kernels / "made_for.json").write_text(json.dumps(here(), indent=1) + "\n")
-        (sources / "setup.py").write_text(PLATFORM)
         return _put(_backend("build_wheel", sources, {"--build-option": [f"--plat-name={_platform()}"]}), out)
 
 
@@ -65,7 +56,8 @@ def _unpacked(root: Path) -> Iterator[tuple[Path, Path]]:
         copied.mkdir()
         for name in BESIDE:
             shutil.copy(root / name, copied)
-        shutil.copytree(root / "mbsd", copied / "mbsd", ignore=shutil.ignore_patterns("__pycache__"))
+        for room in ("mbsd", *ROOMS):
+            shutil.copytree(root / room, copied / room, ignore=shutil.ignore_patterns("__pycache__"))
         for path in copied.rglob("*"):
             path.chmod(0o755 if path.is_dir() else 0o644)
         sdist = _backend("build_sdist", copied)

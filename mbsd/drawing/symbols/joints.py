@@ -7,7 +7,6 @@ A kind that has no symbol of its own here gets a dashed line between its markers
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -17,7 +16,7 @@ from mbsd.drawing.carriers import GROUND, along_line, at_place, beside, on_body
 from mbsd.drawing.look import INK, MOVED, PAPER, QUIET, WRONG
 from mbsd.drawing.symbols.cam import draw_cam
 from mbsd.drawing.symbols.geneva import draw_geneva
-from mbsd.drawing.symbols.place import Place, free_side
+from mbsd.drawing.symbols.place import Place
 from mbsd.drawing.symbols.rolling import draw_point_on_curve, draw_rack, draw_rolling_disc, draw_rolling_on_curve
 from mbsd.drawing.symbols.wheels import draw_belt, draw_gear_pair
 
@@ -117,10 +116,9 @@ def _distance(canvas: Canvas, place: Place) -> None:
 
 def _ends(canvas: Canvas, place: Place) -> None:
     """The small pins of a rod or an actuator; one on ground with its support."""
-    for marker, end, other in ((place.joint.i, place.i, place.j), (place.joint.j, place.j, place.i)):
+    for marker, end in ((place.joint.i, place.i), (place.joint.j, place.j)):
         if marker.body.name == "ground":
-            gap = other - end
-            _support(canvas, end, free_side([math.atan2(gap[1], gap[0])]))
+            _support(canvas, end, place.free_side)
         with canvas.on(at_place(marker)):
             canvas.circle(end, 0.72 * PIN, order=8.5, width=1.2)
 

@@ -21,8 +21,9 @@ from mechanisms.stages.solve.body_colours import body_colours, main_material
 from shared import contract
 from shared.stage import console
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.files import sources_hash, whole_file
-from shared.stage.paths import ROOT, Out, mechanism_folder
+from shared.stage.paths import ROOT, Out, mechanism_file
 from shared.stage.stages import Stage, key_of, versions
 from shared.stage.suggestions import did_you_mean
 
@@ -56,7 +57,7 @@ def run(name: str, view: str = "") -> None:
     before = set(sys.modules)
     with recording() as recorder:
         solution = solve(name, parts)
-    loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", loading.package_of(name), before)
+    loaded = loaded_inputs(mechanism_file(name), loading.package_of(name), before)
     loaded.sources.pop("mbsd", None)  # it counts anyway
     inputs = loaded.joined(recorder.inputs())
     for words in stale:
@@ -90,10 +91,8 @@ def parts_of(out: Out) -> Parts | None:
         return None
     if are_current(out.name):
         return contract.read_parts(out.parts, out.name)
-    target = out.name.replace("_", "-")
-    console.say(
-        "animate", f"{out.name}: the parts are of an older state, so their masses do not count; make parts-{target}"
-    )
+    remedy = to_run("parts", out.name)
+    console.say("animate", f"{out.name}: the parts are of an older state, so their masses do not count; {remedy}")
     return None
 
 

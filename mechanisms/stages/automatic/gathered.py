@@ -19,6 +19,7 @@ from mechanisms.stages.automatic.rolling.shared_roads import with_shared_roads
 from mechanisms.stages.automatic.slides.common_pins import refuse_pins_of_both_kinds
 from shared.shapes.link import Eye
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -77,7 +78,7 @@ def gathered(layout: Layout) -> list[Feature]:
             raise UserError(
                 f"{m.name}: joint '{name}' is a {kind.replace('_', ' ')}, which has no automatic "
                 f"parts yet (there are: {', '.join(KINDS)}); leave one of its bodies out, or write "
-                f"mechanisms/{m.name}/parts.py"
+                f"{shown_file(m.name, 'parts')}"
             )
         else:
             by_kind.setdefault(kind, []).append(joint)

@@ -15,6 +15,7 @@ from mechanisms.stages.clearance.tree import FacetTree
 from mechanisms.stages.parts_files import read_triangles
 from shared.contract import Parts
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 
 LEVEL = 1e-6
 """A facet whose corners differ less in height is horizontal (mm)."""
@@ -136,7 +137,7 @@ def read_pieces(parts: Parts, folder: Path) -> list[MeshPiece]:
             if hashlib.sha256(content).hexdigest() != piece.stl_sha256:
                 raise UserError(
                     f"{folder / piece.stl} is not the file that parts.json describes; "
-                    f"run make parts-{parts.mechanism.replace('_', '-')}"
+                    f"run {to_run('parts', parts.mechanism)}"
                 )
             pieces.append(MeshPiece(body, name, read_triangles(content)))
     return pieces

@@ -22,10 +22,13 @@ PICTURES = ("mbsd/drawing",)
 """Sources that decide no number; what they draw has them in its key by their own name."""
 RESULTS = "results:"
 """Before the names of files in the folder of results, which may be anywhere."""
+WORKSHOP = "workshop:"
+"""Before the names of files in a user's own folder of machines."""
 ROOT = paths.ROOT
 STAGES = str(ROOT / "mechanisms" / "stages") + os.sep
 DOORS = str(ROOT / "mechanisms")
-PROGRAM = tuple(str(ROOT / room) + os.sep for room in ("mbsd", "shared", "render", "mechanisms/stages/automatic"))
+ROOMS = ("shared", "render", "mechanisms/stages/automatic")
+PROGRAM = tuple(f"{folder}{os.sep}" for folder in (paths.SOLVER, *(ROOT / room for room in ROOMS)))
 
 
 OURS = ("mbsd/", "shared/", "render/", "mechanisms/stages/")
@@ -43,12 +46,19 @@ class _Project(Places):
         absolute, results = Path(os.path.abspath(path)), Path(os.path.abspath(paths.out_root()))
         if absolute.is_relative_to(results):
             return RESULTS + absolute.relative_to(results).as_posix()
+        machines = paths.MECHANISMS
+        programs = absolute.is_relative_to(self.root) and not machines.is_relative_to(self.root)
+        if paths.in_workshop() and absolute.is_relative_to(machines) and not programs:
+            return WORKSHOP + absolute.relative_to(machines).as_posix()
         return super().name_of(path)
 
     def path_of(self, name: str) -> Path:
         if name.startswith(RESULTS):
             return Path(os.path.abspath(paths.out_root())) / name.removeprefix(RESULTS)
-        return super().path_of(name)
+        if name.startswith(WORKSHOP):
+            return paths.MECHANISMS / name.removeprefix(WORKSHOP)
+        place = super().path_of(name)
+        return place if name != "mbsd" or place.exists() else paths.SOLVER
 
     def is_program(self, file: str) -> bool:
         return file.startswith(PROGRAM)
@@ -67,9 +77,13 @@ class _Project(Places):
         return recalled(("module", self.path_of(name)), lambda: super(_Project, self).module_state(name))
 
     def sources_state(self, name: str) -> str:
-        if not (paths.ROOT / name).exists():
+        folder = self.path_of(name)
+        if not folder.exists():
             return "missing"
-        return sources_hash(paths.ROOT / name, leave_out=[paths.ROOT / other for other in PICTURES if other != name])
+        leave_out = [self.path_of(other) for other in PICTURES if other != name]
+        if folder == paths.ROOT.parent:  # an installed package, which brings the rooms in a folder of its own
+            leave_out.append(paths.ROOT)
+        return sources_hash(folder, leave_out=leave_out)
 
     def package_state(self, name: str) -> str:
         return recalled(("version or none", name), lambda: dependencies.package_state(name))

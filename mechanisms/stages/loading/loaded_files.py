@@ -13,7 +13,7 @@ from types import ModuleType
 from mbsd.dependencies.imported import file_of, imported, modules_below, package_of
 from mbsd.dependencies.installed import distributions, is_installed
 from mechanisms.stages.loading.inputs import PROJECT, Inputs, package_state, sources_state
-from shared.stage.paths import ROOT
+from shared.stage.paths import MECHANISMS, ROOT, SOLVER, in_workshop
 
 
 def loaded_inputs(start: Path, package: str, before: set[str], leave_out: Path | None = None) -> Inputs:
@@ -55,8 +55,8 @@ def _count(module: ModuleType, inputs: Inputs, waiting: list[tuple[Path, str]]) 
         for name in distributions(top):
             if name not in inputs.packages:
                 inputs.packages[name] = package_state(name)
-    elif top == "mbsd" and file.is_relative_to(ROOT / "mbsd"):
-        folders = ["mbsd", "mbsd/drawing"] if file.is_relative_to(ROOT / "mbsd" / "drawing") else ["mbsd"]
+    elif top == "mbsd" and file.is_relative_to(SOLVER):
+        folders = ["mbsd", "mbsd/drawing"] if file.is_relative_to(SOLVER / "drawing") else ["mbsd"]
         for folder in folders:
             if folder not in inputs.sources:  # hundreds of modules, and hashing reads all files
                 inputs.sources[folder] = sources_state(folder)
@@ -68,5 +68,7 @@ def _is_authors(file: Path) -> bool:
     """Whether a file belongs neither to an installed package nor to the program."""
     if is_installed(str(file)):
         return False
+    if in_workshop() and MECHANISMS.is_relative_to(ROOT) and file.is_relative_to(MECHANISMS):
+        return True
     ours = [ROOT / room for room in ("mbsd", "shared", "render", "tests", "mechanisms/stages")]
     return file.parent != ROOT / "mechanisms" and not any(file.is_relative_to(room) for room in ours)

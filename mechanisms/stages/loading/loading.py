@@ -10,7 +10,16 @@ import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from importlib.machinery import EXTENSION_SUFFIXES, SOURCE_SUFFIXES, ExtensionFileLoader, FileFinder, SourceFileLoader
+from importlib.abc import MetaPathFinder
+from importlib.machinery import (
+    EXTENSION_SUFFIXES,
+    SOURCE_SUFFIXES,
+    ExtensionFileLoader,
+    FileFinder,
+    ModuleSpec,
+    SourceFileLoader,
+)
+from importlib.util import spec_from_file_location
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any, Literal
@@ -18,7 +27,19 @@ from typing import Any, Literal
 from mechanisms.stages.loading.recording import is_installed
 from mechanisms.stages.loading.variants import checked_variants, replaced
 from shared.stage.errors import UserError
-from shared.stage.paths import MECHANISMS, ROOT, mechanism_folder, mechanism_name, owner_of
+from shared.stage.paths import (
+    MECHANISMS,
+    RESERVED,
+    ROOT,
+    defines,
+    in_workshop,
+    is_single_file,
+    mechanism_file,
+    mechanism_folder,
+    mechanism_name,
+    owner_of,
+    shown_file,
+)
 
 File = Literal["mechanism", "parts", "shot"]
 _RUNNING: ContextVar[str | None] = ContextVar("running", default=None)
@@ -37,19 +58,18 @@ def load(name: str, file: File) -> ModuleType:
     Raises UserError, with file and line, when there is no such mechanism or file, when the file cannot be
     imported, or when it lacks what :data:`REQUIRED` lists.
     """
-    folder = mechanism_folder(name)
-    path = folder / f"{file}.py"
+    path, owner = mechanism_file(name, file), owner_of(name)
     if not path.is_file():
         raise UserError(
-            f"{folder.name}: {_shown(path)} is missing; a mechanism has mechanism.py, and where it "
+            f"{owner}: {shown_file(name, file)} is missing; a mechanism has mechanism.py, and where it "
             "needs them, parts.py and shot.py"
         )
     importlib.invalidate_caches()
     with author_code(name):
-        module = importlib.import_module(f"mechanisms.{folder.name}.{file}")
+        module = importlib.import_module(f"mechanisms.{owner}.{'mechanism' if is_single_file(name) else file}")
     for attribute, form in REQUIRED[file].items():
         if not hasattr(module, attribute):
-            raise UserError(f"{folder.name}: {_shown(path)} does not define '{attribute}'; write {form}")
+            raise UserError(f"{owner}: {shown_file(name, file)} does not define '{attribute}'; write {form}")
     return module
 
 
@@ -75,7 +95,8 @@ def package_of(name: str) -> str:
 
 def has(name: str, file: File) -> bool:
     """Whether a mechanism has this file; parts.py and shot.py may be left out."""
-    return (mechanism_folder(name) / f"{file}.py").is_file()
+    path = mechanism_file(name, file)
+    return defines(path, file) if file != "mechanism" and is_single_file(name) else path.is_file()
 
 
 @contextmanager
@@ -85,14 +106,14 @@ def author_code(name: str) -> Iterator[None]:
     A UserError passes as it is. An exception that comes from elsewhere without touching the mechanism's folder
     is a fault of ours and passes too; ``MBSD_TRACEBACK=1`` shows the traceback of either (shared/stage/console.py).
     """
-    folder = MECHANISMS / owner_of(mechanism_name(name))
+    folder = mechanism_folder(name) if in_workshop() else MECHANISMS / owner_of(mechanism_name(name))
     token = _RUNNING.set(name)
     try:
         yield
     except UserError:
         raise
     except SyntaxError as error:
-        if not error.filename or not Path(error.filename).is_relative_to(folder):
+        if not error.filename or not _is_below(error.filename, folder):
             raise
         shown = f"{_shown(Path(error.filename))}:{error.lineno}"
         raise UserError(f"{shown}: {error.msg}: {(error.text or '').strip()}") from error
@@ -131,7 +152,9 @@ def _author_folder(path: str) -> FileFinder:
     Raises ImportError for the program's own folders, those of installed packages and the standard library.
     """
     place = Path(os.path.abspath(path))
-    if place.is_relative_to(MECHANISMS):
+    if in_workshop() and place.is_relative_to(MECHANISMS):
+        ours = _is_programs(str(place))
+    elif place.is_relative_to(MECHANISMS):
         folder = place.relative_to(MECHANISMS).parts[:1]
         ours = not folder or not (MECHANISMS / folder[0] / "mechanism.py").is_file()
     else:
@@ -142,11 +165,51 @@ def _author_folder(path: str) -> FileFinder:
 
 
 def _is_below(filename: str, folder: Path) -> bool:
-    return Path(filename).is_relative_to(folder)
+    return Path(filename).is_relative_to(folder) and not (in_workshop() and _is_programs(filename))
+
+
+def _is_programs(place: str) -> bool:
+    """Whether what lies in a user's folder is an environment's or the program's, as where that folder is a home."""
+    own = MECHANISMS.is_relative_to(ROOT)
+    return is_installed(f"{place}{os.sep}") or (not own and Path(place).is_relative_to(ROOT))
 
 
 def _shown(path: Path) -> str:
-    return path.relative_to(MECHANISMS.parent).as_posix()
+    return path.relative_to(MECHANISMS if in_workshop() else MECHANISMS.parent).as_posix()
+
+
+class _Machines(MetaPathFinder):
+    """Finds the machines of a user's own folder as packages, though they may be files, or that folder itself."""
+
+    def find_spec(self, fullname: str, path: Any, target: Any = None) -> ModuleSpec | None:
+        top, _, rest = fullname.partition(".")
+        owner, _, file = rest.partition(".")
+        if top != "mechanisms" or not owner or owner in RESERVED or not in_workshop() or "." in file:
+            return None
+        try:
+            source = mechanism_file(owner)
+            single = is_single_file(owner)
+        except UserError:
+            return None
+        if not file:
+            return self._package(fullname, source.parent, single)
+        if file == "mechanism" and single:
+            return spec_from_file_location(fullname, source, loader=_SourceOnly(fullname, str(source)))
+        return None
+
+    def _package(self, fullname: str, folder: Path, single: bool) -> ModuleSpec:
+        init = folder / "__init__.py"
+        if not single and init.is_file():
+            loader = _SourceOnly(fullname, str(init))
+            found = spec_from_file_location(fullname, init, loader=loader, submodule_search_locations=[str(folder)])
+            assert found is not None
+            return found
+        package = ModuleSpec(fullname, None, is_package=True)
+        package.submodule_search_locations = [str(folder)]
+        return package
 
 
 sys.path_hooks.insert(0, _author_folder)
+if in_workshop():
+    sys.meta_path.insert(0, _Machines())
+    sys.path.append(str(MECHANISMS))  # a machine may import what lies beside it; last, so that it hides no room

@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Any
 
 from shared.stage.errors import UserError
-from shared.stage.paths import NAME, NAME_RULE, mechanism_folder, owner_of, variant_of, variants_in
+from shared.stage.paths import NAME, NAME_RULE, mechanism_file, shown_file, variant_of, variants_in
 from shared.stage.suggestions import did_you_mean
 
 CONSTANTS = ("DURATION", "STEPS")
@@ -22,7 +22,7 @@ CONSTANTS = ("DURATION", "STEPS")
 
 def checked_variants(name: str, module: ModuleType) -> dict[str, dict[str, Any]]:
     """``VARIANTS`` of a mechanism.py; empty where there is none. Raises UserError naming the variant and the field."""
-    file = f"mechanisms/{owner_of(name)}/mechanism.py"
+    file = shown_file(name)
     given = getattr(module, "VARIANTS", None)
     if given is None:
         return {}
@@ -32,7 +32,7 @@ def checked_variants(name: str, module: ModuleType) -> dict[str, dict[str, Any]]
     for variant in given:
         if not isinstance(variant, str) or not NAME.fullmatch(variant):
             raise UserError(f"{file}: {variant!r} cannot name a variant: {NAME_RULE}")
-    known = variants_in(mechanism_folder(name) / "mechanism.py")
+    known = variants_in(mechanism_file(name))
     if set(known) != set(given):
         raise UserError(
             f"{file}: VARIANTS must be written out with its names in quotes, as in {form}, so that they are known "

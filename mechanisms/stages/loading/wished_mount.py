@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from mechanisms.stages.loading.loading import has, load
 from shared.contract.mount import Kind
 from shared.contract.shot import Shot, refuse_unsound
-from shared.stage.paths import owner_of
+from shared.stage.paths import shown_file
 
 _WISHED: ContextVar[Kind | None] = ContextVar("wished", default=None)
 """Mount of the mechanism whose parts are being made."""
@@ -33,7 +33,7 @@ def of_shot(name: str) -> Kind | None:
                 del sys.modules[module]
     if not isinstance(shot, Shot):
         return None  # the shot stage refuses it
-    return refuse_unsound(shot, f"mechanisms/{owner_of(name)}/shot.py").mount
+    return refuse_unsound(shot, shown_file(name, "shot")).mount
 
 
 @contextmanager

@@ -4,13 +4,24 @@ from __future__ import annotations
 
 import keyword
 import os
+import re
 import tempfile
 from pathlib import Path
 
 from shared.stage.console import say
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.files import write_bytes
-from shared.stage.paths import MECHANISMS, NAME, NAME_RULE, canonical_name, mechanism_names
+from shared.stage.paths import (
+    MECHANISMS,
+    NAME,
+    NAME_RULE,
+    RESERVED,
+    canonical_name,
+    in_workshop,
+    mechanism_names,
+    shown_file,
+)
 from shared.stage.suggestions import did_you_mean
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -20,14 +31,18 @@ KINDS = {
 }
 """Folders of templates, and what is in them."""
 TAKEN = {
-    "all": "make run-all runs every mechanism",
+    **dict.fromkeys(RESERVED, "the package of the mechanisms has a module of this name"),
+    "all": f"{to_run('all')} runs every mechanism",
     "films": "out/films holds the films",
     "night": "out/night holds the log of the nights",
 }
+NEW = to_run("new", "my_linkage")
 
 
-def run(name: str, kind: str = "driven") -> None:
-    """Write the files of ``mechanisms/<name>/``, with comments; ``kind`` is one of :data:`KINDS`.
+def run(name: str, kind: str = "driven", single: bool = False) -> None:
+    """Write the files of a mechanism, with comments; ``kind`` is one of :data:`KINDS`.
+
+    They come into ``mechanisms/<name>/``, or ``<name>/`` of the user's folder; ``single``: there into ``<name>.py``.
 
     Raises UserError for a missing, unfit or used name and for an unknown kind; nothing that exists is changed.
     """
@@ -36,34 +51,54 @@ def run(name: str, kind: str = "driven") -> None:
         known = "; ".join(f"{word}: {what}" for word, what in KINDS.items())
         raise UserError(f"there is no kind '{kind}' of new mechanism; {known}{did_you_mean(kind, KINDS)}")
     refuse_unfit(name)
-    target = name.replace("_", "-")
+    if single:
+        _write_single(name, kind)
+        return
     folder = MECHANISMS / name
     # All files or none: the folder gets its name when it is complete.
     with tempfile.TemporaryDirectory(prefix=".new-", dir=MECHANISMS) as temporary:
         draft = Path(temporary) / name
         for template in sorted((TEMPLATES / kind).glob("*.py.txt")):
-            content = template.read_text().replace("@NAME@", name).replace("@TARGET@", target)
-            write_bytes(draft / template.name.removesuffix(".txt"), content.encode())
+            write_bytes(draft / template.name.removesuffix(".txt"), _filled(template, name))
         os.rename(draft, folder)
-    say("new", f"{folder.relative_to(MECHANISMS.parent)}/: {KINDS[kind]}, to change; make run-{target} runs it")
+    _tell(f"{folder.relative_to(MECHANISMS if in_workshop() else MECHANISMS.parent)}/", name, kind)
+
+
+def _write_single(name: str, kind: str) -> None:
+    if not in_workshop():
+        raise UserError("a mechanism of the clone is a folder; leave --single out, or work in a folder of your own")
+    write_bytes(MECHANISMS / f"{name}.py", _filled(TEMPLATES / kind / "mechanism.py.txt", name))
+    _tell(f"{name}.py", name, kind)
+
+
+def _filled(template: Path, name: str) -> bytes:
+    text = template.read_text().replace("@NAME@", name)
+    return re.sub("@([a-z]+)([a-z-]*)@", lambda word: to_run(word[1], f"{name}{word[2]}"), text).encode()
+
+
+def _tell(where: str, name: str, kind: str) -> None:
+    settings = MECHANISMS / "mbsd.toml"
+    if in_workshop() and not settings.exists():  # it marks the folder, also for commands given in one below
+        write_bytes(settings, (TEMPLATES / "mbsd.toml.txt").read_bytes())
+    say("new", f"{where}: {KINDS[kind]}, to change; {to_run('run', name)} runs it")
 
 
 def refuse_unfit(name: str) -> None:
     """Raise UserError unless ``name`` can be a new mechanism's folder, Python package and make target."""
     known = ", ".join(mechanism_names()) or "none"
     if not name:
-        raise UserError(f"a new mechanism needs a name: make new NAME=my_linkage; there is already: {known}")
+        raise UserError(f"a new mechanism needs a name: {NEW}; there is already: {known}")
     if not NAME.fullmatch(name):
-        raise UserError(f"{name!r} cannot name a mechanism: {NAME_RULE}, as in make new NAME=my_linkage")
+        raise UserError(f"{name!r} cannot name a mechanism: {NAME_RULE}, as in {NEW}")
     if keyword.iskeyword(name) or keyword.issoftkeyword(name):
         raise UserError(f"'{name}' is a word of Python and cannot name a mechanism; try {name}_linkage")
     if name in TAKEN:
         raise UserError(f"'{name}' cannot name a mechanism, because {TAKEN[name]}; try {name}_linkage")
     if name.startswith("ui_"):
-        raise UserError(f"'{name}' cannot name a mechanism, because make scene-ui-<name> opens scenes; drop the ui_")
+        raise UserError(f"'{name}' cannot name a mechanism, because scene-ui-<name> opens scenes; drop the ui_")
     if name in mechanism_names():
-        raise UserError(f"mechanisms/{name}/ is there already; choose another name than: {known}")
+        raise UserError(f"{shown_file(name)} is there already; choose another name than: {known}")
     if (MECHANISMS / name).exists() or (MECHANISMS / f"{name}.py").exists():
         raise UserError(
-            f"mechanisms/ has a file or folder '{name}' already, which is no mechanism; choose another name"
+            f"{MECHANISMS.name}/ has a file or folder '{name}' already, which is no mechanism; choose another name"
         )

@@ -29,7 +29,7 @@ from shared.contract.mount import Kind
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
-from shared.stage.paths import ROOT, Out, mechanism_folder
+from shared.stage.paths import ROOT, Out, in_workshop, is_single_file, mechanism_file
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 _STAGES = ROOT / "mechanisms" / "stages"
@@ -64,7 +64,7 @@ def run(name: str) -> None:
     if _is_fresh(out, given, wish):
         say("parts", f"{out.name}: nothing to do")
         return
-    made = _of_cluster(out.name, given, wish) if address() else None
+    made = _of_cluster(out.name, given, wish) if address() and not in_workshop() else None
     made = made or _made_here(out.name, given, wish, before, recorder)
     written = _write(out, made.files, made.document)
     outputs = [out.parts, *(out.parts_folder / file for file in made.files)]
@@ -103,7 +103,7 @@ def _made_here(name: str, given: Any, wish: _Wish, before: set[str], recorder: R
     if isinstance(bodies, Bodies):
         bodies = bodies.on_stand()
     if wish.by_itself or follows_gravity(bodies, wish.mount) or _more_than_values(name, given, reads):
-        mechanism = loaded_inputs(mechanism_folder(name) / "mechanism.py", package_of(name), before)
+        mechanism = loaded_inputs(mechanism_file(name), package_of(name), before)
         inputs = inputs.joined(mechanism).joined(recorder.inputs())
     key = _key(given, reads, inputs, wish)
     files: dict[str, bytes] = {}
@@ -185,11 +185,11 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
     from mechanisms.stages.loading.loaded_files import author_files
     from mechanisms.stages.parts.params_use import only_annotates
 
-    fields, folder, package = fields_of(given), mechanism_folder(name), package_of(name)
-    if any(read not in fields or plain_text(fields[read]) is None for read in reads):
+    fields, package = fields_of(given), package_of(name)
+    if is_single_file(name) or any(read not in fields or plain_text(fields[read]) is None for read in reads):
         return True
     return not only_annotates(
-        author_files(folder / "parts.py", package, folder / "mechanism.py"), f"{package}.mechanism"
+        author_files(mechanism_file(name, "parts"), package, mechanism_file(name)), f"{package}.mechanism"
     )
 
 
@@ -204,12 +204,12 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inpu
 
         return solids_of(name), [], Inputs()
     stand_in, seen = traced(given)
-    folder, before = mechanism_folder(name), set(sys.modules)
+    before, model = set(sys.modules), None if is_single_file(name) else mechanism_file(name)
     with recording() as recorder, reported_cad_files(recorder):
         module = load(name, "parts")
         with author_code(name):
             bodies = module.parts(stand_in)
-    loaded = loaded_inputs(folder / "parts.py", package_of(name), before, leave_out=folder / "mechanism.py")
+    loaded = loaded_inputs(mechanism_file(name, "parts"), package_of(name), before, leave_out=model)
     refuse_unfit(name, bodies)
     return bodies, sorted(seen), loaded.joined(recorder.inputs())
 

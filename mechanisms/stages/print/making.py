@@ -15,6 +15,7 @@ from mechanisms.stages.print.outlines import dxf, file_of, section
 from mechanisms.stages.print.packing import packed
 from mechanisms.stages.print.plate_files import Placed, stl, three_mf
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 
 if TYPE_CHECKING:
     from mechanisms.stages.clearance.pieces import MeshPiece
@@ -62,7 +63,7 @@ def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Made]) -> tup
             continue
         step = out.parts_folder / pieces[part.name].step
         if not step.is_file():
-            raise UserError(f"{step} is missing; run make parts-{out.name.replace('_', '-')}")
+            raise UserError(f"{step} is missing; run {to_run('parts', out.name)}")
         file = file_of(part.name, sheet.thickness)
         files[file] = dxf(section(step, part.piece, sheet.thickness / 2), sheet.thickness)
         parts.append(replace(part, sheet=sheet, outline=file))

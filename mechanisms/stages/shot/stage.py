@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from typing import get_args
 
 import msgspec
 
 from mechanisms.stages.loading.inputs import Inputs, observed
 from mechanisms.stages.loading.loading import has, load, package_of
 from mechanisms.stages.loading.recording import recording
-from shared.contract.shot import Names, Shot, refuse_unknown, refuse_unsound, write_shot
+from shared.contract.shot import LookName, Names, Shot, refuse_unknown, refuse_unsound, write_shot
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash
-from shared.stage.paths import ROOT, Out, mechanism_folder, owner_of
+from shared.stage.paths import ROOT, Out, mechanism_file, shown_file
 from shared.stage.stages import Stage, key_of
 
 SOURCES = [ROOT / "shared" / name for name in ("contract/shot.py", "contract/mount.py", "stage/jsonfile.py")]
+LOOK = "MBSD_LOOK"
+"""Environment variable of that wish, which mbsd.toml says."""
 
 
 def run(name: str) -> None:
@@ -39,15 +43,15 @@ def run(name: str) -> None:
     before = set(sys.modules)
     with recording() as recorder:
         shot = load(out.name, "shot").shot
-    loaded = loaded_inputs(mechanism_folder(out.name) / "shot.py", package_of(out.name), before)
+    loaded = loaded_inputs(mechanism_file(out.name, "shot"), package_of(out.name), before)
     inputs = loaded.joined(recorder.inputs())
-    file = f"mechanisms/{owner_of(out.name)}/shot.py"
+    file = shown_file(out.name, "shot")
     if not isinstance(shot, Shot):
         raise UserError(f"{out.name}: {file}: 'shot' is a {type(shot).__name__}; write shot = Shot(...)")
     refuse_unsound(shot, file)
     if names:
         refuse_unknown(shot, names)
-    write_shot(out.shot, shot)
+    write_shot(out.shot, _looking(shot))
     Stage(out, "shot", _key(names, inputs), [out.shot]).done(inputs=inputs.names())
     say("shot", f"{out.name}: {shot.turns} turns at {shot.fps} frames a second")
 
@@ -64,7 +68,7 @@ def _is_fresh(out: Out, names: Names | None) -> bool:
 
 
 def _stage_without_file(out: Out) -> Stage:
-    return Stage(out, "shot", key_of(sources_hash(*SOURCES), "no shot.py"), [out.shot])
+    return Stage(out, "shot", key_of(sources_hash(*SOURCES), "no shot.py", *_look()), [out.shot])
 
 
 def _without_file(out: Out) -> None:
@@ -73,14 +77,31 @@ def _without_file(out: Out) -> None:
     if stage.is_fresh():
         say("shot", f"{out.name}: nothing to do")
         return
-    write_shot(out.shot, Shot())
+    write_shot(out.shot, _looking(Shot()))
     stage.done()
     say("shot", f"{out.name}: without a shot.py, {Shot().turns} turns at {Shot().fps} frames a second")
 
 
 def _key(names: Names | None, inputs: Inputs) -> str:
     """Hash of all that shot.json follows from; ``inputs``: what shot.py is made of, and what it reads."""
-    return key_of(sources_hash(*SOURCES), names and names.listed(), inputs.digest())
+    return key_of(sources_hash(*SOURCES), names and names.listed(), inputs.digest(), *_look())
+
+
+def _look() -> list[str]:
+    """The look that the user's folder wishes for machines whose shot names none, if it does."""
+    wished = os.environ.get(LOOK)
+    return [wished] if wished else []
+
+
+def _looking(shot: Shot) -> Shot:
+    if not _look() or shot.look is not None:
+        return shot
+    try:
+        look = msgspec.convert(_look()[0], LookName)
+    except msgspec.ValidationError:
+        known = ", ".join(get_args(LookName))
+        raise UserError(f"look = {_look()[0]!r} in mbsd.toml is no look; choose one of: {known}") from None
+    return msgspec.structs.replace(shot, look=look)
 
 
 class _Force(msgspec.Struct):

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from mechanisms.stages.loading import loading, variants
 from shared.stage import console
 from shared.stage.errors import UserError
-from shared.stage.paths import owner_of
+from shared.stage.paths import owner_of, shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -179,7 +179,7 @@ def _model_warnings_said() -> Iterator[None]:
 
 
 def _file(name: str) -> str:
-    return f"mechanisms/{owner_of(name)}/mechanism.py"
+    return shown_file(name)
 
 
 def _kind(value: object) -> str:

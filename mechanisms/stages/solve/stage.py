@@ -15,7 +15,7 @@ from shared.contract.quantity import written
 from shared.contract.skeleton import write_skeleton
 from shared.stage import console
 from shared.stage.files import sources_hash
-from shared.stage.paths import ROOT, Out, mechanism_folder
+from shared.stage.paths import ROOT, Out, mechanism_file
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def run(name: str) -> None:
     with recording() as recorder:
         solution, sources = solve(name, parts)
         motion = to_motion(solution, parts, "", versions(*PACKAGES), sources)
-    loaded = loaded_inputs(mechanism_folder(name) / "mechanism.py", loading.package_of(name), before)
+    loaded = loaded_inputs(mechanism_file(name), loading.package_of(name), before)
     loaded.sources.pop("mbsd", None)  # it counts anyway
     inputs = loaded.joined(recorder.inputs())
     key = _key(parts, inputs)

@@ -19,7 +19,7 @@ from shared import contract
 from shared.contract.shot import Shot
 from shared.stage import console
 from shared.stage.errors import UserError
-from shared.stage.paths import Out, mechanism_folder, owner_of
+from shared.stage.paths import Out, mechanism_file, mechanism_folder, shown_file
 from studio.live.child.shown import Shown
 from studio.live.child.stops import Stop, until_it_stops
 from studio.live.numbers import changed
@@ -107,7 +107,7 @@ class Author:
 
     def _checked(self, shot: Any) -> Shot:
         if not isinstance(shot, Shot):
-            file = f"mechanisms/{owner_of(self.name)}/shot.py"
+            file = shown_file(self.name, "shot")
             raise UserError(f"{self.name}: {file}: 'shot' is a {type(shot).__name__}; write shot = Shot(...)")
         return shot
 
@@ -122,7 +122,7 @@ class Author:
         package = loading.package_of(self.name)
         for file in ("mechanism", "shot"):
             if f"{package}.{file}" in sys.modules:
-                files |= {path for path, _ in author_files(self.folder / f"{file}.py", package, Path())}
+                files |= {path for path, _ in author_files(mechanism_file(self.name, file), package, Path())}
         return sorted(files)
 
 

@@ -6,7 +6,7 @@ import os
 from typing import Any
 
 from mechanisms.stages.loading import loading
-from shared.stage.paths import mechanism_folder
+from shared.stage.paths import mechanism_file
 from studio.live.numbers import numbers_of
 
 
@@ -15,5 +15,5 @@ def numbers_with(name: str, source: bytes) -> list[dict[str, Any]]:
 
     Raises UserError where it cannot be loaded.
     """
-    loading.INSTEAD[os.path.realpath(mechanism_folder(name) / "mechanism.py")] = source
+    loading.INSTEAD[os.path.realpath(mechanism_file(name))] = source
     return [vars(number) for number in numbers_of(loading.params(name))]

@@ -19,6 +19,7 @@ import tokenize
 from collections.abc import Mapping
 from typing import Any
 
+from shared.stage.paths import mechanism_file
 from studio.live.child.author import Author
 from studio.live.child.decided import decided_by
 from studio.live.numbers import numbers_of, parsed
@@ -79,7 +80,7 @@ def _metadata(params: Any) -> dict[str, Mapping[str, Any]]:
 def _comments(author: Author) -> dict[str, str]:
     """What stands behind the fields of Params in their lines of mechanism.py."""
     try:
-        source = (author.folder / "mechanism.py").read_text("utf-8")
+        source = mechanism_file(author.name).read_text("utf-8")
         tree = ast.parse(source)
         by_line = {
             token.start[0]: token.string.lstrip("# ")

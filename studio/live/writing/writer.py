@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from shared.stage.errors import UserError
-from shared.stage.paths import mechanism_folder, owner_of, variant_of
+from shared.stage.paths import mechanism_file, shown_file, variant_of
 from studio.live.processes.children import Child
 from studio.live.processes.nursery import Nursery
 from studio.live.writing.literals import literal, replaced
@@ -43,7 +43,7 @@ class Writer:
 
     def __init__(self, name: str, nursery: Nursery) -> None:
         self._name, self._nursery = name, nursery
-        self._file = f"mechanisms/{owner_of(name)}/mechanism.py"
+        self._file = shown_file(name)
         self._task: asyncio.Task[None] | None = None
         self._child: Child | None = None
 
@@ -78,7 +78,7 @@ class Writer:
     async def _written(self, values: dict[str, float | int], old: dict[str, float]) -> Written:
         variant = variant_of(self._name)
         for _ in range(TRIES):
-            path = Path(os.path.realpath(mechanism_folder(self._name) / "mechanism.py"))
+            path = Path(os.path.realpath(mechanism_file(self._name)))
             before = await asyncio.to_thread(content_of, path)
             after = replaced(before, self._file, values, variant)
             words = [f"{', '.join(values)} written into {self._file}", *self._computed(before, values, variant)]

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.files import refusal
 from shared.stage.lineage import VARIABLE
 from shared.stage.paths import ROOT, out_root, refuse_links
@@ -50,12 +51,13 @@ def start(asked: Options) -> int:
         say("night", f"attach to it: {attach} (Ctrl-B D leaves it running)")
     else:
         say("night", f"there is no tmux to attach to, which does not matter; see it work: tail -f {runs.log_file()}")
-    say("night", f"make status tells how far it is, make stop ends it after the frame in flight; {runs.log_file()}")
+    status, stop = to_run("status"), to_run("stop")
+    say("night", f"{status} tells how far it is, {stop} ends it after the frame in flight; {runs.log_file()}")
     logout.warn_if_it_ends_all(warn)
     if sys.stdout.isatty():
         _tell_forecast(night)
     else:
-        say("night", "the forecast follows in make status when a frame of every film is measured")
+        say("night", f"the forecast follows in {to_run('status')} when a frame of every film is measured")
     return 0
 
 
@@ -130,7 +132,7 @@ def _begun(before: set[int]) -> Run:
     if not _wait(appeared, BEGIN):
         raise UserError(
             f"the run did not begin within {BEGIN:.0f} s, or was over at once; {runs.log_file()} tells what it said, "
-            "make all does the same in this terminal"
+            f"{to_run('all')} does the same in this terminal"
         )
     return new[0]
 

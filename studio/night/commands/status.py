@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from datetime import datetime, timedelta
 
 from shared.stage.console import duration
+from shared.stage.face import to_run
 from studio.night.files import record, runs
 from studio.night.files.record import FilmRecord, NightRecord
 from studio.night.files.runs import Run
@@ -18,7 +19,8 @@ def tell() -> int:
     """Print the state of every run, a row for each film; always 0."""
     known = [(run, recorded) for run in runs.runs() if (recorded := record.read(run)) is not None]
     if not known:
-        print("No night was started here yet: make overnight starts one, make all the same in this terminal.")
+        start, here = to_run("overnight"), to_run("all")
+        print(f"No night was started here yet: {start} starts one, {here} the same in this terminal.")
         return 0
     sys.stdout.write("\n".join("\n".join(words(run, recorded, run.is_alive())) for run, recorded in known) + "\n")
     return 0

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from shared.stage import locks
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.files import refusal
 from shared.stage.paths import out_root, refuse_links
 
@@ -87,7 +88,7 @@ def taken() -> Iterator[Run]:
             os.close(handle)
             handle = -1
         else:
-            raise UserError(f"{MOST} runs are at work on {out_root()}; make stop ends them")
+            raise UserError(f"{MOST} runs are at work on {out_root()}; {to_run('stop')} ends them")
         run.wish.unlink(missing_ok=True)
         for other in runs():
             if other.number > number and not other.is_alive():

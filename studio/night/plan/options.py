@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from render.presets import PRESETS, Preset, preset_named
 from shared.stage.errors import UserError
-from shared.stage.paths import known_name, mechanism_names, unfit_folders
+from shared.stage.paths import known_name, mechanism_names, unfit_names
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def options(
         spectra=spectra,
         watts=watts_of(watts),
         python=python or sys.executable,
-        unfit=() if wanted else tuple(unfit_folders()),
+        unfit=() if wanted else tuple(unfit_names()),
         whole=not wanted,
         anyway=anyway not in ("", "0"),
     )

@@ -7,6 +7,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.plan import Plan
@@ -31,7 +32,7 @@ def refuse_meeting_bores(plan: Plan) -> None:
                 raise UserError(
                     f"{layout.m.name}: on '{body}' {this} and {other} are {apart * scale:.3g} mm apart, and their "
                     f"bores of {first[2] * scale:.3g} and {second[2] * scale:.3g} mm need {least * scale:.3g} mm; move "
-                    f"one of them, or shape '{body}' by hand in mechanisms/{layout.m.name}/parts.py"
+                    f"one of them, or shape '{body}' by hand in {shown_file(layout.m.name, 'parts')}"
                 )
 
 

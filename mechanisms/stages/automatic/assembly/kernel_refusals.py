@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from shared.shapes.kernel import is_of_kernel
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 KERNEL = "the CAD kernel cannot make"
 """Words of such a refusal."""
@@ -22,5 +23,5 @@ def kernel_refusals(name: str, what: str) -> Iterator[None]:
             raise
         raise UserError(
             f"{name}: {KERNEL} {what} ({type(error).__name__}: {error}); change its sizes a little, make pins thinner "
-            f"(automatic(m, pin=...)), or shape it by hand in mechanisms/{name}/parts.py"
+            f"(automatic(m, pin=...)), or shape it by hand in {shown_file(name, 'parts')}"
         ) from error

@@ -25,6 +25,7 @@ from mechanisms.stages.automatic.pins.free.rim_marks import Face
 from mechanisms.stages.automatic.slides.slots import Slot
 from shared.shapes.cam import evenly
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -175,7 +176,7 @@ def with_room(path: np.ndarray, back: float, touch: Joint | Force, layout: Layou
     raise UserError(
         f"{m.name}: contact '{touch.name}': what touches its closed curve is {back * scale:.3g} mm larger in radius "
         "than in the model, and nothing of the curve is left when it is set back by that; make it larger, or write "
-        f"mechanisms/{m.name}/parts.py"
+        f"{shown_file(m.name, 'parts')}"
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -16,5 +17,5 @@ def refuse_ground(m: Mechanism, joint: Joint, *bodies: str) -> None:
     if "ground" in bodies:
         raise UserError(
             f"{m.name}: joint '{joint.name}' is a {joint.kind.name.replace('_', ' ')} with a part on ground, which has "
-            f"no automatic parts yet; let a body that is fixed (weld) carry it, or write mechanisms/{m.name}/parts.py"
+            f"no automatic parts yet; let a body that is fixed (weld) carry it, or write {shown_file(m.name, 'parts')}"
         )

@@ -24,6 +24,7 @@ from shared.shapes.link import Eye
 from shared.shapes.pin import Head, pin
 from shared.shapes.solid import placed
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -137,7 +138,7 @@ def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature
             raise UserError(
                 f"{m.name}: joint '{weld.name}': the bolts that hold '{first}' and '{second}' together find no place "
                 f"within {FARTHEST * layout.sizes.scale:.3g} mm beside the pins of both; move joints apart, make pins "
-                f"thinner (automatic(m, pin=...)), or write mechanisms/{m.name}/parts.py"
+                f"thinner (automatic(m, pin=...)), or write {shown_file(m.name, 'parts')}"
             )
         kept.append(free)
     order = {feature.name: feature for feature in kept if isinstance(feature, Weld)}

@@ -20,6 +20,7 @@ from mechanisms.stages.automatic.rolling.rounds import round_at
 from mechanisms.stages.automatic.rolling.surfaces import rolled_road
 from mechanisms.stages.automatic.rolling.tracks import track
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -76,7 +77,7 @@ def _refuse(m: Mechanism, joint: Joint) -> None:
     if joint.j.body.name == "ground":
         raise UserError(
             f"{m.name}: joint '{joint.name}' is a {joint.kind.name.replace('_', ' ')} whose disc is on ground; "
-            f"it has no automatic parts yet; write mechanisms/{m.name}/parts.py"
+            f"it has no automatic parts yet; write {shown_file(m.name, 'parts')}"
         )
 
 

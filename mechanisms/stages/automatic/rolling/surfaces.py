@@ -20,6 +20,7 @@ from mechanisms.stages.automatic.rolling.roads import Road, along, backed
 from shared.shapes.band import normals
 from shared.shapes.polyline import distances
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd.model.force import Force
@@ -84,7 +85,7 @@ def touched_road(touch: Joint | Force, part: Round, path: np.ndarray, places: np
         raise UserError(
             f"{m.name}: contact '{touch.name}': its curve turns back so far that neither a straight lower side nor a "
             f"band of {THICK * layout.sizes.scale:.3g} mm behind it is clear of what touches it; cut it into several "
-            f"curves, or write mechanisms/{m.name}/parts.py"
+            f"curves, or write {shown_file(m.name, 'parts')}"
         )
     return road
 
@@ -136,5 +137,5 @@ def _refusal(joint: Joint, surface: np.ndarray, centres: np.ndarray, radius: flo
         f"{radius * scale:.4g} mm in radius, is at ({x:.4g}, {y:.4g}) mm in the frame of '{body}', where another "
         f"stretch of its own road is {min(away[at], sides[at]) * scale:.3g} mm from its middle: it would run through a "
         "wall. Let the motion end before, part the stretches of the curve (its straight continuations are some of "
-        f"them), make the disc smaller, or write mechanisms/{m.name}/parts.py"
+        f"them), make the disc smaller, or write {shown_file(m.name, 'parts')}"
     )

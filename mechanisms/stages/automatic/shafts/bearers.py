@@ -11,6 +11,7 @@ import numpy as np
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
 from mechanisms.stages.automatic.shafts.passing import Takes
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -109,7 +110,7 @@ def bearers(
     raise UserError(
         f"{machine.m.name}: round the shaft '{plan.shaft.body}' there is no room for two pillars that carry its "
         f"bearings; bodies sweep all of it up to {WIDER[-1] * nearest:.4g} mm: leave one out "
-        f"(automatic(m).leave_out), or write mechanisms/{machine.m.name}/parts.py"
+        f"(automatic(m).leave_out), or write {shown_file(machine.m.name, 'parts')}"
     )
 
 

@@ -24,6 +24,7 @@ from mechanisms.stages.automatic.shafts.knuckles import (
     throw_of,
 )
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -127,7 +128,7 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
             raise UserError(
                 f"{machine.m.name}: a bore of {own:.4g} mm has no room for piston '{name}' in '{piston.joint}': "
                 f"{_fitted(machine, piston, bore / STEP, wished)}; make the rod longer, the throw shorter{wider}, "
-                f"or shape it by hand in mechanisms/{machine.m.name}/parts.py"
+                f"or shape it by hand in {shown_file(machine.m.name, 'parts')}"
             )
     return {name: _beside_its_mate(machine, own, fitted) for name, own in fitted.items()}
 

@@ -12,6 +12,7 @@ from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, lea
 from mechanisms.stages.automatic.shafts.cylinders import HEAD, flange_shape, rod_shapes, shank_shapes
 from mechanisms.stages.automatic.shafts.knuckles import carrier, flange, is_carrier
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -160,7 +161,7 @@ def refuse_meetings(machine: Machine, taken: Sequence[Takes]) -> None:
             raise Meeting(
                 f"{machine.m.name}: {first.what} and {second.what} meet at t={machine.times[at]:.3g} s between "
                 f"z = {share[0]:.4g} and {share[1]:.4g} mm; {remedy}, "
-                f"or shape them by hand in mechanisms/{machine.m.name}/parts.py"
+                f"or shape them by hand in {shown_file(machine.m.name, 'parts')}"
             )
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from mechanisms.stages.automatic.pins.pins import Pin
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -77,5 +78,5 @@ def refuse_pins_of_both_kinds(m: Mechanism, features: Sequence[Feature]) -> None
             if place is not None and math.dist(place, slot.pin_at) < SAME:
                 raise UserError(
                     f"{m.name}: the pin of joint '{slot.name}' is where {slot.pin} has that of joint '{pin.name}'; "
-                    f"give it a place of its own on {slot.pin}, or write mechanisms/{m.name}/parts.py"
+                    f"give it a place of its own on {slot.pin}, or write {shown_file(m.name, 'parts')}"
                 )

@@ -26,6 +26,7 @@ from mechanisms.stages.automatic.slides.slot_solids import channelled, slotted
 from mechanisms.stages.automatic.slides.slots import Slot, entered
 from shared.shapes.band import normals, sharpest
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -140,7 +141,7 @@ def _refuse_near_itself(m: Mechanism, joint: Joint, path: np.ndarray, closed: bo
         f"{away[first, second] * scale:.3g} mm of it, near ({x:.4g}, {y:.4g}) mm in the frame of '{body}', "
         f"and a slot for its roller of {roller * scale:.3g} mm needs {apart * scale:.3g} mm between two stretches; let "
         "the motion end before, part the stretches of the curve (its straight continuations are some of them), make "
-        f"pins thinner (automatic(m, pin=...)), or write mechanisms/{m.name}/parts.py"
+        f"pins thinner (automatic(m, pin=...)), or write {shown_file(m.name, 'parts')}"
     )
 
 

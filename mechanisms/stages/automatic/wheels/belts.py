@@ -11,6 +11,7 @@ from mechanisms.stages.automatic.wheels import pulleys
 from mechanisms.stages.automatic.wheels.pulleys import Belt, Pulley
 from shared.contract.belt_path import BeltPath
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -65,7 +66,7 @@ def _fit(m: Mechanism, joint: Joint, pair: tuple[Pulley, Pulley], layout: Layout
         raise UserError(
             f"{m.name}: belt '{joint.name}': its pulleys of {radii} mm overlap, because their centres are "
             f"{path.distance * scale:.4g} mm apart; move a centre or make one smaller, or write "
-            f"mechanisms/{m.name}/parts.py"
+            f"{shown_file(m.name, 'parts')}"
         )
     if not first.teeth:
         return

@@ -22,6 +22,7 @@ from mechanisms.stages.automatic.wheels.sharing import enter
 from mechanisms.stages.automatic.wheels.trains import Mesh, in_phase
 from mechanisms.stages.automatic.wheels.wheels import Wheel
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -124,7 +125,7 @@ def refuse_apart(m: Mechanism, joint: Joint, first: Wheel, second: Wheel, layout
     raise UserError(
         f"{m.name}: gear_pair '{joint.name}': the centres of {first.body} and {second.body} are "
         f"{apart.min() * scale:.4g} to {apart.max() * scale:.4g} mm apart over the motion, where teeth of these radii "
-        f"mesh at {wanted * scale:.4g} mm; hold them there by pins or an arm, or write mechanisms/{m.name}/parts.py"
+        f"mesh at {wanted * scale:.4g} mm; hold them there by pins or an arm, or write {shown_file(m.name, 'parts')}"
     )
 
 

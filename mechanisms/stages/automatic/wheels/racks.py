@@ -17,6 +17,7 @@ from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
 from shared.shapes.involute import DEDENDUM
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -149,7 +150,7 @@ def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layou
             f"{m.name}: {joint.kind.name} '{joint.name}': at t={layout.times[at]:.3g} s the pinion's centre is "
             f"{path[at, 1] * scale:.4g} mm above the rack's x axis, its pitch line, and teeth of a pitch radius of "
             f"{pinion.radius * scale:.4g} mm need that; move the rack's marker or the pinion, or write "
-            f"mechanisms/{m.name}/parts.py"
+            f"{shown_file(m.name, 'parts')}"
         )
 
 

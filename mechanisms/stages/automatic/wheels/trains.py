@@ -13,6 +13,7 @@ from mechanisms.stages.automatic.wheels.wheels import Wheel
 from shared.shapes.involute import ADDENDUM, foul_inside, longest_rack_tip, longest_tip, shortest_tip
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
@@ -93,7 +94,7 @@ def _refuse_foul(m: Mechanism, mesh: Mesh) -> None:
         raise UserError(
             f"{m.name}: gear_pair '{mesh.joint.name}': the tips of {pinion.body} with {pinion.teeth} teeth cross those "
             f"of the ring gear of {ring.body} with {ring.teeth} away from where they mesh; give the pinion at least "
-            f"{LESS} teeth less than the ring, or write mechanisms/{m.name}/parts.py"
+            f"{LESS} teeth less than the ring, or write {shown_file(m.name, 'parts')}"
         )
 
 

@@ -10,6 +10,7 @@ from mechanisms.stages.automatic.shafts.bodies.planes import SAME, marker_on, no
 from mechanisms.stages.automatic.shafts.bodies.sliding import piston, ram, valve
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -50,7 +51,7 @@ def machine(
             raise UserError(
                 f"{m.name}: joint '{joint.name}' is a {joint.kind.name.replace('_', ' ')}, and where bodies have "
                 f"places z only {', '.join(JOINTS)} joints have parts; leave one of its bodies out "
-                f"(automatic(m).leave_out), take the places away, or write mechanisms/{m.name}/parts.py"
+                f"(automatic(m).leave_out), take the places away, or write {shown_file(m.name, 'parts')}"
             )
     sliding = {joint.bodies[k]: joint for joint in joints for k in (0, 1) if _slides(joint, joint.bodies[k])}
     cams = _cams(m, joints, sliding)
@@ -85,7 +86,7 @@ def _cams(m: Mechanism, joints: Collection[Joint], sliding: Collection[str]) -> 
             raise UserError(
                 f"{m.name}: the cam of '{joint.name}' pushes '{body}', which does not slide on ground; where bodies "
                 f"have places z cams push valves on ground alone; leave '{body}' out (automatic(m).leave_out), or "
-                f"write mechanisms/{m.name}/parts.py"
+                f"write {shown_file(m.name, 'parts')}"
             )
         cams[body] = joint
     return cams
@@ -179,7 +180,7 @@ def _link(
         raise UserError(
             f"{m.name}: joint '{slides[0]}' lets '{body}' slide on a body that moves; where bodies have places z there "
             f"are guides on ground alone; leave '{body}' out (automatic(m).leave_out), or write "
-            f"mechanisms/{m.name}/parts.py"
+            f"{shown_file(m.name, 'parts')}"
         )
     places = _known_planes(body, pins, sliding)
     z = mm(given) if given is not None else places[0] if places else chosen.get(body)

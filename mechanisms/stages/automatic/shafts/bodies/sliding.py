@@ -11,6 +11,7 @@ from mechanisms.stages.automatic.shafts.bodies.kinds import Piston, Ram, RamPin,
 from mechanisms.stages.automatic.shafts.bodies.planes import SAME, marker_on, no_plane, other_on, place, plane, planes
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +31,7 @@ def piston(machine: Machine, body: str, joint: Joint, joints: list[Joint]) -> Pi
         raise UserError(
             f"{m.name}: '{body}' slides on ground in '{joint.name}' and carries {len(wrists)} pins "
             f"({', '.join(j.name for j in wrists)}); a piston has one; leave it out (automatic(m).leave_out) or write "
-            f"mechanisms/{m.name}/parts.py"
+            f"{shown_file(m.name, 'parts')}"
         )
     z = mm(own) if own is not None else zs[0] if zs else None
     if z is None:
@@ -80,7 +81,7 @@ def ram(machine: Machine, body: str, joint: Joint, wrists: Sequence[Joint]) -> R
             raise UserError(
                 f"{m.name}: '{body}' slides on ground in '{joint.name}' and is driven by several bodies, of which "
                 f"'{other}' in '{wrist.name}' is no link; leave it out (automatic(m).leave_out) or write "
-                f"mechanisms/{m.name}/parts.py"
+                f"{shown_file(m.name, 'parts')}"
             )
     ground = marker_on(joint, "ground")
     along = np.array([math.cos(ground.angle), math.sin(ground.angle)])
@@ -128,7 +129,7 @@ def valve(machine: Machine, body: str, joint: Joint, cam: Joint) -> Valve:
         raise UserError(
             f"{m.name}: '{body}' is pushed by a cam in '{cam.name}' and has '{more[0]}' besides; where bodies have "
             f"places z a valve has its guide and its cam alone; leave it out (automatic(m).leave_out) or write "
-            f"mechanisms/{m.name}/parts.py"
+            f"{shown_file(m.name, 'parts')}"
         )
     face = marker_on(cam, body)
     theta = float(machine.poses[body][0, 2])

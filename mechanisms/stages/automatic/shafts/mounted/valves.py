@@ -21,6 +21,7 @@ from mechanisms.stages.automatic.shafts.passing import Takes, box
 from shared.shapes.cam import evenly
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -163,7 +164,7 @@ def _cylinder(machine: Machine, valve: Valve, cylinders: Mapping[str, Cylinder])
     raise UserError(
         f"{machine.m.name}: '{valve.body}' is pushed by the cam of '{valve.cam}' and slides over no cylinder; where "
         "bodies have places z cams push valves alone, along the bore of a piston within half a bore of its place; "
-        f"leave it out (automatic(m).leave_out), or write mechanisms/{machine.m.name}/parts.py"
+        f"leave it out (automatic(m).leave_out), or write {shown_file(machine.m.name, 'parts')}"
     )
 
 

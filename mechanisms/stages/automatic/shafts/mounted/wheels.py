@@ -22,6 +22,7 @@ from mechanisms.stages.automatic.wheels.gears import refuse_apart, wheel_at
 from mechanisms.stages.automatic.wheels.pulleys import BELT
 from mechanisms.stages.automatic.wheels.trains import Mesh, in_phase
 from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -142,14 +143,14 @@ def _joints(machine: Machine) -> list[Joint]:
         if joint.params.get("internal"):
             raise UserError(
                 f"{what} has a ring gear; where bodies have places z there are external gears alone; leave one of its "
-                f"bodies out (automatic(m).leave_out), or write mechanisms/{machine.m.name}/parts.py"
+                f"bodies out (automatic(m).leave_out), or write {shown_file(machine.m.name, 'parts')}"
             )
         for marker in (joint.i, joint.j):
             shaft = machine.shafts.get(marker.body.name)
             if shaft is None:
                 raise UserError(
                     f"{what} has a wheel on '{marker.body.name}', which is no shaft that turns on ground; where bodies "
-                    f"have places z wheels are on shafts; write mechanisms/{machine.m.name}/parts.py"
+                    f"have places z wheels are on shafts; write {shown_file(machine.m.name, 'parts')}"
                 )
             at = place(marker)
             if math.dist(at, shaft.axis) > SAME:

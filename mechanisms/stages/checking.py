@@ -1,0 +1,29 @@
+"""``mbsd check``: what in a model looks as if it was not meant, before anything is made of it."""
+
+from __future__ import annotations
+
+import msgspec
+
+from mechanisms.stages.loading import loading
+from shared.stage.console import say, warn
+from shared.stage.paths import known_name
+
+
+def run(name: str, as_json: bool = False) -> int:
+    """Build the mechanism and look at it; 1 where something looks odd. Raises UserError where it cannot be built."""
+    name = known_name(name)
+    module, given = loading.load(name, "mechanism"), loading.params(name)
+    with loading.author_code(name):
+        m = module.build(given)
+        findings = [(found.name, found.problem, found.remedy) for found in m.check()]
+        mobility = m.mobility()
+    if as_json:
+        rows = [{"name": where, "problem": problem, "remedy": remedy} for where, problem, remedy in findings]
+        print(msgspec.json.encode({"machine": name, "freedom": mobility.dof, "findings": rows}).decode())
+        return int(bool(findings))
+    for where, problem, remedy in findings:
+        warn("check", f"{name}: {where}: {problem}. {remedy}")
+    joints, bodies = len(m.joints), len(m.bodies) - 1
+    looks = f"{len(findings)} things look odd" if len(findings) > 1 else "one looks odd" if findings else "nothing odd"
+    say("check", f"{name}: {bodies} bodies, {joints} joints, {str(mobility).splitlines()[0]}; {looks}")
+    return int(bool(findings))

@@ -1,0 +1,33 @@
+"""The commands that messages name, in the words of the program through which they were given: ``mbsd`` or make."""
+
+from __future__ import annotations
+
+import os
+
+VARIABLE = "MBSD_FACE"
+"""Environment variable in which the program ``mbsd`` says that it is the one."""
+PROGRAM = "mbsd"
+
+
+def to_run(command: str, name: str = "") -> str:
+    """``make poster-four-bar`` or ``mbsd poster four-bar``; ``name`` may be empty."""
+    shown = name.replace("_", "-")
+    if _is_program():
+        return " ".join(("mbsd", command, *filter(None, [shown])))
+    return f"make {command} NAME={name}" if command == "new" else f"make {command}{'-' * bool(shown)}{shown}"
+
+
+def said(**words: str) -> str:
+    """``PRESET=final ASPECT=9:16`` or ``--preset final --aspect 9:16``."""
+    if _is_program():
+        return " ".join(f"--{key} {value}" for key, value in words.items())
+    return " ".join(f"{key.upper()}={value}" for key, value in words.items())
+
+
+def is_of_make() -> bool:
+    """Whether the Makefile is what the command was given through."""
+    return os.environ.get(VARIABLE) == "make"
+
+
+def _is_program() -> bool:
+    return os.environ.get(VARIABLE) == PROGRAM

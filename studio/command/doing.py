@@ -1,0 +1,62 @@
+"""What each command does with its stages: most run them in turn, some for several machines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from shared.stage.console import fail
+from shared.stage.paths import mechanism_names
+from shared.system.missing import missing_libraries, sentence
+from studio.command import stages
+from studio.command.running import Run
+from studio.command.stages import Stage
+from studio.command.table import Command
+
+
+def do(command: Command, operand: str, said: Mapping[str, str], run: Run) -> int:
+    """Do a command; its exit code."""
+    if any(stage.solids for stage in command.stages) and not run.planned and not _has_libraries():
+        return 1
+    return OTHERS.get(command.name, in_turn)(command, operand, said, run)
+
+
+def in_turn(command: Command, operand: str, said: Mapping[str, str], run: Run) -> int:
+    """Its stages one after the other; the last takes the place of this process."""
+    checked = command.of in ("machine", "")
+    *before, last = (stage.words(operand, said, checked) for stage in command.stages)
+    return run.all_of(before) or run.last(last)
+
+
+def gallery(command: Command, _: str, said: Mapping[str, str], run: Run) -> int:
+    """A poster of every machine and the page of them; one that fails is left out, and makes the exit code 1."""
+    bad = 0
+    for name in mechanism_names():
+        chain = (*stages.MOTION, stages.CLEARANCE, stages.SHOT, stages.POSTER)
+        code = run.all_of(stage.words(name, {**said, "aspect": "16:9"}) for stage in chain)
+        if code >= 128:
+            return code
+        bad = bad or code
+    return run.one(Stage("render", "gallery").words("", said)) or bad
+
+
+def compare(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
+    """Every variant solved, then all on the same pages."""
+    names = run.output_of(Stage("mechanisms", "variants").words(name, said))
+    if names is None:
+        return 1
+    for variant in names:
+        code = run.all_of(stage.words(variant, said) for stage in stages.BARE_MOTION)
+        if code != 0:
+            return code
+    return run.last(stages.COMPARE.words(name, said))
+
+
+def _has_libraries() -> bool:
+    missing = missing_libraries()
+    if missing:
+        fail(f"parts and pictures need these libraries; nothing was made: {sentence(missing)}")
+    return not missing
+
+
+OTHERS: dict[str, Callable[[Command, str, Mapping[str, str], Run], int]] = {"gallery": gallery, "compare": compare}
+"""Commands that are more than their stages in turn."""

@@ -1,0 +1,35 @@
+"""What a command has done, as JSON for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from shared.stage.paths import Out
+from studio.command.running import Run
+from studio.command.table import Command
+
+
+def summary(command: Command, machine: str, run: Run, code: int) -> str:
+    """One line: whether it is done, its stages with their seconds, and the files that are there now."""
+    out = Out(machine)
+    files = sorted(path.relative_to(out.folder).as_posix() for path in out.folder.rglob("*") if _counts(path, out))
+    films = [film.as_posix() for film in sorted(out.film("*").parent.glob(f"{out.name}-*.mp4"))]
+    return msgspec.json.encode(
+        {
+            "command": command.name,
+            "machine": machine,
+            "ok": code == 0,
+            "exit_code": code,
+            "stages": [{"stage": done.stage, "ok": done.code == 0, "seconds": done.seconds} for done in run.done],
+            "folder": out.folder.as_posix(),
+            "files": files,
+            "films": films,
+        }
+    ).decode()
+
+
+def _counts(path: Path, out: Out) -> bool:
+    inside = path.relative_to(out.folder).parts
+    return path.is_file() and not any(part.startswith(".") for part in inside) and inside[0] != "frames"

@@ -1,0 +1,144 @@
+"""Reads the command line of ``mbsd`` and does what it asks."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from shared.stage.errors import UserError
+from shared.stage.face import is_of_make
+from shared.stage.paths import known_name, mechanism_names, work_in
+from shared.stage.suggestions import did_you_mean
+from studio.command import doing, made
+from studio.command.options import OPTIONS
+from studio.command.place import Place, place_of
+from studio.command.running import Run
+from studio.command.table import COMMANDS, Command
+
+EPILOG = """\
+in a folder with mechanism.py, with files such as excavator.py, or with a folder for each machine; results are put into
+out/ beside them. mbsd.toml says once what is meant for all: preset = "production", bed = "180x180".
+
+  mbsd new excavator           a machine that already runs: change it
+  mbsd live excavator --open   a page that follows the editor
+  mbsd run excavator           parts, motion, proof of clearance, plots, picture and film
+  mbsd COMMAND --help          what a command takes
+
+exit codes: 0 done, 1 it could not be done and stderr says why, 2 the command line is wrong, 130 stopped by Ctrl-C
+"""
+OPERANDS = {
+    "machine": ("machine", "its name; excavator-heavy is its variant 'heavy'. It may be left out where there is one"),
+    "new": ("name", "lower-case letters, digits and underscores"),
+    "file": ("file", "file of another program, or an address of PMKS+"),
+    "host": ("host", "user@machine, as ssh takes it"),
+    "scheduler": ("address", "of the scheduler: tcp://name:8786"),
+    "folder": ("folder", "folder to make"),
+}
+
+
+def parser(make: bool = False) -> argparse.ArgumentParser:
+    """The whole command line; ``make``: what nobody gave comes from the variables that the Makefile exports."""
+    top = argparse.ArgumentParser(
+        "mbsd", description="Planar mechanisms: from one short file to physics, parts and film.", epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )  # fmt: skip
+    top.add_argument(
+        "-C", dest="folder", default=".", metavar="FOLDER", help="folder to work in; this one if not given"
+    )
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", title="commands")
+    for command in COMMANDS.values():
+        _add(commands, command, make)
+    words = commands.add_parser("completion", help="a script for the shell that completes commands and names")
+    words.add_argument("shell", choices=("bash", "zsh", "fish"))
+    commands.add_parser("compile", help="compile the solver now, so that the first run does not wait for it")
+    return top
+
+
+def _add(commands: argparse._SubParsersAction[argparse.ArgumentParser], command: Command, make: bool) -> None:
+    example = f"example: {command.example}" if command.example else None
+    sub = commands.add_parser(command.name, help=command.help, description=command.help, epilog=example)
+    if command.of:
+        name, text = OPERANDS[command.of]
+        sub.add_argument("operand", metavar=name, help=text, nargs="?" if command.of == "machine" else None, default="")
+    for name in command.options:
+        option = OPTIONS[name]
+        default = os.environ.get(option.variable, "") if make else ""
+        if option.flag:
+            sub.add_argument(f"--{name}", action="store_const", const="1", default=default, help=option.help)
+        else:
+            choices = f": {', '.join(option.choices)}" if option.choices else ""
+            usual = command.defaults.get(name, option.default)
+            text = f"{option.help}{choices}" + (f"; {usual} if not given" if usual else "")
+            sub.add_argument(f"--{name}", default=default, metavar=option.metavar, help=text)
+    if command.of == "machine" and "json" not in command.options:
+        sub.add_argument("--json", action="store_true", help="what was done, for other programs; words go to stderr")
+    planned = make and bool(os.environ.get("PLAN"))
+    sub.add_argument(
+        "--plan", action="store_true", default=planned, help="tell the stages that would run, and run none"
+    )
+
+
+def main(arguments: Sequence[str] | None = None, make: bool = False) -> int:
+    """Do one command; its exit code. Raises UserError."""
+    asked = parser(make).parse_args(arguments)
+    if asked.command == "completion":
+        from studio.command import completion
+
+        print(completion.script(asked.shell))
+        return 0
+    place = place_of(Path(asked.folder))
+    if place.machines is not None:
+        work_in(place.machines)
+    os.environ.update(place.environment())
+    command = COMMANDS[asked.command]
+    said = _said(command, asked, place, make)
+    run = Run(
+        place.environment(),
+        quiet=command.of == "machine" and "json" not in command.options and asked.json,
+        planned=asked.plan,
+    )
+    operand = _operand(command, asked, place)
+    code = doing.do(command, operand, said, run)
+    if run.quiet and not run.planned:
+        print(made.summary(command, operand, run, code))
+    return code
+
+
+def _said(command: Command, asked: argparse.Namespace, place: Place, make: bool) -> dict[str, str]:
+    """The value of each option: as given, else as mbsd.toml says, else as usual. Raises UserError for an unfit one."""
+    said: dict[str, str] = {}
+    for name in command.options:
+        option = OPTIONS[name]
+        value = getattr(asked, name.replace("-", "_")) or (place.settings.word(name) if option.kept else "")
+        value = value or command.defaults.get(name, option.default)
+        if value and option.choices and value not in option.choices:
+            where = "" if getattr(asked, name.replace("-", "_")) else " in mbsd.toml"
+            hint = did_you_mean(value, option.choices)
+            spelled = f"{option.variable}={value}" if make else f"--{name} {value}"
+            raise UserError(f"{spelled}{where} is no {name}; choose one of: {', '.join(option.choices)}{hint}")
+        said[name] = value
+    return said
+
+
+def _operand(command: Command, asked: argparse.Namespace, place: Place) -> str:
+    if command.of == "file":
+        given = os.path.expanduser(asked.operand)
+        return os.path.abspath(given) if os.path.exists(given) else asked.operand
+    if command.of != "machine":
+        return getattr(asked, "operand", "")
+    name = asked.operand or place.inside
+    if not name:
+        names = mechanism_names()
+        if len(names) != 1:
+            there = f"there is: {', '.join(names)}" if names else "there is none here; mbsd new excavator makes one"
+            raise UserError(f"mbsd {command.name}: say which machine; {there}")
+        name = names[0]
+    return known_name(name)
+
+
+def run() -> int:
+    """Entry of the process."""
+    return main(sys.argv[1:], is_of_make())

@@ -1,0 +1,72 @@
+"""What a user may say beside a command: each word once, with its name on the command line, under make and in mbsd.toml.
+
+Under make the Makefile exports the words as variables of the environment, ``PRESET=final``; a name is the same in
+capitals. In mbsd.toml ``preset = "final"`` says once what is meant wherever nothing else is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from render.presets import ASPECTS, PRESETS, WIDE
+
+
+@dataclass(frozen=True)
+class Option:
+    """One word, which the stages check; ``stage`` is its name there where it is another."""
+
+    name: str
+    help: str
+    metavar: str = "WORD"
+    default: str = ""
+    choices: tuple[str, ...] = ()
+    kept: bool = False
+    """Whether mbsd.toml may say it."""
+    flag: bool = False
+    """Whether it is said without a value."""
+    one: bool = False
+    """Whether a stage takes this flag as ``=1``."""
+
+    @property
+    def variable(self) -> str:
+        """Its name under make."""
+        return self.name.replace("-", "_").upper()
+
+
+OPTIONS: dict[str, Option] = {
+    option.name: option
+    for option in (
+        Option("preset", "quality of pictures", default="preview", choices=tuple(PRESETS), kept=True),
+        Option("aspect", f"shape of the picture; {WIDE} if not given", choices=tuple(ASPECTS), kept=True),
+        Option("show", "arrows and words in the picture: reactions,velocities,title", kept=True),
+        Option("spectra", "spectra to plot: 'shaking force,motor'", kept=True),
+        Option("bed", "size of a plate in mm; 220x220 if not given", "WxH", kept=True),
+        Option("gap", "what pieces keep apart on a plate in mm; 5 if not given", "MM", kept=True),
+        Option("frame", "number of the frame, from 0", "N", default="0"),
+        Option("frames", "numbers of frames: 0,30", "N,N"),
+        Option("view", "what is shown: reactions,velocities; all if not given"),
+        Option("only", "these alone, commas between them; all if not given", "NAMES"),
+        Option("watts", "power of this machine while it renders (W), to tell the energy", "W", kept=True),
+        Option("anyway", "begin though the disk is surely too small", flag=True, one=True),
+        Option("kind", "driven or simulated", default="driven", choices=("driven", "simulated")),
+        Option("as", "its name here; that of the file if not given", "NAME"),
+        Option("single", "one file in place of a folder", flag=True),
+        Option("port", "of 127.0.0.1; any free one if not given", "N"),
+        Option("limit", "seconds that solving may take; 30 if not given", "S"),
+        Option("no-parts", "make no parts in the background", flag=True),
+        Option("open", "open the page in the browser", flag=True),
+        Option("folder", "folder of the project on the other machine"),
+        Option("names", "names alone, a line each", flag=True),
+        Option("json", "for other programs", flag=True),
+        Option("host", "address that other machines reach"),
+    )
+}
+
+
+def given(option: Option, words: Mapping[str, str]) -> list[str]:
+    """The words of a stage's command line that say this option; none where nothing is said."""
+    value = words.get(option.name, "")
+    if not value:
+        return []
+    return [f"--{option.name}" if option.flag and not option.one else f"--{option.name}={value}"]

@@ -1,0 +1,59 @@
+"""Where a command works: the clone, or the user's own folder that is nearest."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from shared.stage.face import is_of_make
+from shared.stage.paths import ROOT
+from studio.command.settings import FILE, Settings, read
+
+
+@dataclass(frozen=True)
+class Place:
+    """A folder of machines with its settings; ``machines`` is None in the clone, whose own machines are meant."""
+
+    machines: Path | None
+    settings: Settings
+    inside: str = ""
+    """The machine's folder in which the command was given, if it was given in one."""
+
+    def environment(self) -> dict[str, str]:
+        """What it adds to the environment of the stages."""
+        words: dict[str, str] = {}
+        if self.machines is not None:
+            words["MBSD_WORKSHOP"] = str(self.machines)
+            if self.settings.out and "MBSD_OUT" not in os.environ:
+                words["MBSD_OUT"] = str(self.machines / os.path.expanduser(self.settings.out))
+        plain = {"CLUSTER": self.settings.cluster, "MBSD_LOOK": self.settings.look}
+        words |= {variable: value for variable, value in plain.items() if value and not os.environ.get(variable)}
+        if self.settings.cluster_tls and not os.environ.get("CLUSTER_TLS"):
+            words["CLUSTER_TLS"] = str((self.machines or ROOT) / os.path.expanduser(self.settings.cluster_tls))
+        return words
+
+
+def place_of(folder: Path) -> Place:
+    """The place of a command that is given in ``folder``: the clone where it lies there, else the nearest folder above
+    with a mbsd.toml, else the folder itself. Raises UserError for a mbsd.toml that is unfit.
+    """
+    folder = Path(os.path.abspath(os.path.expanduser(folder)))
+    named = os.environ.get("MBSD_WORKSHOP") or (os.environ.get("MECHANISMS") if is_of_make() else None)
+    if named:
+        machines = Path(os.path.abspath(os.path.expanduser(named)))
+        return Place(machines, read(machines), _inside(folder, machines))
+    for above in (folder, *folder.parents):
+        if (above / FILE).is_file() and above != ROOT:
+            return Place(above, read(above), _inside(folder, above))
+        if above == ROOT and (ROOT / "Makefile").is_file():
+            return Place(None, read(ROOT), _inside(folder, ROOT / "mechanisms"))
+    return Place(folder, Settings())
+
+
+def _inside(folder: Path, machines: Path) -> str:
+    if folder != machines and folder.is_relative_to(machines):
+        name = folder.relative_to(machines).parts[0]
+        if (machines / name / "mechanism.py").is_file():
+            return name
+    return ""

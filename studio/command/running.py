@@ -1,0 +1,91 @@
+"""Runs a command's stages one after the other, each a process of its own; the first that fails ends it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from shared.stage.lineage import VARIABLE
+from shared.stage.paths import ROOT
+from shared.stage.signals import Stopped, terminable
+
+GRACE = 20.0
+"""Seconds that a stage has to clean up when the command is stopped."""
+
+
+@dataclass
+class Outcome:
+    """One stage that ran."""
+
+    stage: str
+    code: int
+    seconds: float
+
+
+@dataclass
+class Run:
+    """The stages of a command; with ``quiet`` what they say goes to stderr, and with ``planned`` they are only told."""
+
+    environment: Mapping[str, str]
+    quiet: bool = False
+    planned: bool = False
+    done: list[Outcome] = field(default_factory=list)
+
+    def all_of(self, commands: Iterable[Sequence[str]]) -> int:
+        """Run them; the exit code of the first that fails, else 0."""
+        for words in commands:
+            code = self.one(words)
+            if code != 0:
+                return code
+        return 0
+
+    def one(self, words: Sequence[str]) -> int:
+        """Run one stage to its end; its exit code. A stop is passed on, and ends the command when the stage has."""
+        if self.planned:
+            print(" ".join(words[2:]), flush=True)
+            return 0
+        began = time.monotonic()
+        sys.stdout.flush()
+        process = subprocess.Popen(
+            list(words), cwd=ROOT, env=self._environment(), stdout=sys.stderr if self.quiet else None
+        )
+        try:
+            with terminable():
+                code = process.wait()
+        except (Stopped, KeyboardInterrupt):
+            _end(process)
+            raise
+        code = 128 - code if code < 0 else code
+        self.done.append(Outcome(" ".join(words[3:4]) or words[2], code, round(time.monotonic() - began, 3)))
+        return code
+
+    def output_of(self, words: Sequence[str]) -> list[str] | None:
+        """The lines that a stage prints; None where it fails, which it has told."""
+        done = subprocess.run(list(words), cwd=ROOT, env=self._environment(), stdout=subprocess.PIPE, text=True)
+        return done.stdout.splitlines() if done.returncode == 0 else None
+
+    def last(self, words: Sequence[str]) -> int:
+        """Run one stage in place of this process, so that keys and signals reach it as if it were called itself."""
+        if self.planned or self.quiet or os.name != "posix":
+            return self.one(words)
+        os.chdir(ROOT)
+        sys.stdout.flush()
+        return os.execve(words[0], list(words), self._environment())
+
+    def _environment(self) -> dict[str, str]:
+        own = {VARIABLE: os.environ.get(VARIABLE) or str(os.getpid())}
+        paths = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH", ""))))
+        return {**os.environ, **self.environment, **own, "PYTHONPATH": paths}
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    process.terminate()
+    try:
+        process.wait(GRACE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()

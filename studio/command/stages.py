@@ -1,0 +1,53 @@
+"""The stages of a machine as processes: which program each is, and what it takes."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from studio.command.options import OPTIONS, given
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One process: ``python -m room name MACHINE`` with the options that it knows."""
+
+    room: str
+    name: str = ""
+    options: tuple[str, ...] = ()
+    also: tuple[str, ...] = ()
+    """Words that are always said."""
+    solids: bool = False
+    """Whether it loads what parts and pictures need of the system."""
+
+    def words(self, operand: str, said: Mapping[str, str], checked: bool = True) -> list[str]:
+        """Its command line; ``operand`` is empty where it takes none, and behind ``--`` where it is not ``checked``."""
+        words = [sys.executable, "-m", self.room, *filter(None, (self.name, operand if checked else "")), *self.also]
+        for option in self.options:
+            words += given(OPTIONS[option], said)
+        return words if checked else [*words, "--", operand]
+
+
+_PICTURE = ("preset", "aspect", "show")
+PARTS = Stage("mechanisms", "parts", solids=True)
+PARTS_IF_ANY = Stage("mechanisms", "parts", also=("--or-none",))
+SOLVE = Stage("mechanisms", "solve")
+CLEARANCE = Stage("mechanisms", "clearance", solids=True)
+SHOT = Stage("mechanisms", "shot")
+PRINT = Stage("mechanisms", "print", ("bed", "gap"), solids=True)
+ANIMATE = Stage("mechanisms", "animate", ("view",))
+REPORT = Stage("render", "report")
+PLOTS = Stage("render", "plots", ("spectra",))
+COMPARE = Stage("render", "compare", ("spectra",))
+GLB = Stage("render", "glb", solids=True)
+VIEW = Stage("render", "view")
+POSTER, CONTACT, FRAMES, FILM, SCENE, SCENE_UI = (
+    Stage("render", name, _PICTURE, solids=True)
+    for name in ("poster", "contact", "frames", "film", "scene", "scene-ui")
+)
+STILL = Stage("render", "still", ("frame", *_PICTURE), solids=True)
+BARE_MOTION = (PARTS_IF_ANY, SOLVE)
+"""Motion and plots go on where there are no automatic parts."""
+MOTION = (PARTS, SOLVE)
+SCENERY = (PARTS, SOLVE, SHOT)

@@ -1,0 +1,129 @@
+"""Every command: what it is of, what it takes, and the stages that do it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from studio.command import stages
+from studio.command.stages import Stage
+
+Of = Literal["machine", "new", "file", "host", "scheduler", "folder", ""]
+
+
+@dataclass(frozen=True)
+class Command:
+    """One command. ``help`` is its line in ``mbsd --help`` and in ``make help``."""
+
+    name: str
+    help: str
+    stages: tuple[Stage, ...]
+    of: Of = "machine"
+    defaults: Mapping[str, str] = field(default_factory=dict)
+    """Of options, where they are other than usual."""
+    example: str = ""
+    target: str = ""
+    """Its name as a target of make, where it is another; ``-`` where there is none."""
+
+    @property
+    def options(self) -> tuple[str, ...]:
+        """Names of the options that its stages take, each once."""
+        return tuple(dict.fromkeys(name for stage in self.stages for name in stage.options))
+
+    @property
+    def make_target(self) -> str:
+        """``run-<name>``, ``status``; empty where make has none."""
+        target = self.target or self.name
+        return "" if target == "-" else f"{target}-<name>" if self.of == "machine" else target
+
+
+_NIGHT = ("preset", "aspect", "only", "show", "spectra", "watts", "anyway")
+COMMANDS: dict[str, Command] = {
+    command.name: command
+    for command in (
+        Command(
+            "run", "everything of one mechanism: parts, motion, clearance, report, plots, GLB, poster, film",
+            (*stages.MOTION, stages.CLEARANCE, stages.SHOT, stages.REPORT, stages.PLOTS, stages.GLB, stages.POSTER,
+             stages.FILM),
+            example="mbsd run excavator --preset production",
+        ),
+        Command(
+            "all", "the same of every mechanism; goes on after a failure",
+            (Stage("studio.night", "run", _NIGHT, solids=True),), of="", target="run-all",
+            example="mbsd all --only excavator,loader",
+        ),
+        Command(
+            "overnight", "all of it in the background, also after the logout",
+            (Stage("studio.night", "start", _NIGHT, solids=True),), of="", example="mbsd overnight --preset final",
+        ),
+        Command("status", "what every film is at: frames, seconds a frame, time left, last error",
+                (Stage("studio.night", "status"),), of=""),
+        Command("stop", "end that after the frame in flight; the same command goes on from there",
+                (Stage("studio.night", "stop"),), of=""),
+        Command("check", "what in a model looks as if it was not meant, before anything is made",
+                (Stage("mechanisms", "check", ("json",)),)),
+        Command("parts", "the solids: out/<name>/parts/ (STL, STEP, parts.json)", (stages.PARTS,)),
+        Command(
+            "print", "plates to print (3MF, STL), outlines to cut (DXF), lists",
+            (stages.PARTS, stages.PRINT), example="mbsd print excavator --bed 180x180",
+        ),
+        Command("solve", "the motion: out/<name>/data.json", stages.BARE_MOTION),
+        Command("animate", "the moving skeleton with its arrows: animation.mp4, .gif",
+                (stages.ANIMATE,), example="mbsd animate excavator --view reactions"),
+        Command("clearance", "proof that no two parts touch over the whole motion: clearance.json",
+                (*stages.MOTION, stages.CLEARANCE)),
+        Command("plot", "the plots: out/<name>/plots/",
+                (*stages.BARE_MOTION, stages.PLOTS)),
+        Command("report", "what was found, in sentences and tables: out/<name>/report.md",
+                (*stages.BARE_MOTION, stages.REPORT)),
+        Command("compare", "the motions of all its variants on the same pages: out/<name>/compare/",
+                (stages.COMPARE,)),
+        Command("glb", "the parts with their motion in one file for any glTF viewer: out/<name>/<name>.glb",
+                (*stages.SCENERY, stages.GLB)),
+        Command("view", "one HTML page with the machine, its forces and its plots: out/<name>/view.html",
+                (*stages.BARE_MOTION, stages.SHOT, stages.VIEW)),
+        Command(
+            "live", "a page that follows the editor: sliders, dragging, fits to a path; prints its address",
+            (Stage("studio.live", options=("port", "limit", "no-parts", "open")),),
+            example="mbsd live excavator --open",
+        ),
+        Command("poster", "one picture at its best: out/<name>/poster.png", (*stages.SCENERY, stages.POSTER)),
+        Command("contact", "a sheet of twelve frames, drafts if nothing else is asked: out/<name>/contact.png",
+                (*stages.SCENERY, stages.CONTACT), defaults={"preset": "draft"}),
+        Command("still", "one frame of the film: out/<name>/stills/",
+                (*stages.SCENERY, stages.STILL), example="mbsd still excavator --frame 15"),
+        Command("frames", "the frames of the film: out/<name>/frames/<preset>/", (*stages.SCENERY, stages.FRAMES)),
+        Command("film", "the film: out/films/<name>-<preset>.mp4", (*stages.SCENERY, stages.FILM),
+                example="mbsd film excavator --preset final --aspect 9:16"),
+        Command("scene-ui", "open the scene in an installed Blender", (*stages.SCENERY, stages.SCENE_UI)),
+        Command("scene", "save the scene: out/<name>/<name>.blend", (*stages.SCENERY, stages.SCENE)),
+        Command(
+            "verify", "solids, motion, some frames and the film made again in scratch and compared",
+            (Stage("studio.verify", options=("preset", "aspect", "frames", "show"), solids=True),),
+        ),
+        Command("view-all", "all pages and a picture of each by Chromium: view.html, view.png",
+                (Stage("studio.pages", options=("only",)),), of=""),
+        Command("showreel", "the finished films, each under its title, as one",
+                (Stage("render", "showreel", ("preset", "aspect", "only", "show")),), of=""),
+        Command("gallery", "posters of all mechanisms and the page that shows them",
+                (stages.CLEARANCE, stages.POSTER), of=""),
+        Command("fetch", "bring the films of another machine home, what changed alone",
+                (Stage("studio.fetch", options=("folder",)),), of="host", example="mbsd fetch anna@server"),
+        Command("scheduler", "scheduler of a cluster; it prints its address",
+                (Stage("shared.cluster", "scheduler", ("host",)),), of=""),
+        Command(
+            "worker", "makes frames and parts for whoever asks the same scheduler",
+            (Stage("shared.cluster", "worker", ("host",), solids=True),), of="scheduler",
+        ),
+        Command("certificates", "certificates, so that a cluster lets nobody else in",
+                (Stage("shared.cluster", "certificates"),), of="folder"),
+        Command("new", "a new mechanism that already runs",
+                (Stage("mechanisms", "new", ("kind", "single")),), of="new", example="mbsd new excavator"),
+        Command("import", "a mechanism of Linkage, PMKS, PMKS+, pylinkage or an .asmt assembly",
+                (Stage("studio.imports", options=("as", "single")),), of="file", example="mbsd import walker.linkage2"),
+        Command("list", "the mechanisms and what is made of them",
+                (Stage("mechanisms", "list", ("names", "json")),), of=""),
+    )
+}  # fmt: skip
+"""In the order of ``make help``."""

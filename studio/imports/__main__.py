@@ -1,0 +1,63 @@
+"""``python -m studio.imports FILE [--as NAME]``: a mechanism of another program becomes one of this folder."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+
+from mechanisms.stages import checking
+from mechanisms.stages.new.new import refuse_unfit
+from shared.stage.console import run_cli, say, warn
+from shared.stage.errors import UserError
+from shared.stage.face import to_run
+from shared.stage.files import write_bytes
+from shared.stage.paths import MECHANISMS, NAME, in_workshop, shown_file
+from studio.imports.reading import FORMATS, read
+from studio.imports.sketch import Sketch
+from studio.imports.writing import mechanism_py
+
+
+def main() -> int:
+    """Read the file, write the mechanism, look at it; 1 where it is there but looks odd."""
+    parser = argparse.ArgumentParser("studio.imports", description=f"Known are: {', '.join(FORMATS)}.")
+    parser.add_argument("--as", dest="name", default="", help="its name here; that of the file if not given")
+    parser.add_argument(
+        "--single", action="store_true", help="one file in place of a folder; for a folder of one's own"
+    )
+    parser.add_argument("file", help="the file, or an address of PMKS+")
+    asked = parser.parse_args()
+    sketch = read(asked.file)
+    name = asked.name.replace("-", "_").lower() or named(asked.file)
+    refuse_unfit(name)
+    if asked.single and not in_workshop():
+        raise UserError("a mechanism of the clone is a folder; leave --single out, or work in a folder of your own")
+    file = MECHANISMS / f"{name}.py" if asked.single else MECHANISMS / name / "mechanism.py"
+    write_bytes(file, mechanism_py(sketch, name).encode())
+    say("import", f"{shown_file(name)}: {counted(sketch)} from {sketch.program}; {to_run('live', name)} shows it")
+    for words in sketch.left_out:
+        warn("import", f"left out: {words}")
+    return checking.run(name)
+
+
+def named(source: str) -> str:
+    """A name of a mechanism after a file's, or ``imported`` where that gives none."""
+    stem = "" if "://" in source else Path(source).name.partition(".")[0]
+    name = re.sub(r"[^a-z0-9]+", "_", stem.lower()).strip("_")
+    name = name if not name[:1].isdigit() else f"linkage_{name}"
+    return name if NAME.fullmatch(name) and len(name) < 60 else "imported"
+
+
+def counted(sketch: Sketch) -> str:
+    """``3 links, 4 joints and 1 motor``."""
+    counts = (
+        (len(sketch.links), "link"),
+        (len(sketch.joints), "joint"),
+        (len(sketch.motors) + len(sketch.rams), "motor"),
+    )
+    first, second, third = (f"{count} {word}{'' if count == 1 else 's'}" for count, word in counts)
+    return f"{first}, {second} and {third}"
+
+
+if __name__ == "__main__":
+    run_cli(main)

@@ -1,0 +1,233 @@
+"""Assemblies of Ondsel and FreeCAD (.asmt) whose motion lies in one plane; a spatial one is refused by its joint.
+
+The plane is that of the pins. A marker stands in a reference point, that in a part, that in the assembly; joints and
+motors act along the markers' z axes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from shared.stage.errors import UserError
+from studio.imports.asmt_text import Entry, parsed
+from studio.imports.expressions import as_law
+from studio.imports.sketch import GROUND, Gears, Link, Motor, Pin, Place, Sketch, Slide, Weld
+
+PINS = ("RevoluteJoint", "SphericalJoint")
+SLIDES = ("TranslationalJoint", "CylindricalJoint")
+IDLE = ("PlanarJoint", "ParallelAxesJoint", "NoRotationJoint")
+"""Joints that a mechanism in their plane keeps anyway, where their axes are normal to it."""
+ALIGNED = 1e-6
+"""Sine of the angle between axes that count as one direction."""
+
+
+def is_asmt(text: str) -> bool:
+    """Whether a text is such a file."""
+    lines = [line for line in text[:4000].splitlines() if line.strip()]
+    return any(line.strip() == "Assembly" for line in lines[:3])
+
+
+def read(text: str, name: str) -> Sketch:
+    """The mechanism of such a file. Raises UserError, with joint or line, for what is spatial or cannot be read."""
+    body = text.partition("\nTimeSeries")[0]
+    try:
+        assembly = parsed(body).named("Assembly")
+        if assembly is None:
+            raise UserError("the file has no Assembly")
+        return _Reader(assembly, name).sketch
+    except UserError as error:
+        raise UserError(f"{name}: {error}") from error
+
+
+@dataclass
+class _Marker:
+    part: str
+    origin: np.ndarray
+    axes: np.ndarray
+    """Columns: x, y, z in the world."""
+
+
+class _Reader:
+    def __init__(self, assembly: Entry, name: str) -> None:
+        self.assembly = assembly
+        self.sketch = Sketch(name, "an .asmt assembly")
+        self.path = f"/{assembly.text('Name')}"
+        self.markers: dict[str, _Marker] = {}
+        self.parts: dict[str, Entry] = {}
+        self._markers_of(assembly, GROUND, np.zeros(3), np.eye(3), self.path)
+        parts = assembly.named("Parts")
+        for part in parts.all_named("Part") if parts else ():
+            self.parts[part.text("Name")] = part
+            place = f"{self.path}/{part.text('Name')}"
+            self._markers_of(part, part.text("Name"), part.vector("Position3D"), part.matrix(), place)
+        constraints = assembly.named("ConstraintSets")
+        joints = constraints.named("Joints") if constraints else None
+        self.joints = joints.below if joints else []
+        self.plane = self._plane()
+        for part in self.parts:
+            self._link(part)
+        for joint in self.joints:
+            self._joint(joint)
+        for motion in self._motions(constraints):
+            self._motion(motion)
+        for limits in constraints.all_named("Limits") if constraints else ():
+            self.sketch.left_out += [
+                f"limit {limit.text('Name')}; limits= of the joint says it" for limit in limits.below
+            ]
+        forces = assembly.named("ForceTorques")
+        for force in forces.below if forces else ():
+            self.sketch.left_out.append(f"{force.word} {force.text('Name')}; docs/forces.md has what says it")
+        x, y = self._flat_vector(assembly.vector("ConstantGravity"))
+        self.sketch.gravity = (x, y) if math.hypot(x, y) > 1e-9 else None
+        settings = assembly.named("SimulationParameters")
+        if settings is not None:
+            duration = settings.number("tend", 0.0) - settings.number("tstart", 0.0)
+            self.sketch.duration = duration if duration > 0 else None
+
+    def _markers_of(self, owner: Entry, part: str, origin: np.ndarray, axes: np.ndarray, path: str) -> None:
+        points = owner.named("RefPoints")
+        for point in points.all_named("RefPoint") if points else ():
+            place, turned = origin + axes @ point.vector("Position3D"), axes @ point.matrix()
+            markers = point.named("Markers")
+            for marker in markers.all_named("Marker") if markers else ():
+                name = f"{path}/{marker.text('Name')}"
+                where = place + turned @ marker.vector("Position3D")
+                self.markers[name] = _Marker(part, where, turned @ marker.matrix())
+
+    def _plane(self) -> np.ndarray:
+        """Rows: x, y and normal of the plane of the motion. Raises UserError where joints share none."""
+        turning = [joint for joint in self.joints if joint.word in ("RevoluteJoint", "GearJoint", "RackPinionJoint")]
+        axes = [(joint, self._ends(joint)[0].axes[:, 2]) for joint in turning]
+        if not axes:
+            names = ", ".join(f"{joint.word} {joint.text('Name')}" for joint in self.joints[:4]) or "there are none"
+            raise UserError(f"no joint says in which plane it moves ({names}): a RevoluteJoint does")
+        normal = axes[0][1]
+        for joint, axis in axes:
+            if np.linalg.norm(np.cross(axis, normal)) > ALIGNED:
+                raise UserError(
+                    f"{joint.word} {joint.text('Name')} turns about another axis than the rest; it is spatial"
+                )
+        lead = int(np.argmax(np.abs(normal)))
+        normal = normal * np.sign(normal[lead])
+        x = np.eye(3)[(0, 2, 0)[lead] if lead != 0 else 1]
+        x = x - normal * (x @ normal)
+        x /= np.linalg.norm(x)
+        return np.array([x, np.cross(normal, x), normal])
+
+    def _flat(self, point: np.ndarray) -> Place:
+        return float(self.plane[0] @ point), float(self.plane[1] @ point)
+
+    _flat_vector = _flat
+
+    def _angle(self, direction: np.ndarray) -> float:
+        return math.atan2(self.plane[1] @ direction, self.plane[0] @ direction)
+
+    def _in_plane(self, direction: np.ndarray) -> bool:
+        return abs(direction @ self.plane[2]) < ALIGNED
+
+    def _ends(self, joint: Entry) -> tuple[_Marker, _Marker]:
+        ends = []
+        for word in ("MarkerI", "MarkerJ"):
+            name = joint.text(word)
+            if name not in self.markers:
+                raise UserError(f"{joint.word} {joint.text('Name')}: there is no marker {name}")
+            ends.append(self.markers[name])
+        return ends[0], ends[1]
+
+    def _link(self, name: str) -> None:
+        part = self.parts[name]
+        origin, axes = part.vector("Position3D"), part.matrix()
+        link = Link(name, {f"{name} origin": self._flat(origin)}, angle=self._part_angle(axes))
+        mass = part.named("PrincipalMassMarker")
+        if mass is not None and mass.number("Mass", 0.0) > 0.0:
+            turned = axes @ mass.matrix()
+            inertias = mass.vector("MomentOfInertias")
+            link.mass = mass.number("Mass")
+            link.centre = self._flat(origin + axes @ mass.vector("Position3D"))
+            link.inertia = float(np.sum(inertias * (turned.T @ self.plane[2]) ** 2))
+        speed, spin = part.vector("Velocity3D"), part.vector("Omega3D")
+        velocity = (*self._flat_vector(speed), float(spin @ self.plane[2]))
+        link.velocity = velocity if any(abs(value) > 1e-12 for value in velocity) else None
+        self.sketch.links[name] = link
+
+    def _part_angle(self, axes: np.ndarray) -> float:
+        """Of that of its axes which lies in the plane best."""
+        across = [abs(axes[:, k] @ self.plane[2]) for k in range(3)]
+        return self._angle(axes[:, int(np.argmin(across))])
+
+    def _joint(self, joint: Entry) -> None:
+        kind, name = joint.word, joint.text("Name")
+        i, j = self._ends(joint)
+        order = (i, j) if i.part == GROUND or j.part != GROUND else (j, i)
+        first, second = order[0].part, order[1].part
+        axis, place = i.axes[:, 2], self._flat(i.origin)
+        along = self._in_plane(axis)
+        normal = np.linalg.norm(np.cross(axis, self.plane[2])) < ALIGNED
+        if (kind in PINS and (normal or kind == "SphericalJoint")) or (kind == "CylindricalJoint" and normal):
+            self.sketch.joints.append(Pin(name, first, second, place))
+        elif kind in SLIDES and along:
+            self._slide(name, order, axis)
+        elif kind == "FixedJoint":
+            self.sketch.joints.append(Weld(name, first, second, place))
+        elif kind == "PointInPlaneJoint" and self._in_plane(j.axes[:, 2]):
+            x, y = self._flat_vector(j.axes[:, 2])
+            slot = math.atan2(x, -y)  # along the plane, across its normal
+            self.sketch.joints.append(
+                Slide(name, j.part, i.part, self._flat(i.origin), slot, turns=True, along=self._flat(j.origin))
+            )
+        elif kind in ("PointInLineJoint", "InLineJoint") and self._in_plane(j.axes[:, 2]):
+            self.sketch.joints.append(
+                Slide(name, j.part, i.part, self._flat(i.origin), self._angle(j.axes[:, 2]), True, self._flat(j.origin))
+            )
+        elif kind == "GearJoint" and normal:
+            radii = (joint.number("radiusI"), joint.number("radiusJ"))
+            self.sketch.joints.append(Gears(name, i.part, j.part, (self._flat(i.origin), self._flat(j.origin)), radii))
+        elif not (kind in IDLE and normal):
+            raise UserError(f"{kind} {name} cannot be said in the plane of the pins")
+
+    def _slide(self, name: str, order: tuple[_Marker, _Marker], axis: np.ndarray) -> None:
+        first, second = order
+        self.sketch.joints.append(
+            Slide(
+                name,
+                first.part,
+                second.part,
+                self._flat(second.origin),
+                self._angle(axis),
+                along=self._flat(first.origin),
+            )
+        )
+
+    def _motions(self, constraints: Entry | None) -> list[Entry]:
+        motions = constraints.named("Motions") if constraints else None
+        return motions.below if motions else []
+
+    def _motion(self, motion: Entry) -> None:
+        name = motion.text("Name")
+        joint_path = motion.text("MotionJoint")
+        joint = next((one for one in self.joints if f"{self.path}/{one.text('Name')}" == joint_path), None)
+        if motion.word != "RotationalMotion" or joint is None:
+            self.sketch.left_out.append(f"{motion.word} {name}; m.drive_coordinate says a motion along a line")
+            return
+        i, j = self._ends(joint)
+        sign = 1.0 if i.axes[:, 2] @ self.plane[2] > 0 else -1.0
+        law = as_law(motion.text("RotationZ"), f"{motion.word} {name}")
+        # The angle of marker j against marker i about i's z axis; the bodies' axes stand off from these.
+        offset = self._own(j) - self._own(i)
+        first, second, sense = (i.part, j.part, 1.0) if j.part != GROUND else (j.part, i.part, -1.0)
+        start = sense * (sign * law.at_zero - offset)
+        if law.rate is not None:
+            self.sketch.motors.append(Motor(name, first, second, sense * sign * law.rate, start))
+        else:
+            moving = f"{'-' if sense * sign < 0 else ''}({law.text} - {law.at_zero!r})"
+            self.sketch.motors.append(Motor(name, first, second, 0.0, start, moving))
+
+    def _own(self, marker: _Marker) -> float:
+        """The angle of a marker's x axis in the axes of its part."""
+        x = self._angle(marker.axes[:, 0])
+        if marker.part == GROUND:
+            return x
+        return x - (self.sketch.links[marker.part].angle or 0.0)

@@ -1,0 +1,77 @@
+"""The text of an .asmt file, by its tabs: entries with their values and what is below them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from shared.stage.errors import UserError
+
+
+@dataclass
+class Entry:
+    """One word with what is indented below it; numbers and texts are entries without anything below."""
+
+    word: str
+    line: int
+    below: list[Entry] = field(default_factory=list)
+
+    def all_named(self, word: str) -> Iterator[Entry]:
+        """Those below that are called so."""
+        return (entry for entry in self.below if entry.word == word)
+
+    def named(self, word: str) -> Entry | None:
+        """The first of them, if there is one."""
+        return next(self.all_named(word), None)
+
+    def text(self, word: str) -> str:
+        """The one line below an entry; raises UserError where it is missing."""
+        entry = self.named(word)
+        if entry is None or not entry.below:
+            raise UserError(f"line {self.line}: {self.word} has no {word}")
+        return entry.below[0].word.strip()
+
+    def number(self, word: str, usual: float | None = None) -> float:
+        """The same as a number; ``usual`` where it is missing."""
+        if usual is not None and self.named(word) is None:
+            return usual
+        return _numbers(self.text(word), self.line)[0]
+
+    def vector(self, word: str) -> np.ndarray:
+        """Three numbers in a line, zero where they are missing."""
+        entry = self.named(word)
+        return np.zeros(3) if entry is None or not entry.below else np.array(_numbers(entry.below[0].word, entry.line))
+
+    def matrix(self) -> np.ndarray:
+        """The rotation matrix; that of no turn where it is missing."""
+        entry = self.named("RotationMatrix")
+        if entry is None:
+            return np.eye(3)
+        return np.array([_numbers(row.word, row.line) for row in entry.below[:3]])
+
+
+def parsed(text: str) -> Entry:
+    """The whole file. Raises UserError for one that is not indented by tabs."""
+    root = Entry("", 0)
+    path = [root]
+    for number, line in enumerate(text.splitlines(), 1):
+        word = line.strip("\t ")
+        if not word:
+            continue
+        depth = len(line) - len(line.lstrip("\t"))
+        if depth >= len(path):
+            raise UserError(f"line {number} is indented by {depth} tabs below one with {len(path) - 2}")
+        del path[depth + 1 :]
+        entry = Entry(word, number)
+        path[-1].below.append(entry)
+        path.append(entry)
+    return root
+
+
+def _numbers(text: str, line: int) -> list[float]:
+    try:
+        return [float(word.replace("d", "e") if word.count("d") == 1 else word) for word in text.split()]
+    except ValueError:
+        raise UserError(f"line {line}: {text.strip()[:60]!r} are no numbers") from None

@@ -1,0 +1,186 @@
+"""``mbsd`` in a folder of the user's own: three ways to lie there, mbsd.toml, errors, results beside the machines."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from shared.stage.paths import ROOT
+
+CRANK = '''"""A crank of {length} m."""
+from dataclasses import dataclass
+from mbsd import Mechanism, constant_rate
+{imports}
+
+@dataclass(frozen=True)
+class Params:
+    crank: float = {length}
+
+def build(p: Params) -> Mechanism:
+    m = Mechanism("{name}")
+    crank = m.bar("crank", p.crank, mass=1.0)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.drive_angle("motor", crank, constant_rate(1.0))
+    return m
+'''
+
+
+def crank(name: str, length: str = "0.05", imports: str = "") -> str:
+    return CRANK.format(name=name, length=length, imports=imports)
+
+
+def mbsd(*words: str, at: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """The program, called in ``at`` as its script does."""
+    names = ("MBSD_OUT", "MBSD_MAKE", "MBSD_FACE", "MBSD_WORKSHOP", "PYTHONPATH", "MECHANISMS", "CLUSTER")
+    inherited = {key: value for key, value in os.environ.items() if key not in names}
+    command = [sys.executable, "-P", "-m", "mbsd", *words]
+    path = {"PYTHONPATH": str(ROOT)}
+    return subprocess.run(command, cwd=at, env=inherited | path | environment, capture_output=True, text=True)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder, a file, and names of ours that are the user's here."""
+    (tmp_path / "arm").mkdir()
+    (tmp_path / "arm" / "mechanism.py").write_text(crank("arm", imports="from .sizes import LENGTH", length="LENGTH"))
+    (tmp_path / "arm" / "sizes.py").write_text("LENGTH = 0.04\n")
+    (tmp_path / "wheel.py").write_text(crank("wheel", imports="from lengths import LENGTH", length="LENGTH"))
+    (tmp_path / "lengths.py").write_text("LENGTH = 0.03\n")
+    for taken in ("shared.py", "render.py", "studio.py", "mbsd.py", "numpy.py", "mechanisms.py"):
+        (tmp_path / taken).write_text("raise SystemExit('this file is the user\\'s')\n")
+    return tmp_path
+
+
+def test_folders_and_files_are_solved_where_they_lie_and_again_only_when_they_change(folder: Path) -> None:
+    listed = mbsd("list", "--names", at=folder)
+    assert listed.stdout.split() == ["arm", "wheel"], listed.stderr
+    for name in ("arm", "wheel"):
+        done = mbsd("solve", name, at=folder)
+        assert done.returncode == 0, done.stderr
+        assert "nothing to do" not in done.stdout.splitlines()[-1]
+        assert (folder / "out" / name / "data.json").is_file()
+        assert f"solve: {name}: nothing to do" in mbsd("solve", name, at=folder).stdout
+    (folder / "lengths.py").write_text("LENGTH = 0.031\n")
+    assert "solve: arm: nothing to do" in mbsd("solve", "arm", at=folder).stdout
+    assert "nothing to do" not in mbsd("solve", "wheel", at=folder).stdout.splitlines()[-1]
+
+
+def test_a_folder_of_machines_may_be_moved(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    assert mbsd("solve", "wheel", at=folder).returncode == 0
+    moved = tmp_path_factory.mktemp("moved") / "elsewhere"
+    folder.rename(moved)
+    assert "solve: wheel: nothing to do" in mbsd("solve", "wheel", at=moved).stdout
+
+
+def test_a_folder_with_mechanism_py_is_the_machine_itself(tmp_path: Path) -> None:
+    own = tmp_path / "My crank 2"
+    own.mkdir()
+    (own / "mechanism.py").write_text(crank("my_crank_2"))
+    done = mbsd("solve", "--json", at=own)
+    told = json.loads(done.stdout)
+    assert told["ok"], done.stderr
+    assert told["machine"] == "my_crank_2"
+    assert [stage["stage"] for stage in told["stages"]] == ["parts", "solve"]
+    assert {"data.json", "skeleton.json"} <= set(told["files"])
+    assert (own / "out" / "my_crank_2" / "data.json").is_file()
+
+
+def test_settings_are_said_once_and_found_from_below(folder: Path) -> None:
+    (folder / "mbsd.toml").write_text(
+        'preset = "draft"\naspect = "1:1"\nout = "results"\nlook = "bench"\nbed = "180x180"\n'
+    )
+    planned = mbsd("film", "--plan", at=folder / "arm")
+    assert planned.stdout.splitlines()[-1] == "render film arm --preset=draft --aspect=1:1", planned.stderr
+    assert "--preset=final" in mbsd("film", "wheel", "--preset", "final", "--plan", at=folder).stdout
+    assert "--bed=180x180" in mbsd("print", "wheel", "--plan", at=folder).stdout
+    done = mbsd("solve", at=folder / "arm")
+    assert done.returncode == 0, done.stderr
+    assert (folder / "results" / "arm" / "data.json").is_file()
+    assert not (folder / "arm" / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('preset = "huge"', "--preset huge in mbsd.toml is no preset; choose one of: draft"),
+        ('colour = "red"', "unknown field `colour`; it may say: preset, aspect"),
+        ("preset = ", "mbsd.toml: "),
+    ],
+)
+def test_unfit_settings_are_refused(folder: Path, text: str, said: str) -> None:
+    (folder / "mbsd.toml").write_text(text)
+    done = mbsd("film", "arm", "--plan", at=folder)
+    assert done.returncode == 1
+    assert said in done.stderr.replace(" - at `$.colour`", "")
+    assert "Traceback" not in done.stderr
+
+
+def test_errors_name_the_users_file_and_line(folder: Path) -> None:
+    (folder / "wheel.py").write_text(crank("wheel").replace("crank.start)", "crank.strat)"))
+    done = mbsd("solve", "wheel", at=folder)
+    assert done.returncode == 1
+    assert "error: wheel.py:13: " in done.stderr
+    assert "Traceback" not in done.stderr
+    (folder / "wheel.py").write_text(crank("wheel").replace("def build", "def biuld"))
+    assert "wheel.py does not define 'build'" in mbsd("solve", "wheel", at=folder).stderr
+    (folder / "arm" / "mechanism.py").write_text("def build(:\n")
+    assert "error: arm/mechanism.py:1: invalid syntax" in mbsd("solve", "arm", at=folder).stderr
+
+
+def test_a_machine_that_is_not_there_is_refused_with_those_that_are(folder: Path) -> None:
+    done = mbsd("run", "whel", at=folder)
+    assert done.returncode == 1
+    assert f"there is no mechanism 'whel' in {folder}; there is: arm, wheel; did you mean 'wheel'?" in done.stderr
+    assert "say which machine; there is: arm, wheel" in mbsd("run", at=folder).stderr
+    (folder / "empty").mkdir()
+    assert "mbsd new excavator makes one" in mbsd("run", at=folder / "empty").stderr
+    assert mbsd("rnu", "arm", at=folder).returncode == 2
+
+
+@pytest.mark.parametrize("single", [False, True])
+@pytest.mark.parametrize("kind", ["driven", "simulated"])
+def test_a_new_machine_runs_and_marks_its_folder(tmp_path: Path, kind: str, single: bool) -> None:
+    done = mbsd("new", "excavator", f"--kind={kind}", *["--single"] * single, at=tmp_path)
+    assert done.stdout.rstrip().endswith("mbsd run excavator runs it"), done.stderr
+    assert (tmp_path / ("excavator.py" if single else "excavator/mechanism.py")).is_file()
+    assert (tmp_path / "mbsd.toml").is_file()
+    checked = mbsd("check", at=tmp_path)
+    assert checked.returncode == 0, checked.stderr
+    assert "nothing odd" in checked.stdout
+    again = mbsd("new", "excavator", at=tmp_path)
+    assert again.returncode == 1
+    assert "is there already" in again.stderr
+
+
+@pytest.mark.parametrize("name", ["stages", "automatic", "all", "class", "2fast", "", "../x"])
+def test_names_that_cannot_be_are_refused(tmp_path: Path, name: str) -> None:
+    done = mbsd("new", "--", name, at=tmp_path)
+    assert done.returncode == 1
+    assert list(tmp_path.iterdir()) == []
+    assert "Traceback" not in done.stderr
+
+
+def test_a_single_file_may_hold_its_parts_and_its_shot(tmp_path: Path) -> None:
+    more = """
+import cadquery as cq
+from shared.shapes.solid import Solid
+from shared.shot import Shot
+
+def parts(p: Params):
+    plate = Solid("plate", cq.Workplane().box(40, 40, 4), "aluminium", 0)
+    bar = Solid("bar", cq.Workplane().box(50, 8, 4), "aluminium", 0)
+    return {"ground": [plate], "crank": [bar]}
+
+shot = Shot(turns=2)
+"""
+    (tmp_path / "crank.py").write_text(crank("crank") + more)
+    done = mbsd("solve", "crank", at=tmp_path)
+    assert "parts: crank: 2 solids of 2 bodies" in done.stdout, done.stderr
+    assert "parts: crank: nothing to do" in mbsd("solve", "crank", at=tmp_path).stdout
+    shot = mbsd("film", "crank", "--plan", at=tmp_path)
+    assert "mechanisms shot crank" in shot.stdout

@@ -1,0 +1,21 @@
+"""What tests ask of an import: the text that is written, run as a module of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from mbsd import Mechanism
+from studio.imports.reading import read
+from studio.imports.sketch import Sketch
+from studio.imports.writing import mechanism_py
+
+SAMPLES = Path(__file__).parent / "samples"
+
+
+def built(source: str | Path) -> tuple[Sketch, Mechanism, dict[str, Any]]:
+    """The sketch, the mechanism of the written text, and that text's names."""
+    sketch = read(str(source))
+    names: dict[str, Any] = {}
+    exec(compile(mechanism_py(sketch, "imported"), "mechanism.py", "exec"), names)
+    return sketch, names["build"](names["Params"]()), names

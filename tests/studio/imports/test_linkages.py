@@ -1,0 +1,135 @@
+"""Files of Linkage, PMKS, PMKS+ and pylinkage: links, units, directions, what is left out."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from shared.stage.errors import UserError
+from shared.stage.paths import ROOT
+from studio.imports.reading import read
+from studio.imports.sketch import Link, Motor, Pin, Sketch
+from studio.imports.writing import mechanism_py
+from tests.studio.imports.imported import SAMPLES, built
+
+FOUR_BAR = (
+    "0P.TY.K,0.101.MA,A,0mv,0VU,0.GB,B,0e_,E6,0.GC,C,l1,WW,0.KD,D,qD,0Pk,0..YRAB,AB,Fe,Fe,0ix,08i,c5cae9,A,B,,"
+    ".YRBC,BC,Fe,Fe,32,NJ,303e9f,B,C,,.YRCD,CD,Fe,Fe,nd,3P,0d125a,C,D,,...JBq"
+)
+"""The four-bar that PMKS+ offers as a start."""
+INCH = 0.0254
+
+
+def test_linkage_is_read_with_its_units_and_its_direction() -> None:
+    sketch, m, names = built(SAMPLES / "bench.linkage2")
+    assert list(sketch.links) == ["crank", "L1", "rocker", "rod"]  # neither rail, frame nor what is drawn or measured
+    assert names["Params"]().crank == pytest.approx(1.0 * INCH)  # 96 units
+    assert m.mobility().dof == 1
+    sol = m.sweep(steps=90)
+    assert sol.t[-1] == pytest.approx(2.0)  # 30 rpm
+    assert sol.body("crank").omega == pytest.approx(-math.pi)  # clockwise
+    assert (sol.point("P").x[0], sol.point("P").y[0]) == pytest.approx((2 * INCH, 3 * INCH))
+    rod = sol.body("rod")
+    assert np.allclose(rod.y + names["Params"]().rod * np.sin(rod.theta), -INCH, atol=1e-12)  # in its slot
+    assert sketch.left_out == []
+
+
+def test_an_actuator_of_linkage_drives_a_distance(tmp_path: Path) -> None:
+    text = (SAMPLES / "bench.linkage2").read_text().replace('input="true" rpm="30.000000"', "")
+    ram = '<Link id="9" name="ram" actuator="true" throw="48" cpm="10"><connector id="1"/><connector id="9"/></Link>'
+    file = tmp_path / "a.linkage2"
+    file.write_text(text.replace("</linkage2>", ram + "</linkage2>"))
+    sketch, m, _ = built(file)
+    assert m.mobility().dof == 1
+    sol = m.sweep(6.0, steps=60)
+    theta = sol.body("crank").theta
+    apart = np.hypot(INCH * np.cos(theta), INCH * np.sin(theta) + 2 * INCH)
+    assert apart[0] == pytest.approx(math.hypot(1, 2) * INCH)
+    assert np.ptp(apart) == pytest.approx(0.5 * INCH, rel=1e-6)
+    assert any("actuator ram" in words for words in sketch.left_out)
+
+
+@pytest.mark.parametrize("name", ["4bar1.txt", "4bar1.pmks"])
+def test_pmks_is_read(name: str) -> None:
+    _, m, _ = built(SAMPLES / name)
+    sol = m.sweep(steps=36)
+    assert sol.body("input").omega == pytest.approx(10.0)
+    assert (sol.point("E").x[0], sol.point("E").y[0]) == pytest.approx((0.5, 0.125))
+    assert np.hypot(sol.body("output").x - 0.6, sol.body("output").y - 0.1) == pytest.approx(math.hypot(0.2, 0.38))
+
+
+@pytest.mark.parametrize("address", [FOUR_BAR, f"https://app.pmksplus.com/?{FOUR_BAR}"])
+def test_an_address_of_pmks_plus_is_read(address: str) -> None:
+    sketch, m, _ = built(address)
+    assert {name: link.points for name, link in sketch.links.items()}["AB"] == {
+        "A": pytest.approx((-0.03129, -0.02014)),
+        "B": pytest.approx((-0.02623, 0.00902)),
+    }
+    assert m.mobility().dof == 1
+    assert m.sweep(steps=36).body("ab").omega == pytest.approx(1.0)
+
+
+def test_pylinkage_is_read() -> None:
+    _, m, names = built(SAMPLES / "four_bar_mechanism.json")
+    p = names["Params"]()
+    assert (p.crank, p.coupler, p.rocker) == pytest.approx((1.0, 3.5, 3.0))
+    assert m.sweep(steps=36).body("rocker").theta[0] == pytest.approx(math.atan2(2.842815, 4 - 3.0416667), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"", "is of no program that is known here; known are: PMKS+"),
+        (b"hello", "is of no program that is known here"),
+        (b"\0\1\2", "is no text"),
+        (b"<linkage2></linkage2>", "the file has no links"),
+        (b"ground,input,R,a,b", "is of no program"),
+        (b"mech=\nground,input,R,1,2\nrubbish", "line 3 is no joint of PMKS"),
+        (b'{"joints": [], "links": [{"position": 1}]}', "no JSON of pylinkage that can be read"),
+        (b'{"TypeOfJoint"', "no .pmks file that can be read"),
+        (b"freeCAD\nAssembly\n", "Assembly has no Name"),
+    ],
+)
+def test_what_is_none_of_them_is_refused(tmp_path: Path, content: bytes, said: str) -> None:
+    file = tmp_path / "file"
+    file.write_bytes(content)
+    with pytest.raises(UserError) as refused:
+        read(str(file))
+    assert said in str(refused.value)
+
+
+def test_names_of_any_form_become_names_of_python() -> None:
+    sketch = Sketch('a "quoted"\nname \\ ', "a test")
+    for k, name in enumerate(['1st "link"', "class", "m", "Größe", "a b", "a-b", "pi"]):
+        sketch.links[name] = Link(name, {f"P{k}": (float(k), 0.0), f"Q{k}": (k + 1.0, 0.5)})
+        sketch.joints.append(Pin(f"P{k}", "ground", name, (float(k), 0.0)))
+        sketch.motors.append(Motor(f"motor {k}", "ground", name, 1.0 + k))
+    sketch.left_out = ['what says """ and \\']
+    names: dict = {}
+    exec(compile(mechanism_py(sketch, "odd"), "mechanism.py", "exec"), names)
+    m = names["build"](names["Params"]())
+    assert len(m.bodies) == 8
+    m.sweep(0.1, steps=2)
+
+
+def test_the_program_imports_into_a_folder(tmp_path: Path) -> None:
+    command = [sys.executable, "-P", "-m", "mbsd"]
+    environment = {"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin", "HOME": str(tmp_path)}
+    (tmp_path / "Walker 2.linkage2").write_bytes((SAMPLES / "bench.linkage2").read_bytes())
+    words = [*command, "import", "Walker 2.linkage2"]
+    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "import: walker_2/mechanism.py: 4 links" in done.stdout
+    assert "1 degree of freedom" in done.stdout
+    again = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert again.returncode == 1
+    assert "walker_2/mechanism.py is there already" in again.stderr
+    wrong = subprocess.run(
+        [*command, "import", "no.txt"], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert (wrong.returncode, "Traceback" in wrong.stderr) == (1, False)

@@ -6,6 +6,8 @@ FRAME ?= 0
 FRAMES ?=
 NAME ?=
 FILE ?=
+FORMAT ?=
+TIME ?=
 AS ?=
 KIND ?=
 VIEW ?=
@@ -35,6 +37,8 @@ override ASPECT := $(value ASPECT)
 override FRAME := $(value FRAME)
 override FRAMES := $(value FRAMES)
 override NAME := $(value NAME)
+override FORMAT := $(value FORMAT)
+override TIME := $(value TIME)
 override FILE := $(value FILE)
 override AS := $(value AS)
 override KIND := $(value KIND)
@@ -57,7 +61,7 @@ override PLAN := $(value PLAN)
 override CLUSTER := $(value CLUSTER)
 override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
-export FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
+export FORMAT TIME FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
 export CLUSTER CLUSTER_TLS ANYWAY STRICT PLAN MECHANISMS
 
 PRESETS := draft preview production final
@@ -207,6 +211,9 @@ certificates: install ## certificates, so that a cluster lets nobody else in: CL
 
 new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
 	@$(MBSD) new -- "$$NAME"
+
+export-%: install always ## the motion as a table, a pose as a drawing, a model for MuJoCo or as URDF: FORMAT=mjcf TIME=0.5
+	@$(MBSD) export -- "$$MECHANISM"
 
 import: install ## a mechanism of Linkage, PMKS, PMKS+, pylinkage or an .asmt assembly: FILE=walker.linkage2 AS=walker
 	@$(MBSD) import -- "$$FILE"

@@ -40,6 +40,10 @@ def main() -> int | None:
         "variants", help="the names of a mechanism and its variants, a line each; it must have some"
     )
     of.add_argument("name", help="mechanism")
+    away = commands.add_parser("export", help="the mechanism and its motion in the file of another program")
+    away.add_argument("name", help="mechanism; four-bar and four_bar are one")
+    away.add_argument("--format", default="csv", help="csv, parquet, svg, dxf, mjcf or urdf; csv if not given")
+    away.add_argument("--time", type=float, default=0.0, help="of the pose in a drawing (s); 0 if not given")
     looked = commands.add_parser("check", help="what in a model looks as if it was not meant")
     looked.add_argument("name", help="mechanism; four-bar and four_bar are one")
     looked.add_argument("--json", action="store_true", help="for other programs")
@@ -62,6 +66,10 @@ def main() -> int | None:
             loading.load(owner, "mechanism")  # where it cannot be read, that is reported
         print(owner, *(f"{owner}-{variant}" for variant in compared(owner)), sep="\n")
         return None
+    if arguments.command == "export":
+        from mechanisms.stages.export import stage as export
+
+        return export.run(arguments.name, arguments.format, arguments.time)
     if arguments.command == "check":
         from mechanisms.stages import checking
 

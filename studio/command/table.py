@@ -122,6 +122,9 @@ COMMANDS: dict[str, Command] = {
                 (Stage("mechanisms", "new", ("kind", "single")),), of="new", example="mbsd new excavator"),
         Command("import", "a mechanism of Linkage, PMKS, PMKS+, pylinkage or an .asmt assembly",
                 (Stage("studio.imports", options=("as", "single")),), of="file", example="mbsd import walker.linkage2"),
+        Command("export", "the motion as a table, a pose as a drawing, a model for MuJoCo or as URDF",
+                (stages.PARTS_IF_ANY, Stage("mechanisms", "export", ("format", "time")),),
+                example="mbsd export excavator --format mjcf"),
         Command("list", "the mechanisms and what is made of them",
                 (Stage("mechanisms", "list", ("names", "json")),), of=""),
     )

@@ -1,0 +1,70 @@
+"""The stage ``export``: the solved mechanism in the file of another program, out/<name>/export/."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from typing import Any
+
+from mechanisms.stages.export import drawings, mjcf, urdf
+from mechanisms.stages.loading import loading
+from mechanisms.stages.solve import stage as solving
+from shared import contract
+from shared.stage.console import say, warn
+from shared.stage.errors import UserError
+from shared.stage.files import write_bytes
+from shared.stage.paths import Out, known_name
+from shared.stage.suggestions import did_you_mean
+
+Written = tuple[bytes, list[str]]
+"""A file, and what it leaves out."""
+
+
+def run(name: str, form: str, time: float = 0.0) -> None:
+    """Solve the mechanism and write it as ``form``; ``time`` (s) is that of the pose in a drawing. Raises UserError."""
+    name = known_name(name)
+    if form not in FORMATS:
+        raise UserError(
+            f"there is no format {form!r} to export; choose one of: {', '.join(FORMATS)}{did_you_mean(form, FORMATS)}"
+        )
+    out = Out(name)
+    parts = contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
+    solution, _ = solving.solve(name, parts)
+    suffix, write = FORMATS[form]
+    with loading.author_code(name):
+        content, left_out = write(solution, time)
+    file = out.folder / "export" / f"{name}{suffix}"
+    write_bytes(file, content)
+    for words in left_out:
+        warn("export", f"{name}: left out: {words}")
+    say("export", f"{name}: {file}: {len(content) / 1000:.0f} kB")
+
+
+def _csv(solution: Any, _: float) -> Written:
+    return solution.to_frame().to_csv(lineterminator="\n").encode(), []
+
+
+def _parquet(solution: Any, _: float) -> Written:
+    content = io.BytesIO()
+    solution.to_frame().reset_index().to_parquet(content, index=False)
+    return content.getvalue(), []
+
+
+def _text(write: Callable[..., Any], timed: bool = False) -> Callable[[Any, float], Written]:
+    def written(solution: Any, time: float) -> Written:
+        made = write(solution, time) if timed else write(solution)
+        text, left_out = made if isinstance(made, tuple) else (made, [])
+        return text.encode(), left_out
+
+    return written
+
+
+FORMATS: dict[str, tuple[str, Callable[[Any, float], Written]]] = {
+    "csv": (".csv", _csv),
+    "parquet": (".parquet", _parquet),
+    "svg": (".svg", _text(drawings.svg, timed=True)),
+    "dxf": (".dxf", _text(drawings.dxf, timed=True)),
+    "mjcf": (".xml", _text(mjcf.mjcf)),
+    "urdf": (".urdf", _text(urdf.urdf)),
+}
+"""By name: the ending of the file, and what writes it."""

@@ -1,0 +1,1 @@
+"""Mechanisms in the files of other programs."""

@@ -28,9 +28,9 @@ from mbsd.base.errors import (
 if TYPE_CHECKING:
     from mbsd.analyses.efforts import ActuatedMotion
     from mbsd.analyses.equilibrium import Equilibrium
+    from mbsd.analyses.finding import Finding
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
-    from mbsd.analyses.suspicious_units import Finding
     from mbsd.balancing.balance import Balance, balance
     from mbsd.balancing.flywheel import flywheel
     from mbsd.balancing.means import BalanceShaft, Counterweight

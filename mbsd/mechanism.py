@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
     from mbsd.analyses.efforts import ActuatedMotion
     from mbsd.analyses.equilibrium import Equilibrium
+    from mbsd.analyses.finding import Finding
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
-    from mbsd.analyses.suspicious_units import Finding
     from mbsd.drawing.picture import Picture, Svg
     from mbsd.kinematics.batch import Batch
     from mbsd.results.mobility import Mobility

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.analyses.finding import Finding
+from mbsd.analyses.suspicious_forces import pressures, springs, welds
 from mbsd.base.errors import ModelWarning
 from mbsd.base.warn import warn
 from mbsd.model.body import Body, Marker
@@ -37,18 +38,6 @@ TURNS = 2.0
 """A marker or law turned by more turns than this, in whole degrees, was meant in degrees."""
 
 
-@dataclass(frozen=True)
-class Finding:
-    """One suspicious number: whose it is, what is odd, what to do."""
-
-    name: str
-    problem: str
-    remedy: str
-
-    def __str__(self) -> str:
-        return f"{self.name}: {self.problem}. {self.remedy}"
-
-
 def check(m: Model) -> list[Finding]:
     """Everything in ``m`` that looks like a mixed-up unit, in the order of the checks above."""
     sizes = body_sizes(m)
@@ -65,6 +54,9 @@ def check(m: Model) -> list[Finding]:
         *(() if lengths else _assemblies(m)),  # links of the wrong lengths close in no way that is meant
         *_planes(m),
         *_hydraulics(m),
+        *pressures(m),
+        *springs(m, max(sizes.values(), default=0.0)),
+        *welds(m),
     ]
 
 

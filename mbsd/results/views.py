@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.base.errors import ModelError
+from mbsd.results.shown_view import ShownView
 
 
-@dataclass(frozen=True)
-class FrameView:
+@dataclass(frozen=True, repr=False)
+class FrameView(ShownView):
     """Motion of a frame: (T,) arrays, m and rad by s."""
 
     x: np.ndarray
@@ -24,8 +25,8 @@ class FrameView:
     alpha: np.ndarray
 
 
-@dataclass(frozen=True)
-class Wrench:
+@dataclass(frozen=True, repr=False)
+class Wrench(ShownView):
     """A force and a torque on a body, (T,) arrays: N along the world's axes, N m about the point (m)."""
 
     x: np.ndarray
@@ -45,7 +46,7 @@ class Wrench:
         return np.hypot(self.fx, self.fy)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class JointView(Wrench):
     """What a joint does to its second body, at its second marker."""
 
@@ -64,8 +65,8 @@ class JointView(Wrench):
         return self.force
 
 
-@dataclass(frozen=True)
-class DriverView:
+@dataclass(frozen=True, repr=False)
+class DriverView(ShownView):
     """A driver: imposed value and its rates (m or rad by s), effort (N or N m), power (W), (T,) arrays."""
 
     name: str
@@ -95,8 +96,8 @@ class DriverView:
         return self.effort
 
 
-@dataclass(frozen=True)
-class EnergyView:
+@dataclass(frozen=True, repr=False)
+class EnergyView(ShownView):
     """(T,) J."""
 
     kinetic: np.ndarray

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelWarning, constant_rate, cycloidal, harmonic
-from mbsd.analyses.suspicious_units import Finding
+from mbsd.analyses.finding import Finding
 from mbsd.saving.document import build, document
 from shared.stage.paths import mechanism_names
 from tools.models import random_linkages
@@ -222,3 +222,39 @@ def test_the_first_solution_tells_and_the_second_does_not() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         m.sweep(steps=4)
+
+
+def _braced(stiffness: float = 5e3) -> Mechanism:
+    m = Mechanism("braced")
+    arm = m.bar("arm", 0.1, mass=1.0)
+    m.revolute("A", m.ground.at(0, 0), arm.start)
+    m.spring("brace", m.ground.at(0.1, 0.1), arm.end, stiffness, free_length=0.1)
+    return m
+
+
+def test_a_spring_like_a_solid_bar_is_named() -> None:
+    assert _braced(2e6).check() == []
+    (finding,) = _braced(5e9).check()
+    assert finding.name == "spring 'brace'"
+    assert "5e+09 N/m is more than that of a steel bar" in finding.problem
+
+
+@pytest.mark.parametrize(("pressure", "odd"), [(5.0, True), (900.0, True), (5e5, False), (1100.0, False)])
+def test_a_pressure_in_bar_is_named(pressure: float, odd: bool) -> None:
+    m = _braced()
+    piston = m.body("piston", mass=0.3)
+    m.prismatic("guide", m.ground.at(0, 0), piston.origin)
+    m.start_near(piston=(0.05, 0, 0))
+    m.gas("gas", m.ground.at(0.15, 0), piston.origin, area=2e-3, pressure=pressure, at=0.1)
+    found = [str(finding) for finding in m.check()]
+    assert any("multiply bar by 1e5" in words and "force 'gas'" in words for words in found) == odd
+
+
+def test_a_weld_beside_a_pin_is_named() -> None:
+    m = _braced()
+    other = m.bar("other", 0.1, mass=1.0)
+    m.revolute("B", m.bodies["arm"].end, other.start)
+    assert m.check() == []
+    m.weld("W", m.bodies["arm"].end, other.start)
+    (finding,) = m.check()
+    assert (finding.name, "'B' connects as well" in finding.problem) == ("weld 'W'", True)

@@ -1,0 +1,17 @@
+"""What a check of a model says: one suspicious thing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One suspicious number: whose it is, what is odd, what to do."""
+
+    name: str
+    problem: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.problem}. {self.remedy}"

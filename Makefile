@@ -82,6 +82,7 @@ PYTHON := .venv/bin/python
 # The program `mbsd`, of which this file is a face: it reads PRESET, ONLY and the like from the environment.
 MBSD = $(PYTHON) -m studio.command
 export MBSD_FACE := make
+export MBSD_PYTHON := $(PYTHON)
 # install compiles the kernels in the background; these want all of them, and nothing else running.
 ALL_KERNELS = @$(PYTHON) -m tools.compiling wait
 PROGRAMS_OF_TESTS = @$(PYTHON) -m shared.system --for-tests || case "$${STRICT:-$$CI}" in ""|0) ;; *) false ;; esac

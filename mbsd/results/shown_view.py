@@ -14,7 +14,7 @@ UNITS = {
     "ax": "m/s^2", "ay": "m/s^2", "alpha": "rad/s^2", "fx": "N", "fy": "N", "torque": "N m",
     "kinetic": "J", "potential": "J", "total": "J", "power": "W",
 }  # fmt: skip
-"""Of fields whose unit is always the same."""
+"""Units of fields that always have the same."""
 
 
 class ShownView:

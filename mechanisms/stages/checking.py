@@ -15,7 +15,7 @@ def run(name: str, as_json: bool = False) -> int:
     module, given = loading.load(name, "mechanism"), loading.params(name)
     with loading.author_code(name):
         m = module.build(given)
-        findings = [(found.name, found.problem, found.remedy) for found in m.check()]
+        findings = [(finding.name, finding.problem, finding.remedy) for finding in m.check()]
         mobility = m.mobility()
     if as_json:
         rows = [{"name": where, "problem": problem, "remedy": remedy} for where, problem, remedy in findings]

@@ -28,7 +28,7 @@ class Outcome:
 
 @dataclass
 class Run:
-    """The stages of a command; with ``quiet`` what they say goes to stderr, and with ``planned`` they are only told."""
+    """The stages of a command; with ``quiet`` their words go to stderr, with ``planned`` they are only listed."""
 
     environment: Mapping[str, str]
     quiet: bool = False
@@ -64,12 +64,12 @@ class Run:
         return code
 
     def output_of(self, words: Sequence[str]) -> list[str] | None:
-        """The lines that a stage prints; None where it fails, which it has told."""
+        """The lines that a stage prints; None where it fails, which it has reported."""
         done = subprocess.run(list(words), cwd=ROOT, env=self._environment(), stdout=subprocess.PIPE, text=True)
         return done.stdout.splitlines() if done.returncode == 0 else None
 
     def last(self, words: Sequence[str]) -> int:
-        """Run one stage in place of this process, so that keys and signals reach it as if it were called itself."""
+        """Run one stage in place of this process, so that keys and signals reach it."""
         if self.planned or self.quiet or os.name != "posix":
             return self.one(words)
         os.chdir(ROOT)

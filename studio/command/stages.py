@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from studio.command.options import OPTIONS, given
+
+PYTHON = "MBSD_PYTHON"
+"""Environment variable in which the Makefile names the interpreter of all stages."""
 
 
 @dataclass(frozen=True)
@@ -18,14 +22,19 @@ class Stage:
     options: tuple[str, ...] = ()
     also: tuple[str, ...] = ()
     """Words that are always said."""
+    starts_stages: bool = False
+    """Whether it starts stages itself, by the interpreter that it is given."""
     solids: bool = False
     """Whether it loads what parts and pictures need of the system."""
 
     def words(self, operand: str, said: Mapping[str, str], checked: bool = True) -> list[str]:
         """Its command line; ``operand`` is empty where it takes none, and behind ``--`` where it is not ``checked``."""
-        words = [sys.executable, "-m", self.room, *filter(None, (self.name, operand if checked else "")), *self.also]
+        python = os.environ.get(PYTHON) or sys.executable
+        words = [python, "-m", self.room, *filter(None, (self.name, operand if checked else "")), *self.also]
         for option in self.options:
             words += given(OPTIONS[option], said)
+        if self.starts_stages:
+            words.append(f"--python={python}")
         return words if checked else [*words, "--", operand]
 
 

@@ -21,7 +21,7 @@ class Command:
     stages: tuple[Stage, ...]
     of: Of = "machine"
     defaults: Mapping[str, str] = field(default_factory=dict)
-    """Of options, where they are other than usual."""
+    """Values of options where they are other than usual."""
     example: str = ""
     target: str = ""
     """Its name as a target of make, where it is another; ``-`` where there is none."""
@@ -50,12 +50,13 @@ COMMANDS: dict[str, Command] = {
         ),
         Command(
             "all", "the same of every mechanism; goes on after a failure",
-            (Stage("studio.night", "run", _NIGHT, solids=True),), of="", target="run-all",
+            (Stage("studio.night", "run", _NIGHT, starts_stages=True, solids=True),), of="", target="run-all",
             example="mbsd all --only excavator,loader",
         ),
         Command(
             "overnight", "all of it in the background, also after the logout",
-            (Stage("studio.night", "start", _NIGHT, solids=True),), of="", example="mbsd overnight --preset final",
+            (Stage("studio.night", "start", _NIGHT, starts_stages=True, solids=True),), of="",
+            example="mbsd overnight --preset final",
         ),
         Command("status", "what every film is at: frames, seconds a frame, time left, last error",
                 (Stage("studio.night", "status"),), of=""),

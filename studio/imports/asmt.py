@@ -154,7 +154,7 @@ class _Reader:
         self.sketch.links[name] = link
 
     def _part_angle(self, axes: np.ndarray) -> float:
-        """Of that of its axes which lies in the plane best."""
+        """The angle of that of its axes which lies in the plane best."""
         across = [abs(axes[:, k] @ self.plane[2]) for k in range(3)]
         return self._angle(axes[:, int(np.argmin(across))])
 
@@ -208,7 +208,9 @@ class _Reader:
     def _motion(self, motion: Entry) -> None:
         name = motion.text("Name")
         joint_path = motion.text("MotionJoint")
-        joint = next((one for one in self.joints if f"{self.path}/{one.text('Name')}" == joint_path), None)
+        joint = next(
+            (candidate for candidate in self.joints if f"{self.path}/{candidate.text('Name')}" == joint_path), None
+        )
         if motion.word != "RotationalMotion" or joint is None:
             self.sketch.left_out.append(f"{motion.word} {name}; m.drive_coordinate says a motion along a line")
             return

@@ -55,7 +55,12 @@ class _Parsed(HTMLParser):
         if tag == "program":
             self.program = {key: value or "" for key, value in attrs}
         outer = next(
-            (one for one in reversed(self._open) if one["tag"] in ("link", "element", "connector", "ratio")), None
+            (
+                element
+                for element in reversed(self._open)
+                if element["tag"] in ("link", "element", "connector", "ratio")
+            ),
+            None,
         )
         if outer is not None:
             outer["inside"].append(kept)
@@ -74,7 +79,7 @@ class _Parsed(HTMLParser):
 
     def handle_endtag(self, tag: str) -> None:
         """Close what is open up to this tag, if it is."""
-        if any(one["tag"] == tag for one in self._open):
+        if any(element["tag"] == tag for element in self._open):
             while self._open.pop()["tag"] != tag:
                 pass
 
@@ -85,7 +90,7 @@ class _Reader:
         self.sketch = Sketch(name, "Linkage")
         scale = int(_float(parsed.program.get("scalefactor"), 1.0)) or 1
         self.unit = UNIT * scale
-        self.connectors = {key: one for key, one in parsed.connectors.items() if _counts(one)}
+        self.connectors = {key: element for key, element in parsed.connectors.items() if _counts(element)}
         self.labels = _labels(self.connectors, "P")
         self.link_labels = _labels(parsed.links, "L")
         self.members = self._members()
@@ -97,35 +102,35 @@ class _Reader:
         self._gears()
 
     def place(self, connector: str) -> Place:
-        one = self.connectors[connector]
-        return _float(one.get("x")) * self.unit, _float(one.get("y")) * self.unit
+        element = self.connectors[connector]
+        return _float(element.get("x")) * self.unit, _float(element.get("y")) * self.unit
 
     def _members(self) -> dict[str, list[str]]:
         """Connectors of each link that counts, those fastened to it as well."""
         members = {}
-        for key, one in self.parsed.links.items():
-            if not _counts(one):
+        for key, element in self.parsed.links.items():
+            if not _counts(element):
                 continue
-            inside = [ref.get("id", "") for ref in one["inside"] if ref["tag"] in ("connector", "fastenconnector")]
+            inside = [ref.get("id", "") for ref in element["inside"] if ref["tag"] in ("connector", "fastenconnector")]
             members[key] = [ref for ref in dict.fromkeys(inside) if ref in self.connectors]
-        for key, one in self.connectors.items():
-            fastened = one.get("fastenlink") or one.get("fasten")
+        for key, element in self.connectors.items():
+            fastened = element.get("fastenlink") or element.get("fasten")
             if fastened in members and key not in members[fastened]:
                 members[fastened].append(key)
         return members
 
     def _body(self, key: str) -> str:
         """The link's name, or the ground where all its connectors are anchors or where it is fastened to one."""
-        one, refs = self.parsed.links[key], self.members[key]
+        element, refs = self.parsed.links[key], self.members[key]
         anchored = [ref for ref in refs if _is(self.connectors[ref], "anchor")]
         turned = any(_is(self.connectors[ref], "input") for ref in anchored)
-        held = one.get("fastenconnector")
+        held = element.get("fastenconnector")
         fast = (
             held in self.connectors and _is(self.connectors[held], "anchor") and not _is(self.connectors[held], "input")
         )
         if (len(anchored) > 1 and not turned) or fast:
             return GROUND
-        if len(refs) == len(anchored) == 1 and not turned and not _is(one, "gear"):
+        if len(refs) == len(anchored) == 1 and not turned and not _is(element, "gear"):
             return GROUND
         return self.link_labels[key]
 
@@ -162,11 +167,11 @@ class _Reader:
             moving = [body for body in carriers if body != GROUND]
             if _is(self.connectors[key], "draw") and moving:
                 self.sketch.traces[label] = (moving[0], self.place(key))
-        for key, one in self.parsed.links.items():
-            if _is(one, "actuator") and key in self.members:
-                self._ram(key, one)
+        for key, element in self.parsed.links.items():
+            if _is(element, "actuator") and key in self.members:
+                self._ram(key, element)
 
-    def _ram(self, key: str, one: dict[str, Any]) -> None:
+    def _ram(self, key: str, element: dict[str, Any]) -> None:
         label, refs = self.link_labels[key], self.members[key]
         ends = [(self._carriers(ref), ref) for ref in refs[:2]]
         if len(refs) != 2 or not all(carriers for carriers, _ in ends):
@@ -176,23 +181,23 @@ class _Reader:
             return
         (first, a), (second, b) = ends
         places = self.place(a), self.place(b)
-        stroke, cycles = _float(one.get("throw")) * self.unit, _float(one.get("cpm"), USUAL)
+        stroke, cycles = _float(element.get("throw")) * self.unit, _float(element.get("cpm"), USUAL)
         self.sketch.rams.append(Ram(label, first[0], second[0], places, stroke, cycles / 60.0))
         self.sketch.left_out.append(
             f"actuator {label} moves at constant speed there, as a harmonic function of time here"
         )
 
     def _slides(self) -> None:
-        for key, one in self.connectors.items():
-            if not _is(one, "slider"):
+        for key, element in self.connectors.items():
+            if not _is(element, "slider"):
                 continue
             label = self.labels[key]
-            limits = [ref.get("id", "") for ref in one["inside"] if ref["tag"] == "slidelimit"]
+            limits = [ref.get("id", "") for ref in element["inside"] if ref["tag"] == "slidelimit"]
             limits = [limit for limit in limits if limit in self.connectors][:2]
             if len(limits) < 2:
                 self.sketch.left_out.append(f"slider {label}: the file does not say between which connectors it slides")
                 continue
-            if _float(one.get("slideradius")):
+            if _float(element.get("slideradius")):
                 self.sketch.left_out.append(f"slider {label} runs on an arc; m.point_on_curve says that")
                 continue
             guide = self._guide(*limits)
@@ -212,15 +217,15 @@ class _Reader:
         return (GROUND if GROUND in common else common[0]) if common else None
 
     def _motors(self) -> None:
-        for key, one in self.connectors.items():
-            if not (_is(one, "input") and _is(one, "anchor")):
-                if _is(one, "input"):
+        for key, element in self.connectors.items():
+            if not (_is(element, "input") and _is(element, "anchor")):
+                if _is(element, "input"):
                     self.sketch.left_out.append(
                         f"input {self.labels[key]}: it is no anchor; m.drive_relative_angle says that"
                     )
                 continue
             turned = [body for body in self._carriers(key) if body != GROUND]
-            rate = -_float(one.get("rpm"), USUAL) * math.tau / 60.0
+            rate = -_float(element.get("rpm"), USUAL) * math.tau / 60.0
             for k, body in enumerate(turned):
                 self.sketch.motors.append(
                     Drive(f"motor_{self.labels[key]}" + (f"_{k + 1}" if k else ""), GROUND, body, rate)
@@ -256,14 +261,14 @@ class _Reader:
             )  # fmt: skip
 
 
-def _counts(one: dict[str, Any]) -> bool:
+def _counts(element: dict[str, Any]) -> bool:
     """Whether it is of the mechanism: no drawing, no measurement."""
-    layer = int(_float(one.get("layer"), 16.0)) or 16
-    return layer != DRAWING and not _is(one, "measurementelement")
+    layer = int(_float(element.get("layer"), 16.0)) or 16
+    return layer != DRAWING and not _is(element, "measurementelement")
 
 
-def _is(one: dict[str, Any], word: str) -> bool:
-    return str(one.get(word, "")).lower() == "true"
+def _is(element: dict[str, Any], word: str) -> bool:
+    return str(element.get(word, "")).lower() == "true"
 
 
 def _float(text: Any, usual: float = 0.0) -> float:
@@ -276,8 +281,8 @@ def _float(text: Any, usual: float = 0.0) -> float:
 
 def _labels(elements: dict[str, dict[str, Any]], letter: str) -> dict[str, str]:
     """Names: the author's where they are given and differ, else a letter and the number."""
-    given = [one.get("name", "").strip() for one in elements.values()]
+    given = [element.get("name", "").strip() for element in elements.values()]
     return {
         key: name if name and given.count(name) == 1 else f"{letter}{key}"
-        for (key, one), name in zip(elements.items(), given, strict=True)
+        for (key, element), name in zip(elements.items(), given, strict=True)
     }

@@ -74,15 +74,15 @@ def _of_lines(text: str, name: str) -> tuple[list[_Joint], int, float]:
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.startswith("mech="):
             continue
-        found = LINE.match(line)
-        numbers = re.findall(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?", found[3]) if found else []
-        if found is None or len(numbers) < 2:
+        matched = LINE.match(line)
+        numbers = re.findall(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?", matched[3]) if matched else []
+        if matched is None or len(numbers) < 2:
             raise UserError(
                 f"{name}: line {number} is no joint of PMKS ({line.strip()[:60]!r}); link,link,R,x,y is one"
             )
         angle = math.radians(float(numbers[2])) if len(numbers) > 2 else 0.0
         place = (float(numbers[0]) * UNIT, float(numbers[1]) * UNIT)
-        joints.append(_Joint([link.strip() for link in found[1].split(",")], found[2].upper(), place, angle))
+        joints.append(_Joint([link.strip() for link in matched[1].split(",")], matched[2].upper(), place, angle))
     return joints, 0, SPEED
 
 

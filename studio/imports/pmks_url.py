@@ -17,7 +17,7 @@ from studio.imports.sketch import GROUND, Motor, Place, Sketch, Slide
 DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz-_"
 SLIDER, INPUT, FIXED, WELDED = 1, 2, 4, 8
 UNIT = 0.01
-"""m: PMKS+ draws in centimetres unless it is told otherwise."""
+"""m: PMKS+ draws in centimetres unless its user chooses others."""
 SPEED = 1.0
 """rad/s"""
 
@@ -56,15 +56,15 @@ def _read(query: str, name: str) -> Sketch:
     on: dict[str, list[str]] = {joint: [] for joint in joints}
     for text in links_text.split("."):
         head_of, *cells = text.split(",")
-        found = re.match(r"^Y?([RP])(.+)$", head_of)
-        if found is None:
+        matched = re.match(r"^Y?([RP])(.+)$", head_of)
+        if matched is None:
             continue
         members = [cell for cell in cells[6:] if cell in joints]
-        if found[1] == "P":
+        if matched[1] == "P":
             for joint in members:  # the piston of a slider, which is its joint here
                 on[joint].insert(0, f"piston {joint}")
             continue
-        link = sketch.link(cells[0] or found[2])
+        link = sketch.link(cells[0] or matched[2])
         for joint in members:
             link.points[joint] = joints[joint][1]
             on[joint].append(link.name)

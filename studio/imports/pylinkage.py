@@ -32,7 +32,7 @@ def _read(data: dict[str, Any], name: str) -> Sketch:
     sketch = Sketch(str(data.get("name") or name), "pylinkage", unit="a metre")
     joints = {joint["id"]: joint for joint in data["joints"]}
     places: dict[str, Place] = {
-        key: (float(one["position"][0]), float(one["position"][1])) for key, one in joints.items()
+        key: (float(given["position"][0]), float(given["position"][1])) for key, given in joints.items()
     }
     ground = data.get("ground", GROUND)
     on: dict[str, list[str]] = {str(key): [] for key in joints}

@@ -28,7 +28,7 @@ RESERVED = {
 NEAR = 1e-9
 """Places closer than this part of the mechanism's size are one."""
 ROUNDING = 1e-13
-"""Of the numbers that a place is computed from; less than this part of them is zero."""
+"""What is less than this part of the numbers that a place is computed from is zero."""
 
 
 def mechanism_py(sketch: Sketch, name: str) -> str:

@@ -87,7 +87,7 @@ def test_an_unknown_kind_is_refused_with_the_known_ones() -> None:
 
 def test_what_exists_is_not_touched() -> None:
     before = (MECHANISMS / "four_bar" / "mechanism.py").read_bytes()
-    with pytest.raises(UserError, match=r"mechanisms/four_bar/ is there already"):
+    with pytest.raises(UserError, match=r"mechanisms/four_bar/mechanism.py is there already"):
         new.run("four-bar")
     assert (MECHANISMS / "four_bar" / "mechanism.py").read_bytes() == before
 
@@ -103,12 +103,12 @@ def test_what_exists_is_not_touched() -> None:
         ("größe", "lower-case letters"),
         ("class", "a word of Python"),
         ("match", "a word of Python"),
-        ("all", "make run-all"),
+        ("all", "make all"),
         ("films", "out/films"),
         ("night", "out/night"),
         ("ui_x", "scene-ui"),
-        ("automatic", "has a file or folder 'automatic'"),
-        ("stages", "has a file or folder 'stages'"),
+        ("automatic", "has a module of this name"),
+        ("stages", "has a module of this name"),
     ],
 )
 def test_an_unfit_name_is_refused(name: str, words: str) -> None:

@@ -51,7 +51,7 @@ def test_whatever_ends_run_all_ends_its_stages(tmp_path: Path, victim: str, how:
     left, script = tmp_path / "left behind", tmp_path / "python"
     (tmp_path / "stage.py").write_text(STAGE)
     script.write_text(
-        f"#!/bin/sh\ncase $2 in studio.night) exec '{sys.executable}' \"$@\" ;; esac\n"
+        f"#!/bin/sh\ncase $2 in studio.*) exec '{sys.executable}' \"$@\" ;; esac\n"
         f"exec '{sys.executable}' '{tmp_path}/stage.py' '{left}'\n"
     )
     script.chmod(0o755)

@@ -11,7 +11,7 @@ import numpy as np
 
 MM = 1000.0
 MARGIN = 0.05
-"""Around the drawing, of its size."""
+"""Margin around the drawing, as a part of its size."""
 
 
 def pose_of(solution: Any, time: float) -> tuple[list[Any], dict[str, np.ndarray]]:
@@ -44,7 +44,7 @@ def svg(solution: Any, time: float) -> str:
         line = SubElement(root, "polyline", points=flat(path), fill="none", stroke="#b5651d")
         line.set("stroke-width", f"{thin:.3f}")
         SubElement(line, "title").text = name
-    for stroke in sorted(strokes, key=lambda one: one.order):
+    for stroke in sorted(strokes, key=lambda drawn: drawn.order):
         fill = "none" if stroke.fill is None else "#ffffff" if stroke.fill == "paper" else "#d8dee6"
         line = SubElement(
             root, "polygon" if stroke.closed else "polyline", points=flat(stroke.points), fill=fill, stroke="#222222"

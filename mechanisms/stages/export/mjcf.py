@@ -13,9 +13,9 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from mechanisms.stages.export.tree import GROUND, MESHING, Node, Tree, poses_of, tree_of
 
 GAIN = 1e4
-"""Of servos of drivers, in N m s (or N s/m) for each kg m^2 (kg) of the mechanism."""
+"""Gain of the drivers' servos, in N m s (or N s/m) for each kg m^2 (kg) of the mechanism."""
 STIFF = {"solref": "0.002 1", "solimp": "0.99 0.999 0.0001"}
-"""Of what closes loops: as stiff as a step of 0.5 ms can do."""
+"""Constraints that close loops: as stiff as a step of 0.5 ms can do."""
 SMALLEST = 1e-9
 """kg, kg m^2: what MuJoCo takes as nothing at all."""
 
@@ -69,7 +69,7 @@ class _Sites:
 
 
 def _bodies(element: Element, tree: Tree, parent: str, size: float, sites: _Sites) -> dict[str, list[str]]:
-    """Add what hangs on a body; by body, the names of its joints."""
+    """Add what is attached to a body; by body, the names of its joints."""
     joints: dict[str, list[str]] = {}
     for node in tree.children(parent):
         body = node.body
@@ -131,8 +131,8 @@ class _Writer:
         self.left_out: list[str] = []
 
     def _section(self, name: str) -> Element:
-        found = self.root.find(name)
-        return SubElement(self.root, name) if found is None else found
+        section = self.root.find(name)
+        return SubElement(self.root, name) if section is None else section
 
     def loops(self, tree: Tree) -> None:
         for joint in tree.loops:
@@ -203,7 +203,9 @@ class _Writer:
         for node in _in_order(tree, GROUND):
             speeds += _speeds(solution, node)
         actuators = (
-            [one.get("name") for one in self._section("actuator")] if self.root.find("actuator") is not None else []
+            [actuator.get("name") for actuator in self._section("actuator")]
+            if self.root.find("actuator") is not None
+            else []
         )
         key: dict[str, str] = {"name": "start", "qvel": _numbers(*speeds)}
         if actuators:

@@ -1,6 +1,6 @@
 """A mechanism as a tree of bodies with the joints that close its loops, as simulators of robots describe machines.
 
-From the ground outwards each body hangs on one joint; a joint between two bodies that hang already closes a loop. Poses
+From the ground outwards one joint attaches each body; a joint between two bodies that are attached closes a loop. Poses
 are those at the start of a solution, where all loops are closed.
 """
 
@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 GROUND = "ground"
-HANGING = ("revolute", "prismatic", "pin_in_slot", "weld")
-"""Kinds of joints on which a body may hang."""
+ATTACHING = ("revolute", "prismatic", "pin_in_slot", "weld")
+"""Kinds of joints that may attach a body."""
 CLOSING = ("revolute", "weld", "distance")
 """Kinds that may close a loop."""
 MESHING = ("gear_pair", "belt")
@@ -36,7 +36,7 @@ class Pose:
 
 @dataclass
 class Node:
-    """One body, how it hangs, and where its frame is in its parent's at the start."""
+    """One body, how it is attached, and where its frame is in its parent's at the start."""
 
     body: Any
     parent: str
@@ -80,27 +80,29 @@ class Tree:
     """What such a description cannot say, by name."""
 
     def children(self, parent: str) -> list[Node]:
-        """Those that hang on a body."""
+        """Those that are attached to a body."""
         return [node for node in self.nodes if node.parent == parent]
 
 
 def tree_of(m: Any, poses: dict[str, Pose]) -> Tree:
     """The tree of a mechanism whose bodies stand so at the start."""
-    tree, hung = Tree(), {GROUND}
+    tree, attached = Tree(), {GROUND}
     waiting = _spanning(m)
     used = {joint.name for joint in waiting}
-    while len(hung) < len(m.bodies):
-        joint = next((edge for edge in waiting if (edge.i.body.name in hung) != (edge.j.body.name in hung)), None)
-        if joint is None:  # what is left hangs on nothing: its first body is free
-            name = next(name for name in m.bodies if name not in hung)
+    while len(attached) < len(m.bodies):
+        joint = next(
+            (edge for edge in waiting if (edge.i.body.name in attached) != (edge.j.body.name in attached)), None
+        )
+        if joint is None:  # nothing holds what is left: its first body is free
+            name = next(name for name in m.bodies if name not in attached)
             tree.nodes.append(Node(m.bodies[name], GROUND, None, True, poses[name]))
-            hung.add(name)
+            attached.add(name)
             continue
-        own_is_j = joint.i.body.name in hung
+        own_is_j = joint.i.body.name in attached
         parent, child = (joint.i, joint.j) if own_is_j else (joint.j, joint.i)
         name, above = child.body.name, parent.body.name
         tree.nodes.append(Node(m.bodies[name], above, joint, own_is_j, poses[name].seen_from(poses[above])))
-        hung.add(name)
+        attached.add(name)
         waiting.remove(joint)
     for joint in m.joints.values():
         if joint.name in used:
@@ -132,7 +134,7 @@ def _spanning(m: Any) -> list[Any]:
         return name
 
     chosen = []
-    for joint in sorted((joint for joint in m.joints.values() if joint.kind.name in HANGING), key=rank):
+    for joint in sorted((joint for joint in m.joints.values() if joint.kind.name in ATTACHING), key=rank):
         first, second = top(joint.i.body.name), top(joint.j.body.name)
         if first != second:
             root[first] = second

@@ -54,7 +54,7 @@ def _link(root: Element, node: Node) -> None:
 
 
 def _joint(root: Element, node: Node) -> None:
-    """The joint that a body hangs on. URDF turns a link about its own origin, so links between move the axis there."""
+    """The joint that attaches a body. URDF turns a link about its own origin, so links between move the axis there."""
     name, pose = node.body.name, node.pose
     if node.joint is None:
         chain = [

@@ -201,9 +201,9 @@ class _Machines(MetaPathFinder):
         init = folder / "__init__.py"
         if not single and init.is_file():
             loader = _SourceOnly(fullname, str(init))
-            found = spec_from_file_location(fullname, init, loader=loader, submodule_search_locations=[str(folder)])
-            assert found is not None
-            return found
+            spec = spec_from_file_location(fullname, init, loader=loader, submodule_search_locations=[str(folder)])
+            assert spec is not None
+            return spec
         package = ModuleSpec(fullname, None, is_package=True)
         package.submodule_search_locations = [str(folder)]
         return package

@@ -37,6 +37,10 @@ async function main() {
   await page.mouse.up();
   await until(() => !document.querySelector(".live .push").disabled);
   await until(() => Math.abs(Math.hypot(mbsd.app.payload.joints.B.x[0], mbsd.app.payload.joints.B.y[0]) - mbsd.live.values.crank) < 1e-7);
+  const hand = () => page.evaluate(() => Number(document.querySelector('input[type=range][aria-label="crank"]').value));
+  const letGo = await hand();
+  await until((value) => Math.abs(mbsd.live.values.crank - value) < 1e-4, letGo);  // not a value on the way
+  await until(() => Math.abs(Math.hypot(mbsd.app.payload.joints.B.x[0], mbsd.app.payload.joints.B.y[0]) - mbsd.live.values.crank) < 1e-7);
   saw.slid = await crank();
   await picture("slider");
 

@@ -31,7 +31,7 @@ def springs(m: Model, size: float) -> Iterator[Finding]:
     most = STEEL * THICK**2 * size
     for name, force in m.forces.items():
         stiffness = force.params.get("stiffness")
-        if force.kind.name == "spring" and isinstance(stiffness, int | float) and stiffness > most > 0.0:
+        if "free_length" in force.params and isinstance(stiffness, int | float) and stiffness > most > 0.0:
             yield Finding(
                 f"spring '{name}'",
                 f"its stiffness of {stiffness:.3g} N/m is more than that of a steel bar as long as the mechanism and a "
@@ -47,7 +47,7 @@ def welds(m: Model) -> Iterator[Finding]:
         pairs.setdefault(frozenset(joint.bodies), []).append(name)
     for name, joint in m.joints.items():
         others = [other for other in pairs[frozenset(joint.bodies)] if other != name]
-        if joint.kind.name == "weld" and others:
+        if {"point", "angle"} <= set(joint.kind.constraints) and others:
             first, second = joint.bodies
             yield Finding(
                 f"weld '{name}'",

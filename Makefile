@@ -216,7 +216,7 @@ new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND
 export-%: install always ## the motion as a table, a pose as a drawing, a model for MuJoCo or as URDF: FORMAT=mjcf TIME=0.5
 	@$(MBSD) export -- "$$MECHANISM"
 
-import: install ## a mechanism of Linkage, PMKS, PMKS+, pylinkage or an .asmt assembly: FILE=walker.linkage2 AS=walker
+import: install ## a mechanism of Linkage, PMKS, pylinkage or Ondsel, or a DXF sketch: FILE=walker.linkage2 AS=walker
 	@$(MBSD) import -- "$$FILE"
 
 list: install ## the mechanisms and what is made of them

@@ -121,7 +121,7 @@ COMMANDS: dict[str, Command] = {
                 (Stage("shared.cluster", "certificates"),), of="folder"),
         Command("new", "a new mechanism that already runs",
                 (Stage("mechanisms", "new", ("kind", "single")),), of="new", example="mbsd new excavator"),
-        Command("import", "a mechanism of Linkage, PMKS, PMKS+, pylinkage or an .asmt assembly",
+        Command("import", "a mechanism of Linkage, PMKS, pylinkage or Ondsel, or a DXF sketch",
                 (Stage("studio.imports", options=("as", "single")),), of="file", example="mbsd import walker.linkage2"),
         Command("export", "the motion as a table, a pose as a drawing, a model for MuJoCo or as URDF",
                 (stages.PARTS_IF_ANY, Stage("mechanisms", "export", ("format", "time")),),

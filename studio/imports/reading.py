@@ -6,13 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 from shared.stage.errors import UserError
-from studio.imports import asmt, linkage, pmks_text, pmks_url, pylinkage
+from studio.imports import asmt, dxf, linkage, pmks_text, pmks_url, pylinkage
 from studio.imports.sketch import Sketch
 
 FORMATS: dict[str, tuple[Callable[[str], bool], Callable[[str, str], Sketch]]] = {
     "PMKS+ (its address)": (pmks_url.is_pmks_url, pmks_url.read),
     "Linkage (.linkage2)": (linkage.is_linkage, linkage.read),
     "Ondsel and FreeCAD (.asmt)": (asmt.is_asmt, asmt.read),
+    "a sketch (DXF)": (dxf.is_dxf, dxf.read),
     "PMKS (.txt, .pmks)": (pmks_text.is_pmks, pmks_text.read),
     "pylinkage (JSON)": (pylinkage.is_pylinkage, pylinkage.read),
 }

@@ -1,0 +1,170 @@
+"""Sketches in DXF: circles are pins, lines from pin to pin are links.
+
+A pin is of the ground where its circle is on a layer ``ground``, or where two circles share a centre; on a layer
+``motor`` it turns the first link on it. A polyline is one link with a pin at each of its corners that has one; so are
+lines that share pins on one layer other than 0. A line ends at a pin if it ends within its circle.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+from shared.stage.errors import UserError
+from studio.imports.sketch import GROUND, Motor, Place, Sketch
+
+MOTOR = "motor"
+UNITS = {0: 0.001, 1: 0.0254, 2: 0.3048, 4: 0.001, 5: 0.01, 6: 1.0, 14: 0.1}
+"""m, by the number of $INSUNITS: none (taken for millimetres), inch, foot, mm, cm, m, dm."""
+SPEED = math.tau
+"""rad/s"""
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+SAME = 1e-6
+"""Circles whose centres are closer than this part of their radius are of one pin."""
+
+
+@dataclass
+class _Pin:
+    place: Place
+    radius: float
+    layers: set[str]
+    rings: int = 1
+    name: str = ""
+
+    @property
+    def grounded(self) -> bool:
+        return self.rings > 1 or GROUND in self.layers or MOTOR in self.layers
+
+
+@dataclass
+class _Link:
+    layer: str
+    pins: list[_Pin] = field(default_factory=list)
+
+
+def is_dxf(text: str) -> bool:
+    """Whether a text is such a file."""
+    lines = [line.strip() for line in text[:2000].splitlines()[:400]]
+    return any(a == "0" and b == "SECTION" for a, b in pairwise(lines))
+
+
+def read(text: str, name: str) -> Sketch:
+    """The mechanism of such a file. Raises UserError where it cannot be read, or has no pins or links."""
+    from ezdxf.filemanagement import read as parsed
+    from ezdxf.lldxf.const import DXFError
+
+    try:
+        document = parsed(io.StringIO(text.replace("\r\n", "\n")))
+    except (DXFError, ValueError, KeyError, OSError) as error:
+        raise UserError(f"{name}: this is no DXF that can be read ({error})") from error
+    sketch = Sketch(name, "a DXF sketch")
+    number = int(document.header.get("$INSUNITS", 0))
+    unit = UNITS.get(number, 0.001)
+    if number not in UNITS or number == 0:
+        sketch.unit = "a millimetre"
+    entities = list(document.modelspace())
+    pins = _pins(entities, unit)
+    links = _links(entities, pins, unit, sketch)
+    if not pins or not links:
+        raise UserError(
+            f"{name}: a sketch has circles as pins, and lines from circle to circle as links; {_counted(entities)}"
+        )
+    _join(sketch, pins, links)
+    return sketch
+
+
+def _pins(entities: Iterable[Any], unit: float) -> list[_Pin]:
+    pins: list[_Pin] = []
+    for entity in entities:
+        if entity.dxftype() != "CIRCLE":
+            continue
+        place = (float(entity.dxf.center.x) * unit, float(entity.dxf.center.y) * unit)
+        radius = float(entity.dxf.radius) * unit
+        layer = str(entity.dxf.layer).lower()
+        known = next((pin for pin in pins if math.dist(pin.place, place) <= SAME * max(radius, pin.radius)), None)
+        if known is None:
+            pins.append(_Pin(place, radius, {layer}))
+        else:
+            known.rings += 1
+            known.radius = max(known.radius, radius)
+            known.layers.add(layer)
+    for k, pin in enumerate(pins):
+        pin.name = LETTERS[k] if k < len(LETTERS) else f"P{k}"
+    return pins
+
+
+def _links(entities: Iterable[Any], pins: list[_Pin], unit: float, sketch: Sketch) -> list[_Link]:
+    links: list[_Link] = []
+    astray = 0
+    for entity in entities:
+        corners = _corners(entity, unit)
+        if not corners:
+            continue
+        hit = [pin for corner in corners if (pin := _pin_at(corner, pins)) is not None]
+        hit = [pin for k, pin in enumerate(hit) if pin not in hit[:k]]
+        if len(hit) < 2:
+            astray += 1
+            continue
+        layer = str(entity.dxf.layer).lower()
+        shared = [
+            link for link in links if layer != "0" and link.layer == layer and any(pin in link.pins for pin in hit)
+        ]
+        merged = _Link(layer, [])
+        for link in shared:
+            links.remove(link)
+            merged.pins += [pin for pin in link.pins if pin not in merged.pins]
+        merged.pins += [pin for pin in hit if pin not in merged.pins]
+        links.append(merged)
+    if astray:
+        sketch.left_out.append(f"{astray} lines that do not run from pin to pin")
+    return links
+
+
+def _corners(entity: Any, unit: float) -> list[Place]:
+    match entity.dxftype():
+        case "LINE":
+            points = [entity.dxf.start, entity.dxf.end]
+        case "LWPOLYLINE":
+            return [(float(x) * unit, float(y) * unit) for x, y in entity.get_points("xy")]
+        case "POLYLINE":
+            points = [vertex.dxf.location for vertex in entity.vertices]
+        case _:
+            return []
+    return [(float(point.x) * unit, float(point.y) * unit) for point in points]
+
+
+def _pin_at(place: Place, pins: list[_Pin]) -> _Pin | None:
+    near = [pin for pin in pins if math.dist(pin.place, place) <= pin.radius * (1 + SAME)]
+    return min(near, key=lambda pin: math.dist(pin.place, place)) if near else None
+
+
+def _join(sketch: Sketch, pins: list[_Pin], links: list[_Link]) -> None:
+    names: dict[int, str] = {}
+    for k, link in enumerate(links):
+        fixed = link.layer == GROUND or all(pin.grounded for pin in link.pins)
+        names[k] = GROUND if fixed else "".join(pin.name for pin in link.pins)
+        if not fixed:
+            body = sketch.link(names[k])
+            for pin in link.pins:
+                body.points.setdefault(pin.name, pin.place)
+    for pin in pins:
+        on = [names[k] for k, link in enumerate(links) if pin in link.pins]
+        ground = [GROUND] if pin.grounded else []
+        carriers: list[str] = list(dict.fromkeys([*ground, *on]))
+        moving = [carrier for carrier in carriers if carrier != GROUND]
+        if len(carriers) > 1:
+            sketch.pin_all(pin.name, carriers, pin.place)
+        elif moving:
+            sketch.traces[pin.name] = (moving[0], pin.place)
+        if MOTOR in pin.layers and moving:
+            sketch.motors.append(Motor("motor" if not sketch.motors else f"motor_{pin.name}", GROUND, moving[0], SPEED))
+
+
+def _counted(entities: Iterable[Any]) -> str:
+    kinds = [entity.dxftype() for entity in entities]
+    there = ", ".join(f"{kinds.count(kind)} {kind}" for kind in sorted(set(kinds)))
+    return f"this one has {there or 'nothing'}"

@@ -146,7 +146,7 @@ def compared(name: str) -> list[str]:
     if not variants:
         raise UserError(
             f'{owner}: there is nothing to compare; write VARIANTS = {{"name": {{"field": value}}}} beside build() in '
-            f"mechanisms/{owner}/mechanism.py, each with the fields of Params that it replaces"
+            f"{shown_file(owner)}, each with the fields of Params that it replaces"
         )
     return variants
 
@@ -202,6 +202,12 @@ def _source(owner: str) -> Path | None:
     return own if own.is_file() and owner == _own_name() else None
 
 
+def _is_twofold(source: Path) -> bool:
+    """Whether a file beside the folder of a mechanism has its name and defines one, too."""
+    single = MECHANISMS / f"{source.parent.name}.py"
+    return in_workshop() and source.parent != MECHANISMS and single.is_file() and defines(single, "build")
+
+
 def is_single_file(name: str) -> bool:
     """Whether all that a mechanism says stands in one file, ``excavator.py``."""
     source = _source(owner_of(name))
@@ -236,6 +242,9 @@ def _variants_of(owner: str) -> list[str]:
 def mechanism_folder(name: str) -> Path:
     """The folder of a mechanism or of a variant's; raises UserError with the known names if there is none."""
     source = _source(owner_of(name))
+    if source is not None and source.name == "mechanism.py" and _is_twofold(source):
+        owner = owner_of(name)
+        raise UserError(f"{owner}/mechanism.py and {owner}.py in {MECHANISMS} have one name; give one another name")
     if source is None:
         known, name = mechanism_names(), mechanism_name(name)
         _refuse_unknown_variant(name, known)

@@ -6,6 +6,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from shared.stage.errors import UserError
 from shared.stage.face import is_of_make
 from shared.stage.paths import ROOT
 from studio.command.settings import FILE, Settings, read
@@ -39,9 +40,11 @@ def place_of(folder: Path) -> Place:
     with a mbsd.toml, else the folder itself. Raises UserError for a mbsd.toml that is unfit.
     """
     folder = Path(os.path.abspath(os.path.expanduser(folder)))
+    _refuse_none(folder)
     named = os.environ.get("MBSD_WORKSHOP") or (os.environ.get("MECHANISMS") if is_of_make() else None)
     if named:
         machines = Path(os.path.abspath(os.path.expanduser(named)))
+        _refuse_none(machines)
         return Place(machines, read(machines), _inside(folder, machines))
     for above in (folder, *folder.parents):
         if (above / FILE).is_file() and above != ROOT:
@@ -49,6 +52,11 @@ def place_of(folder: Path) -> Place:
         if above == ROOT and (ROOT / "Makefile").is_file():
             return Place(None, read(ROOT), _inside(folder, ROOT / "mechanisms"))
     return Place(folder, Settings())
+
+
+def _refuse_none(folder: Path) -> None:
+    if not folder.is_dir():
+        raise UserError(f"{folder} is no folder; say which one holds the machines")
 
 
 def _inside(folder: Path, machines: Path) -> str:

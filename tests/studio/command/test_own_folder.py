@@ -142,6 +142,20 @@ def test_a_machine_that_is_not_there_is_refused_with_those_that_are(folder: Path
     assert mbsd("rnu", "arm", at=folder).returncode == 2
 
 
+def test_what_is_no_folder_or_has_two_of_a_name_is_refused(folder: Path) -> None:
+    for place in ("nowhere", "wheel.py"):
+        done = mbsd("-C", place, "list", at=folder)
+        assert (done.returncode, f"{folder / place} is no folder" in done.stderr) == (1, True)
+    (folder / "wheel").mkdir()
+    (folder / "wheel" / "mechanism.py").write_text(crank("wheel"))
+    done = mbsd("solve", "wheel", at=folder)
+    assert done.returncode == 1
+    assert f"wheel/mechanism.py and wheel.py in {folder} have one name; give one another name" in done.stderr
+    (folder / "wheel" / "mechanism.py").unlink()
+    assert "write VARIANTS" in (said := mbsd("compare", "wheel", at=folder).stderr)
+    assert "beside build() in wheel.py, each" in said
+
+
 @pytest.mark.parametrize("single", [False, True])
 @pytest.mark.parametrize("kind", ["driven", "simulated"])
 def test_a_new_machine_runs_and_marks_its_folder(tmp_path: Path, kind: str, single: bool) -> None:

@@ -24,8 +24,11 @@ def save_whole(
     try:
         wrong = None
         for _ in range(ATTEMPTS):
-            save(part)
-            wrong = fault(part)
+            try:
+                save(part)
+                wrong = fault(part)
+            except RuntimeError as error:  # Blender notices a full disk now and then, without the name of the file
+                wrong = f"was not written ({str(error).strip()})"
             if wrong is None:
                 with part.open("rb") as written:
                     os.fsync(written.fileno())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from importlib import metadata
 
 from mbsd.base.errors import MechanismError
 
@@ -16,11 +15,10 @@ class NumbaVersionError(MechanismError, ImportError):
 
 
 def refuse_other_versions() -> None:
-    """Raise NumbaVersionError, with the remedy, unless the installed numba is one of those; a missing one is none."""
-    try:
-        version = metadata.version("numba")
-    except metadata.PackageNotFoundError:
-        return  # numba itself is missed when it is imported
+    """Raise NumbaVersionError, with the remedy, unless the installed numba is one of those."""
+    import numba
+
+    version = numba.__version__
     numbers = tuple(int(number) for number in re.findall(r"\d+", version)[:2])
     if not OLDEST <= numbers <= NEWEST:
         raise NumbaVersionError(

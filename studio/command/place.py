@@ -36,8 +36,8 @@ class Place:
 
 
 def place_of(folder: Path) -> Place:
-    """The place of a command that is given in ``folder``: the clone where it lies there, else the nearest folder above
-    with a mbsd.toml, else the folder itself. Raises UserError for a mbsd.toml that is unfit.
+    """The place of a command that is given in ``folder``: the clone where it lies there or make is at work, else the
+    nearest folder above with a mbsd.toml, else the folder itself. Raises UserError for a mbsd.toml that is unfit.
     """
     folder = Path(os.path.abspath(os.path.expanduser(folder)))
     _refuse_none(folder)
@@ -46,6 +46,8 @@ def place_of(folder: Path) -> Place:
         machines = Path(os.path.abspath(os.path.expanduser(named)))
         _refuse_none(machines)
         return Place(machines, read(machines), _inside(folder, machines))
+    if is_of_make():
+        return Place(None, read(ROOT))
     for above in (folder, *folder.parents):
         if (above / FILE).is_file() and above != ROOT:
             return Place(above, read(above), _inside(folder, above))

@@ -33,7 +33,7 @@ PATIENCE = 12.0
 STAND_IN = """#!/bin/sh
 # Stands for .venv/bin/python where make calls `python -m mechanisms|render STAGE NAME ...`.
 case "$2 $3" in
-"studio.night "*) exec '{python}' "$@" ;;
+"studio.command "*|"studio.night "*) exec '{python}' "$@" ;;
 *parts) stage=inputs ;;
 *film) stage=film ;;
 *) exit 0 ;;

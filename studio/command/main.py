@@ -89,6 +89,8 @@ def main(arguments: Sequence[str] | None = None, make: bool = False) -> int:
 
         print(completion.script(asked.shell))
         return 0
+    if asked.command == "compile":  # with words before it: mbsd/__main__.py does it
+        return Run({}).last([sys.executable, "-m", "mbsd", "compile"])
     place = place_of(Path(asked.folder))
     if place.machines is not None:
         work_in(place.machines)

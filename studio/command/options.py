@@ -14,7 +14,7 @@ from render.presets import ASPECTS, PRESETS, WIDE
 
 @dataclass(frozen=True)
 class Option:
-    """One word, which the stages check; ``stage`` is its name there where it is another."""
+    """One word, which the stages check."""
 
     name: str
     help: str
@@ -25,7 +25,7 @@ class Option:
     """Whether mbsd.toml may say it."""
     flag: bool = False
     """Whether it is said without a value."""
-    one: bool = False
+    valued: bool = False
     """Whether a stage takes this flag as ``=1``."""
 
     @property
@@ -48,7 +48,7 @@ OPTIONS: dict[str, Option] = {
         Option("view", "what is shown: reactions,velocities; all if not given"),
         Option("only", "these alone, commas between them; all if not given", "NAMES"),
         Option("watts", "power of this machine while it renders (W), to tell the energy", "W", kept=True),
-        Option("anyway", "begin though the disk is surely too small", flag=True, one=True),
+        Option("anyway", "begin though the disk is surely too small", flag=True, valued=True),
         Option("kind", "driven or simulated", default="driven", choices=("driven", "simulated")),
         Option("as", "its name here; that of the file if not given", "NAME"),
         Option("format", "of the file", default="csv", choices=("csv", "parquet", "svg", "dxf", "mjcf", "urdf")),
@@ -71,4 +71,4 @@ def given(option: Option, words: Mapping[str, str]) -> list[str]:
     value = words.get(option.name, "")
     if not value:
         return []
-    return [f"--{option.name}" if option.flag and not option.one else f"--{option.name}={value}"]
+    return [f"--{option.name}" if option.flag and not option.valued else f"--{option.name}={value}"]

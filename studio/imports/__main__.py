@@ -7,12 +7,11 @@ import re
 from pathlib import Path
 
 from mechanisms.stages import checking
-from mechanisms.stages.new.new import refuse_unfit
+from mechanisms.stages.new.new import file_of, mark_folder, refuse_unfit
 from shared.stage.console import run_cli, say, warn
-from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.files import write_bytes
-from shared.stage.paths import MECHANISMS, NAME, in_workshop, shown_file
+from shared.stage.paths import NAME, shown_file
 from studio.imports.reading import FORMATS, read
 from studio.imports.sketch import Sketch
 from studio.imports.writing import mechanism_py
@@ -30,10 +29,9 @@ def main() -> int:
     sketch = read(asked.file)
     name = asked.name.replace("-", "_").lower() or named(asked.file)
     refuse_unfit(name)
-    if asked.single and not in_workshop():
-        raise UserError("a mechanism of the clone is a folder; leave --single out, or work in a folder of your own")
-    file = MECHANISMS / f"{name}.py" if asked.single else MECHANISMS / name / "mechanism.py"
+    file = file_of(name, asked.single)
     write_bytes(file, mechanism_py(sketch, name).encode())
+    mark_folder()
     say("import", f"{shown_file(name)}: {counted(sketch)} from {sketch.program}; {to_run('live', name)} shows it")
     for words in sketch.left_out:
         warn("import", f"left out: {words}")

@@ -10,6 +10,7 @@ import math
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
+from mechanisms.stages.export.numbers import number, numbers
 from mechanisms.stages.export.tree import GROUND, MESHING, Node, Tree, poses_of, tree_of
 
 GAIN = 1e4
@@ -30,11 +31,11 @@ def mjcf(solution: Any) -> tuple[str, list[str]]:
     gx, gy = m.gravity or (0.0, 0.0)
     # Servos are stiff, which only an implicit method stands.
     method = "implicitfast" if m.drivers else "RK4"
-    option = {"gravity": _numbers(gx, gy, 0.0), "timestep": "0.0005", "integrator": method, "tolerance": "1e-12"}
+    option = {"gravity": numbers(gx, gy, 0.0), "timestep": "0.0005", "integrator": method, "tolerance": "1e-12"}
     SubElement(root, "option", option)
-    SubElement(root, "statistic", extent=_number(2 * size))
+    SubElement(root, "statistic", extent=number(2 * size))
     world = SubElement(root, "worldbody")
-    SubElement(world, "light", pos=_numbers(0.0, 0.0, 5 * size), dir="0 0 -1", directional="true")
+    SubElement(world, "light", pos=numbers(0.0, 0.0, 5 * size), dir="0 0 -1", directional="true")
     sites = _Sites()
     joints = _bodies(world, tree, GROUND, size, sites)
     writer = _Writer(root, world, sites, m, size)
@@ -64,7 +65,7 @@ class _Sites:
         bodies = {body.get("name"): body for body in root.iter("body")}
         bodies[GROUND] = root.find("worldbody")  # type: ignore[assignment]
         for name, body, marker in self.wanted:
-            site = Element("site", name=name, pos=_numbers(marker.x, marker.y, 0.0), size="1e-4")
+            site = Element("site", name=name, pos=numbers(marker.x, marker.y, 0.0), size="1e-4")
             bodies[body].insert(0, site)
 
 
@@ -73,12 +74,12 @@ def _bodies(element: Element, tree: Tree, parent: str, size: float, sites: _Site
     joints: dict[str, list[str]] = {}
     for node in tree.children(parent):
         body = node.body
-        below = SubElement(element, "body", name=body.name, pos=_numbers(node.pose.x, node.pose.y, 0.0),
-                           euler=_numbers(0.0, 0.0, node.pose.angle))  # fmt: skip
+        below = SubElement(element, "body", name=body.name, pos=numbers(node.pose.x, node.pose.y, 0.0),
+                           euler=numbers(0.0, 0.0, node.pose.angle))  # fmt: skip
         joints[body.name] = _joints(below, node)
         mass, inertia = max(body.mass, SMALLEST), max(body.inertia, SMALLEST)
-        SubElement(below, "inertial", pos=_numbers(*body.com, 0.0), mass=_number(mass),
-                   diaginertia=_numbers(inertia / 2, inertia / 2 * 1.01, inertia))  # fmt: skip
+        SubElement(below, "inertial", pos=numbers(*body.com, 0.0), mass=number(mass),
+                   diaginertia=numbers(inertia / 2, inertia / 2 * 1.01, inertia))  # fmt: skip
         _shape(below, node, tree, size)
         joints |= _bodies(below, tree, body.name, size, sites)
     return joints
@@ -92,7 +93,7 @@ def _joints(below: Element, node: Node) -> list[str]:
         x, y = ({"type": "slide", "axis": _axis(angle - node.pose.angle)} for angle in (0.0, math.pi / 2))
         wanted = [("x", x, None), ("y", y, None), ("turn", hinge, None)]
     else:
-        place = _numbers(*node.anchor, 0.0)
+        place = numbers(*node.anchor, 0.0)
         slide = {"type": "slide", "axis": _axis(node.guide)}
         match node.joint.kind.name:
             case "weld":
@@ -117,11 +118,11 @@ def _shape(below: Element, node: Node, tree: Tree, size: float) -> None:
         SubElement(
             below,
             "geom",
-            {"type": "capsule", "fromto": _numbers(0, 0, 0, length, 0, 0), "size": _number(size / 60), **look},
+            {"type": "capsule", "fromto": numbers(0, 0, 0, length, 0, 0), "size": number(size / 60), **look},
         )
     else:
         SubElement(
-            below, "geom", {"type": "sphere", "pos": _numbers(*node.body.com, 0.0), "size": _number(size / 30), **look}
+            below, "geom", {"type": "sphere", "pos": numbers(*node.body.com, 0.0), "size": number(size / 30), **look}
         )
 
 
@@ -163,22 +164,22 @@ class _Writer:
         same = p.get("internal", False) if joint.kind.name == "gear_pair" else not p.get("crossed", False)
         ratio = p["radius_i"] / p["radius_j"] * (1.0 if same else -1.0)
         first, second = (f"{node.body.name} turn" for node in turning)
-        mesh = {"name": joint.name, "joint1": second, "joint2": first, "polycoef": f"0 {_number(ratio)} 0 0 0"}
+        mesh = {"name": joint.name, "joint1": second, "joint2": first, "polycoef": f"0 {number(ratio)} 0 0 0"}
         SubElement(self._section("equality"), "joint", mesh | STIFF)
 
     def springs(self) -> None:
         for name, force in self.m.forces.items():
             if force.kind.name == "spring" and not force.laws:
                 p = force.params
-                amounts = {"stiffness": _number(p.get("stiffness", 0.0)), "damping": _number(p.get("damping", 0.0)),
-                           "springlength": _number(p.get("free_length", 0.0))}  # fmt: skip
+                amounts = {"stiffness": number(p.get("stiffness", 0.0)), "damping": number(p.get("damping", 0.0)),
+                           "springlength": number(p.get("free_length", 0.0))}  # fmt: skip
                 self._tendon(name, self.sites.at(force.i), self.sites.at(force.j), amounts)
             else:
                 self.left_out.append(f"force '{name}' ({force.kind.name})")
 
     def _tendon(self, name: str, first: str, second: str, more: dict[str, str]) -> None:
         tendon = SubElement(
-            self._section("tendon"), "spatial", {"name": name, "width": _number(self.size / 200), **more}
+            self._section("tendon"), "spatial", {"name": name, "width": number(self.size / 200), **more}
         )
         for site in (first, second):
             SubElement(tendon, "site", site=site)
@@ -195,7 +196,7 @@ class _Writer:
             weight = sum(body.inertia + body.mass * self.size**2 for body in self.m.bodies.values())
             sense = 1.0 if driver.kind.angular or node.own_is_j else -1.0
             SubElement(self._section("actuator"), "velocity", name=name, joint=joints[second][0],
-                       kv=_number(GAIN * max(weight, 1e-6)), gear=_number(sense))  # fmt: skip
+                       kv=number(GAIN * max(weight, 1e-6)), gear=number(sense))  # fmt: skip
 
     def start(self, solution: Any, tree: Tree) -> None:
         """The speeds of the first output as a keyframe, with the rates of the drivers."""
@@ -207,9 +208,9 @@ class _Writer:
             if self.root.find("actuator") is not None
             else []
         )
-        key: dict[str, str] = {"name": "start", "qvel": _numbers(*speeds)}
+        key: dict[str, str] = {"name": "start", "qvel": numbers(*speeds)}
         if actuators:
-            key["ctrl"] = _numbers(*(float(self.m.drivers[name].motion.rate) for name in actuators))
+            key["ctrl"] = numbers(*(float(self.m.drivers[name].motion.rate) for name in actuators))
         if speeds:
             SubElement(self._section("keyframe"), "key", key)
 
@@ -272,12 +273,4 @@ def _velocity(solution: Any, marker: Any) -> tuple[float, float]:
 
 
 def _axis(angle: float) -> str:
-    return _numbers(math.cos(angle), math.sin(angle), 0.0)
-
-
-def _number(value: float) -> str:
-    return f"{value:.15g}"
-
-
-def _numbers(*values: float) -> str:
-    return " ".join(_number(0.0 if abs(value) < 1e-15 else value) for value in values)
+    return numbers(math.cos(angle), math.sin(angle), 0.0)

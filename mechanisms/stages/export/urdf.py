@@ -9,6 +9,7 @@ import math
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
+from mechanisms.stages.export.numbers import number, numbers
 from mechanisms.stages.export.tree import GROUND, Node, poses_of, tree_of
 
 
@@ -28,8 +29,8 @@ def urdf(solution: Any) -> tuple[str, list[str]]:
             continue
         loop = SubElement(root, "loop_joint", name=joint.name, type=kind)
         for which, marker in (("link1", joint.i), ("link2", joint.j)):
-            SubElement(loop, which, link=marker.body.name, xyz=_numbers(marker.x, marker.y, 0.0),
-                       rpy=_numbers(0.0, 0.0, marker.angle))  # fmt: skip
+            SubElement(loop, which, link=marker.body.name, xyz=numbers(marker.x, marker.y, 0.0),
+                       rpy=numbers(0.0, 0.0, marker.angle))  # fmt: skip
         SubElement(loop, "axis", xyz="0 0 1")
     left_out = [*tree.left_out, *(f"force '{name}' ({force.kind.name})" for name, force in m.forces.items())]
     indent(root)
@@ -41,15 +42,15 @@ def _link(root: Element, node: Node) -> None:
     link = SubElement(root, "link", name=body.name)
     if body.mass > 0.0:
         inertial = SubElement(link, "inertial")
-        SubElement(inertial, "origin", xyz=_numbers(*body.com, 0.0), rpy="0 0 0")
-        SubElement(inertial, "mass", value=_number(body.mass))
-        about = {"ixx": _number(body.inertia / 2), "iyy": _number(body.inertia / 2), "izz": _number(body.inertia)}
+        SubElement(inertial, "origin", xyz=numbers(*body.com, 0.0), rpy="0 0 0")
+        SubElement(inertial, "mass", value=number(body.mass))
+        about = {"ixx": number(body.inertia / 2), "iyy": number(body.inertia / 2), "izz": number(body.inertia)}
         SubElement(inertial, "inertia", {**about, "ixy": "0", "ixz": "0", "iyz": "0"})
     if body.length:
         visual = SubElement(link, "visual")
-        SubElement(visual, "origin", xyz=_numbers(body.length / 2, 0.0, 0.0), rpy=_numbers(0.0, math.pi / 2, 0.0))
+        SubElement(visual, "origin", xyz=numbers(body.length / 2, 0.0, 0.0), rpy=numbers(0.0, math.pi / 2, 0.0))
         SubElement(
-            SubElement(visual, "geometry"), "cylinder", radius=_number(body.length / 30), length=_number(body.length)
+            SubElement(visual, "geometry"), "cylinder", radius=number(body.length / 30), length=number(body.length)
         )
 
 
@@ -86,24 +87,16 @@ def _chain(
         below = f"{child} {what}"
         SubElement(root, "link", name=below)
         joint = SubElement(root, "joint", name=f"{child} {what} joint", type=kind)
-        SubElement(joint, "origin", xyz=_numbers(*(place[:2] if k == 0 else (0.0, 0.0)), 0.0),
-                   rpy=_numbers(0.0, 0.0, place[2] if k == 0 else 0.0))  # fmt: skip
+        SubElement(joint, "origin", xyz=numbers(*(place[:2] if k == 0 else (0.0, 0.0)), 0.0),
+                   rpy=numbers(0.0, 0.0, place[2] if k == 0 else 0.0))  # fmt: skip
         SubElement(joint, "parent", link=above)
         SubElement(joint, "child", link=below)
         if kind != "fixed":
-            SubElement(joint, "axis", xyz=_numbers(*axis))
+            SubElement(joint, "axis", xyz=numbers(*axis))
         if kind == "prismatic":
             SubElement(joint, "limit", lower="-1000", upper="1000", effort="1e9", velocity="1e9")
         above = below
     fixed = SubElement(root, "joint", name=f"{child} frame", type="fixed")
-    SubElement(fixed, "origin", xyz=_numbers(-offset[0], -offset[1], 0.0), rpy="0 0 0")
+    SubElement(fixed, "origin", xyz=numbers(-offset[0], -offset[1], 0.0), rpy="0 0 0")
     SubElement(fixed, "parent", link=above)
     SubElement(fixed, "child", link=child)
-
-
-def _number(value: float) -> str:
-    return f"{value:.15g}"
-
-
-def _numbers(*values: float) -> str:
-    return " ".join(_number(0.0 if abs(value) < 1e-15 else value) for value in values)

@@ -65,10 +65,22 @@ def run(name: str, kind: str = "driven", single: bool = False) -> None:
 
 
 def _write_single(name: str, kind: str) -> None:
-    if not in_workshop():
-        raise UserError("a mechanism of the clone is a folder; leave --single out, or work in a folder of your own")
-    write_bytes(MECHANISMS / f"{name}.py", _filled(TEMPLATES / kind / "mechanism.py.txt", name))
+    write_bytes(file_of(name, single=True), _filled(TEMPLATES / kind / "mechanism.py.txt", name))
     _tell(f"{name}.py", name, kind)
+
+
+def file_of(name: str, single: bool) -> Path:
+    """Where the model of a new mechanism goes; raises UserError for a single file in the clone."""
+    if single and not in_workshop():
+        raise UserError("a mechanism of the clone is a folder; leave --single out, or work in a folder of your own")
+    return MECHANISMS / f"{name}.py" if single else MECHANISMS / name / "mechanism.py"
+
+
+def mark_folder() -> None:
+    """Write a mbsd.toml into a user's folder that has none: commands given in a folder below find it."""
+    settings = MECHANISMS / "mbsd.toml"
+    if in_workshop() and not settings.exists():
+        write_bytes(settings, (TEMPLATES / "mbsd.toml.txt").read_bytes())
 
 
 def _filled(template: Path, name: str) -> bytes:
@@ -77,9 +89,7 @@ def _filled(template: Path, name: str) -> bytes:
 
 
 def _tell(where: str, name: str, kind: str) -> None:
-    settings = MECHANISMS / "mbsd.toml"
-    if in_workshop() and not settings.exists():  # it marks the folder, also for commands given in one below
-        write_bytes(settings, (TEMPLATES / "mbsd.toml.txt").read_bytes())
+    mark_folder()
     say("new", f"{where}: {KINDS[kind]}, to change; {to_run('run', name)} runs it")
 
 

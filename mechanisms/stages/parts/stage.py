@@ -64,6 +64,7 @@ def run(name: str) -> None:
     if _is_fresh(out, given, wish):
         say("parts", f"{out.name}: nothing to do")
         return
+    # Files travel by their names below the project, which those of a user's own folder have not.
     made = _of_cluster(out.name, given, wish) if address() and not in_workshop() else None
     made = made or _made_here(out.name, given, wish, before, recorder)
     written = _write(out, made.files, made.document)

@@ -8,10 +8,12 @@ import sys
 
 import pytest
 
+from mechanisms.stages.export.stage import FORMATS
 from shared.stage.paths import ROOT
 from studio.command import completion
 from studio.command.main import parser
 from studio.command.options import OPTIONS
+from studio.command.settings import Settings
 from studio.command.table import COMMANDS
 from tests.project.test_injection import NASTY
 
@@ -81,3 +83,8 @@ def test_bash_completes_commands_options_and_machines(tmp_path) -> None:
     """
     done = subprocess.run(["bash", "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split("\n")[:3] == ["solve", "excavator", "--aspect"]
+
+
+def test_formats_and_settings_are_those_that_are_there() -> None:
+    assert OPTIONS["format"].choices == tuple(FORMATS)
+    assert {name for name, option in OPTIONS.items() if option.kept} <= set(Settings.__struct_fields__)

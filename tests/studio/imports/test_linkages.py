@@ -126,6 +126,7 @@ def test_the_program_imports_into_a_folder(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert "import: walker_2/mechanism.py: 4 links" in done.stdout
     assert "1 degree of freedom" in done.stdout
+    assert (tmp_path / "mbsd.toml").is_file()
     again = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert again.returncode == 1
     assert "walker_2/mechanism.py is there already" in again.stderr

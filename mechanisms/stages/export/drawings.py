@@ -44,16 +44,27 @@ def svg(solution: Any, time: float) -> str:
         line = SubElement(root, "polyline", points=flat(path), fill="none", stroke="#b5651d")
         line.set("stroke-width", f"{thin:.3f}")
         SubElement(line, "title").text = name
+    colours = _colours(solution)
     for stroke in sorted(strokes, key=lambda drawn: drawn.order):
-        fill = "none" if stroke.fill is None else "#ffffff" if stroke.fill == "paper" else "#d8dee6"
-        line = SubElement(
-            root, "polygon" if stroke.closed else "polyline", points=flat(stroke.points), fill=fill, stroke="#222222"
-        )
+        fill = "none" if stroke.fill is None else colours[stroke.fill]
+        words = {"points": flat(stroke.points), "fill": fill, "stroke": colours[stroke.ink]}
+        line = SubElement(root, "polygon" if stroke.closed else "polyline", words)
+        if stroke.alpha < 1.0:
+            line.set("stroke-opacity" if stroke.fill is None else "fill-opacity", f"{stroke.alpha:.3g}")
         line.set("stroke-width", f"{thin * stroke.width / 1.4:.3f}")
         if stroke.dash:
             line.set("stroke-dasharray", " ".join(f"{part * thin:.3f}" for part in stroke.dash))
     indent(root)
     return tostring(root, encoding="unicode") + "\n"
+
+
+def _colours(solution: Any) -> dict[str, str]:
+    """The colour of each role in a drawing; bodies have that of all pictures."""
+    from mbsd.drawing.inks import body_inks
+    from mbsd.drawing.strokes import ROLES
+
+    bodies = {f"body:{name}": ink for name, ink in body_inks(solution.mechanism).items()}
+    return {role: colour for colour, role in ROLES.items()} | bodies
 
 
 def dxf(solution: Any, time: float) -> str:

@@ -12,6 +12,7 @@ import pytest
 from ezdxf.filemanagement import read
 
 from mbsd import Mechanism, constant_rate
+from mbsd.drawing.inks import body_inks
 from mechanisms.stages.export import stage
 from mechanisms.stages.export.drawings import dxf, svg
 from shared.stage.errors import UserError
@@ -46,6 +47,7 @@ def test_a_drawing_is_one_to_one_in_millimetres_at_its_time(solution: Any) -> No
     points = np.array([pair.split(",") for pair in path.get("points", "").split()], float)
     assert np.ptp(points, axis=0) == pytest.approx([100.0, 100.0], rel=1e-3)
     assert svg(solution, 0.0) != svg(solution, 1.0)
+    assert body_inks(solution.mechanism)["crank"] in {line.get("fill") for line in root.iter()}
     document = read(io.StringIO(dxf(solution, 0.0)))
     assert document.header["$INSUNITS"] == 4
     layers = {entity.dxf.layer for entity in document.modelspace()}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError
+from mbsd import Mechanism, ModelError, constant_rate
 
 pytestmark = pytest.mark.filterwarnings("ignore::mbsd.base.errors.ModelWarning")
 
@@ -72,3 +72,22 @@ def test_a_light_base_on_ground_costs_no_digits() -> None:
     np.testing.assert_allclose(based.body("b").theta, plain.body("b").theta, atol=1e-6)
     force = based.joint("weld")
     np.testing.assert_allclose(force.fx, based.joint("A").fx + based.joint("D").fx, rtol=1e-6)
+
+
+@pytest.mark.parametrize("inertia", [1e-3, 1e-6, 1e-9, 0.0])
+@pytest.mark.parametrize("mass", [0.01, 0.0])
+def test_a_slider_that_rests_at_its_dead_centre_keeps_its_own_mass(mass: float, inertia: float) -> None:
+    """Everything rests but the crank and the rod's big end at the start; the slider is not held by ground for it."""
+    m = Mechanism("press", gravity=(0.0, -9.81))
+    crank, rod, slider = m.bar("crank", 0.04, mass=0.012), m.bar("rod", 0.12, mass=0.03), m.body("slider")
+    m.change("slider", mass=mass, inertia=inertia)
+    m.revolute("O", m.ground.at(0, 0), crank.start)
+    m.revolute("A", crank.end, rod.start)
+    m.revolute("B", rod.end, slider.origin)
+    m.prismatic("guide", m.ground.at(0, 0), slider.origin)
+    m.drive_angle("motor", crank, constant_rate(2 * np.pi))
+    m.start_near(crank=0, rod=0, slider=0)
+    simulated, swept = m.simulate(duration=1.0, steps=90), m.sweep(duration=1.0, steps=90)
+    for joint in "OAB":
+        np.testing.assert_allclose(simulated.joint(joint).force, swept.joint(joint).force, atol=1e-9)
+    assert simulated.stats.power_residual < 1e-12

@@ -36,11 +36,11 @@ def as_heavy_as_ground(inertia: np.ndarray, still: np.ndarray, per_size: np.ndar
 
     It is ``inertia`` itself where masses are not far apart.
     """
-    scaled = inertia * per_size**2
+    scaled = np.divide(inertia, per_size**2, out=np.zeros_like(inertia), where=per_size > 0.0)
     moving = scaled[3:][~still[3:] & (inertia[3:] > 0.0)]
     if not still[3:].any() or not len(moving) or moving.max() <= USUAL * scaled[3:][inertia[3:] > 0.0].min():
         return inertia
-    return np.where(still, np.maximum(inertia, moving.max() / per_size**2), inertia)
+    return np.where(still, np.maximum(inertia, moving.max() * per_size**2), inertia)
 
 
 def passes_for(
@@ -51,7 +51,7 @@ def passes_for(
     Coordinates that are ``still`` (3 nb,) are ground's. Raises ModelError, with the bodies, where masses are too far
     apart.
     """
-    usual = inertia[3:] * per_size[3:] ** 2
+    usual = inertia[3:] / per_size[3:] ** 2
     usual = usual[usual > 0.0]
     if not len(usual) or usual.max() <= USUAL * usual.min() or not len(packed.ws.phi):
         return 1

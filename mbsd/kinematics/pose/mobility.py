@@ -84,8 +84,17 @@ def _joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
         redundant_rows=len(dropped),
         redundant=tuple(dict.fromkeys(packed.joint_of_row(row).name for row in dropped)),
         singular=start < len(kept),
-        free_bodies=_moving(packed, best),
+        free_bodies=_free_bodies(packed, best, q) if free else (),
     )
+
+
+def _free_bodies(packed: Packed, jac: np.ndarray, q: np.ndarray) -> tuple[str, ...]:
+    """Bodies that can move at the pose of ``jac`` or at one near q (3 nb,): at a dead centre a slider rests."""
+    moving = {*_moving(packed, jac)}
+    if len(moving) < len(packed.body_names) - 1:
+        for near in _nearby(packed, q):
+            moving.update(_moving(packed, scaled_jacobian(packed, near)[: packed.driver_rows]))
+    return tuple(name for name in packed.body_names if name in moving)
 
 
 def refuse_overdriven(m: Model, packed: Packed, time: float) -> None:

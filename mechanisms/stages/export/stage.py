@@ -59,6 +59,12 @@ def _text(write: Callable[..., Any], timed: bool = False) -> Callable[[Any, floa
     return written
 
 
+def _fmu(solution: Any, _: float) -> Written:
+    from mechanisms.stages.export.fmu.unit import fmu
+
+    return fmu(solution)
+
+
 FORMATS: dict[str, tuple[str, Callable[[Any, float], Written]]] = {
     "csv": (".csv", _csv),
     "parquet": (".parquet", _parquet),
@@ -66,5 +72,6 @@ FORMATS: dict[str, tuple[str, Callable[[Any, float], Written]]] = {
     "dxf": (".dxf", _text(drawings.dxf, timed=True)),
     "mjcf": (".xml", _text(mjcf.mjcf)),
     "urdf": (".urdf", _text(urdf.urdf)),
+    "fmu": (".fmu", _fmu),
 }
 """By name: the ending of the file, and what writes it."""

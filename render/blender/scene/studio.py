@@ -65,7 +65,8 @@ def _workshop(scene: Any, studio: StudioSpec, light: Light) -> list[Any]:
         behind = away / radius + look.wall.away
         if studio.wall is not None:
             behind = (studio.wall - studio.centre[1]) / radius
-        pegboard.build(made[-1], look.wall.colour, behind, right / radius, light.bounce)
+        lamps = lights.lamps_seen_from(made[-1].root, studio, light.softboxes)
+        pegboard.build(made[-1], look.wall.colour, behind, right / radius, light.bounce, lamps)
     if look.vice and studio.wall is None:
         turn = Matrix.Rotation(studio.azimuth, 4, "Z")
         place = turn @ Vector((-0.62 * right, away + BESIDE * radius, 0.0))

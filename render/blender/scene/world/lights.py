@@ -5,9 +5,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from render.blender.scene.nodes import Graph
+from render.blender.scene.world.painted_light import Lamp
 from render.film.scene import StudioSpec
 from render.looks.look import Softbox, Sun
 
@@ -19,13 +21,9 @@ WINDOW_AWAY = 7.0
 def softbox(scene: Any, studio: StudioSpec, box: Softbox) -> Any:
     """An area light of a look."""
     import bpy
-    from mathutils import Matrix, Vector
 
     radius = studio.radius
-    turn = Matrix.Rotation(studio.azimuth, 4, "Z")
-    centre = Vector(studio.centre)
-    place = centre + turn @ (Vector(box.place) * radius)
-    aim = centre + turn @ (Vector(box.aim) * radius)
+    place, aim = _placed_and_aimed(studio, box)
     light = bpy.data.lights.new(box.name, "AREA")
     light.shape = "RECTANGLE"
     light.size, light.size_y = box.size[0] * radius, box.size[1] * radius
@@ -35,6 +33,24 @@ def softbox(scene: Any, studio: StudioSpec, box: Softbox) -> Any:
     if box.fades:
         _fade_to_rim(light)
     return _placed(scene, light, place, aim)
+
+
+def _placed_and_aimed(studio: StudioSpec, box: Softbox) -> tuple[Any, Any]:
+    from mathutils import Matrix, Vector
+
+    turn, centre = Matrix.Rotation(studio.azimuth, 4, "Z"), Vector(studio.centre)
+    return tuple(centre + turn @ (Vector(place) * studio.radius) for place in (box.place, box.aim))  # pyright: ignore[reportReturnType]
+
+
+def lamps_seen_from(root: Any, studio: StudioSpec, boxes: Sequence[Softbox]) -> list[Lamp]:
+    """The lamps of a look in the axes of a thing's ``root``."""
+    back = root.matrix_basis.inverted()
+    lamps = []
+    for box in boxes:
+        place, aim = _placed_and_aimed(studio, box)
+        axis = back.to_3x3() @ (aim - place).normalized()
+        lamps.append(Lamp(tuple(back @ place), tuple(axis), box.power * studio.radius**2, box.colour, box.spread))
+    return lamps
 
 
 def sun(scene: Any, studio: StudioSpec, shining: Sun) -> list[Any]:

@@ -5,45 +5,48 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
-from render.blender.scene.materials import material, new_material
+from render.blender.scene.materials import new_material
 from render.blender.scene.world.ground import glow
+from render.blender.scene.world.painted_light import Lamp, Shine, painted
 from render.blender.scene.world.shapes import Thing
-from render.film.scene import SurfaceSpec
 from render.looks.look import Colour
 
 PITCH, HOLE = 0.135, 0.026
 WIDE, HIGH = 9.0, 6.0
 BESIDE = 0.2
 """From the machine to the first tool on each side."""
-STEEL = SurfaceSpec(colour=(0.48, 0.49, 0.50), finish="brushed", roughness=0.32)
-BLACK = SurfaceSpec(colour=(0.03, 0.03, 0.032), finish="rubber", roughness=0.5)
-RED = SurfaceSpec(colour=(0.40, 0.035, 0.02), finish="plastic", roughness=0.32)
-AMBER = SurfaceSpec(colour=(0.62, 0.30, 0.03), finish="plastic", roughness=0.3)
-BATTEN = (0.42, 0.27, 0.14)
-ASH = SurfaceSpec(colour=(0.50, 0.33, 0.17), finish="wood", roughness=0.45)
+STEEL, BLACK = (0.125, 0.128, 0.132), (0.03, 0.03, 0.032)
+RED, AMBER = (0.40, 0.035, 0.02), (0.62, 0.30, 0.03)
+BATTEN, ASH = (0.42, 0.27, 0.14), (0.50, 0.33, 0.17)
+AROUND = 0.12
+"""Light on the tools that comes from no lamp."""
 
 
-def build(thing: Thing, colour: Colour, away: float, clear: float, bounce: float) -> None:
+def build(thing: Thing, colour: Colour, away: float, clear: float, bounce: float, lamps: Sequence[Lamp]) -> None:
     """The wall at y = ``away`` from the floor up, the origin of ``thing`` at the floor; tools hang beside ``clear``.
 
-    Only the eye sees the tools: so far off their light is not missed. ``bounce``: see Light in render/looks/look.py.
+    Only the eye sees the tools, so far off their light is not missed; that of ``lamps``, in the axes of ``thing``, is
+    painted on them: rays from them took a tenth of a frame. ``bounce``: see Light in render/looks/look.py.
     """
     board = _board(colour, thing.radius, bounce)
     thing.box((-WIDE, away, 0.10), (WIDE, away + 0.05, HIGH), board, 0.0)
     thing.box((-WIDE, away - 0.03, 0.0), (WIDE, away + 0.05, 0.13), _paint(BATTEN), 0.006)
     thing.seen_only = True
     front = away - 0.05
-    steel, black = material(STEEL, "tool"), material(BLACK, "grip")
-    grips = [material(RED, "red grip"), material(AMBER, "amber grip")]
+    steel = painted("tool", STEEL, lamps, AROUND, Shine(7.0, 9.0, (0.85 * thing.radius, 1.75 * thing.radius)))
+    black = painted("grip", BLACK, lamps, AROUND)
+    grips = [painted(f"grip {k}", paint, lamps, AROUND, Shine(0.25)) for k, paint in enumerate((RED, AMBER))]
+    ash = painted("ash", ASH, lamps, AROUND)
     left, right = -clear - BESIDE, clear + BESIDE
     for k in range(4):
         _screwdriver(thing, left - 0.22 * k, front, 1.56 + 0.02 * k, 0.335 + 0.055 * k, steel, grips[k % 2])
-    _square(thing, left - 1.5, front, 1.02, steel, material(ASH, "stock"))
+    _square(thing, left - 1.5, front, 1.02, steel, ash)
     for k, x in enumerate((0.0, 0.20, 0.38, 0.54, 0.68)):
         _spanner(thing, right + x, front, 1.66, 0.78 - 0.09 * k, 0.072 - 0.008 * k, steel)
-    _hammer(thing, right + 1.23, front, 1.55, steel, material(ASH, "shaft"), black)
+    _hammer(thing, right + 1.23, front, 1.55, steel, ash, black)
 
 
 def _board(colour: Colour, radius: float, bounce: float) -> Any:

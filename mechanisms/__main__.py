@@ -42,8 +42,10 @@ def main() -> int | None:
     of.add_argument("name", help="mechanism")
     away = commands.add_parser("export", help="the mechanism and its motion in the file of another program")
     away.add_argument("name", help="mechanism; four-bar and four_bar are one")
-    away.add_argument("--format", default="csv", help="csv, parquet, svg, dxf, mjcf or urdf; csv if not given")
-    away.add_argument("--time", type=float, default=0.0, help="of the pose in a drawing (s); 0 if not given")
+    away.add_argument("--format", default="csv", help="csv, parquet, svg, dxf, mjcf, urdf or step; csv if not given")
+    away.add_argument(
+        "--time", type=float, default=0.0, help="of the pose in a drawing or assembly (s); 0 if not given"
+    )
     looked = commands.add_parser("check", help="what in a model looks as if it was not meant")
     looked.add_argument("name", help="mechanism; four-bar and four_bar are one")
     looked.add_argument("--json", action="store_true", help="for other programs")

@@ -1,1 +1,1 @@
-"""A mechanism and its motion for other programs: tables, drawings of a pose, models of robot simulators."""
+"""A mechanism and its motion for other programs: tables, drawings and an assembly of a pose, models of simulators."""

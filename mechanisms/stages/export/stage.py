@@ -6,7 +6,8 @@ import io
 from collections.abc import Callable
 from typing import Any
 
-from mechanisms.stages.export import drawings, mjcf, urdf
+from mechanisms.stages.export import assembly, drawings, mjcf, urdf
+from mechanisms.stages.export.wanted import Wanted
 from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import stage as solving
 from shared import contract
@@ -21,7 +22,7 @@ Written = tuple[bytes, list[str]]
 
 
 def run(name: str, form: str, time: float = 0.0) -> None:
-    """Solve the mechanism and write it as ``form``; ``time`` (s) is that of the pose in a drawing. Raises UserError."""
+    """Solve the mechanism and write it as ``form``; ``time`` (s) is that of a pose. Raises UserError."""
     name = known_name(name)
     if form not in FORMATS:
         raise UserError(
@@ -32,7 +33,7 @@ def run(name: str, form: str, time: float = 0.0) -> None:
     solution, _ = solving.solve(name, parts)
     suffix, write = FORMATS[form]
     with loading.author_code(name):
-        content, left_out = write(solution, time)
+        content, left_out = write(Wanted(solution, time, out, parts))
     file = out.folder / "export" / f"{name}{suffix}"
     write_bytes(file, content)
     for words in left_out:
@@ -40,36 +41,37 @@ def run(name: str, form: str, time: float = 0.0) -> None:
     say("export", f"{name}: {file}: {len(content) / 1000:.0f} kB")
 
 
-def _csv(solution: Any, _: float) -> Written:
-    return solution.to_frame().to_csv(lineterminator="\n").encode(), []
+def _csv(wanted: Wanted) -> Written:
+    return wanted.solution.to_frame().to_csv(lineterminator="\n").encode(), []
 
 
-def _parquet(solution: Any, _: float) -> Written:
+def _parquet(wanted: Wanted) -> Written:
     content = io.BytesIO()
-    solution.to_frame().reset_index().to_parquet(content, index=False)
+    wanted.solution.to_frame().reset_index().to_parquet(content, index=False)
     return content.getvalue(), []
 
 
-def _text(write: Callable[..., Any], timed: bool = False) -> Callable[[Any, float], Written]:
-    def written(solution: Any, time: float) -> Written:
-        made = write(solution, time) if timed else write(solution)
+def _text(write: Callable[..., Any], timed: bool = False) -> Callable[[Wanted], Written]:
+    def written(wanted: Wanted) -> Written:
+        made = write(wanted.solution, wanted.time) if timed else write(wanted.solution)
         text, left_out = made if isinstance(made, tuple) else (made, [])
         return text.encode(), left_out
 
     return written
 
 
-def _fmu(solution: Any, _: float) -> Written:
+def _fmu(wanted: Wanted) -> Written:
     from mechanisms.stages.export.fmu.unit import fmu
 
-    return fmu(solution)
+    return fmu(wanted.solution)
 
 
-FORMATS: dict[str, tuple[str, Callable[[Any, float], Written]]] = {
+FORMATS: dict[str, tuple[str, Callable[[Wanted], Written]]] = {
     "csv": (".csv", _csv),
     "parquet": (".parquet", _parquet),
     "svg": (".svg", _text(drawings.svg, timed=True)),
     "dxf": (".dxf", _text(drawings.dxf, timed=True)),
+    "step": (".step", assembly.step),
     "mjcf": (".xml", _text(mjcf.mjcf)),
     "urdf": (".urdf", _text(urdf.urdf)),
     "fmu": (".fmu", _fmu),

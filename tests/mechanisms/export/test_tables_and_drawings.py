@@ -15,7 +15,9 @@ from mbsd import Mechanism, constant_rate
 from mbsd.drawing.inks import body_inks
 from mechanisms.stages.export import stage
 from mechanisms.stages.export.drawings import dxf, svg
+from mechanisms.stages.export.wanted import Wanted
 from shared.stage.errors import UserError
+from shared.stage.paths import Out
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +32,7 @@ def solution() -> Any:
 
 @pytest.mark.parametrize("form", ["csv", "parquet"])
 def test_tables_hold_the_motion(solution: Any, form: str) -> None:
-    content, left_out = stage.FORMATS[form][1](solution, 0.0)
+    content, left_out = stage.FORMATS[form][1](Wanted(solution, 0.0, Out("crank"), None))
     table = pandas.read_csv(io.BytesIO(content)) if form == "csv" else pandas.read_parquet(io.BytesIO(content))
     assert left_out == []
     assert np.array_equal(table["t [s]"], solution.t)

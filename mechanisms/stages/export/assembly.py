@@ -1,0 +1,160 @@
+"""The solids as a STEP assembly in one pose (mm): a product for each body, its pieces below, with names and colours.
+
+    mechanism ─► body, where it is at the time ─► body/piece, as its author drew it
+
+Pieces of a body's main material have the body's colour in all pictures, others the ink of theirs.
+"""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from mechanisms.stages.export.wanted import Wanted
+from mechanisms.stages.solve.body_colours import main_material
+from mechanisms.stages.solve.motion_file import to_motion
+from shared.contract import BodyParts, Motion, Parts
+from shared.contract.materials import MATERIALS
+from shared.contract.spanning import with_rods
+from shared.stage.errors import UserError
+
+MM = 1000.0
+GROUND = "ground"
+_TIMESTAMP = re.compile(rb"(FILE_NAME\([^)]*?,)'\d{4}-\d\d-\d\dT[^']*'")
+_DRAWN = ("spring", "damper", "spring_damper", "torsion_spring", "torsion_damper", "belt")
+
+
+def step(wanted: Wanted) -> tuple[bytes, list[str]]:
+    """The file's bytes, in which only the order of the colours may change, and what has no solid.
+
+    Raises UserError where parts or their files are missing.
+    """
+    parts = _parts(wanted)
+    motion = with_rods(to_motion(wanted.solution, parts, "", {}), parts)
+    document = _Document(motion.mechanism)
+    for name, body in parts.bodies.items():
+        inks = _inks(motion, name, body)
+        solids = {f"{name}/{piece}": (_read(wanted, solid.step), inks[piece]) for piece, solid in body.pieces.items()}
+        document.add(name, solids, _pose(motion, name, wanted.row))
+    return document.content(), [*(f"body '{name}' (no solid)" for name in parts.without_solids), *_drawn(motion)]
+
+
+def _parts(wanted: Wanted) -> Parts:
+    if wanted.parts is None:
+        name = wanted.out.name
+        raise UserError(f"{name}: {wanted.out.parts} is missing, and a STEP file is made of it; run: mbsd parts {name}")
+    return wanted.parts
+
+
+def _read(wanted: Wanted, file: str) -> Any:
+    """The shape in a STEP file of the parts."""
+    from OCP.IFSelect import IFSelect_ReturnStatus
+    from OCP.STEPControl import STEPControl_Reader
+
+    path, reader = wanted.out.parts_folder / file, STEPControl_Reader()
+    if not path.is_file() or reader.ReadFile(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        lacks = "cannot be read" if path.is_file() else "is missing"
+        raise UserError(f"{wanted.out.name}: {path} {lacks}; delete {wanted.out.parts.name} beside it and run: "
+                        f"mbsd parts {wanted.out.name}")  # fmt: skip
+    reader.TransferRoots()
+    return reader.OneShape()
+
+
+def _inks(motion: Motion, name: str, body: BodyParts) -> dict[str, str]:
+    """The colour of each piece (``#rrggbb``)."""
+    main = main_material(body)
+    own = motion.bodies[name].colour if name in motion.bodies and body.spans is None else MATERIALS[main].ink
+    return {
+        piece: own if solid.material == main else MATERIALS[solid.material].ink for piece, solid in body.pieces.items()
+    }
+
+
+def _pose(motion: Motion, name: str, row: int) -> tuple[float, float, float]:
+    """Place (mm) and angle (rad) of a body's frame."""
+    if name == GROUND:
+        return 0.0, 0.0, 0.0
+    body = motion.bodies[name]
+    return MM * body.x[row], MM * body.y[row], body.theta[row]
+
+
+def _drawn(motion: Motion) -> list[str]:
+    """What films draw and no part is."""
+    things = {"joint": motion.joints, "force": motion.forces}
+    return [
+        f"{what} '{name}' ({thing.kind}, no solid)"
+        for what, group in things.items()
+        for name, thing in group.items()
+        if thing.kind in _DRAWN
+    ]
+
+
+class _Document:
+    """An assembly of the CAD kernel."""
+
+    def __init__(self, name: str) -> None:
+        from OCP.TCollection import TCollection_ExtendedString
+        from OCP.TDocStd import TDocStd_Document
+        from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+        self._document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
+        self._shapes = XCAFDoc_DocumentTool.ShapeTool_s(self._document.Main())
+        self._colours = XCAFDoc_DocumentTool.ColorTool_s(self._document.Main())
+        self._root = self._shapes.NewShape()
+        _call(self._root, name)
+
+    def add(self, name: str, solids: dict[str, tuple[Any, str]], pose: tuple[float, float, float]) -> None:
+        """Add a body with its solids by name, each with its colour, at a pose (mm, rad)."""
+        body = self._shapes.NewShape()
+        _call(body, name)
+        for piece, (shape, ink) in solids.items():
+            label = self._shapes.AddShape(shape, False)
+            _call(label, piece)
+            _call(self._shapes.AddComponent(body, label, _location(0.0, 0.0, 0.0)), piece)
+            self._paint(label, ink)
+        _call(self._shapes.AddComponent(self._root, body, _location(*pose)), name)
+
+    def _paint(self, label: Any, ink: str) -> None:
+        from OCP.Quantity import Quantity_ColorRGBA
+        from OCP.XCAFDoc import XCAFDoc_ColorType
+
+        colour = Quantity_ColorRGBA()
+        Quantity_ColorRGBA.ColorFromHex_s(ink, colour)
+        self._colours.SetColor(label, colour, XCAFDoc_ColorType.XCAFDoc_ColorGen)
+
+    def content(self) -> bytes:
+        """The file's bytes; when it was written is left out."""
+        import cadquery  # noqa: F401  (it makes the kernel report failures alone)
+        from OCP.STEPCAFControl import STEPCAFControl_Writer
+        from OCP.STEPControl import STEPControl_StepModelType
+
+        self._shapes.UpdateAssemblies()
+        writer = STEPCAFControl_Writer()
+        writer.SetColorMode(True)
+        writer.SetNameMode(True)
+        writer.Transfer(self._document, STEPControl_StepModelType.STEPControl_AsIs)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "assembly.step"
+            writer.Write(str(path))
+            content = path.read_bytes() if path.exists() else b""
+        if not content.rstrip().endswith(b"END-ISO-10303-21;"):
+            raise UserError("the CAD kernel could not write the STEP file; is the disk full?")
+        return _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1)
+
+
+def _call(label: Any, name: str) -> None:
+    from OCP.TCollection import TCollection_ExtendedString
+    from OCP.TDataStd import TDataStd_Name
+
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))
+
+
+def _location(x: float, y: float, angle: float) -> Any:
+    from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
+    from OCP.TopLoc import TopLoc_Location
+
+    turn, move = gp_Trsf(), gp_Trsf()
+    turn.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), angle)
+    move.SetTranslation(gp_Vec(x, y, 0))
+    return TopLoc_Location(move.Multiplied(turn))

@@ -14,6 +14,7 @@ COMMANDS = {
     "compare": "all variants of a mechanism on the same pages",
     "report": "what the run found, in sentences and tables: report.md",
     "glb": "the parts with their motion as one animation, for any glTF viewer",
+    "usd": "the same as a USD stage, .usdc or .usdz",
     "view": "one HTML page with the machine, its forces and its plots",
     "still": "one frame as a picture",
     "contact": "a sheet of twelve frames as contact.png",
@@ -32,7 +33,7 @@ def main() -> int | None:
     for command, text in COMMANDS.items():
         sub = commands.add_parser(command, aliases=[command.replace("-", "_")] if "-" in command else [], help=text)
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
-        if command not in ("plots", "compare", "report", "glb", "view"):
+        if command not in ("plots", "compare", "report", "glb", "usd", "view"):
             sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
             sub.add_argument("--aspect", default="", help=f"{', '.join(ASPECTS)}; {WIDE} if not given")
             sub.add_argument(
@@ -47,6 +48,8 @@ def main() -> int | None:
                 action="store_true",
                 help="one of every mechanism: leave out spectra of what this one has not",
             )
+        if command == "usd":
+            sub.add_argument("--format", default="usd", help="usd (.usdc) or usdz; usd if not given")
         if command == "still":
             sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
     commands.add_parser("gallery", help="docs/gallery/: every mechanism that has a poster")
@@ -89,6 +92,10 @@ def main() -> int | None:
         from render import glb
 
         return glb.run(name)
+    if command == "usd":
+        from render import usd
+
+        return usd.run(name, arguments.format)
     if command == "view":
         from render import view
 

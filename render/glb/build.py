@@ -17,7 +17,7 @@ import numpy as np
 from render.film.film import Film
 from render.film.scene import PieceSpec
 from render.film.solids import read_triangles
-from render.glb.animation import Animation, about_z
+from render.glb.animation import Animation
 from render.glb.belts import add_belt
 from render.glb.document import INDICES, VERTICES, Document
 from render.glb.materials import CLEARCOAT, Paints
@@ -49,6 +49,15 @@ def tubes(film: Film) -> bytes:
 
 
 def _content(film: Film, pieces: Sequence[PieceSpec]) -> bytes:
+    document, animation = scene_of(film, pieces)
+    if any("extensions" in paint for paint in document.json["materials"]):
+        document.json["extensionsUsed"] = [CLEARCOAT]
+    document.add("animations", animation.content())
+    return document.content()
+
+
+def scene_of(film: Film, pieces: Sequence[PieceSpec]) -> tuple[Document, Animation]:
+    """The scene with these pieces and all springs, ropes and belts, and what its nodes do."""
     document, motion = Document(), film.motion
     paints, animation = Paints(document), Animation(document, motion)
     nodes: dict[str, int] = {}
@@ -66,7 +75,7 @@ def _content(film: Film, pieces: Sequence[PieceSpec]) -> bytes:
             x, y, theta = (np.array(series)[animation.kept] for series in (body.x, body.y, body.theta))
             animation.place(nodes[name], np.stack([x, y, 0 * x], axis=1), theta)
     for roller in film.rollers.found if pieces else []:
-        animation.add(children[roller.body, roller.piece], "rotation", about_z(roller.turned[animation.kept]))
+        animation.turn(children[roller.body, roller.piece], roller.turned[animation.kept])
     springs = Springs(document, animation, paints, motion)
     for stretched in film.stretched:
         springs.stretched(stretched)
@@ -83,10 +92,7 @@ def _content(film: Film, pieces: Sequence[PieceSpec]) -> bytes:
     )
     document.add("scenes", {"name": motion.mechanism, "nodes": [root]})
     document.json["scene"] = 0
-    if any("extensions" in paint for paint in document.json["materials"]):
-        document.json["extensionsUsed"] = [CLEARCOAT]
-    document.add("animations", animation.content())
-    return document.content()
+    return document, animation
 
 
 def _mesh(document: Document, piece: PieceSpec, paints: Paints) -> int:

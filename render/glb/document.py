@@ -54,6 +54,16 @@ class Document:
             accessor["min"], accessor["max"] = (edge(axis=0).tolist() for edge in (flat.min, flat.max))
         return self.add("accessors", accessor)
 
+    def values(self, number: int) -> np.ndarray:
+        """The array of an accessor."""
+        accessor = self.json["accessors"][number]
+        kind = next(name for name, code in COMPONENTS.items() if code == accessor["componentType"])
+        shape = next(tail for tail, name in TYPES.items() if name == accessor["type"])
+        start = self.json["bufferViews"][accessor["bufferView"]]["byteOffset"]
+        count = accessor["count"] * int(np.prod(shape, dtype=int))
+        flat = np.frombuffer(self._buffer, np.dtype(kind).newbyteorder("<"), count, start)
+        return flat.reshape(accessor["count"], *shape).astype(kind)
+
     def content(self) -> bytes:
         """The file's bytes."""
         binary = bytes(self._buffer) + b"\0" * (-len(self._buffer) % 4)

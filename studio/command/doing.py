@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 from shared.stage.console import fail
 from shared.stage.paths import mechanism_names
 from shared.system.missing import missing_libraries, sentence
 from studio.command import stages
+from studio.command.options import SCENES
 from studio.command.running import Run
 from studio.command.stages import Stage
 from studio.command.table import Command
@@ -51,6 +53,13 @@ def compare(command: Command, name: str, said: Mapping[str, str], run: Run) -> i
     return run.last(stages.COMPARE.words(name, said))
 
 
+def export(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
+    """The mechanism in a file of another program; a scene needs what pictures need."""
+    if said.get("format") in SCENES:
+        return do(replace(command, name="export a scene", stages=(*stages.SCENERY, stages.USD)), name, said, run)
+    return in_turn(command, name, said, run)
+
+
 def _has_libraries() -> bool:
     missing = missing_libraries()
     if missing:
@@ -58,5 +67,9 @@ def _has_libraries() -> bool:
     return not missing
 
 
-OTHERS: dict[str, Callable[[Command, str, Mapping[str, str], Run], int]] = {"gallery": gallery, "compare": compare}
+OTHERS: dict[str, Callable[[Command, str, Mapping[str, str], Run], int]] = {
+    "gallery": gallery,
+    "compare": compare,
+    "export": export,
+}
 """Commands that are more than their stages in turn."""

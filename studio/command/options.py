@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from render.presets import ASPECTS, PRESETS, WIDE
 
 FORMATS = ("csv", "parquet", "svg", "dxf", "step", "mjcf", "urdf")
-"""Formats of mbsd export."""
+"""Formats of mbsd export that the solved mechanism is written in."""
+SCENES = ("usd", "usdz")
+"""Formats of its scene, which render/usd writes."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ OPTIONS: dict[str, Option] = {
         Option("anyway", "begin though the disk is surely too small", flag=True, valued=True),
         Option("kind", "driven or simulated", default="driven", choices=("driven", "simulated")),
         Option("as", "its name here; that of the file if not given", "NAME"),
-        Option("format", "of the file", default="csv", choices=FORMATS),
+        Option("format", "of the file", default="csv", choices=(*FORMATS, *SCENES)),
         Option("time", "of the pose in a drawing or assembly (s)", "S", default="0"),
         Option("single", "one file in place of a folder", flag=True),
         Option("port", "of 127.0.0.1; any free one if not given", "N"),

@@ -50,6 +50,7 @@ REPORT = Stage("render", "report")
 PLOTS = Stage("render", "plots", ("spectra",))
 COMPARE = Stage("render", "compare", ("spectra",))
 GLB = Stage("render", "glb", solids=True)
+USD = Stage("render", "usd", ("format",), solids=True)
 VIEW = Stage("render", "view")
 POSTER, CONTACT, FRAMES, FILM, SCENE, SCENE_UI = (
     Stage("render", name, _PICTURE, solids=True)

@@ -9,6 +9,7 @@ import sys
 import pytest
 
 from mechanisms.stages.export.stage import FORMATS
+from render import usd
 from shared.stage.paths import ROOT
 from studio.command import completion
 from studio.command.main import parser
@@ -86,5 +87,5 @@ def test_bash_completes_commands_options_and_machines(tmp_path) -> None:
 
 
 def test_formats_and_settings_are_those_that_are_there() -> None:
-    assert OPTIONS["format"].choices == tuple(FORMATS)
+    assert OPTIONS["format"].choices == (*FORMATS, *usd.FORMATS)
     assert {name for name, option in OPTIONS.items() if option.kept} <= set(Settings.__struct_fields__)

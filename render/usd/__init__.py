@@ -1,0 +1,57 @@
+"""OpenUSD: ``python -m render usd NAME`` writes the scene of the GLB as a stage: .usdc, or .usdz for Quick Look."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from render.film.inputs import read_film
+from shared.stage.console import say
+from shared.stage.errors import UserError
+from shared.stage.files import write_bytes
+from shared.stage.paths import Out
+from shared.stage.suggestions import did_you_mean
+
+FORMATS = {"usd": ".usdc", "usdz": ".usdz"}
+"""By name: the ending of the file."""
+
+
+def run(name: str, form: str = "usd") -> None:
+    """Write out/<name>/export/<name>.usdc, or .usdz. Raises UserError where motion, parts, shot or OpenUSD are missing,
+    and for a format that is neither.
+    """
+    if form not in FORMATS:
+        raise UserError(
+            f"there is no format {form!r}; choose one of: {', '.join(FORMATS)}{did_you_mean(form, FORMATS)}"
+        )
+    out = Out(name)
+    _refuse_without_usd(out.name)
+    from render.usd.scene import stage_of
+
+    film = read_film(out)
+    path = out.folder / "export" / f"{out.name}{FORMATS[form]}"
+    write_bytes(path, content(stage_of(film), out.name, form))
+    seconds = film.motion.time[-1] - film.motion.time[0]
+    say("export", f"{out.name}: {path}: {seconds:.4g} s, {path.stat().st_size / 1e6:.1f} MB")
+
+
+def content(stage: Any, name: str, form: str) -> bytes:
+    """The bytes of a stage's file."""
+    from pxr import Sdf, UsdUtils
+
+    with tempfile.TemporaryDirectory() as folder:
+        layer, packed = (Path(folder) / f"{name}{ending}" for ending in FORMATS.values())
+        stage.Export(str(layer), addSourceFileComment=False)
+        if form == "usdz":
+            UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(layer)), str(packed))
+        return (packed if form == "usdz" else layer).read_bytes()
+
+
+def _refuse_without_usd(name: str) -> None:
+    try:
+        import pxr  # noqa: F401
+    except ImportError:
+        raise UserError(
+            f"{name}: OpenUSD is not installed; run: pip install 'mbsd[usd]', or pip install usd-core"
+        ) from None

@@ -42,7 +42,9 @@ def main() -> int | None:
     of.add_argument("name", help="mechanism")
     away = commands.add_parser("export", help="the mechanism and its motion in the file of another program")
     away.add_argument("name", help="mechanism; four-bar and four_bar are one")
-    away.add_argument("--format", default="csv", help="csv, parquet, svg, dxf, mjcf, urdf or step; csv if not given")
+    away.add_argument(
+        "--format", default="csv", help="csv, parquet, svg, dxf, step, mjcf, urdf or modelica; csv if not given"
+    )
     away.add_argument(
         "--time", type=float, default=0.0, help="of the pose in a drawing or assembly (s); 0 if not given"
     )

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from render.presets import ASPECTS, PRESETS, WIDE
 
-FORMATS = ("csv", "parquet", "svg", "dxf", "step", "mjcf", "urdf")
+FORMATS = ("csv", "parquet", "svg", "dxf", "step", "mjcf", "urdf", "modelica")
 """Formats of mbsd export that the solved mechanism is written in."""
 SCENES = ("usd", "usdz")
 """Formats of its scene, which render/usd writes."""

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from mechanisms.stages.export import assembly, drawings, mjcf, urdf
+from mechanisms.stages.export.modelica.text import modelica
 from mechanisms.stages.export.wanted import Wanted
 from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import stage as solving
@@ -75,5 +76,6 @@ FORMATS: dict[str, tuple[str, Callable[[Wanted], Written]]] = {
     "mjcf": (".xml", _text(mjcf.mjcf)),
     "urdf": (".urdf", _text(urdf.urdf)),
     "fmu": (".fmu", _fmu),
+    "modelica": (".mo", _text(modelica)),
 }
 """By name: the ending of the file, and what writes it."""

@@ -1,0 +1,1 @@
+"""A mechanism as a model in Modelica, of the library PlanarMechanics."""

@@ -12,7 +12,7 @@ compile() {
         --no-annotate --no-header "$@" >/dev/null
 }
 
-compile --extra pandas --extra studio --extra dev -o requirements.lock "$@"
+compile --extra pandas --extra studio --extra docs --extra dev -o requirements.lock "$@"
 # The peers are added to the environment, so they must live with the versions above.
 sed -n 's/^\([A-Za-z0-9._-]*==[^ ;]*\).*/\1/p' requirements.lock >"$constraints"
 compile --extra bench --constraint "$constraints" -o requirements-bench.lock "$@"

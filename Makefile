@@ -96,7 +96,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers keep-numbers record-numbers schema docs study-engines study-run-up readme-loop integrators wheel lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers keep-numbers record-numbers schema docs site study-engines study-run-up readme-loop integrators wheel lock clean clean-all always
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
@@ -300,10 +300,14 @@ schema: install ## write docs/schema/ from shared/contract/ and the solver's joi
 	@$(PYTHON) -m tools.schema
 	@$(PYTHON) -m mbsd.saving.schema docs/schema/model.schema.json
 
-docs: install ## write docs/theory.md and the map of rooms from docstrings, and draw the pictures of docs/
+docs: install ## docs/theory.md and the map of rooms from docstrings, the pictures of docs/, and the site
 	@$(PYTHON) tools/theory.py
 	@$(PYTHON) tools/rooms.py
 	@$(PYTHON) -m tools.figures
+	@$(PYTHON) -m tools.site
+
+site: install ## the documents and all names of mbsd as pages, with a search, to read without a network: out/site/
+	@$(PYTHON) -m tools.site
 
 study-engines: install ## which bank angle suits which V engine: out/engines/ and the tables of docs/engines.md
 	$(ALL_KERNELS)

@@ -1,0 +1,1 @@
+"""Pages of the public names of mbsd, from what Python says of them: signatures and docstrings."""

@@ -300,10 +300,11 @@ schema: install ## write docs/schema/ from shared/contract/ and the solver's joi
 	@$(PYTHON) -m tools.schema
 	@$(PYTHON) -m mbsd.saving.schema docs/schema/model.schema.json
 
-docs: install ## docs/theory.md and the map of rooms from docstrings, the pictures of docs/, and the site
+docs: install ## docs/theory.md and the map of rooms from docstrings, pictures, the lecture's outputs, the site
 	@$(PYTHON) tools/theory.py
 	@$(PYTHON) tools/rooms.py
 	@$(PYTHON) -m tools.figures
+	@$(PYTHON) -m tools.lecture
 	@$(PYTHON) -m tools.site
 
 site: install ## the documents and all names of mbsd as pages, with a search, to read without a network: out/site/

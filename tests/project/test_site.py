@@ -98,10 +98,15 @@ def test_a_notebook_is_its_text_code_and_outputs(tmp_path: Path) -> None:
         {"cell_type": "code", "source": ["print(1)"], "outputs": [{"text": ["1\n"]}, {"data": {"image/svg+xml": svg}}]},
     ]
     (tmp_path / "a.ipynb").write_text(json.dumps({"cells": cells}))
-    page = page_of_notebook(tmp_path / "a.ipynb")
+    page, pictures = page_of_notebook(tmp_path / "a.ipynb")
     assert page.startswith("# Title\n\n[a.ipynb](a.ipynb) is this page as a notebook.\n")
-    assert "```python\nprint(1)\n```\n\n```text\n1\n```" in page
-    assert page.count("data:image/svg+xml;base64,") == 2
+    assert "```python\nprint(1)\n```\n\n``` { .text .printed }\n1\n```" in page
+    assert list(pictures) == ["a_1.svg", "a_1_dark.svg"]
+    assert pictures["a_1.svg"] == svg.encode()
+    assert b"#0b62a8" not in pictures["a_1_dark.svg"]
+    assert for_both_themes(page).endswith(
+        '<img class="on-dark" loading="lazy" alt="What the cell draws" src="a_1_dark.svg"></p>\n'
+    )
 
 
 def test_every_public_name_is_on_one_page_of_the_reference() -> None:

@@ -43,11 +43,18 @@ def stage(root: Path, folder: Path) -> None:
             _copy(path, folder / path.relative_to(root))
         if path.suffix == ".ipynb":
             _copy(path, folder / path.relative_to(root))
-            _write(folder / path.relative_to(root).with_suffix(".md"), for_both_themes(page_of_notebook(path)))
+            _stage_notebook(path, folder / path.relative_to(root).parent)
     for source in sorted(_with_contents(root, wanted)):
         page = page_of_folder(root, source) if (root / source).is_dir() else page_of_source(root, source)
         _write(folder / place_of(root, source), page)
     shutil.copytree(ASSETS, folder / "assets")
+
+
+def _stage_notebook(path: Path, folder: Path) -> None:
+    text, pictures = page_of_notebook(path)
+    _write(folder / f"{path.stem}.md", for_both_themes(text))
+    for name, picture in pictures.items():
+        (folder / name).write_bytes(picture)
 
 
 def linked_page(text: str, page: Path, root: Path, pages: list[Path]) -> tuple[str, set[Path]]:

@@ -14,7 +14,7 @@ from shared.stage.paths import ROOT
 
 SETTINGS = "svg.hashsalt: mbsd\nsvg.fonttype: path\npath.simplify_threshold: 0.1\n"
 KEPT = ("image/svg+xml", "text/plain")
-"""Of what a cell shows, the first of these that there is."""
+"""Kinds of output, of which the first that a cell has is kept."""
 PATH = re.compile(r'(?<= d=")[^"]*(?=")')
 LONG = re.compile(r"-?\d+\.\d{2,}")
 LIMIT = 300

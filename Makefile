@@ -96,7 +96,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers keep-numbers record-numbers schema docs site study-engines study-run-up readme-loop integrators wheel lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers keep-numbers record-numbers schema docs site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
@@ -329,6 +329,9 @@ integrators: install ## measure the integrators again, for docs/integrators.md: 
 
 wheel: install ## mbsd with all rooms as sdist and wheel: dist/; KERNELS=1: a wheel with compiled kernels, too
 	@$(PYTHON) -m tools.wheel $${KERNELS:+--kernels}
+
+release: install ## what must hold before a tag, looked at in a clean clone: archives, hashes, NOTES.md in dist/
+	@$(PYTHON) -m tools.release
 
 lock: ## choose versions anew within pyproject.toml: requirements.lock, requirements-bench.lock
 	@sh tools/lock.sh

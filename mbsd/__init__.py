@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from mbsd.studies.study import study
     from mbsd.synthesis.fit_path import PathFit, SynthesisError, fit_path
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 __all__ = [
     "STANDARD_GRAVITY",

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+import mbsd
 from shared.stage.paths import ROOT
 from tools.wheel.archives import build, build_with_kernels
 
@@ -133,7 +134,7 @@ def _compiled_before(folder: Path, sources: Path) -> None:
 def test_a_wheel_with_kernels_compiles_nothing_and_writes_nothing(empty: Path, tmp_path: Path) -> None:
     wheel = build_with_kernels(ROOT, tmp_path / "dist", _compiled_before)
     version = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    assert wheel.name.startswith(f"mbsd-0.1.0-{version}-{version}-")
+    assert wheel.name.startswith(f"mbsd-{mbsd.__version__}-{version}-{version}-")
     with zipfile.ZipFile(wheel) as archive:
         assert "mbsd/kernels/made_for.json" in archive.namelist()
     package = _installed(empty, wheel)

@@ -21,7 +21,7 @@ from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from tools.wheel.kernels import compile_into
 
-BESIDE = ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE")
+BESIDE = ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE", "NOTICE.md")
 EARLIEST = 315532800
 """s: 1980, before which zip files have no times."""
 ROOMS = ("mechanisms", "render", "shared", "studio")

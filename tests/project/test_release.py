@@ -154,7 +154,7 @@ def test_archives_that_differ_are_named_with_their_members(tmp_path: Path) -> No
     first, same = wheel(tmp_path / "1" / "m.whl", "x = 1"), wheel(tmp_path / "2" / "m.whl", "x = 1")
     assert differences([first], [same]) == []
     assert differences([first], [wheel(tmp_path / "3" / "m.whl", "x = 2")]) == ["m.whl (m/a.py)"]
-    assert differences([first], [wheel(tmp_path / "4" / "m.whl", "x = 1", (1990, 1, 1, 0, 0, 0))]) == ["m.whl"]
+    assert differences([first], [wheel(tmp_path / "4" / "m.whl", "x = 1", (1990, 1, 1, 0, 0, 0))]) == ["m.whl (m/a.py)"]
     assert differences([first], []) == ["m.whl"]
 
 

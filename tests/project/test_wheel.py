@@ -96,6 +96,12 @@ def test_the_same_sources_give_the_same_bytes(archives: list[Path], tmp_path: Pa
     assert [file.read_bytes() for file in again] == [file.read_bytes() for file in archives]
 
 
+def test_the_umask_of_whoever_builds_is_not_in_the_archives(archives: list[Path], tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "tools.wheel", "--out", str(tmp_path)]
+    subprocess.run(command, cwd=ROOT, umask=0o077, capture_output=True, check=True)
+    assert [(tmp_path / file.name).read_bytes() for file in archives] == [file.read_bytes() for file in archives]
+
+
 def test_the_sdist_builds_the_wheel(archives: list[Path], tmp_path: Path) -> None:
     sdist, wheel = archives
     with tarfile.open(sdist) as archive:

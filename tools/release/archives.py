@@ -63,9 +63,10 @@ def _members(first: Path, second: Path) -> str:
     return f" ({', '.join(names[:5])})" if names else ""
 
 
-def _checksums(wheel: Path) -> dict[str, int]:
+def _checksums(wheel: Path) -> dict[str, object]:
+    """Content, time and mode of each file."""
     with zipfile.ZipFile(wheel) as archive:
-        return {entry.filename: entry.CRC for entry in archive.infolist()}
+        return {entry.filename: (entry.CRC, entry.date_time, entry.external_attr) for entry in archive.infolist()}
 
 
 def _hash(path: Path) -> str:

@@ -88,7 +88,9 @@ def _backend(hook: str, sources: Path, settings: dict[str, list[str]] | None = N
     code = f"from setuptools.build_meta import *; print({hook}('dist', config_settings={settings!r}))"
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     environment["SOURCE_DATE_EPOCH"] = str(_time())
-    done = subprocess.run([sys.executable, "-c", code], cwd=sources, env=environment, capture_output=True, text=True)
+    command = [sys.executable, "-c", code]
+    # A wheel keeps the modes of its files, and these follow the umask.
+    done = subprocess.run(command, cwd=sources, env=environment, umask=0o022, capture_output=True, text=True)
     if done.returncode != 0:
         raise UserError(f"wheel: setuptools could not do {hook}: {done.stderr.strip()[-500:]}")
     return sources / "dist" / done.stdout.splitlines()[-1]

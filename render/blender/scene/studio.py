@@ -72,5 +72,5 @@ def _workshop(scene: Any, studio: StudioSpec, light: Light) -> list[Any]:
         place = turn @ Vector((-0.62 * right, away + BESIDE * radius, 0.0))
         made.append(Thing(scene, "vice", radius, floor + place, studio.azimuth + 0.5))
         made[-1].seen_only = True
-        vice.build(made[-1])
+        vice.build(made[-1], lights.lamps_seen_from(made[-1].root, studio, light.softboxes))
     return [thing.root for thing in made]

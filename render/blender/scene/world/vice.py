@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
-from render.blender.scene.materials import material
+from render.blender.scene.world.painted_light import Lamp, Shine, painted
 from render.blender.scene.world.shapes import Thing
-from render.film.scene import SurfaceSpec
 
-ENAMEL = SurfaceSpec(colour=(0.035, 0.085, 0.075), finish="cast", roughness=0.38)
-STEEL = SurfaceSpec(colour=(0.50, 0.51, 0.52), finish="brushed", roughness=0.3)
+ENAMEL, STEEL = (0.030, 0.073, 0.064), (0.10, 0.102, 0.106)
+AROUND = 0.04
+"""Light that comes from no lamp."""
 
 
-def build(thing: Thing, scale: float = 1.0) -> None:
-    """On the floor at the origin of ``thing``, its screw towards -y; about 0.5 wide and 0.45 high at scale 1."""
-    enamel, steel = material(ENAMEL, "enamel"), material(STEEL, "cheek")
+def build(thing: Thing, lamps: Sequence[Lamp], scale: float = 1.0) -> None:
+    """On the floor at the origin of ``thing``, its screw towards -y; about 0.5 wide and 0.45 high at scale 1.
+
+    ``lamps`` are in the axes of ``thing``; their light is painted on it (painted_light.py).
+    """
+    enamel = painted("enamel", ENAMEL, lamps, AROUND, Shine(0.9, 20.0))
+    steel = painted("cheek", STEEL, lamps, AROUND, Shine(5.0, 9.0))
 
     def box(low: Any, high: Any, paint: Any, bevel: float) -> None:
         thing.box(tuple(scale * c for c in low), tuple(scale * c for c in high), paint, scale * bevel)

@@ -120,8 +120,19 @@ class Moment:
             for c in self.file.components.values():
                 if c.kind in ("FixedTranslation", "FixedRotation"):
                     self._rigid(c, places)
+            self._slotted(places)
         assert set(places) == set(self.file.frames)
         return places
+
+    def _slotted(self, places: dict[str, Array]) -> None:
+        """What slides between a guide and a pin: where the pin is, turned as the guide."""
+        pairs = ((a.partition(".")[0], b.partition(".")[0]) for a, b in self.file.connections if a.endswith("frame_b"))
+        for guide, pin in pairs:
+            kinds = [self.file.components[name].kind for name in (guide, pin)]
+            pin_b, guide_a = f"{pin}.frame_b", f"{guide}.frame_a"
+            if kinds == ["Prismatic", "Revolute"] and pin_b in places and guide_a in places:
+                between = np.array([*places[pin_b][:2], places[guide_a][2]])
+                places |= {f"{guide}.frame_b": between, f"{pin}.frame_a": between}
 
     @staticmethod
     def _rigid(c: Component, places: dict[str, Array]) -> None:
@@ -202,7 +213,7 @@ class Moment:
         x, y = c.number("r")
         e = np.array([math.cos(phi) * x - math.sin(phi) * y, math.sin(phi) * x + math.cos(phi) * y])
         assert [way[0] * e[1] - way[1] * e[0], way[2]] == pytest_approx(np.zeros(2)), c.name
-        return [*self._rigid_balance(c, u), a[:2] @ e]
+        return [*self._rigid_balance(c, u), float(a[:2] @ e)]
 
     def _written(self, c: Component, u: dict[str, float]) -> list[float]:
         """Residuals of the equations in the text: those of places must hold, those with flows are returned."""

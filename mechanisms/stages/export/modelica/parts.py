@@ -133,7 +133,7 @@ class Parts:
 
     def _sliding(self, joint: Any) -> dict[str, str]:
         return {"r": vector(math.cos(joint.i.angle), math.sin(joint.i.angle))} | self._variable(
-            joint, "s", "v", lambda poses: float(along(poses, joint)[0])
+            joint, "s", "v", lambda poses: along(poses, joint)[0]
         )
 
     def _variable(self, joint: Any, value: str, rate: str, of: Callable[[Any], float]) -> dict[str, str]:

@@ -86,7 +86,7 @@ def _start_of(body: Any, start: Start, picked: set[tuple[str, str]]) -> dict[str
     """Modifiers of a body: where its centre of mass is, as a guess or to start from."""
     at = body.at(*body.com)
     x, y = place(start.poses, at)
-    rates = [start.rate(lambda poses, k=k: float(place(poses, at)[k])) for k in (0, 1)]
+    rates = [start.rate(lambda poses, k=k: place(poses, at)[k]) for k in (0, 1)]
     theta, omega = (float(values[body.name][2]) for values in (start.poses, start.rates))
     fixed = [(body.name, axis) in picked for axis in ("x", "y", "theta")]
     pair = f", fixed={{{', '.join(str(is_so).lower() for is_so in fixed[:2])}}}" if any(fixed[:2]) else ""

@@ -213,7 +213,7 @@ certificates: install ## certificates, so that a cluster lets nobody else in: CL
 new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
 	@$(MBSD) new -- "$$NAME"
 
-export-%: install always ## files of other programs: tables, drawings, STEP, USD, MuJoCo, URDF: FORMAT=mjcf TIME=0.5
+export-%: install always ## files of other programs: tables, drawings, STEP, USD, MuJoCo, URDF, Modelica: FORMAT=mjcf TIME=0.5
 	@$(MBSD) export -- "$$MECHANISM"
 
 import: install ## a mechanism of Linkage, PMKS, pylinkage or Ondsel, or a DXF sketch: FILE=walker.linkage2 AS=walker

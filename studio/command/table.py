@@ -123,7 +123,7 @@ COMMANDS: dict[str, Command] = {
                 (Stage("mechanisms", "new", ("kind", "single")),), of="new", example="mbsd new excavator"),
         Command("import", "a mechanism of Linkage, PMKS, pylinkage or Ondsel, or a DXF sketch",
                 (Stage("studio.imports", options=("as", "single")),), of="file", example="mbsd import walker.linkage2"),
-        Command("export", "files of other programs: tables, drawings, STEP, USD, MuJoCo, URDF",
+        Command("export", "files of other programs: tables, drawings, STEP, USD, MuJoCo, URDF, Modelica",
                 (stages.PARTS_IF_ANY, Stage("mechanisms", "export", ("format", "time")),),
                 example="mbsd export excavator --format mjcf"),
         Command("list", "the mechanisms and what is made of them",

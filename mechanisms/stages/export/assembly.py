@@ -19,6 +19,7 @@ from shared.contract import BodyParts, Motion, Parts
 from shared.contract.materials import MATERIALS
 from shared.contract.spanning import with_rods
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 
 MM = 1000.0
 GROUND = "ground"
@@ -44,7 +45,9 @@ def step(wanted: Wanted) -> tuple[bytes, list[str]]:
 def _parts(wanted: Wanted) -> Parts:
     if wanted.parts is None:
         name = wanted.out.name
-        raise UserError(f"{name}: {wanted.out.parts} is missing, and a STEP file is made of it; run: mbsd parts {name}")
+        raise UserError(
+            f"{name}: {wanted.out.parts} is missing, and a STEP file is made of it; run {to_run('parts', name)}"
+        )
     return wanted.parts
 
 
@@ -56,8 +59,8 @@ def _read(wanted: Wanted, file: str) -> Any:
     path, reader = wanted.out.parts_folder / file, STEPControl_Reader()
     if not path.is_file() or reader.ReadFile(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         lacks = "cannot be read" if path.is_file() else "is missing"
-        raise UserError(f"{wanted.out.name}: {path} {lacks}; delete {wanted.out.parts.name} beside it and run: "
-                        f"mbsd parts {wanted.out.name}")  # fmt: skip
+        raise UserError(f"{wanted.out.name}: {path} {lacks}; delete {wanted.out.parts.name} beside it and run "
+                        f"{to_run('parts', wanted.out.name)}")  # fmt: skip
     reader.TransferRoots()
     return reader.OneShape()
 

@@ -107,10 +107,10 @@ def test_lengths_are_millimetres(solution: Any, out: Out, parts: Parts) -> None:
 
 
 def test_missing_parts_are_refused_with_what_makes_them(solution: Any, out: Out, parts: Parts) -> None:
-    with pytest.raises(UserError, match=r"parts\.json is missing.*run: mbsd parts crane"):
+    with pytest.raises(UserError, match=r"parts\.json is missing.*run make parts-crane"):
         step(Wanted(solution, 0.0, out, None))
     (out.parts_folder / parts.bodies["crank"].pieces["pin"].step).unlink()
-    with pytest.raises(UserError, match=r"pin\.step is missing; delete parts\.json.*run: mbsd parts crane"):
+    with pytest.raises(UserError, match=r"pin\.step is missing; delete parts\.json.*run make parts-crane"):
         step(Wanted(solution, 0.0, out, parts))
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -53,39 +54,53 @@ def rows(joint: Any, poses: Poses, size: float) -> list[float]:
     raise ValueError(joint.kind.name)
 
 
-def coordinates(joints: Sequence[Any], loose: Sequence[str], size: float) -> dict[Key, Callable[[Poses], float]]:
-    """Coordinates of joints, and of bodies that no joint with a coordinate holds."""
-    out: dict[Key, Callable[[Poses], float]] = {}
+@dataclass(frozen=True)
+class Function:
+    """Something that depends on the poses of some bodies alone."""
+
+    bodies: tuple[str, ...]
+    value: Callable[[Poses], Sequence[float]]
+
+
+def coordinates(joints: Sequence[Any], loose: Sequence[str], size: float) -> dict[Key, Function]:
+    """Coordinates of joints, and of bodies that no joint with a coordinate holds; free of dimension."""
+    out: dict[Key, Function] = {}
     for joint in joints:
         if joint.kind.name in ("revolute", "pin_in_slot"):
-            out[joint.name, "phi"] = lambda poses, joint=joint: angle(poses, joint)
+            out[joint.name, "phi"] = Function(joint.bodies, lambda poses, joint=joint: [angle(poses, joint)])
         if joint.kind.name in ("prismatic", "pin_in_slot"):
-            out[joint.name, "s"] = lambda poses, joint=joint: along(poses, joint)[0] / size
+            out[joint.name, "s"] = Function(joint.bodies, lambda poses, joint=joint: [along(poses, joint)[0] / size])
     for body in loose:
         for k, (axis, scale) in enumerate((("x", size), ("y", size), ("theta", 1.0))):
-            out[body, axis] = lambda poses, body=body, k=k, scale=scale: poses[body][k] / scale
+            out[body, axis] = Function((body,), lambda poses, body=body, k=k, scale=scale: [poses[body][k] / scale])
     return out
 
 
 def chosen(start: Start, held: Sequence[Any], loose: Sequence[str], size: float) -> set[Key]:
     """The coordinates to start from, of a model that these joints and drivers hold."""
-    names = [name for name in start.poses if name != GROUND]
     wanted = coordinates(held, loose, size)
-
-    def by_bodies(value: Callable[[Poses], Sequence[float]]) -> Array:
-        columns = []
-        for name in names:
-            for k, scale in enumerate((size, size, 1.0)):
-                step = np.eye(3)[k] * STEP * scale
-                ahead, back = (value({**start.poses, name: start.poses[name] + sign * step}) for sign in (1, -1))
-                columns.append((np.array(ahead) - np.array(back)) / (2 * STEP))
-        return np.stack(columns, axis=1)
-
-    free = _null(by_bodies(lambda poses: [row for joint in held for row in rows(joint, poses, size)]))
+    joints = [Function(joint.bodies, lambda poses, joint=joint: rows(joint, poses, size)) for joint in held]
+    free = _null(_jacobian(start, joints, size))
     if not free.shape[1] or not wanted:
         return set()
-    moved = by_bodies(lambda poses: [value(poses) for value in wanted.values()]) @ free
+    moved = _jacobian(start, list(wanted.values()), size) @ free
     return {list(wanted)[k] for k in _independent(moved)}
+
+
+def _jacobian(start: Start, functions: Sequence[Function], size: float) -> Array:
+    """(m, 3 bodies): all values by the bodies' coordinates, by differences."""
+    names = [name for name in start.poses if name != GROUND]
+    columns = {name: 3 * k for k, name in enumerate(names)}
+    blocks: list[Array] = [np.zeros((0, 3 * len(names)))]
+    for function in functions:
+        block = np.zeros((len(function.value(start.poses)), 3 * len(names)))
+        for name in set(function.bodies) - {GROUND}:
+            for k, scale in enumerate((size, size, 1.0)):
+                step = np.eye(3)[k] * STEP * scale
+                ahead, back = (function.value({**start.poses, name: start.poses[name] + s * step}) for s in (1, -1))
+                block[:, columns[name] + k] = (np.array(ahead) - np.array(back)) / (2 * STEP)
+        blocks.append(block)
+    return np.concatenate(blocks)
 
 
 def _null(matrix: Array) -> Array:

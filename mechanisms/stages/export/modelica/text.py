@@ -66,11 +66,11 @@ def _is_said(force: Any) -> bool:
 
 def _loose(m: Any, joints: list[Any]) -> list[str]:
     """Bodies whose place follows from no coordinate of a joint."""
-    held, found = {GROUND}, True
-    while found:
+    held, more = {GROUND}, {GROUND}
+    while more:
         ends = [joint.bodies for joint in joints if joint.kind.name in COORDINATED]
-        found = {name for pair in ends if held & set(pair) for name in pair} - held
-        held |= found
+        more = {name for pair in ends if held & set(pair) for name in pair} - held
+        held |= more
     return [name for name in m.bodies if name not in held]
 
 

@@ -143,7 +143,18 @@ class _Document:
             content = path.read_bytes() if path.exists() else b""
         if not content.rstrip().endswith(b"END-ISO-10303-21;"):
             raise UserError("the CAD kernel could not write the STEP file; is the disk full?")
-        return _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1)
+        return _in_letters_of_step(_TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1))
+
+
+def _in_letters_of_step(content: bytes) -> bytes:
+    """Letters beyond ASCII as ISO 10303-21 (6.4.3) has them; the kernel writes UTF-8."""
+
+    def hexadecimal(letters: re.Match[str]) -> str:
+        short = max(letters[0]) < "\U00010000"
+        code = letters[0].encode("utf-16-be" if short else "utf-32-be").hex().upper()
+        return f"\\X{2 if short else 4}\\{code}\\X0\\"
+
+    return re.sub(r"[^\x00-\x7f]+", hexadecimal, content.decode()).encode()
 
 
 def _call(label: Any, name: str) -> None:

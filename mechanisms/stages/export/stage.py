@@ -32,6 +32,8 @@ def run(name: str, form: str, time: float = 0.0) -> None:
     out = Out(name)
     parts = contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
     solution, _ = solving.solve(name, parts)
+    if form in POSED:
+        _warn_of_time(name, time, float(solution.t[0]), float(solution.t[-1]))
     suffix, write = FORMATS[form]
     with loading.author_code(name):
         content, left_out = write(Wanted(solution, time, out, parts))
@@ -40,6 +42,12 @@ def run(name: str, form: str, time: float = 0.0) -> None:
     for words in left_out:
         warn("export", f"{name}: left out: {words}")
     say("export", f"{name}: {file}: {len(content) / 1000:.0f} kB")
+
+
+def _warn_of_time(name: str, time: float, first: float, last: float) -> None:
+    if time and not first <= time <= last:
+        nearest = first if time < first else last
+        warn("export", f"{name}: the motion is from {first:g} to {last:g} s; the pose is that of {nearest:g} s")
 
 
 def _csv(wanted: Wanted) -> Written:
@@ -79,3 +87,5 @@ FORMATS: dict[str, tuple[str, Callable[[Wanted], Written]]] = {
     "modelica": (".mo", _text(modelica)),
 }
 """By name: the ending of the file, and what writes it."""
+POSED = ("svg", "dxf", "step")
+"""Those of one pose."""

@@ -27,7 +27,7 @@ from shared.stage.paths import Out
 BOXES = {
     "ground": {"base": ((-20, -30, -5), (160, 10, 0), "aluminium_black")},
     "crank": {"disc": ((-5, -5, 2), (45, 5, 8), "aluminium_orange"), "pin": ((38, -2, 0), (42, 2, 12), "steel")},
-    "rocker": {"arm": ((-5, -5, 2), (95, 5, 8), "aluminium_blue")},
+    "rocker": {"ärm ж": ((-5, -5, 2), (95, 5, 8), "aluminium_blue")},
     "link": {"rod": ((-4, -4, 12), (124, 4, 16), "aluminium")},
 }
 """Corners (mm) and material of the pieces; the link is no body of the model but a rod between two places."""
@@ -96,10 +96,11 @@ def test_names_and_colours_are_those_of_all_pictures(solution: Any, out: Out, pa
         "ground/base": MATERIALS["aluminium_black"].ink,
         "crank/disc": motion.bodies["crank"].colour,
         "crank/pin": MATERIALS["steel"].ink,
-        "rocker/arm": motion.bodies["rocker"].colour,
+        "rocker/ärm ж": motion.bodies["rocker"].colour,
         "link/rod": MATERIALS["aluminium"].ink,
     }
     assert left_out == ["force 'pull' (spring, no solid)"]
+    assert content.isascii()
 
 
 def test_lengths_are_millimetres(solution: Any, out: Out, parts: Parts) -> None:

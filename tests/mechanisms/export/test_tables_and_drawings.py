@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -62,3 +63,10 @@ def test_a_drawing_is_one_to_one_in_millimetres_at_its_time(solution: Any) -> No
 def test_an_unknown_format_is_refused_with_the_known_ones() -> None:
     with pytest.raises(UserError, match=r"no format 'mjfc' to export; choose one of: csv.*did you mean 'mjcf'"):
         stage.run("four_bar", "mjfc")
+
+
+def test_a_time_that_the_motion_has_not_is_reported(out_root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    stage.run("four_bar", "svg", 0.5)
+    assert "warning" not in capsys.readouterr().err
+    stage.run("four_bar", "svg", 99.0)
+    assert "four_bar: the motion is from 0 to 1 s; the pose is that of 1 s" in capsys.readouterr().err

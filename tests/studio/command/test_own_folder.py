@@ -98,6 +98,11 @@ def test_settings_are_said_once_and_found_from_below(folder: Path) -> None:
     assert planned.stdout.splitlines()[-1] == "render film arm --preset=draft --aspect=1:1", planned.stderr
     assert "--preset=final" in mbsd("film", "wheel", "--preset", "final", "--plan", at=folder).stdout
     assert "--bed=180x180" in mbsd("print", "wheel", "--plan", at=folder).stdout
+    scene = mbsd("export", "wheel", "--format", "usdz", "--plan", at=folder).stdout.splitlines()
+    assert [line.split()[1] for line in scene] == ["parts", "solve", "shot", "usd"]
+    assert scene[-1] == "render usd wheel --format=usdz"
+    table = mbsd("export", "wheel", "--plan", at=folder).stdout.splitlines()
+    assert table[-1].split()[:3] == ["mechanisms", "export", "wheel"]
     done = mbsd("solve", at=folder / "arm")
     assert done.returncode == 0, done.stderr
     assert (folder / "results" / "arm" / "data.json").is_file()

@@ -7,6 +7,7 @@ FRAMES ?=
 NAME ?=
 FILE ?=
 FORMAT ?=
+OVER ?=
 TIME ?=
 AS ?=
 KIND ?=
@@ -38,6 +39,7 @@ override FRAME := $(value FRAME)
 override FRAMES := $(value FRAMES)
 override NAME := $(value NAME)
 override FORMAT := $(value FORMAT)
+override OVER := $(value OVER)
 override TIME := $(value TIME)
 override FILE := $(value FILE)
 override AS := $(value AS)
@@ -61,7 +63,7 @@ override PLAN := $(value PLAN)
 override CLUSTER := $(value CLUSTER)
 override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
-export FORMAT TIME FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
+export FORMAT OVER TIME FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
 export CLUSTER CLUSTER_TLS ANYWAY STRICT PLAN MECHANISMS
 
 PRESETS := draft preview production final
@@ -213,8 +215,11 @@ certificates: install ## certificates, so that a cluster lets nobody else in: CL
 new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
 	@$(MBSD) new -- "$$NAME"
 
-export-%: install always ## files of other programs: tables, drawings, STEP, USD, MuJoCo, URDF, Modelica: FORMAT=mjcf TIME=0.5
+export-%: install always ## files of other programs: tables, drawings, STEP, USD, MuJoCo, URDF, FMI, Modelica: FORMAT=mjcf TIME=0.5
 	@$(MBSD) export -- "$$MECHANISM"
+
+study-%: install always ## a grid of its Params solved, as a table (study.csv): OVER="crank=0.03:0.05:5; speed=6,12"
+	@$(MBSD) study -- "$$MECHANISM"
 
 import: install ## a mechanism of Linkage, PMKS, pylinkage or Ondsel, or a DXF sketch: FILE=walker.linkage2 AS=walker
 	@$(MBSD) import -- "$$FILE"

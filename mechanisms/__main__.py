@@ -43,11 +43,14 @@ def main() -> int | None:
     away = commands.add_parser("export", help="the mechanism and its motion in the file of another program")
     away.add_argument("name", help="mechanism; four-bar and four_bar are one")
     away.add_argument(
-        "--format", default="csv", help="csv, parquet, svg, dxf, step, mjcf, urdf or modelica; csv if not given"
+        "--format", default="csv", help="csv, parquet, svg, dxf, step, mjcf, urdf, fmu or modelica; csv if not given"
     )
     away.add_argument(
         "--time", type=float, default=0.0, help="of the pose in a drawing or assembly (s); 0 if not given"
     )
+    grid = commands.add_parser("study", help="the mechanism at every point of a grid of its Params: study.csv")
+    grid.add_argument("name", help="mechanism; four-bar and four_bar are one")
+    grid.add_argument("--over", default="", help="what is varied: crank=0.03:0.05:5; speed=6,12")
     looked = commands.add_parser("check", help="what in a model looks as if it was not meant")
     looked.add_argument("name", help="mechanism; four-bar and four_bar are one")
     looked.add_argument("--json", action="store_true", help="for other programs")
@@ -74,6 +77,10 @@ def main() -> int | None:
         from mechanisms.stages.export import stage as export
 
         return export.run(arguments.name, arguments.format, arguments.time)
+    if arguments.command == "study":
+        from mechanisms.stages.study import stage as study
+
+        return study.run(arguments.name, arguments.over)
     if arguments.command == "check":
         from mechanisms.stages import checking
 

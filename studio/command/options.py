@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from render.presets import ASPECTS, PRESETS, WIDE
 
-FORMATS = ("csv", "parquet", "svg", "dxf", "step", "mjcf", "urdf", "modelica")
+FORMATS = ("csv", "parquet", "svg", "dxf", "step", "mjcf", "urdf", "fmu", "modelica")
 """Formats of mbsd export that the solved mechanism is written in."""
 SCENES = ("usd", "usdz")
 """Formats of its scene, which render/usd writes."""
@@ -58,6 +58,7 @@ OPTIONS: dict[str, Option] = {
         Option("as", "its name here; that of the file if not given", "NAME"),
         Option("format", "of the file", default="csv", choices=(*FORMATS, *SCENES)),
         Option("time", "of the pose in a drawing or assembly (s)", "S", default="0"),
+        Option("over", "what a study varies: 'crank=0.03:0.05:5; speed=6,12'", "GRID"),
         Option("single", "one file in place of a folder", flag=True),
         Option("port", "of 127.0.0.1; any free one if not given", "N"),
         Option("limit", "seconds that solving may take; 30 if not given", "S"),

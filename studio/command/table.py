@@ -123,9 +123,12 @@ COMMANDS: dict[str, Command] = {
                 (Stage("mechanisms", "new", ("kind", "single")),), of="new", example="mbsd new excavator"),
         Command("import", "a mechanism of Linkage, PMKS, pylinkage or Ondsel, or a DXF sketch",
                 (Stage("studio.imports", options=("as", "single")),), of="file", example="mbsd import walker.linkage2"),
-        Command("export", "files of other programs: tables, drawings, STEP, USD, MuJoCo, URDF, Modelica",
+        Command("export", "files of other programs: tables, drawings, STEP, USD, MuJoCo, URDF, FMI, Modelica",
                 (stages.PARTS_IF_ANY, Stage("mechanisms", "export", ("format", "time")),),
                 example="mbsd export excavator --format mjcf"),
+        Command("study", "a grid of its Params solved, as a table (study.csv)",
+                (Stage("mechanisms", "study", ("over",)),),
+                example="mbsd study four_bar --over 'crank=0.03:0.05:5; speed=6,12'"),
         Command("list", "the mechanisms and what is made of them",
                 (Stage("mechanisms", "list", ("names", "json")),), of=""),
     )

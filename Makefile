@@ -215,7 +215,7 @@ certificates: install ## certificates, so that a cluster lets nobody else in: CL
 new: install ## a new mechanism that already runs: make new NAME=my_linkage KIND=driven|simulated
 	@$(MBSD) new -- "$$NAME"
 
-export-%: install always ## files of other programs: tables, drawings, STEP, USD, MuJoCo, URDF, FMI, Modelica: FORMAT=mjcf TIME=0.5
+export-%: install always ## tables, drawings, STEP, USD, MuJoCo, URDF, FMI, Modelica: FORMAT=mjcf TIME=0.5
 	@$(MBSD) export -- "$$MECHANISM"
 
 study-%: install always ## a grid of its Params solved, as a table (study.csv): OVER="crank=0.03:0.05:5; speed=6,12"

@@ -123,7 +123,7 @@ COMMANDS: dict[str, Command] = {
                 (Stage("mechanisms", "new", ("kind", "single")),), of="new", example="mbsd new excavator"),
         Command("import", "a mechanism of Linkage, PMKS, pylinkage or Ondsel, or a DXF sketch",
                 (Stage("studio.imports", options=("as", "single")),), of="file", example="mbsd import walker.linkage2"),
-        Command("export", "files of other programs: tables, drawings, STEP, USD, MuJoCo, URDF, FMI, Modelica",
+        Command("export", "tables, drawings, STEP, USD, MuJoCo, URDF, FMI, Modelica",
                 (stages.PARTS_IF_ANY, Stage("mechanisms", "export", ("format", "time")),),
                 example="mbsd export excavator --format mjcf"),
         Command("study", "a grid of its Params solved, as a table (study.csv)",

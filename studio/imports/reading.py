@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from shared.stage.errors import UserError
-from studio.imports import asmt, dxf, linkage, pmks_text, pmks_url, pylinkage
+from studio.imports import asmt, dxf, linkage, mbsd_core, pmks_text, pmks_url, pylinkage
 from studio.imports.sketch import Sketch
 
 FORMATS: dict[str, tuple[Callable[[str], bool], Callable[[str, str], Sketch]]] = {
@@ -15,6 +15,7 @@ FORMATS: dict[str, tuple[Callable[[str], bool], Callable[[str, str], Sketch]]] =
     "Ondsel and FreeCAD (.asmt)": (asmt.is_asmt, asmt.read),
     "a sketch (DXF)": (dxf.is_dxf, dxf.read),
     "PMKS (.txt, .pmks)": (pmks_text.is_pmks, pmks_text.read),
+    "mbsd-core (JSON)": (mbsd_core.is_mbsd_core, mbsd_core.read),
     "pylinkage (JSON)": (pylinkage.is_pylinkage, pylinkage.read),
 }
 LARGEST = 1 << 26

@@ -24,7 +24,8 @@ from shared.stage.face import to_run
 MM = 1000.0
 GROUND = "ground"
 _TIMESTAMP = re.compile(rb"(FILE_NAME\([^)]*?,)'\d{4}-\d\d-\d\dT[^']*'")
-_DRAWN = ("spring", "damper", "spring_damper", "torsion_spring", "torsion_damper", "belt")
+_DRAWN = ("band", "coil", "cylinder", "spiral", "cord")
+"""Looks of what films draw between parts; see mbsd/model/looks.py."""
 
 
 def step(wanted: Wanted) -> tuple[bytes, list[str]]:
@@ -84,12 +85,12 @@ def _pose(motion: Motion, name: str, row: int) -> tuple[float, float, float]:
 
 def _drawn(motion: Motion) -> list[str]:
     """What films draw and no part is."""
-    things = {"joint": motion.joints, "force": motion.forces}
+    things = {"joint": motion.joints, "driver": motion.drivers, "force": motion.forces, "contact": motion.contacts}
     return [
         f"{what} '{name}' ({thing.kind}, no solid)"
         for what, group in things.items()
         for name, thing in group.items()
-        if thing.kind in _DRAWN
+        if thing.look in _DRAWN
     ]
 
 

@@ -90,7 +90,7 @@ def _drawn(motion: Motion) -> list[str]:
         f"{what} '{name}' ({thing.kind}, no solid)"
         for what, group in things.items()
         for name, thing in group.items()
-        if thing.look in _DRAWN
+        if thing.look in _DRAWN and getattr(thing, "measures", "length") in ("length", "angle")
     ]
 
 

@@ -62,11 +62,11 @@ def jansen_leg(unit: float = 2e-3) -> Mechanism:
     """One leg of Theo Jansen's walker; ``unit`` (m) is one of his."""
     length = {name: value * unit for name, value in JANSEN.items()}
     pivot, hub = np.array([-length["a"], -length["l"]]), np.array([length["m"], 0.0])
-    top = _corner(pivot, hub, length["b"], length["j"], 1)
-    back = _corner(pivot, top, length["d"], length["e"], 1)
-    knee = _corner(pivot, hub, length["c"], length["k"], -1)
-    heel = _corner(back, knee, length["f"], length["g"], -1)
-    toe = _corner(heel, knee, length["h"], length["i"], -1)
+    top = corner(pivot, hub, length["b"], length["j"], 1)
+    back = corner(pivot, top, length["d"], length["e"], 1)
+    knee = corner(pivot, hub, length["c"], length["k"], -1)
+    heel = corner(back, knee, length["f"], length["g"], -1)
+    toe = corner(heel, knee, length["h"], length["i"], -1)
     m = Mechanism("jansen")
     upper, foot = m.body("upper"), m.body("foot")
     bars = {name: m.bar(name, length[name]) for name in ("m", "j", "k", "c", "f")}
@@ -77,10 +77,10 @@ def jansen_leg(unit: float = 2e-3) -> Mechanism:
     m.revolute("N", bars["m"].end, bars["k"].start)
     m.revolute("K", bars["k"].end, bars["c"].end)
     m.revolute("H", m.ground.at(*pivot.tolist()), bars["c"].start)
-    m.revolute("U", upper.at(*_seen(pivot, top, back)), bars["f"].start)
+    m.revolute("U", upper.at(*seen(pivot, top, back)), bars["f"].start)
     m.revolute("F", bars["f"].end, foot.origin)
     m.revolute("L", bars["c"].end, foot.at(length["g"], 0))
-    m.trace("toe", foot.at(*_seen(heel, knee, toe)))
+    m.trace("toe", foot.at(*seen(heel, knee, toe)))
     m.drive_angle("motor", bars["m"], constant_rate(-2 * math.pi))
     ends = {"m": (np.zeros(2), hub), "upper": (pivot, top), "j": (hub, top), "k": (hub, knee)}
     ends |= {"c": (pivot, knee), "f": (back, heel), "foot": (heel, knee)}
@@ -88,7 +88,7 @@ def jansen_leg(unit: float = 2e-3) -> Mechanism:
     return m
 
 
-def _corner(p: np.ndarray, q: np.ndarray, from_p: float, from_q: float, side: int) -> np.ndarray:
+def corner(p: np.ndarray, q: np.ndarray, from_p: float, from_q: float, side: int) -> np.ndarray:
     """The third corner of a triangle over p q, left of it for ``side`` 1."""
     apart = float(np.linalg.norm(q - p))
     along = (q - p) / apart
@@ -96,7 +96,7 @@ def _corner(p: np.ndarray, q: np.ndarray, from_p: float, from_q: float, side: in
     return p + forward * along + side * math.sqrt(from_p**2 - forward**2) * np.array([-along[1], along[0]])
 
 
-def _seen(origin: np.ndarray, towards: np.ndarray, point: np.ndarray) -> tuple[float, float]:
+def seen(origin: np.ndarray, towards: np.ndarray, point: np.ndarray) -> tuple[float, float]:
     """``point`` in the frame at ``origin`` whose x axis goes ``towards``."""
     along = (towards - origin) / np.linalg.norm(towards - origin)
     return float((point - origin) @ along), float((point - origin) @ np.array([-along[1], along[0]]))

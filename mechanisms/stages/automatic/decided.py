@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Protocol
 
 from mechanisms.stages.automatic.layout.layout import Springs
 from mechanisms.stages.automatic.layout.order.layers import find_layers
+from mechanisms.stages.automatic.layout.order.purse import Purse, Undecided
 from mechanisms.stages.automatic.pins.bridges import Bridge, bridges_over, may_hang
 from mechanisms.stages.automatic.pins.free.rim_marks import RimMark
 from mechanisms.stages.automatic.pins.webs import webbed
-from mechanisms.stages.automatic.refusal import in_the_way, refusal
+from mechanisms.stages.automatic.refusal import in_the_way, refusal, undecided
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
 from shared.stage.console import warn
 from shared.stage.errors import UserError
@@ -51,6 +52,13 @@ def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, in
     are asked for. Raises UserError that names what cannot pass each other if there is no order with any of them.
     """
     tried = _Tried(layout_of, fixed)
+    try:
+        return _decided(tried, wishes)
+    except Undecided:
+        raise UserError(undecided(tried.layout(wishes[0], Springs()))) from None
+
+
+def _decided(tried: _Tried, wishes: Sequence[Sizes]) -> Outcome:
     outcome = tried.with_devices(wishes)
     if outcome is None and any(tried.layout(sizes, Springs(), True).tubes for sizes in wishes):
         outcome = tried.with_devices(wishes, True)
@@ -63,7 +71,7 @@ def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, in
             outcome = tried.with_some_springs(wishes[0], last.springs.names, bridges)
             if outcome is not None:
                 return outcome
-    raise UserError(refusal(last, fixed))
+    raise UserError(refusal(last, tried.fixed, tried.purse))
 
 
 @dataclass(frozen=True)
@@ -71,6 +79,7 @@ class _Tried:
     layout_of: LayoutOf
     fixed: Mapping[str, int]
     known: dict[tuple[float, Springs, bool], Layout] = field(default_factory=dict)
+    purse: Purse = field(default_factory=Purse)
 
     def layout(self, sizes: Sizes, springs: Springs, tubes: bool = False) -> Layout:
         """With flush styluses."""
@@ -98,7 +107,7 @@ class _Tried:
 
     def ordered(self, layout: Layout, bridges: bool) -> Outcome | None:
         """A layout with its layers, and with the bridges that these need."""
-        levels = find_layers(layout.problem(self.fixed, may_hang(layout) if bridges else frozenset()))
+        levels = find_layers(layout.problem(self.fixed, may_hang(layout) if bridges else frozenset()), self.purse)
         if levels is None:
             return None
         layout.features += bridges_over(layout, levels)
@@ -122,7 +131,7 @@ class _Tried:
         """
         for sizes in dict.fromkeys((wishes[0], wishes[-1])):
             layout = self.layout(sizes, Springs()).with_flush_pivots()
-            bodies = in_the_way(layout, self.fixed)
+            bodies = in_the_way(layout, self.fixed, self.purse)
             ways = list(islice(webbed(layout, bodies), MOST_WEBS + 1))
             if len(ways) > MOST_WEBS:
                 return None
@@ -158,7 +167,7 @@ class _Tried:
             if not tall and not any(isinstance(feature, RimMark) for feature in high.features):
                 break
             high = high.with_flush_pivots() if layout.flush else high
-            levels = find_layers(high.problem(self.fixed))
+            levels = find_layers(high.problem(self.fixed), self.purse)
             if levels is not None and max(levels[b] for b in high.layered) <= max(least[b] for b in layout.layered):
                 return high, levels
         return low

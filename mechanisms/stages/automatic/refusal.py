@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.order.layers import blocking
+from mechanisms.stages.automatic.layout.order.purse import ALL, Purse
 from mechanisms.stages.automatic.pins.bridges import may_hang
 
 if TYPE_CHECKING:
@@ -20,9 +21,9 @@ CROSSED = (
 )
 
 
-def refusal(layout: Layout, fixed: Mapping[str, int]) -> str:
+def refusal(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None) -> str:
     """A sentence or two, of meetings that together leave no order: without any one of them there would be one."""
-    items, kept = layout.items, _kept(layout, fixed)
+    items, kept = layout.items, _kept(layout, fixed, purse)
     bodies = _bodies(layout, kept)
     pins = [rule for rule in kept if any(items[k].source is not None for k in rule)] or kept
     crossed = any(all(items[k].what.startswith(SLOTTED) for k in rule) for rule in pins)
@@ -36,13 +37,24 @@ def refusal(layout: Layout, fixed: Mapping[str, int]) -> str:
     )
 
 
-def in_the_way(layout: Layout, fixed: Mapping[str, int]) -> list[str]:
+def undecided(layout: Layout) -> str:
+    """A sentence for a search that was given up."""
+    return (
+        f"{layout.m.name}: the search for an order of layers of {len(layout.layered)} bodies and "
+        f"{len(layout.conflicts)} places where something meets was given up after {ALL} conflicts, with none "
+        "found: there may be one. Give some bodies their layer in parts.py (made.layer), move joints apart, make pins thinner "
+        "(automatic(m, pin=...)), or give bodies places z along the normal"
+    )
+
+
+def in_the_way(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None) -> list[str]:
     """Bodies that leave no order of layers. Raises ValueError where there is one."""
-    return _bodies(layout, _kept(layout, fixed))
+    return _bodies(layout, _kept(layout, fixed, purse))
 
 
-def _kept(layout: Layout, fixed: Mapping[str, int]) -> list[tuple[int, int]]:
-    pairs = set(blocking(layout.problem(fixed, may_hang(layout)), [_pair(layout, rule) for rule in layout.conflicts]))
+def _kept(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None) -> list[tuple[int, int]]:
+    keys = [_pair(layout, rule) for rule in layout.conflicts]
+    pairs = set(blocking(layout.problem(fixed, may_hang(layout)), keys, purse))
     return [rule for rule in layout.conflicts if _pair(layout, rule) in pairs]
 
 

@@ -15,7 +15,7 @@ from mechanisms.stages.automatic.layout.order.layers import Problem
 from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Hashable, Iterable, Mapping
 
     from mbsd import Marker, Mechanism
     from mbsd.model.joint import Joint
@@ -111,6 +111,8 @@ class Layout:
     """Further plates of bodies, by name, each with its body."""
     rounds: dict[tuple[str, float, float], Feature] = field(default_factory=dict)
     """By body and place: balls, wheels and discs, which several contacts may share."""
+    known_gaps: dict[tuple[Hashable, ...], tuple[float, int]] = field(default_factory=dict, repr=False)
+    """Gaps by what they follow from, for layouts that differ in some features alone and share these."""
 
     def place(self, marker: Marker) -> tuple[float, float]:
         """A marker in its body's frame (rmm)."""
@@ -222,8 +224,11 @@ class Layout:
 
     def gap(self, first: Item, second: Item) -> tuple[float, float]:
         """Least gap in the plane (rmm), and its time (s)."""
-        poses = self.poses[first.body], self.poses[second.body]
-        gap, at = least_gap(first.shape, second.shape, poses, self.sizes.room)
+        key = first.body, first.shape.content, second.body, second.shape.content
+        if key not in self.known_gaps:
+            poses = self.poses[first.body], self.poses[second.body]
+            self.known_gaps[key] = least_gap(first.shape, second.shape, poses, self.sizes.room)
+        gap, at = self.known_gaps[key]
         return gap, float(self.times[at])
 
     def may_meet(self, first: Item, second: Item) -> bool:

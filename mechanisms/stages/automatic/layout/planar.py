@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -33,6 +34,11 @@ class Rounded:
     def core_at(self, chosen: np.ndarray) -> np.ndarray:
         """The core at these poses: (n, 2), or (k, n, 2) where it changes."""
         return self.core if self.core.ndim == 2 else self.core[chosen]
+
+    @cached_property
+    def content(self) -> tuple[tuple[int, ...], bytes, float]:
+        """What two shapes that are alike have in common."""
+        return self.core.shape, self.core.tobytes(), self.radius
 
     @property
     def reach(self) -> tuple[np.ndarray, float]:

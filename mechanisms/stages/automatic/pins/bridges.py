@@ -19,6 +19,7 @@ from mechanisms.stages.automatic.layout.planar import Rounded, core_gaps, placed
 from mechanisms.stages.automatic.pins.pin_solids import FOOT
 from mechanisms.stages.automatic.pins.pins import Pin
 from mechanisms.stages.automatic.pins.springs.stretching import Stud
+from mechanisms.stages.automatic.pins.swept import Swept
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
@@ -81,7 +82,8 @@ def may_hang(layout: Layout) -> frozenset[str]:
 def bridges_over(layout: Layout, levels: Mapping[str, int]) -> list[Feature]:
     """For all pivots that hang by the choices in ``levels``. Raises UserError where a bridge has no place."""
     waiting = [pin for pin in layout.features if isinstance(pin, Pin) and pin.on_ground and levels[pin.choice] == 1]
-    moving, still = _points(layout, waiting)
+    points, still = _points(layout, waiting)
+    moving = Swept(points)
     bridges: list[Bridge] = []
     while waiting:
         beams = _candidates(waiting, moving, still)
@@ -127,7 +129,7 @@ def _sides(core: np.ndarray) -> np.ndarray:
     return (core[..., None, :] + way[..., None, :] * share).reshape(*core.shape[:-2], -1, 2)
 
 
-def _candidates(waiting: Sequence[Pin], moving: np.ndarray, still: np.ndarray) -> list[Bridge]:
+def _candidates(waiting: Sequence[Pin], moving: Swept, still: np.ndarray) -> list[Bridge]:
     """Beams over the first of the pivots in all directions, and over it and another one."""
     first, *others = waiting
     at = np.array(first.places["ground"])
@@ -142,11 +144,12 @@ def _candidates(waiting: Sequence[Pin], moving: np.ndarray, still: np.ndarray) -
     return beams
 
 
-def _post(at: np.ndarray, way: np.ndarray, moving: np.ndarray, still: np.ndarray) -> tuple[float, float]:
+def _post(at: np.ndarray, way: np.ndarray, moving: Swept, still: np.ndarray) -> tuple[float, float]:
     """The first place from ``at`` on in a direction that is past all that moves and clear of what stands."""
-    along, aside = _along(moving, at, way)
-    inside = np.abs(aside) < moving[:, 2]
-    reach = float((along + np.sqrt(np.maximum(moving[:, 2] ** 2 - aside**2, 0.0)))[inside].max(initial=LEAST))
+    outer = moving.outermost(at, way)
+    along, aside = _along(outer, at, way)
+    inside = np.abs(aside) < outer[:, 2]
+    reach = float((along + np.sqrt(np.maximum(outer[:, 2] ** 2 - aside**2, 0.0)))[inside].max(initial=LEAST))
     along, aside = _along(still, at, way)
     near = np.abs(aside) < still[:, 2]
     half = np.sqrt(np.maximum(still[:, 2] ** 2 - aside**2, 0.0))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.order.layers import Problem, find_layers
+from mechanisms.stages.automatic.layout.order.purse import Undecided
 from mechanisms.stages.automatic.layout.planar import least_gap
 from mechanisms.stages.automatic.shafts.bodies.planes import SAME
 from mechanisms.stages.automatic.shafts.pins_along import pin_outline
@@ -60,7 +61,10 @@ def free_places(
         if _asks(a, b, {*free}) and _meet(machine, a, b, measures)
     ]
     problem = Problem([*machine.links, *slots], items, conflicts, fixed | slots)
-    levels = find_layers(problem)
+    try:
+        levels = find_layers(problem)
+    except Undecided:
+        levels = None
     if levels is None:
         raise UserError(
             f"{machine.m.name}: no layer beside the places that are given lets {', '.join(free)} pass; give them "

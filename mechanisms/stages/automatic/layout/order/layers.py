@@ -4,7 +4,8 @@ The rules are pairs of items that meet in the plane: their heights must not. A s
 whether there is an order at all, then one with the fewest pivots on bridges, then with the fewest layers, then with the
 shortest pins; what is still open then is decided by the lowest layers, the first bodies first. Where all of this is
 proven, the layers do not depend on the solver; where its budget ends before, they are what it found, the same each
-time: nothing here depends on clocks or chance.
+time: nothing here depends on clocks or chance. Large machines come to an end, too: a :class:`purse.Purse` says how
+much the search may cost in all.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from dataclasses import dataclass, field
 
 from mechanisms.stages.automatic.layout.items import Item, PivotReach, Reach
 from mechanisms.stages.automatic.layout.order.layer_clauses import Clauses, choices_of
+from mechanisms.stages.automatic.layout.order.purse import Purse
 
 BUDGET = 20_000
 """Conflicts of the solver that one question may cost, beside the question whether there is any order."""
@@ -107,42 +109,56 @@ class Problem:
         return most
 
 
-def find_layers(problem: Problem) -> dict[str, int] | None:
-    """The layer of each body, from 0 up, and the choices; None where there is no order, with any number of layers."""
+def find_layers(problem: Problem, purse: Purse | None = None) -> dict[str, int] | None:
+    """The layer of each body, from 0 up, and the choices; None where there is no order, with any number of layers.
+
+    Raises Undecided where the purse, a new one if none is given, is empty before that is known.
+    """
+    purse = purse or Purse()
     least = max([problem.clique, *(level + 1 for level in problem.fixed.values())])
     few, bridges = len(set(problem.heads.values())) <= MANY, 0
     if few or problem.hanging:
-        bridges = _fewest_bridges(problem)
+        bridges = _fewest_bridges(problem, purse)
         if bridges is None:
             return None
+    elif _is_impossible(problem):
+        return None
     for count in range(least, problem.most):
         order = _within(problem, count, bridges, BUDGET if few else BUDGET // LESS)
         if order is not None:
             return order
-    return _within(problem, problem.most, bridges, None)
+    return _within(problem, problem.most, bridges, purse)
 
 
-def _fewest_bridges(problem: Problem) -> int | None:
+def _is_impossible(problem: Problem) -> bool:
+    """Whether it is soon seen that there is no order, of however many layers."""
+    clauses = problem.clauses(problem.most)
+    answer = clauses.solved(budget=BUDGET)
+    clauses.close()
+    return answer is False
+
+
+def _fewest_bridges(problem: Problem, purse: Purse) -> int | None:
     """How many pivots must hang from bridges; None if there is no order."""
     clauses = problem.clauses(problem.most)
     literals = problem.bridged(clauses)
-    if not clauses.solved():
+    if not purse.solved(clauses):
         return None
     fewest = sum(map(clauses.holds, literals))
     total = clauses.count_of(literals, len(literals))
-    while fewest and clauses.solved([-total[fewest - 1]]):
+    while fewest and purse.solved(clauses, [-total[fewest - 1]]):
         fewest = sum(map(clauses.holds, literals))
     clauses.close()
     return fewest
 
 
-def _within(problem: Problem, count: int, bridges: int, budget: int | None) -> dict[str, int] | None:
+def _within(problem: Problem, count: int, bridges: int, budget: int | Purse) -> dict[str, int] | None:
     """The best order with ``count`` layers and as many bridges; None if there is none, or none found."""
     clauses = problem.clauses(count)
     literals = problem.bridged(clauses)
     if bridges < len(literals):
         clauses.add(-clauses.count_of(literals, bridges + 1)[bridges])
-    if not clauses.solved(budget=budget):
+    if not (budget.solved(clauses) if isinstance(budget, Purse) else clauses.solved(budget=budget)):
         clauses.close()
         return None
     few = len(clauses.steps) <= MANY
@@ -193,12 +209,15 @@ def _highest_first(steps: Mapping[str, Sequence[int]]) -> list[int]:
     return [step for own in steps.values() for step in reversed(own)]
 
 
-def blocking[Key: Hashable](problem: Problem, keys: Sequence[Key]) -> list[Key]:
-    """Keys of conflicts that leave no order; without any one of them there would be one. ``keys``: one per conflict."""
+def blocking[Key: Hashable](problem: Problem, keys: Sequence[Key], purse: Purse | None = None) -> list[Key]:
+    """Keys of conflicts that leave no order; without any one of them there would be one. ``keys``: one per conflict.
+
+    Raises Undecided as :func:`find_layers`.
+    """
     clauses = problem.clauses(problem.most, keys)
     kept = list(dict.fromkeys(keys))
     literals = {key: clauses.keys[key] for key in kept}
-    if clauses.solved(list(literals.values())):
+    if (purse or Purse()).solved(clauses, list(literals.values())):
         raise ValueError("there is an order of layers")
     kept = _core(clauses, literals, kept)
     for key in list(kept):

@@ -15,6 +15,7 @@ VIEW ?=
 SHOW ?=
 SPECTRA ?=
 BED ?=
+SCALE ?=
 KERNELS ?=
 GAP ?=
 N ?=
@@ -48,6 +49,7 @@ override VIEW := $(value VIEW)
 override SHOW := $(value SHOW)
 override SPECTRA := $(value SPECTRA)
 override BED := $(value BED)
+override SCALE := $(value SCALE)
 override KERNELS := $(value KERNELS)
 override GAP := $(value GAP)
 override N := $(value N)
@@ -63,7 +65,7 @@ override PLAN := $(value PLAN)
 override CLUSTER := $(value CLUSTER)
 override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
-export FORMAT OVER TIME FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
+export FORMAT OVER TIME FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED SCALE KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
 export CLUSTER CLUSTER_TLS ANYWAY STRICT PLAN MECHANISMS
 
 PRESETS := draft preview production final
@@ -131,10 +133,10 @@ stop:  ## end that after the frame in flight; the same command goes on from ther
 check-%: install always ## what in a model looks as if it was not meant, before anything is made
 	@$(MBSD) check -- "$$MECHANISM"
 
-parts-%: libraries always ## the solids: out/<name>/parts/ (STL, STEP, parts.json)
+parts-%: libraries always ## the solids: out/<name>/parts/ (STL, STEP, parts.json); SCALE=1:20 of a model
 	@$(MBSD) parts -- "$$MECHANISM"
 
-print-%: libraries always ## plates to print (3MF, STL), outlines to cut (DXF), lists; BED=220x220 GAP=5 in mm
+print-%: libraries always ## plates to print (3MF, STL), outlines to cut (DXF), lists; BED=220x220 GAP=5 in mm, SCALE=1:20
 	@$(MBSD) print -- "$$MECHANISM"
 
 solve-%: install always ## the motion: out/<name>/data.json

@@ -30,6 +30,8 @@ def main() -> int | None:
         if command == "print":
             sub.add_argument("--bed", default="", help="size of a plate in mm, 220x220 if not given")
             sub.add_argument("--gap", default="", help="what pieces keep apart in mm, 5 if not given")
+        if command in ("parts", "print", "clearance"):
+            sub.add_argument("--scale", default="", help="of a model, such as 1:20; the machine itself if not given")
         if command == "parts":
             sub.add_argument("--or-none", action="store_true", help="go on where there are no automatic parts")
     fresh = commands.add_parser("new", help="a new mechanism that already runs")
@@ -63,8 +65,10 @@ def main() -> int | None:
         if arguments.command == "animate":
             return stage.run(name, view=arguments.view)
         if arguments.command == "print":
-            return stage.run(name, bed=arguments.bed, gap=arguments.gap)
-        return stage.run_or_none(name) if getattr(arguments, "or_none", False) else stage.run(name)
+            return stage.run(name, bed=arguments.bed, gap=arguments.gap, scale=arguments.scale)
+        if getattr(arguments, "or_none", False):
+            return stage.run_or_none(name)
+        return stage.run(name, scale=arguments.scale) if hasattr(arguments, "scale") else stage.run(name)
     if arguments.command == "variants":
         owner = owner_of(arguments.name)
         if not variants_in(mechanism_file(owner)):

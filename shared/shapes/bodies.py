@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from shared.shapes.solid import Solid
+from shared.shapes.solid import Solid, at_scale
 from shared.stage.errors import UserError
 
 type Place = tuple[str, float, float]
@@ -80,6 +80,15 @@ class Bodies(dict[str, list[Solid]]):
         if first == second:
             raise UserError(f"join_places('{rod}'): both ends are {first}; name two places")
         self._rods[rod] = first, second
+
+    def at_scale(self, ratio: float) -> Bodies:
+        """A model of it all, ``ratio`` times as large."""
+        made = self | {body: [at_scale(solid, ratio) for solid in solids] for body, solids in self.items()}
+        made._rods = {
+            rod: ((first, x * ratio, y * ratio), (second, u * ratio, v * ratio))
+            for rod, ((first, x, y), (second, u, v)) in self._rods.items()
+        }
+        return made
 
     def on_stand(self) -> Bodies:
         """With a stand under all that is there now; the parts stage adds it to what ``parts()`` returns."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cadquery as cq
 
@@ -43,7 +43,8 @@ class Solid:
     in a shop where the piece has a standard's sizes, such as "circlip 8x0.8 DIN 471"; a piece without it is to be made.
     ``rolls`` says how it turns in the film. ``tolerance`` is the largest distance (mm) of its mesh from the true
     surface; None is that of usual parts, which is fine for large ones. ``dressing`` shows what the machine works on
-    (Bodies.dress): it is made, proven and filmed as all else, but is none of the mass of its body.
+    (Bodies.dress): it is made, proven and filmed as all else, but is none of the mass of its body. ``fitted`` pieces
+    have sizes that were chosen for the scale at which they are made; all others are made smaller as they are.
     """
 
     name: str
@@ -55,6 +56,22 @@ class Solid:
     rolls: Roll | None = None
     tolerance: float | None = None
     dressing: bool = False
+    fitted: bool = False
+
+
+def at_scale(solid: Solid, ratio: float) -> Solid:
+    """The piece of a model, ``ratio`` times as large. What one buys for the machine does not fit the model, unless the
+    piece is ``fitted``.
+    """
+    shape = solid.shape.newObject([own.scale(ratio) for own in solid.shape.solids().vals()])
+    holds = tuple(replace(hold, z=hold.z * ratio, radius=hold.radius * ratio) for hold in solid.holds)
+    roll = solid.rolls
+    if roll is not None:
+        roll = replace(roll, x=roll.x * ratio, y=roll.y * ratio, radius=roll.radius * ratio)
+    made = replace(solid, shape=shape, holds=holds, rolls=roll)
+    if solid.fitted:
+        return made
+    return replace(made, buy="", tolerance=solid.tolerance and solid.tolerance * ratio)
 
 
 def placed(shape: cq.Workplane, x: float = 0.0, y: float = 0.0, z: float = 0.0, turn: float = 0.0) -> cq.Workplane:

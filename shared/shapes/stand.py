@@ -6,7 +6,7 @@ Axes are those of the machine as it stands: x right, y up, z towards the viewer.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cadquery as cq
 
@@ -47,6 +47,15 @@ class Bolt:
     def sunk(self) -> float:
         """Depth of the counterbore, in which the head is below the face."""
         return 1.1 * self.diameter
+
+    def at_scale(self, ratio: float) -> Bolt:
+        """The same screw where lengths are counted ``ratio`` times as large."""
+        if ratio == 1.0:
+            return self
+        shape = self.shape.newObject([self.shape.val().scale(ratio)])
+        return replace(
+            self, shape=shape, diameter=ratio * self.diameter, length=ratio * self.length, head=ratio * self.head
+        )
 
 
 def bolt(wish: float, longest: float) -> Bolt:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from shared.stage.errors import UserError
 from shared.stage.memory import recalled
+from shared.stage.scale import Scale
 from shared.stage.suggestions import did_you_mean
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -274,17 +275,21 @@ def _refuse_unknown_variant(name: str, known: Iterable[str]) -> None:
 
 
 class Out:
-    """The result files of one mechanism or variant under :func:`out_root`; raises UserError if ``name`` is no name."""
+    """The result files of one mechanism or variant under :func:`out_root`; those of its model at a scale in a folder
+    below. Raises UserError if ``name`` is no name.
+    """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, scale: Scale | None = None) -> None:
         self.name = mechanism_name(name)
-        self.folder = out_root() / self.name
+        self.title = self.name if scale is None else f"{self.name} at {scale}"
+        self.folder = out_root() / self.name / (scale.slug if scale else "")
         self.motion = self.folder / "data.json"
         self.skeleton = self.folder / "skeleton.json"
         self.parts_folder = self.folder / "parts"
         self.parts = self.parts_folder / "parts.json"
         self.clearance = self.folder / "clearance.json"
         self.print_folder = self.folder / "print"
+        self.plate = f"{scale.slug}_plate" if scale else "plate"
         self.shot = self.folder / "shot.json"
         self.plots = self.folder / "plots"
         self.compare = self.folder / "compare"

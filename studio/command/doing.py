@@ -29,6 +29,19 @@ def in_turn(command: Command, operand: str, said: Mapping[str, str], run: Run) -
     return run.all_of(before) or run.last(last)
 
 
+def at_scale(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
+    """Parts, plates and proof of a model: it moves as the machine does, whose parts have the masses. Without a scale
+    the stages are those of the machine.
+    """
+    if not said.get("scale"):
+        return in_turn(command, name, said, run)
+    plates = [stages.MODEL_PRINT] if command.name == "print" else []
+    proof = [] if command.name == "parts" else [stages.SOLVE, stages.MODEL_CLEARANCE]
+    chain = [stages.PARTS_IF_ANY, stages.MODEL, *plates, *proof]
+    *before, last = (stage.words(name, said, checked=True) for stage in chain)
+    return run.all_of(before) or run.last(last)
+
+
 def gallery(command: Command, _: str, said: Mapping[str, str], run: Run) -> int:
     """A poster of every machine and the page of them; one that fails is left out, and makes the exit code 1."""
     bad = 0
@@ -71,5 +84,8 @@ OTHERS: dict[str, Callable[[Command, str, Mapping[str, str], Run], int]] = {
     "gallery": gallery,
     "compare": compare,
     "export": export,
+    "parts": at_scale,
+    "print": at_scale,
+    "clearance": at_scale,
 }
 """Commands that are more than their stages in turn."""

@@ -114,7 +114,8 @@ def _said(command: Command, asked: argparse.Namespace, place: Place, make: bool)
     said: dict[str, str] = {}
     for name in command.options:
         option = OPTIONS[name]
-        value = getattr(asked, name.replace("-", "_")) or (place.settings.word(name) if option.kept else "")
+        kept = option.kept and name not in command.never_kept
+        value = getattr(asked, name.replace("-", "_")) or (place.settings.word(name) if kept else "")
         value = value or command.defaults.get(name, option.default)
         if value and option.choices and value not in option.choices:
             where = "" if getattr(asked, name.replace("-", "_")) else " in mbsd.toml"

@@ -47,6 +47,7 @@ OPTIONS: dict[str, Option] = {
         Option("show", "arrows and words in the picture: reactions,velocities,title", kept=True),
         Option("spectra", "spectra to plot: 'shaking force,motor'", kept=True),
         Option("bed", "size of a plate in mm; 220x220 if not given", "WxH", kept=True),
+        Option("scale", "of a model: 1:20, 1/20, 0.05 or 2:1; the machine itself if not given", "1:N", kept=True),
         Option("gap", "what pieces keep apart on a plate in mm; 5 if not given", "MM", kept=True),
         Option("frame", "number of the frame, from 0", "N", default="0"),
         Option("frames", "numbers of frames: 0,30", "N,N"),

@@ -23,6 +23,8 @@ class Command:
     defaults: Mapping[str, str] = field(default_factory=dict)
     """Values of options where they are other than usual."""
     example: str = ""
+    never_kept: tuple[str, ...] = ()
+    """Options that mbsd.toml does not say for it."""
     target: str = ""
     """Its name as a target of make, where it is another; ``-`` where there is none."""
 
@@ -64,16 +66,17 @@ COMMANDS: dict[str, Command] = {
                 (Stage("studio.night", "stop"),), of=""),
         Command("check", "what in a model looks as if it was not meant, before anything is made",
                 (Stage("mechanisms", "check", ("json",)),)),
-        Command("parts", "the solids: out/<name>/parts/ (STL, STEP, parts.json)", (stages.PARTS,)),
+        Command("parts", "the solids: out/<name>/parts/ (STL, STEP, parts.json)", (stages.MODEL,),
+                example="mbsd parts excavator --scale 1:20", never_kept=("scale",)),
         Command(
             "print", "plates to print (3MF, STL), outlines to cut (DXF), lists",
-            (stages.PARTS, stages.PRINT), example="mbsd print excavator --bed 180x180",
+            (stages.MODEL, stages.MODEL_PRINT), example="mbsd print excavator --bed 180x180 --scale 1:20",
         ),
         Command("solve", "the motion: out/<name>/data.json", stages.BARE_MOTION),
         Command("animate", "the moving skeleton with its arrows: animation.mp4, .gif",
                 (stages.ANIMATE,), example="mbsd animate excavator --view reactions"),
         Command("clearance", "proof that no two parts touch over the whole motion: clearance.json",
-                (*stages.MOTION, stages.CLEARANCE)),
+                (*stages.MOTION, stages.MODEL_CLEARANCE), never_kept=("scale",)),
         Command("plot", "the plots: out/<name>/plots/",
                 (*stages.BARE_MOTION, stages.PLOTS)),
         Command("report", "what was found, in sentences and tables: out/<name>/report.md",

@@ -19,12 +19,13 @@ from mechanisms.stages.automatic.assembly.looks import ROD, materials
 from mechanisms.stages.automatic.assembly.marks import Wish, place, refuse_letters
 from mechanisms.stages.automatic.decided import decided
 from mechanisms.stages.automatic.gathered import gathered
-from mechanisms.stages.automatic.layout.extents import extents
+from mechanisms.stages.automatic.layout.extents import extents, lengths_of
 from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.items import Need
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
 from mechanisms.stages.automatic.layout.order.heights import Heights, heights
+from mechanisms.stages.automatic.layout.printed import printed_sizes
 from mechanisms.stages.automatic.layout.sizes import THINNEST, Sizes, of_pin, refuse_sizes, sizes
 from mechanisms.stages.automatic.pins.free.free_bodies import free_bodies
 from mechanisms.stages.automatic.pins.free.points import styluses, weights
@@ -36,6 +37,7 @@ from mechanisms.stages.automatic.standing.held import hold
 from mechanisms.stages.automatic.wheels.sharing import with_own_layers
 from mechanisms.stages.automatic.wished_names import refuse_material, refuse_unknown
 from mechanisms.stages.loading.wished_mount import wished
+from mechanisms.stages.loading.wished_scale import wished_scale
 from shared.contract.mount import Mount, mounted
 from shared.stage.errors import UserError
 
@@ -219,7 +221,7 @@ class Automatic:
         needs = [need for feature in layout.features for need in feature.needs(self.decided, layout)]
         pivot = self.sizes.pivot
         heights_of = heights(self.decided, layout.layered, self.sizes.thickness, needs, 2 * pivot.fit.axial)
-        floor = 4.0 + self.sizes.screw / self.sizes.scale + 2 * pivot.fit.axial
+        floor = 4.0 + self.sizes.screw / self.sizes.finished + 2 * pivot.fit.axial
         if heights_of.bottoms and heights_of.bottoms[0] < floor:
             needs.append(Need(-1, floor))
             heights_of = heights(self.decided, layout.layered, self.sizes.thickness, needs, 2 * pivot.fit.axial)
@@ -229,14 +231,14 @@ class Automatic:
         """Every piece by the body it moves with, in mm; the first of each list is the body's main piece. ``on_stand()``
         adds a stand. ``engraved_too``: the base with its names, rule and dial, which cost as much as a link.
         """
-        from mechanisms.stages.automatic.assembly.built import built
+        from mechanisms.stages.automatic.assembly.built import built, fitted
         from mechanisms.stages.automatic.assembly.frame import back_plate
         from shared.shapes.bodies import Bodies
 
         if self.along is not None:
             return self._solids_along(self.along)
         plan = self.plan()
-        made = Bodies(built(plan, self.heights, engraved_too) | self._replaced)
+        made = Bodies(fitted(built(plan, self.heights, engraved_too)) | self._replaced)
         scale, plate = self.sizes.scale, back_plate(plan)
         poses = {body: pose * [scale, scale, 1.0] for body, pose in self.layout.poses.items()}
         hold(made, self.mount, plate and plate.scaled(scale), poses, self.sizes)
@@ -256,10 +258,11 @@ class Automatic:
         return made
 
     def _solids_along(self, along: Along) -> Bodies:
+        from mechanisms.stages.automatic.assembly.built import fitted
         from mechanisms.stages.automatic.shafts.solids.made import plate_of, solids
         from shared.shapes.bodies import Bodies
 
-        made = Bodies(solids(along, self._materials, self.mount, self._base_under) | self._replaced)
+        made = Bodies(fitted(solids(along, self._materials, self.mount, self._base_under)) | self._replaced)
         made.along = True
         plate = plate_of(along, self.mount, self._base_under)
         hold(made, self.mount, plate, along.machine.poses, self.sizes)
@@ -303,9 +306,12 @@ class Automatic:
 
     def wishes(self) -> list[Sizes]:
         """Sizes of pins and all that goes with them, the most wanted first."""
+        scale, thinnest = wished_scale(), THINNEST_ALONG if has_places(self.m) else THINNEST
+        if scale is not None:
+            lengths = lengths_of(self.m, self.solution, self._left_out)
+            return printed_sizes(self.m.name, lengths, scale, thinnest, self._pin, self._fit)
         if self._pin is not None:
             return [of_pin(self._pin, self._fit)]
-        thinnest = THINNEST_ALONG if has_places(self.m) else THINNEST
         return sizes(*extents(self.m, self.solution, self._left_out), self._fit, thinnest)
 
     def _layout(

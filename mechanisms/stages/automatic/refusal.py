@@ -30,7 +30,7 @@ def refusal(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None
     meetings = [_meeting(layout, rule) for rule in _first_of_each(layout, pins)[:REPORTED]]
     return (
         f"{layout.m.name}: no order of layers lets {_listed(bodies)} pass each other with pins of "
-        f"{layout.sizes.pin:g} mm, on the base or on bridges, with one of them built up of "
+        f"{layout.sizes.finished_pin:g} mm, on the base or on bridges, with one of them built up of "
         f"two webs: {'; '.join(meetings)}. Make links shorter or move joints "
         "apart so that one stays clear of the other, make pins thinner still (automatic(m, pin=...)), or shape them by "
         f"hand in parts.py{CROSSED if crossed else ''}"
@@ -42,8 +42,8 @@ def undecided(layout: Layout) -> str:
     return (
         f"{layout.m.name}: the search for an order of layers of {len(layout.layered)} bodies and "
         f"{len(layout.conflicts)} places where something meets was given up after {ALL} conflicts, with none "
-        "found: there may be one. Give some bodies their layer in parts.py (made.layer), move joints apart, make pins thinner "
-        "(automatic(m, pin=...)), or give bodies places z along the normal"
+        "found: there may be one. Give some bodies their layer in parts.py (made.layer), move joints apart, make pins "
+        "thinner (automatic(m, pin=...)), or give bodies places z along the normal"
     )
 
 
@@ -77,7 +77,7 @@ def _first_of_each(layout: Layout, rules: Sequence[tuple[int, int]]) -> list[tup
 def _meeting(layout: Layout, rule: tuple[int, int]) -> str:
     first, second = (layout.items[k] for k in rule)
     gap, time = layout.gap(first, second)
-    near = "meets" if gap < 0 else f"comes within {gap * layout.sizes.scale:.2g} mm of"
+    near = "meets" if gap < 0 else f"comes within {gap * layout.sizes.finished:.2g} mm of"
     return f"{second.what} {near} {first.what} at t={time:.3g} s"
 
 

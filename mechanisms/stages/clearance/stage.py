@@ -34,6 +34,7 @@ from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash
 from shared.stage.paths import ROOT, Out
+from shared.stage.scale import Scale, scale_of
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 if TYPE_CHECKING:
@@ -59,39 +60,53 @@ SOURCES = [
 ]
 
 
-def run(name: str) -> None:
-    """Check mechanism ``name`` and write clearance.json, unless motion and parts are those of the last check.
+def run(name: str, scale: str = "") -> None:
+    """Check mechanism ``name``, or its model at a scale, and write clearance.json, unless motion and parts are those of
+    the last check.
 
     Raises UserError naming both pieces, the time, the depth or gap, and the remedy, if two pieces come too near.
     """
-    out = Out(name)
-    parts, motion = read_parts(out.parts, out.name), read_motion(out.motion, out.name)
-    stage = _stage(out)
+    machine, at = Out(name), scale_of(scale)
+    out = Out(name, at)
+    parts, motion = read_parts(out.parts, out.name), read_motion(machine.motion, out.name)
+    stage = _stage(out, machine, at)
     if stage.is_fresh():
-        say("clearance", f"{out.name}: nothing to do")
+        say("clearance", f"{out.title}: nothing to do")
         return
+    from mechanisms.stages.clearance.at_scale import at_scale
     from mechanisms.stages.clearance.pieces import read_pieces
 
-    checked = check(parts, motion, read_pieces(parts, out.parts_folder), stage.key)
+    motion = motion if at is None else at_scale(motion, at.ratio)
+    checked = check(parts, motion, read_pieces(parts, out.parts_folder), stage.key, title=out.title)
     write_clearance(out.clearance, checked)
     stage.done()
-    say("clearance", _summary(checked))
+    say("clearance", _summary(checked, out.title))
 
 
 def is_fresh(name: str) -> bool:
     """Whether there is nothing to do. Raises OSError where parts or motion are missing."""
-    return _stage(Out(name)).is_fresh()
+    return _stage(Out(name), Out(name)).is_fresh()
 
 
-def _stage(out: Out) -> Stage:
-    key = key_of(out.parts, out.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH)
+def _stage(out: Out, machine: Out, scale: Scale | None = None) -> Stage:
+    """Of the model in ``out``, which moves as its machine does."""
+    scaled = [] if scale is None else [str(scale)]
+    key = key_of(out.parts, machine.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH, *scaled)
     return Stage(out, "clearance", key, [out.clearance])
 
 
 def check(
-    parts: Parts, motion: Motion, pieces: list[MeshPiece], key: str, limit: float = LIMIT, reach: float = REACH
+    parts: Parts,
+    motion: Motion,
+    pieces: list[MeshPiece],
+    key: str,
+    limit: float = LIMIT,
+    reach: float = REACH,
+    title: str = "",
 ) -> Clearance:
-    """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`."""
+    """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`, with
+    ``title`` as the name, which is that of the mechanism by default.
+    """
     from mechanisms.stages.clearance import far as bodies
     from mechanisms.stages.clearance.axes import axes_of
     from mechanisms.stages.clearance.belts import bands
@@ -103,7 +118,7 @@ def check(
     from mechanisms.stages.clearance.slide import slides_of
     from shared.contract.spanning import with_rods
 
-    name, motion = parts.mechanism, with_rods(motion, parts)
+    name, motion = title or parts.mechanism, with_rods(motion, parts)
     lost = sorted({piece.body for piece in pieces} - {"ground"} - set(motion.bodies))
     if lost:
         raise UserError(
@@ -158,7 +173,7 @@ def check(
     if refused:
         raise UserError(_refusal(name, refused, limit))
     return Clearance(
-        mechanism=name,
+        mechanism=parts.mechanism,
         provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
         limit=metres(limit),
         resolution=metres(RESOLUTION),
@@ -294,9 +309,9 @@ def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str
     return text
 
 
-def _summary(clearance: Clearance) -> str:
+def _summary(clearance: Clearance, title: str) -> str:
     count = len(clearance.pairs) + clearance.apart
-    text = f"{clearance.mechanism}: {count} pairs of pieces, none touch"
+    text = f"{title}: {count} pairs of pieces, none touch"
     if clearance.pairs:
         nearest = clearance.pairs[0]
         when = "at every angle" if nearest.time is None else f"at t={nearest.time:.3g} s"

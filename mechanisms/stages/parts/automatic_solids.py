@@ -2,13 +2,16 @@
 
 A simulated motion follows from the masses of the parts, and these follow from the motion: so it is solved again with
 the masses of the parts, and parts are made for that motion, until they stay as they are.
+Parts of a model at a scale move as the machine does: with its masses.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.loading.wished_scale import wished_scale
 from mechanisms.stages.solve.bare_motion import bare_solution, depends_on_masses
+from shared.stage.paths import Out
 
 if TYPE_CHECKING:
     from shared.contract import Mass
@@ -24,6 +27,9 @@ def solids_of(name: str) -> dict[str, list[Solid]]:
     """Every piece by body. Raises UserError where the model cannot move, or has no automatic parts."""
     from mechanisms.stages.automatic.automatic import automatic
 
+    if wished_scale() is not None:
+        solution = bare_solution(name, masses_of_machine(name))
+        return automatic(solution.mechanism, solution=solution).solids()
     solution = bare_solution(name)
     solids = automatic(solution.mechanism, solution=solution).solids()
     if not depends_on_masses(name, solution):
@@ -36,6 +42,17 @@ def solids_of(name: str) -> dict[str, list[Solid]]:
         if all(abs(masses[body].mass - before[body].mass) <= ALIKE * before[body].mass for body in before):
             break
     return solids
+
+
+def masses_of_machine(name: str) -> dict[str, Mass]:
+    """By body, those of the parts of the machine itself; none where there are none."""
+    from shared.contract import read_parts
+
+    out = Out(name)
+    if not out.parts.is_file():
+        return {}
+    bodies = read_parts(out.parts, out.name).bodies
+    return {body: described.mass for body, described in bodies.items() if body != "ground"}
 
 
 def _masses(solids: dict[str, list[Solid]]) -> dict[str, Mass]:

@@ -20,6 +20,7 @@ from mechanisms.stages.loading.inputs import Inputs, observed
 from mechanisms.stages.loading.loading import author_code, has, load, package_of, params
 from mechanisms.stages.loading.recording import Recorder, recording
 from mechanisms.stages.loading.wished_mount import of_shot, wishing
+from mechanisms.stages.loading.wished_scale import scaling
 from mechanisms.stages.parts.plain_values import plain_text
 from mechanisms.stages.parts.traced_params import fields_of, traced
 from shared.cluster.address import address
@@ -30,6 +31,7 @@ from shared.stage.console import say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out, in_workshop, is_single_file, mechanism_file
+from shared.stage.scale import Scale, scale_of
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 _STAGES = ROOT / "mechanisms" / "stages"
@@ -51,27 +53,27 @@ AUTOMATIC = [
 PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "python-sat", "trimesh")
 
 
-def run(name: str) -> None:
-    """Make the parts of mechanism ``name``, if anything they follow from has changed.
+def run(name: str, scale: str = "") -> None:
+    """Make the parts of mechanism ``name``, or of its model at a scale, if anything they follow from has changed.
 
     Raises UserError naming the solid, the number and the remedy if a solid is refused; what was there stays.
     """
-    out = Out(name)
+    out = Out(name, scale_of(scale))
     before = set(sys.modules)
     with recording() as recorder:
         given = params(out.name)
-    wish = _Wish(not has(out.name, "parts"), of_shot(out.name))
+    wish = _wish(out.name, scale_of(scale))
     if _is_fresh(out, given, wish):
-        say("parts", f"{out.name}: nothing to do")
+        say("parts", f"{out.title}: nothing to do")
         return
     # Files travel by their names below the project, which those of a user's own folder have not.
-    made = _of_cluster(out.name, given, wish) if address() and not in_workshop() else None
+    made = _of_cluster(out.name, given, wish) if address() and not in_workshop() and wish.scale is None else None
     made = made or _made_here(out.name, given, wish, before, recorder)
     written = _write(out, made.files, made.document)
     outputs = [out.parts, *(out.parts_folder / file for file in made.files)]
     notes = {"parameters": made.reads, "inputs": made.inputs.names()}
     Stage(out, "parts", made.document.provenance.inputs, outputs).done(**notes)
-    say("parts", _summary(out.name, made.document, written))
+    say("parts", _summary(out.title, made.document, written))
 
 
 class _Wish(NamedTuple):
@@ -81,6 +83,18 @@ class _Wish(NamedTuple):
     """There is no parts.py."""
     mount: Kind | None
     """Mount that shot.py wishes."""
+    scale: Scale | None = None
+    """Of a model."""
+    masses: str = ""
+    """Those of the machine, where the motion of its model follows from them."""
+
+
+def _wish(name: str, scale: Scale | None = None) -> _Wish:
+    from mechanisms.stages.parts.automatic_solids import masses_of_machine
+
+    by_itself = not has(name, "parts")
+    masses = repr(masses_of_machine(name)) if by_itself and scale is not None else ""
+    return _Wish(by_itself, of_shot(name), scale, masses)
 
 
 class _Found(NamedTuple):
@@ -99,10 +113,12 @@ def _made_here(name: str, given: Any, wish: _Wish, before: set[str], recorder: R
     from mechanisms.stages.parts.mount_of import follows_gravity, mount_of
     from shared.shapes.bodies import Bodies
 
-    with wishing(wish.mount):
+    with wishing(wish.mount), scaling(wish.scale):
         bodies, reads, inputs = _build(name, given)
     if isinstance(bodies, Bodies):
         bodies = bodies.on_stand()
+    if wish.scale is not None:
+        bodies = (bodies if isinstance(bodies, Bodies) else Bodies(bodies)).at_scale(wish.scale.ratio)
     if wish.by_itself or follows_gravity(bodies, wish.mount) or _more_than_values(name, given, reads):
         mechanism = loaded_inputs(mechanism_file(name), package_of(name), before)
         inputs = inputs.joined(mechanism).joined(recorder.inputs())
@@ -143,7 +159,7 @@ def _of_cluster(name: str, given: Any, wish: _Wish) -> _Found | None:
 def are_current(name: str) -> bool:
     """Whether the parts that are there are those of the mechanism as it is. Raises UserError for one without Params."""
     out = Out(name)
-    return _is_fresh(out, params(out.name), _Wish(not has(out.name, "parts"), of_shot(out.name)))
+    return _is_fresh(out, params(out.name), _wish(out.name))
 
 
 def run_or_none(name: str) -> None:

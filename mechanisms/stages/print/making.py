@@ -70,8 +70,10 @@ def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Made]) -> tup
     return parts, files
 
 
-def plates_of(title: str, made: Sequence[Made], bed: Bed, gap: float) -> tuple[list[Made], dict[str, bytes]]:
-    """With the plates that the pieces lie on, and the files of these."""
+def plates_of(
+    title: str, made: Sequence[Made], bed: Bed, gap: float, stem: str = "plate"
+) -> tuple[list[Made], dict[str, bytes]]:
+    """With the plates that the pieces lie on, and the files of these, whose names begin with ``stem``."""
     items = [(k, name) for k, part in enumerate(made) if not part.bed for name in part.names]
     places = packed([made[k].piece.size[:2] for k, _ in items], bed[:2], gap)
     plates: dict[int, list[Placed]] = {}
@@ -81,7 +83,7 @@ def plates_of(title: str, made: Sequence[Made], bed: Bed, gap: float) -> tuple[l
         plates.setdefault(at.plate, []).append(placed)
     files: dict[str, bytes] = {}
     for number, plate in sorted(plates.items()):
-        files[f"plate_{number + 1}.3mf"] = three_mf(f"{title}: plate {number + 1}", plate)
-        files[f"plate_{number + 1}.stl"] = stl(plate)
+        files[f"{stem}_{number + 1}.3mf"] = three_mf(f"{title}: plate {number + 1}", plate)
+        files[f"{stem}_{number + 1}.stl"] = stl(plate)
     on = [tuple(at.plate + 1 for (i, _), at in zip(items, places, strict=True) if i == k) for k in range(len(made))]
     return [replace(part, plates=plates) for part, plates in zip(made, on, strict=True)], files

@@ -15,6 +15,7 @@ from shared.stage.console import say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out
+from shared.stage.scale import scale_of
 from shared.stage.stages import Stage, key_of, versions
 
 if TYPE_CHECKING:
@@ -30,22 +31,26 @@ SOURCES = [
     *(ROOT / "mechanisms" / "stages" / name for name in ("print", "parts_files.py", "clearance/pieces.py")),
     *(ROOT / "shared" / "contract" / f"{name}.py" for name in ("parts", "materials")),
 ]
+LISTED = 5
+"""So many thin pieces are named."""
 _LENGTH = re.compile(r"[0-9]+(\.[0-9]*)?")
 
 
-def run(name: str, bed: str = "", gap: str = "") -> None:
-    """Lay out the pieces of mechanism ``name``; ``bed`` is like 220x220 or 220x220x250, ``gap`` like 5 (mm).
+def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
+    """Lay out the pieces of mechanism ``name``; ``bed`` is like 220x220 or 220x220x250, ``gap`` like 5 (mm), ``scale``
+    like 1:20 for the pieces of a model.
 
     A piece that is larger than the bed is left out with a warning that names it and the bed it needs. Raises UserError
     for a bed or a gap that is none, and where the files of parts.json are not those that it describes.
     """
-    out = Out(name)
+    at = scale_of(scale)
+    out = Out(name, at)
     size, apart = bed_of(bed or BED), gap_of(gap or GAP)
     parts = read_parts(out.parts, out.name)
     key = key_of(out.parts, sources_hash(*SOURCES), versions(*PACKAGES), size, apart)
     stage = Stage(out, "print", key, [out.print_folder / "pieces.md"])
     if stage.is_fresh():
-        say("print", f"{out.name}: nothing to do")
+        say("print", f"{out.title}: nothing to do")
         return
     from mechanisms.stages.clearance.pieces import read_pieces
 
@@ -61,8 +66,10 @@ def run(name: str, bed: str = "", gap: str = "") -> None:
     stage.done()
     for part in made:
         if part.bed:
-            _tell_large(out.name, part, size)
-    say("print", _summary(out.name, files, made, bought, size))
+            _tell_large(out.title, part, size)
+    if at is not None:
+        _tell_thin(out.title, made)
+    say("print", _summary(out.title, files, made, bought, size))
 
 
 def laid_out(
@@ -76,9 +83,9 @@ def laid_out(
     bought = bought_of(pieces)
     made = made_of(pieces, [mesh for mesh in meshes if not pieces[mesh.name].buy], bed)
     made, files = outlined(out, pieces, made)
-    made, plates = plates_of(out.name, made, bed, gap)
+    made, plates = plates_of(out.title, made, bed, gap, out.plate)
     shown = "x".join(f"{length:g}" for length in bed if math.isfinite(length))
-    lists = {"pieces.csv": table(made, bought), "pieces.md": markdown(out.name, shown, made, bought)}
+    lists = {"pieces.csv": table(made, bought), "pieces.md": markdown(out.title, shown, made, bought)}
     return files | plates | {file: text.encode() for file, text in lists.items()}, made, bought
 
 
@@ -104,8 +111,23 @@ def _tell_large(name: str, part: Made, bed: Bed) -> None:
     warn(
         "print",
         f"{name}: {part.name}{several} needs a bed of {part.bed} mm, this one has {size} mm, so it is on no plate; "
-        f"give BED={part.bed.replace(' ', '')}, or make the mechanism smaller",
+        f"give BED={part.bed.replace(' ', '')}, or print it smaller, such as SCALE=1:5",
     )
+
+
+def _tell_thin(name: str, made: list[Made]) -> None:
+    """Name pieces that have walls thinner than a nozzle, the thinnest first."""
+    from mechanisms.stages.print.walls import NOZZLE, thinnest
+
+    walls = sorted((thinnest(part.piece.triangles), part.name) for part in made)
+    thin = [f"{piece} {wall:.2g} mm" for wall, piece in walls if wall < NOZZLE]
+    if thin:
+        others = f" and {len(thin) - LISTED} others" if len(thin) > LISTED else ""
+        warn(
+            "print",
+            f"{name}: walls thinner than a nozzle of {NOZZLE:g} mm: {', '.join(thin[:LISTED])}{others}; print it at a "
+            "larger scale, or make them thicker in parts.py",
+        )
 
 
 def _summary(name: str, files: dict[str, bytes], made: list[Made], bought: list[Bought], bed: Bed) -> str:

@@ -46,6 +46,11 @@ def built(plan: Plan, heights: Heights, engraved_too: bool = True) -> dict[str, 
     return {body: [_scaled(solid, plan.layout.sizes) for solid in solids] for body, solids in made.items()}
 
 
+def fitted(bodies: dict[str, list[Solid]]) -> dict[str, list[Solid]]:
+    """The same, marked as pieces whose sizes were chosen for what is made."""
+    return {body: [replace(solid, fitted=True) for solid in solids] for body, solids in bodies.items()}
+
+
 def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
     """All that is one piece in the layer of a body, and its number of through holes."""
     if body in plan.wheels:

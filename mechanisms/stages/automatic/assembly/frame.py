@@ -66,7 +66,7 @@ def back_plate(plan: Plan) -> BackPlate | None:
     if plan.mount.kind == "ground" and all(stand.road for stand in plan.feet) and not plan.base_under:
         return None
     upright, sizes = Upright.of(plan.mount), plan.layout.sizes
-    hole = sizes.screw / sizes.scale + 0.4
+    hole = sizes.screw / sizes.finished + 0.4
     bolts = [(*upright.seen_place(x, y), hole / 2) for stand in plan.feet for x, y in stand.holes]
     return BackPlate(_extent(plan, upright), 0.0, PLATE, 1.0, sizes.pivot.fit.seat, tuple(bolts))
 
@@ -83,15 +83,15 @@ class _Screw:
 
 def _corner_screw(sizes: Sizes) -> _Screw:
     """The standard screw next to 5 rmm; of 5 rmm where none is near."""
-    nominal = min(SOCKET, key=lambda size: abs(size - 5.0 * sizes.scale))
-    diameter = nominal / sizes.scale
-    room = head_diameter(nominal) / sizes.scale + 0.5, diameter + 0.4
+    nominal = min(SOCKET, key=lambda size: abs(size - 5.0 * sizes.finished))
+    diameter = nominal / sizes.finished
+    room = head_diameter(nominal) / sizes.finished + 0.5, diameter + 0.4
     longest = PLATE + FOOT_HEIGHT - room[1] - 0.4
-    length = screw_length(nominal, longest * sizes.scale)
+    length = screw_length(nominal, longest * sizes.finished)
     if length is None or not 4.0 < diameter < 6.25:
         return _Screw(socket_screw(5.0, 8.5), 5.0, (9.0, 5.4))
     shape = socket_screw(nominal, length)
-    shape = shape.newObject([shape.val().scale(1 / sizes.scale)])
+    shape = shape.newObject([shape.val().scale(1 / sizes.finished)])
     return _Screw(shape, diameter, room, screw_name(nominal, length))
 
 
@@ -143,8 +143,10 @@ def _letters(stand: Foot, middle: float, feet: Sequence[Foot]) -> list[cq.Face]:
 
 def _ruler(sizes: Sizes, reach: float, x: float, y0: float) -> list[cq.Face]:
     """A rule in millimetres of the finished piece, its strokes 3 to 8 rmm apart."""
-    step = next(s for power in range(-3, 6) for s in (10.0**power, 5 * 10.0**power) if s * 0.999 / sizes.scale >= 3.0)
-    short = step / sizes.scale
+    step = next(
+        s for power in range(-3, 6) for s in (10.0**power, 5 * 10.0**power) if s * 0.999 / sizes.finished >= 3.0
+    )
+    short = step / sizes.finished
     marks = rule(reach, x, y0 + 3.4, step=short)
     count = math.floor(reach / short + 1e-9)
     every = next(n for n in (2, 4, 10, 20, 40, 100) if n * short >= 14.0 + 2.0 * len(f"{count * step:g}"))

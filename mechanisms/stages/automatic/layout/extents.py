@@ -55,15 +55,36 @@ def extent(name: str) -> Callable[[ExtentOf], ExtentOf]:
     return enter
 
 
+@dataclass(frozen=True)
+class Lengths:
+    """Lengths of a mechanism (m) from which the size of its parts follows."""
+
+    apart: list[tuple[float, str]]
+    """Distances of two pins of a body, or what is like one, each with words for it; without those that are none."""
+    overall: float
+    """The longer side of all that is swept."""
+
+    @property
+    def shortest(self) -> tuple[float, str]:
+        """The shortest distance, with its words."""
+        return min(self.apart, default=(self.overall, "all that moves"))
+
+
 def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) -> tuple[float, float]:
     """The shortest distance of two pins of a body, or what is like one; the longer side of all that is swept (m).
 
     Bodies that are ``left_out`` do not count.
     """
+    lengths = lengths_of(m, solution, left_out)
+    return lengths.shortest[0], lengths.overall
+
+
+def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) -> Lengths:
+    """All of them, without bodies that are ``left_out``."""
     places: dict[str, list[tuple[float, float]]] = {}
     pinned: dict[str, list[tuple[float, float]]] = {}
     studs: dict[str, list[tuple[float, float]]] = {}
-    least: list[float] = []
+    least: list[tuple[float, str]] = []
     for joint in m.joints.values():
         for marker in (joint.i, joint.j):
             if marker.body.name in left_out:
@@ -74,7 +95,7 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
     for thing in (*m.joints.values(), *m.contacts.values(), *m.forces.values()):
         if thing.kind.name in EXTENTS and not any(body in left_out for body in thing.bodies):
             own = EXTENTS[thing.kind.name](thing, solution)
-            least += [length * LINK / wanted for length, wanted in own.least]
+            least += [(length * LINK / wanted, f"what '{thing.name}' needs") for length, wanted in own.least]
             for marker, radius in own.radii:
                 round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
                 places.setdefault(marker.body.name, []).extend(round_it)
@@ -91,12 +112,16 @@ def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) ->
     seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
     overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0
     apart = [
-        float(np.hypot(a[0] - b[0], a[1] - b[1])) for at in pinned.values() for i, a in enumerate(at) for b in at[:i]
+        (float(np.hypot(a[0] - b[0], a[1] - b[1])), f"the distance of two pins of '{body}'")
+        for body, at in pinned.items()
+        for i, a in enumerate(at)
+        for b in at[:i]
     ]
     for body, at in studs.items():
         beside = [math.dist(a, b) for i, a in enumerate(at) for b in [*at[:i], *pinned.get(body, [])]]
-        least += [d * LINK / STUD for d in beside if d > NEAR * overall]
-    return min((d for d in [*apart, *least] if d > 1e-3 * overall), default=overall), overall
+        words = f"what pins and ends of springs on '{body}' need"
+        least += [(d * LINK / STUD, words) for d in beside if d > NEAR * overall]
+    return Lengths([(d, words) for d, words in [*apart, *least] if d > 1e-3 * overall], overall)
 
 
 def stretching(m: Mechanism, left_out: Collection[str] = ()) -> list[Force | Joint]:

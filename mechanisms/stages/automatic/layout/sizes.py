@@ -86,15 +86,27 @@ class Sizes:
     """What a pin shows beyond its circlip."""
     room: float = 1.5
     """Least gap in the plane between bodies that share a height."""
+    ratio: float = 1.0
+    """Millimetres of the finished piece for a millimetre here: 0.05 for a model at 1:20."""
 
     def of_metres(self, length: float) -> float:
         """A length of the model (m) in rmm."""
         return mm(length) / self.scale
 
     @property
+    def finished(self) -> float:
+        """Millimetres of the finished piece that one rmm is, which is what standards go by."""
+        return self.scale * self.ratio
+
+    @property
     def pin(self) -> float:
         """Diameter of a pin (mm)."""
         return PIN * self.scale
+
+    @property
+    def finished_pin(self) -> float:
+        """The same of the finished piece."""
+        return PIN * self.finished
 
     @property
     def end_room(self) -> float:
@@ -109,19 +121,19 @@ class Sizes:
 
     @property
     def tolerance(self) -> float | None:
-        """Largest distance (mm) of meshes from the true surface: in proportion where parts are large, well below the
-        clearance of pins; None: the usual one.
+        """Largest distance (mm of the finished piece) of meshes from the true surface: in proportion where parts are
+        large, well below the clearance of pins; None: the usual one.
         """
-        large = min(self.scale, COARSEST * self.pivot.fit.running * self.scale / TOLERANCE)
+        large = min(self.finished, COARSEST * self.pivot.fit.running * self.finished / TOLERANCE)
         return TOLERANCE * large if large > 1.0 else None
 
     @property
     def screw(self) -> float:
-        """Nominal diameter (mm) of the screws of a pedestal: the standard one next to 3 rmm; 0 where all are too
-        thick.
+        """Nominal diameter (mm of the finished piece) of the screws of a pedestal: the standard one next to 3 rmm; 0
+        where all are too thick.
         """
-        nearest = min(SOCKET, key=lambda size: abs(size - 3.0 * self.scale))
-        return nearest if nearest <= THICKEST_SCREW * self.scale else 0.0
+        nearest = min(SOCKET, key=lambda size: abs(size - 3.0 * self.finished))
+        return nearest if nearest <= THICKEST_SCREW * self.finished else 0.0
 
 
 def sizes(shortest: float, overall: float, fit: Fit | None = None, thinnest: float = THINNEST) -> list[Sizes]:
@@ -133,10 +145,11 @@ def sizes(shortest: float, overall: float, fit: Fit | None = None, thinnest: flo
     return [of_pin(d, fit) for d in (pin, *thinner)]
 
 
-def of_pin(diameter: float, fit: Fit | None = None) -> Sizes:
+def of_pin(diameter: float, fit: Fit | None = None, ratio: float = 1.0) -> Sizes:
     """Sizes that go with pins of this diameter (mm), with washers and circlips that one can buy where there are any.
 
-    ``fit`` in mm; by default what a workshop can make, small or large.
+    ``fit`` in mm; by default what a workshop can make, small or large. Both are those of the finished piece, in the
+    ``ratio`` to the machine.
     """
     scale = diameter / PIN
     if fit is None:
@@ -144,7 +157,7 @@ def of_pin(diameter: float, fit: Fit | None = None) -> Sizes:
         axial = min(max(0.4 * scale, 0.16), 2.0)
         fit = Fit(running, Fit.press * scale, axial, Fit.seat * scale)
     of_reference = Fit(fit.running / scale, fit.press / scale, fit.axial / scale, fit.seat / scale)
-    return Sizes(scale, _bought(Pivot(fit=of_reference), diameter, scale))
+    return Sizes(scale / ratio, _bought(Pivot(fit=of_reference), diameter, scale), ratio=ratio)
 
 
 def _bought(pivot: Pivot, diameter: float, scale: float) -> Pivot:

@@ -160,15 +160,15 @@ def standing(
         plan.make("ground", f"{kind}_{name}", placed(post, x, y, seat), "aluminium", 1)
         plan.feet.append(Foot(label, x, y, foot / 2, dial=dial))
         return
-    nominal = sizes.screw / sizes.scale
+    nominal = sizes.screw / sizes.finished
     post = pedestal(height - seat, pivot.held, TOP, FOOT, FLANGE, FLANGE_THICKNESS, 3, nominal, CIRCLE)
     plan.make("ground", f"{kind}_{name}", placed(post, x, y, seat), "aluminium", 4)
     bolts = [(x + u, y + v) for u, v in bolt_circle(CIRCLE, 3)]
     plan.feet.append(Foot(label, x, y, FLANGE / 2, tuple(bolts), dial))
-    longest = (FLANGE_THICKNESS + BOLT_HOLE - 0.5) * sizes.scale
+    longest = (FLANGE_THICKNESS + BOLT_HOLE - 0.5) * sizes.finished
     length = screw_length(sizes.screw, longest) or longest
     screw = socket_screw(sizes.screw, length)
-    screw, bought = screw.newObject([screw.val().scale(1 / sizes.scale)]), screw_name(sizes.screw, length)
+    screw, bought = screw.newObject([screw.val().scale(1 / sizes.finished)]), screw_name(sizes.screw, length)
     for i, (u, v) in enumerate(bolts):
         at_screw = placed(screw, u, v, FLANGE_THICKNESS + 2 * seat)
         plan.add("ground", Solid(f"screw_{name}_{i + 1}", at_screw, "steel", 0, buy=bought))

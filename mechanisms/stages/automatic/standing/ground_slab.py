@@ -42,5 +42,5 @@ class GroundSlab:
         x = min(right[0], fixed.low[0] - around), max(right[1], fixed.high[0] + around)
         z = min(near[0], fixed.low[2] - around), max(near[1], fixed.high[2] + around)
         slab = foot(x, (over - deep, over), z, min(9.0 * self.unit, 0.3 * (z[1] - z[0])), 1.2 * self.unit)
-        made = Solid("ground_slab", self.upright.in_model(slab), SLAB, 0, tolerance=self.tolerance)
+        made = Solid("ground_slab", self.upright.in_model(slab), SLAB, 0, tolerance=self.tolerance, fitted=True)
         return [*bodies["ground"], *named([made], bodies)]

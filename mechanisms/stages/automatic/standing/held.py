@@ -29,4 +29,4 @@ def hold(made: Bodies, mount: Mount, plate: BackPlate | None, poses: Mapping[str
         made.stand = GroundSlab(upright, poses, sizes.scale, seat, sizes.tolerance)
     else:
         look = ENGINE if made.along else LINKAGE
-        made.stand = Stand(plate, upright, poses, look, sizes.tolerance)
+        made.stand = Stand(plate, upright, poses, look, sizes.tolerance, sizes.ratio)

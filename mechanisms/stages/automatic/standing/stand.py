@@ -45,15 +45,17 @@ class Stand:
     materials: tuple[str, str] = LINKAGE
     """Materials of foot and column."""
     tolerance: float | None = None
+    ratio: float = 1.0
+    """Millimetres of the finished piece for one here."""
 
     def __call__(self, bodies: Mapping[str, Sequence[Solid]]) -> list[Solid]:
         """The solids of ground with the stand: its first, the back plate, has holes for screws now."""
         load = standing(bodies, self.poses, self.upright)
         own, plate = dimensions(self.plate, load), self.plate
         thick, deep, into = _size(own.column[1]), _size(own.foot[1]), INTO * plate.thickness
-        behind = _bolt(SCREW * plate.unit, thick, into, plate.seat)
+        behind = self._bolt(SCREW * plate.unit, thick, into, plate.seat)
         places = [(x, y, own.column[1][0]) for x, y in screw_places(plate, own, behind.seat)]
-        below = _bolt(min(SCREW * plate.unit, 0.45 * thick), deep, 2 * into, plate.seat)
+        below = self._bolt(min(SCREW * plate.unit, 0.45 * thick), deep, 2 * into, plate.seat)
         feet = _below(own, below)
         main, *others = bodies["ground"]
         tapped = [(x, y, plate.back) for x, y, _ in places]
@@ -68,7 +70,10 @@ class Stand:
         for k, (x, y, z) in enumerate(feet, start=1):
             made.append(_screw(f"foot_screw_{k}", below, (x, y + below.sunk - plate.seat / 2, z), "y"))
         made += self._pads(own)
-        turned = [replace(solid, shape=self.upright.in_model(solid.shape), tolerance=self.tolerance) for solid in made]
+        turned = [
+            replace(solid, shape=self.upright.in_model(solid.shape), tolerance=self.tolerance, fitted=True)
+            for solid in made
+        ]
         return [replace(main, shape=self.upright.in_model(held)), *others, *named(turned, bodies)]
 
     def _column(
@@ -92,6 +97,11 @@ class Stand:
         shape = foot(x, y, z, corner, min(EDGE * unit, 0.2 * (y[1] - y[0])))
         return seated(shape, feet, "y", _size(y), below)
 
+    def _bolt(self, wish: float, through: float, into: float, seat: float) -> Bolt:
+        """A screw that goes through so much matter, its head below the face, and ``into`` what is behind."""
+        longest = through - 1.1 * wish + seat + 0.85 * into
+        return bolt(wish * self.ratio, longest * self.ratio).at_scale(1.0 / self.ratio)
+
     def _pads(self, own: Dimensions) -> list[Solid]:
         unit, (x, y, z) = self.plate.unit, own.foot
         radius = min(PAD[0] * unit, 0.2 * (x[1] - x[0]), 0.2 * (z[1] - z[0]))
@@ -109,11 +119,6 @@ class Stand:
 
 def _size(span: tuple[float, float]) -> float:
     return span[1] - span[0]
-
-
-def _bolt(wish: float, through: float, into: float, seat: float) -> Bolt:
-    """A screw that goes through so much matter, its head below the face, and ``into`` what is behind."""
-    return bolt(wish, through - 1.1 * wish + seat + 0.85 * into)
 
 
 def _below(own: Dimensions, below: Bolt) -> list[tuple[float, float, float]]:

@@ -66,10 +66,10 @@ def _trains(toothed: Sequence[Toothed]) -> list[list[Toothed]]:
 
 def _count(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: Layout) -> None:
     """Module, teeth, play and tips of a train."""
-    scale = layout.sizes.scale
+    scale = layout.sizes.finished
     wheels = [wheel for wheel in train if isinstance(wheel, Wheel)]
     given = [mesh.joint.params["module"] for mesh in meshes if mesh.joint.params.get("teeth") is not None]
-    module = mm(given[0]) if given else module_of([wheel.radius * scale for wheel in wheels])
+    module = mm(given[0]) * layout.sizes.ratio if given else module_of([wheel.radius * scale for wheel in wheels])
     if module is None:
         radii = ", ".join(f"{wheel.body} {wheel.radius * scale:.4g} mm" for wheel in wheels)
         raise UserError(

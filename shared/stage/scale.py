@@ -1,0 +1,53 @@
+"""The scale of a model that is printed: 1:20, 2:1."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+from shared.stage.errors import UserError
+
+SMALLEST, LARGEST = Fraction(1, 10_000), Fraction(100)
+_NUMBER = r"[0-9]+(?:\.[0-9]+)?"
+_FORM = re.compile(rf"\s*({_NUMBER})\s*(?:[:/]\s*({_NUMBER}))?\s*")
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A length of the model to the same length of the machine, in lowest terms."""
+
+    model: int
+    machine: int
+
+    @property
+    def ratio(self) -> float:
+        """0.05 for 1:20."""
+        return self.model / self.machine
+
+    @property
+    def slug(self) -> str:
+        """For names of files and folders: ``scale_1_20``."""
+        return f"scale_{self.model}_{self.machine}"
+
+    def __str__(self) -> str:
+        return f"{self.model}:{self.machine}"
+
+
+def scale_of(text: str) -> Scale | None:
+    """A scale from words like 1:20, 1/20, 0.05 or 2:1; None from none. Raises UserError for words that are no scale."""
+    if not text.strip():
+        return None
+    match = _FORM.fullmatch(text)
+    below = Fraction(match[2] or 1) if match else 0
+    ratio = Fraction(match[1]) / below if match and below else Fraction(0)
+    if not SMALLEST <= ratio <= LARGEST:
+        raise UserError(
+            f"SCALE={text} is no scale between 1:{1 / SMALLEST} and {LARGEST}:1; write a length of the model to that "
+            "of the machine, such as SCALE=1:20, 1/20 or 0.05"
+        )
+    if match and match[2] is None and ratio > 1:
+        raise UserError(
+            f"SCALE={text} may mean two things; write SCALE=1:{text} for a small model, {text}:1 for a large one"
+        )
+    return Scale(ratio.numerator, ratio.denominator)

@@ -33,6 +33,7 @@ def main() -> int | None:
         if command in ("parts", "print", "clearance"):
             sub.add_argument("--scale", default="", help="of a model, such as 1:20; the machine itself if not given")
         if command == "parts":
+            sub.add_argument("--anyway", default="", help="1: also where the same was refused before")
             sub.add_argument("--or-none", action="store_true", help="go on where there are no automatic parts")
     fresh = commands.add_parser("new", help="a new mechanism that already runs")
     fresh.add_argument("name", help="folder to make")
@@ -68,7 +69,9 @@ def main() -> int | None:
             return stage.run(name, bed=arguments.bed, gap=arguments.gap, scale=arguments.scale)
         if getattr(arguments, "or_none", False):
             return stage.run_or_none(name)
-        return stage.run(name, scale=arguments.scale) if hasattr(arguments, "scale") else stage.run(name)
+        if arguments.command == "parts":
+            return stage.run(name, scale=arguments.scale, anyway=arguments.anyway not in ("", "0"))
+        return stage.run(name, scale=arguments.scale) if arguments.command == "clearance" else stage.run(name)
     if arguments.command == "variants":
         owner = owner_of(arguments.name)
         if not variants_in(mechanism_file(owner)):

@@ -73,6 +73,28 @@ def progress(label: str, total: int, unit: str = "frame") -> Iterator[Progress]:
         yield _TerminalProgress(total, unit, show)
 
 
+class Shown:
+    """What takes long, shown in a line now and then with what is left; nothing is said of what ends sooner."""
+
+    def __init__(self, stage: str, name: str, total: int, unit: str) -> None:
+        self.stage, self.name, self.total, self.unit = stage, name, total, unit
+        self.count, self.began = 0, time.monotonic()
+        self._last = self.began
+
+    def advance(self, note: str = "") -> None:
+        """Count one more as done; ``note`` is a word on it."""
+        self.count += 1
+        now = time.monotonic()
+        gone = now - self.began
+        if now - self._last < min(max(SHORTEST, 0.1 * gone), LONGEST):
+            return
+        self._last = now
+        left = f", about {duration(gone / self.count * (self.total - self.count))} left" if self.total else ""
+        of = f" of {self.total}" if self.total else ""
+        words = f" ({note})" if note else ""
+        say(self.stage, f"{self.name}: {self.count}{of} {self.unit}, {duration(gone)} so far{left}{words}")
+
+
 def duration(seconds: float) -> str:
     """A time for people: ``0.4 s``, ``12 s``, ``3 min 20 s``, ``2 h 05 min``."""
     if seconds < 9.95:

@@ -54,7 +54,12 @@ OPTIONS: dict[str, Option] = {
         Option("view", "what is shown: reactions,velocities; all if not given"),
         Option("only", "these alone, commas between them; all if not given", "NAMES"),
         Option("watts", "power of this machine while it renders (W), to tell the energy", "W", kept=True),
-        Option("anyway", "begin though the disk is surely too small", flag=True, valued=True),
+        Option(
+            "anyway",
+            "begin though the disk is surely too small, or the same parts were refused before",
+            flag=True,
+            valued=True,
+        ),
         Option("kind", "driven or simulated", default="driven", choices=("driven", "simulated")),
         Option("as", "its name here; that of the file if not given", "NAME"),
         Option("format", "of the file", default="csv", choices=(*FORMATS, *SCENES)),

@@ -45,9 +45,9 @@ SOLVE = Stage("mechanisms", "solve")
 CLEARANCE = Stage("mechanisms", "clearance", solids=True)
 SHOT = Stage("mechanisms", "shot")
 PRINT = Stage("mechanisms", "print", ("bed", "gap"), solids=True)
-MODEL, MODEL_CLEARANCE, MODEL_PRINT = (
-    Stage("mechanisms", stage.name, (*stage.options, "scale"), solids=True) for stage in (PARTS, CLEARANCE, PRINT)
-)
+MODEL = Stage("mechanisms", "parts", ("scale", "anyway"), solids=True)
+MODEL_CLEARANCE = Stage("mechanisms", "clearance", ("scale",), solids=True)
+MODEL_PRINT = Stage("mechanisms", "print", (*PRINT.options, "scale"), solids=True)
 """Of a model at a scale, where one is given."""
 ANIMATE = Stage("mechanisms", "animate", ("view",))
 REPORT = Stage("render", "report")

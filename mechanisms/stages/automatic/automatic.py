@@ -39,6 +39,7 @@ from mechanisms.stages.automatic.wished_names import refuse_material, refuse_unk
 from mechanisms.stages.loading.wished_mount import wished
 from mechanisms.stages.loading.wished_scale import wished_scale
 from shared.contract.mount import Mount, mounted
+from shared.stage.console import Shown
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
@@ -294,7 +295,9 @@ class Automatic:
         plan.mount = self.mount
         plan.reserve([*self.m.bodies, *rods, "base_plate", *self.layout.webs])
         plan.base_under += [(x / self.sizes.scale, y / self.sizes.scale) for x, y in self._base_under]
+        shown = Shown("parts", self.m.name, len(self.layout.features), "joints, springs and the like shaped")
         for feature in self.layout.features:
+            shown.advance()
             with kernel_refusals(self.m.name, f"the parts of '{getattr(feature, 'name', type(feature).__name__)}'"):
                 build(feature, plan, self.heights)
         place(self._marks, plan)

@@ -21,7 +21,7 @@ from mechanisms.stages.automatic.pins.free.rim_marks import RimMark
 from mechanisms.stages.automatic.pins.webs import webbed
 from mechanisms.stages.automatic.refusal import in_the_way, refusal, undecided
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
-from shared.stage.console import warn
+from shared.stage.console import Shown, warn
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
@@ -80,6 +80,7 @@ class _Tried:
     fixed: Mapping[str, int]
     known: dict[tuple[float, Springs, bool], Layout] = field(default_factory=dict)
     purse: Purse = field(default_factory=Purse)
+    shown: list[Shown] = field(default_factory=list)
 
     def layout(self, sizes: Sizes, springs: Springs, tubes: bool = False) -> Layout:
         """With flush styluses."""
@@ -107,11 +108,18 @@ class _Tried:
 
     def ordered(self, layout: Layout, bridges: bool) -> Outcome | None:
         """A layout with its layers, and with the bridges that these need."""
+        self._show(layout)
         levels = find_layers(layout.problem(self.fixed, may_hang(layout) if bridges else frozenset()), self.purse)
         if levels is None:
             return None
         layout.features += bridges_over(layout, levels)
         return layout, levels
+
+    def _show(self, layout: Layout) -> None:
+        """Say now and then what is tried."""
+        if not self.shown:
+            self.shown.append(Shown("parts", layout.m.name, 0, "orders of layers looked for"))
+        self.shown[0].advance(f"{len(layout.layered)} bodies, pins of {layout.sizes.finished_pin:g} mm")
 
     def with_far_posts(self, wishes: Sequence[Sizes]) -> Outcome | None:
         """Where there are curved slots on ground, with the thickest pins that leave an order."""

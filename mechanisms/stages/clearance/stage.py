@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING
 from shared.contract import Motion, Parts, Provenance, read_motion, read_parts
 from shared.contract.clearance import Clearance, PairClearance, Proof, write_clearance
 from shared.shapes.units import metres, mm
-from shared.stage.console import say
+from shared.stage.console import Shown, say
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash
 from shared.stage.paths import ROOT, Out
@@ -140,8 +140,10 @@ def check(
     pairs: list[PairClearance] = []
     refused: list[tuple[Sweep, Least]] = []
     apart, error = 0, 0.0
+    shown = Shown("clearance", name, len(pieces) * (len(pieces) - 1) // 2, "pairs of pieces looked at")
     alike = {frozenset(pair) for pair in parts.may_touch} | {frozenset((piece.body,)) for piece in pieces}
     for first, second in combinations(pieces, 2):
+        shown.advance()
         names = frozenset(((first.body, first.name), (second.body, second.name)))
         if frozenset((first.body, second.body)) in alike or names in own:
             continue

@@ -11,6 +11,9 @@ from shared.shapes.units import metres
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from mechanisms.stages.parts.kept_pieces import KeptPieces
     from shared.shapes.bodies import Place
 
 
@@ -21,15 +24,21 @@ def described_body(
     files: dict[str, bytes],
     places: tuple[Place, Place] | None,
     along: bool = False,
+    kept: KeptPieces | None = None,
+    done: Callable[[], object] = bool,
 ) -> BodyParts:
     """Describe a body and add its files to ``files``; ``places`` are those that a rod joins. ``along``: z of the solids
-    is that of the model, so masses have it, too.
+    is that of the model, so masses have it, too. Pieces that are ``kept`` are not made again; ``done`` is called
+    after each piece.
 
     Raises UserError naming the solid that is refused.
     """
     from mechanisms.stages.parts.mass_properties import combined
 
-    pieces = {solid.name: _piece(name, body, solid, files, along) for solid in solids}
+    pieces: dict[str, Piece] = {}
+    for solid in solids:
+        pieces[solid.name] = _piece(name, body, solid, files, along, kept)
+        done()
     main = pieces[solids[0].name]
     mass = combined(piece.mass for piece in pieces.values() if not piece.dressing)
     return BodyParts(pieces=pieces, mass=mass, z=(sum(main.z_range)) / 2, spans=places and spans(places))
@@ -41,8 +50,11 @@ def spans(places: tuple[Place, Place]) -> tuple[End, End]:
     return first, second
 
 
-def _piece(name: str, body: str, solid: Any, files: dict[str, bytes], along: bool) -> Piece:
+def _piece(
+    name: str, body: str, solid: Any, files: dict[str, bytes], along: bool, kept: KeptPieces | None = None
+) -> Piece:
     """Check one solid, add its files to ``files``, and describe it."""
+    from mechanisms.stages.parts.kept_pieces import Kept
     from mechanisms.stages.parts.mass_properties import mass_of
     from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
     from mechanisms.stages.parts_files import read_mesh, step_bytes, stl_bytes, volume_of
@@ -56,6 +68,11 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes], along: boo
         )
     try:
         shape = only_solid(solid.shape, where)
+        key = kept.key(shape, solid, along) if kept else ""
+        known = kept.get(key) if kept else None
+        if known is not None:
+            files |= {known.piece.stl: known.stl, known.piece.step: known.step}
+            return known.piece
         step = step_bytes(shape, solid.name)  # before the mesh, which the shape would carry along
         stl = stl_bytes(shape, solid.tolerance)
     except Exception as error:
@@ -69,7 +86,7 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes], along: boo
     check_mesh(mesh, volume_of(shape), solid.through_holes, where)
     files[f"{solid.name}.stl"] = stl
     files[f"{solid.name}.step"] = step
-    return Piece(
+    piece = Piece(
         material=solid.material,
         stl=f"{solid.name}.stl",
         step=f"{solid.name}.step",
@@ -82,6 +99,9 @@ def _piece(name: str, body: str, solid: Any, files: dict[str, bytes], along: boo
         buy=solid.buy,
         dressing=solid.dressing,
     )
+    if kept:
+        kept.add(key, Kept(piece, stl, step))
+    return piece
 
 
 def _rolling(roll: Any) -> Rolling | None:

@@ -10,7 +10,9 @@ bytes would be the same is not touched.
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,13 +23,15 @@ from mechanisms.stages.loading.loading import author_code, has, load, package_of
 from mechanisms.stages.loading.recording import Recorder, recording
 from mechanisms.stages.loading.wished_mount import of_shot, wishing
 from mechanisms.stages.loading.wished_scale import scaling
+from mechanisms.stages.parts import remembered
+from mechanisms.stages.parts.kept_pieces import KeptPieces
 from mechanisms.stages.parts.plain_values import plain_text
 from mechanisms.stages.parts.traced_params import fields_of, traced
 from shared.cluster.address import address
 from shared.contract import Parts, Provenance, write_parts
 from shared.contract.materials import MATERIALS
 from shared.contract.mount import Kind
-from shared.stage.console import say, warn
+from shared.stage.console import Shown, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out, in_workshop, is_single_file, mechanism_file
@@ -53,10 +57,11 @@ AUTOMATIC = [
 PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "python-sat", "trimesh")
 
 
-def run(name: str, scale: str = "") -> None:
+def run(name: str, scale: str = "", anyway: bool = False) -> None:
     """Make the parts of mechanism ``name``, or of its model at a scale, if anything they follow from has changed.
 
-    Raises UserError naming the solid, the number and the remedy if a solid is refused; what was there stays.
+    Raises UserError naming the solid, the number and the remedy if a solid is refused; what was there stays. A refusal
+    that took long is remembered until something changes, or they are to be made ``anyway``.
     """
     out = Out(name, scale_of(scale))
     before = set(sys.modules)
@@ -66,13 +71,17 @@ def run(name: str, scale: str = "") -> None:
     if _is_fresh(out, given, wish):
         say("parts", f"{out.title}: nothing to do")
         return
+    if not anyway:
+        remembered.refuse_again(out, lambda reads, inputs: _key(given, reads, inputs, wish))
     # Files travel by their names below the project, which those of a user's own folder have not.
     made = _of_cluster(out.name, given, wish) if address() and not in_workshop() and wish.scale is None else None
-    made = made or _made_here(out.name, given, wish, before, recorder)
+    made = made or _made_here(out, given, wish, before, recorder)
     written = _write(out, made.files, made.document)
     outputs = [out.parts, *(out.parts_folder / file for file in made.files)]
     notes = {"parameters": made.reads, "inputs": made.inputs.names()}
     Stage(out, "parts", made.document.provenance.inputs, outputs).done(**notes)
+    _kept_pieces(out).clear()
+    remembered.forget(out)
     say("parts", _summary(out.title, made.document, written))
 
 
@@ -106,28 +115,63 @@ class _Found(NamedTuple):
     inputs: Inputs
 
 
-def _made_here(name: str, given: Any, wish: _Wish, before: set[str], recorder: Recorder) -> _Found:
-    """Run the author's code; ``recorder`` has seen what mechanism.py read."""
+def _made_here(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder) -> _Found:
+    """Run the author's code; ``recorder`` has seen what mechanism.py read. A refusal is remembered."""
+    began, seen = time.monotonic(), _Seen()
+    try:
+        return _described(out, given, wish, before, recorder, seen)
+    except UserError as error:
+        seconds = time.monotonic() - began
+        if remembered.is_worth_it(error, seconds) and (wish.by_itself or seen.is_whole):
+            reads, inputs = sorted(seen.reads), seen.inputs.joined(_of_mechanism(out.name, before, recorder))
+            remembered.remember(out, error, _key(given, reads, inputs, wish), reads, inputs)
+        raise
+
+
+@dataclass
+class _Seen:
+    """What parts.py was seen to read from its parameters, and what it was made of and read."""
+
+    reads: set[str] = field(default_factory=set)
+    inputs: Inputs = field(default_factory=Inputs)
+    is_whole: bool = False
+
+
+def _of_mechanism(name: str, before: set[str], recorder: Recorder) -> Inputs:
+    """What mechanism.py was made of and read."""
     from mechanisms.stages.loading.loaded_files import loaded_inputs
+
+    return loaded_inputs(mechanism_file(name), package_of(name), before).joined(recorder.inputs())
+
+
+def _kept_pieces(out: Out) -> KeptPieces:
+    densities = {material: MATERIALS[material].density for material in sorted(MATERIALS)}
+    return KeptPieces(out.folder / ".pieces", key_of(sources_hash(*SOURCES), versions(*PACKAGES), densities))
+
+
+def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder, seen: _Seen) -> _Found:
     from mechanisms.stages.parts.described_body import described_body
     from mechanisms.stages.parts.mount_of import follows_gravity, mount_of
     from shared.shapes.bodies import Bodies
 
+    name = out.name
     with wishing(wish.mount), scaling(wish.scale):
-        bodies, reads, inputs = _build(name, given)
+        bodies = _build(name, given, seen)
     if isinstance(bodies, Bodies):
         bodies = bodies.on_stand()
     if wish.scale is not None:
         bodies = (bodies if isinstance(bodies, Bodies) else Bodies(bodies)).at_scale(wish.scale.ratio)
+    reads, inputs = sorted(seen.reads), seen.inputs
     if wish.by_itself or follows_gravity(bodies, wish.mount) or _more_than_values(name, given, reads):
-        mechanism = loaded_inputs(mechanism_file(name), package_of(name), before)
-        inputs = inputs.joined(mechanism).joined(recorder.inputs())
+        inputs = inputs.joined(_of_mechanism(name, before, recorder))
     key = _key(given, reads, inputs, wish)
     files: dict[str, bytes] = {}
     rods = getattr(bodies, "rods", {})
     along = getattr(bodies, "along", False)
+    shown, kept = Shown("parts", out.title, sum(map(len, bodies.values())), "solids written"), _kept_pieces(out)
     described = {
-        body: described_body(name, body, solids, files, rods.get(body), along) for body, solids in bodies.items()
+        body: described_body(name, body, solids, files, rods.get(body), along, kept, shown.advance)
+        for body, solids in bodies.items()
     }
     document = Parts(
         mechanism=name,
@@ -210,8 +254,8 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
     )
 
 
-def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inputs]:
-    """The solids by body, the names that parts() read from its parameters, and what parts.py was made of and read."""
+def _build(name: str, given: Any, seen: _Seen) -> dict[str, list[Any]]:
+    """The solids by body; ``seen`` gets what parts.py reads, also where it fails."""
     from mechanisms.stages.loading.loaded_files import loaded_inputs
     from mechanisms.stages.parts.cad_reads import reported_cad_files
     from mechanisms.stages.parts.returned_parts import refuse_unfit
@@ -219,16 +263,19 @@ def _build(name: str, given: Any) -> tuple[dict[str, list[Any]], list[str], Inpu
     if not has(name, "parts"):
         from mechanisms.stages.parts.automatic_solids import solids_of
 
-        return solids_of(name), [], Inputs()
-    stand_in, seen = traced(given)
+        return solids_of(name)
+    stand_in, seen.reads = traced(given)
     before, model = set(sys.modules), None if is_single_file(name) else mechanism_file(name)
     with recording() as recorder, reported_cad_files(recorder):
         module = load(name, "parts")
-        with author_code(name):
-            bodies = module.parts(stand_in)
-    loaded = loaded_inputs(mechanism_file(name, "parts"), package_of(name), before, leave_out=model)
+        try:
+            with author_code(name):
+                bodies = module.parts(stand_in)
+        finally:
+            loaded = loaded_inputs(mechanism_file(name, "parts"), package_of(name), before, leave_out=model)
+            seen.inputs, seen.is_whole = loaded.joined(recorder.inputs()), True
     refuse_unfit(name, bodies)
-    return bodies, sorted(seen), loaded.joined(recorder.inputs())
+    return bodies
 
 
 def _write(out: Out, files: Mapping[str, bytes], document: Parts) -> int:

@@ -66,7 +66,7 @@ def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
     stage.done()
     for part in made:
         if part.bed:
-            _tell_large(out.title, part, size)
+            _tell_large(out.title, part, size, at.ratio if at else 1.0)
     if at is not None:
         _tell_thin(out.title, made)
     say("print", _summary(out.title, files, made, bought, size))
@@ -105,13 +105,14 @@ def gap_of(text: str) -> float:
     return float(text)
 
 
-def _tell_large(name: str, part: Made, bed: Bed) -> None:
+def _tell_large(name: str, part: Made, bed: Bed, ratio: float) -> None:
     several = f" ({len(part.names)} of them)" if len(part.names) > 1 else ""
     size = " x ".join(f"{length:.0f}" for length in bed if math.isfinite(length))
+    times = max(own / length for own, length in zip(part.piece.size, bed, strict=True))
     warn(
         "print",
         f"{name}: {part.name}{several} needs a bed of {part.bed} mm, this one has {size} mm, so it is on no plate; "
-        f"give BED={part.bed.replace(' ', '')}, or print it smaller, such as SCALE=1:5",
+        f"give BED={part.bed.replace(' ', '')}, or make a model of it: SCALE=1:{math.ceil(times / ratio)}",
     )
 
 

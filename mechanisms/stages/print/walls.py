@@ -38,7 +38,7 @@ def _inside(triangles: np.ndarray, normals: np.ndarray, start: np.ndarray, way: 
         over = np.cross(to, first)
         v = over @ way / volume
         far = np.einsum("ij,ij->i", second, over) / volume
-    hit = (np.abs(volume) > 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (far > SKIN)
+        hit = (np.abs(volume) > 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (far > SKIN)
     if not hit.any():
         return np.inf
     at = int(np.argmin(np.where(hit, far, np.inf)))

@@ -20,6 +20,7 @@ from shared.shapes.build import extruded
 from shared.shapes.link import Eye, with_eyes
 from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
+from shared.stage.console import Shown
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.order.heights import Heights
@@ -35,7 +36,9 @@ def built(plan: Plan, heights: Heights, engraved_too: bool = True) -> dict[str, 
     """
     refuse_meeting_bores(plan)
     made: dict[str, list[Solid]] = {"ground": [*base(plan, engraved_too), *plan.solids.get("ground", [])]}
+    shown = Shown("parts", plan.layout.m.name, len(plan.layout.moving), "plates shaped")
     for body in plan.layout.moving:
+        shown.advance()
         with kernel_refusals(plan.layout.m.name, f"the plate of '{body}'"):
             shape, holes = _plate(plan, body, heights.thickness)
             for tool, through in plan.cuts.get(body, []):

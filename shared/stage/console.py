@@ -21,6 +21,8 @@ from shared.system.missing import missing_libraries, sentence
 
 SHORTEST, LONGEST = 5.0, 60.0
 """Seconds between two lines of progress in a log; the gap grows with the time that has passed."""
+FEW = 3
+"""After so few nobody knows how long the rest takes."""
 HOME = ".home"
 """Folder of the results that stands in for a home folder that takes no files."""
 RED, YELLOW, CYAN = "31", "33", "36"
@@ -89,7 +91,8 @@ class Shown:
         if now - self._last < min(max(SHORTEST, 0.1 * gone), LONGEST):
             return
         self._last = now
-        left = f", about {duration(gone / self.count * (self.total - self.count))} left" if self.total else ""
+        pace = gone / self.count
+        left = f", about {duration(pace * (self.total - self.count))} left" if self.total and self.count > FEW else ""
         of = f" of {self.total}" if self.total else ""
         words = f" ({note})" if note else ""
         say(self.stage, f"{self.name}: {self.count}{of} {self.unit}, {duration(gone)} so far{left}{words}")

@@ -10,7 +10,7 @@ from pathlib import Path
 NOTICE = "NOTICE.md"
 FILES = ("LICENSE", NOTICE)
 OURS = (
-    ".py", ".js", ".cjs", ".css", ".json", ".typed", ".txt", ".npmrc", ".nbi", ".nbc",
+    ".py", ".c", ".h", ".js", ".cjs", ".css", ".json", ".typed", ".txt", ".npmrc", ".nbi", ".nbc",
     "METADATA", "WHEEL", "RECORD", "LICENSE", NOTICE,
 )  # fmt: skip
 """Endings of what we write ourselves, and of compiled kernels; a font, a picture, a library is somebody's."""
@@ -64,7 +64,7 @@ def _with_foreign_words(names: Sequence[str], root: Path, notice: str) -> list[s
 
 def _source(name: str, root: Path) -> Path | None:
     path = root / name.removeprefix("mbsd/rooms/")
-    return path if path.is_file() and path.suffix in (".py", ".js", ".cjs", ".css", ".txt") else None
+    return path if path.is_file() and path.suffix in (".py", ".c", ".h", ".js", ".cjs", ".css", ".txt") else None
 
 
 def _has_row(notice: str, package: str, licence: str) -> bool:

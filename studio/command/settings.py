@@ -22,7 +22,7 @@ class Settings(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, rename=
     gap: float | None = None
     """mm"""
     scale: str = ""
-    """Of models that are printed: 1:20."""
+    """Scale of models that are printed: 1:20."""
     watts: float | None = None
     look: str = ""
     """Look of machines whose shot names none."""

@@ -48,7 +48,7 @@ PRINT = Stage("mechanisms", "print", ("bed", "gap"), solids=True)
 MODEL = Stage("mechanisms", "parts", ("scale", "anyway"), solids=True)
 MODEL_CLEARANCE = Stage("mechanisms", "clearance", ("scale",), solids=True)
 MODEL_PRINT = Stage("mechanisms", "print", (*PRINT.options, "scale"), solids=True)
-"""Of a model at a scale, where one is given."""
+"""Stages of a model at a scale, where one is given."""
 ANIMATE = Stage("mechanisms", "animate", ("view",))
 REPORT = Stage("render", "report")
 PLOTS = Stage("render", "plots", ("spectra",))

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from shared.contract.motion import BodyMotion, JointMotion
 
 LENGTHS = ("x", "y", "vx", "vy", "ax", "ay")
-"""Of a body's series."""
+"""Series of a body that are lengths."""
 OF_SHAPE = ("radius_first", "radius_second", "pin_radius", "length")
 
 

@@ -42,7 +42,7 @@ class KeptPieces:
         self._waiting: dict[str, Kept] = {}
 
     def key(self, shape: Any, solid: Any, along: bool) -> str:
-        """Of the piece that becomes of ``solid``; ``shape`` is its ``cadquery.Solid``, as yet without a mesh."""
+        """Key of the piece that becomes of ``solid``; ``shape`` is its ``cadquery.Solid``, as yet without a mesh."""
         stream = io.BytesIO()
         shape.exportBin(stream)
         return key_of(self.program, stream.getvalue(), replace(solid, shape=None), along)

@@ -93,7 +93,7 @@ class _Wish(NamedTuple):
     mount: Kind | None
     """Mount that shot.py wishes."""
     scale: Scale | None = None
-    """Of a model."""
+    """Scale of a model; None at full size."""
     masses: str = ""
     """Those of the machine, where the motion of its model follows from them."""
 

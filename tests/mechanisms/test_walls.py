@@ -30,3 +30,11 @@ def test_chamfers_and_wedges_are_no_walls() -> None:
     wedge = cq.Workplane().polyline([(0, 0), (30, 0), (0, 15)]).close().extrude(8)
     assert wall(eased) == pytest.approx(10.0, abs=1e-4)
     assert wall(wedge) == pytest.approx(8.0, abs=1e-4)
+
+
+def test_engraved_lines_are_no_walls() -> None:
+    """Two grooves 0.2 mm deep, and 0.25 mm apart."""
+    plate = cq.Workplane().box(30, 20, 4)
+    for x in (0.0, 0.55):
+        plate = plate.cut(cq.Workplane().box(0.3, 8, 0.4).translate((x, 0, 2)))
+    assert wall(plate) > 3.0

@@ -76,6 +76,12 @@ def test_each_target_runs_what_it_stands_on() -> None:
     assert [line.split()[0] for line in planned("parts-four-bar")] == ["parts"]
     assert planned("print-four-bar", "BED=180x180")[-1] == "print four_bar --bed=180x180"
     assert [line.split()[0] for line in planned("print-four-bar")] == ["parts", "print"]
+    model = planned("print-four-bar", "SCALE=1:2", "BED=180x180")
+    assert [line.split()[0] for line in model] == ["parts", "parts", "print", "solve", "clearance"]
+    assert [line.endswith("--scale=1:2") for line in model] == [False, True, True, False, True]
+    assert planned("parts-four-bar", "SCALE=1:2", "ANYWAY=1")[-1] == "parts four_bar --scale=1:2 --anyway=1"
+    assert planned("clearance-four-bar", "SCALE=1:2")[-1] == "clearance four_bar --scale=1:2"
+    assert not any("scale" in line for line in planned("film-four-bar", "SCALE=1:2"))
     assert [line.split()[0] for line in planned("solve-four-bar")] == ["parts", "solve"]
     assert [line.split()[0] for line in planned("clearance-four-bar")] == ["parts", "solve", "clearance"]
     assert [line.split()[0] for line in planned("plot-four-bar")] == ["parts", "solve", "plots"]

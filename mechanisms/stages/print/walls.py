@@ -10,6 +10,8 @@ RAYS = 150
 """So many rays are looked at, from the largest facets and from others."""
 SQUARE = 0.94
 """A ray counts where it meets a face that looks the other way, within 20 degrees: a wall, no edge or wedge."""
+NARROW = 0.35
+"""From facets narrower than this no ray starts (mm): they are sides of engraved lines."""
 SKIN = 1e-4
 """Rays start so far below the surface (mm)."""
 
@@ -21,7 +23,9 @@ def thinnest(triangles: np.ndarray) -> float:
     sound = size > 1e-9
     triangles, across, size = triangles[sound], across[sound], size[sound]
     normals = across / size[:, None]
-    order = np.argsort(-size, kind="stable")
+    edges = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2)
+    wide = np.flatnonzero(size / edges.max(axis=1) > NARROW)
+    order = wide[np.argsort(-size[wide], kind="stable")]
     chosen = np.unique(np.concatenate([order[: RAYS // 2], order[:: max(1, len(order) // (RAYS // 2))]]))
     walls = (_inside(triangles, normals, triangles[k].mean(axis=0), -normals[k]) for k in chosen)
     return min(walls, default=np.inf)

@@ -51,6 +51,8 @@ LIMIT = 0.05
 """Smaller gaps between two bodies are refused (mm)."""
 REACH = 5.0
 """Larger gaps are not measured (mm)."""
+REACH_OF_MODELS = 1.0
+"""The same of small models, of whose pieces most are nearer to each other than that (mm)."""
 LOOKS = 4
 """Moments at which is looked whether what slides stays near."""
 PACKAGES = ("manifold3d", "numpy")
@@ -76,8 +78,10 @@ def run(name: str, scale: str = "") -> None:
     from mechanisms.stages.clearance.at_scale import at_scale
     from mechanisms.stages.clearance.pieces import read_pieces
 
+    reach = REACH if at is None else min(max(REACH * at.ratio, REACH_OF_MODELS), REACH)
     motion = motion if at is None else at_scale(motion, at.ratio)
-    checked = check(parts, motion, read_pieces(parts, out.parts_folder), stage.key, title=out.title)
+    pieces = read_pieces(parts, out.parts_folder)
+    checked = check(parts, motion, pieces, stage.key, reach=reach, title=out.title)
     write_clearance(out.clearance, checked)
     stage.done()
     say("clearance", _summary(checked, out.title))
@@ -89,7 +93,11 @@ def is_fresh(name: str) -> bool:
 
 
 def _stage(out: Out, machine: Out, scale: Scale | None = None) -> Stage:
+<<<<<<< HEAD
     """The proof of the model in ``out``, which moves as its machine does."""
+=======
+    """The stage of the model in ``out``, which moves as its machine does."""
+>>>>>>> 8de6bf6d (Gaps of small models are measured up to a millimetre; words)
     scaled = [] if scale is None else [str(scale)]
     key = key_of(out.parts, machine.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH, *scaled)
     return Stage(out, "clearance", key, [out.clearance])

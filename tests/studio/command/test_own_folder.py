@@ -105,7 +105,9 @@ def test_settings_are_said_once_and_found_from_below(folder: Path) -> None:
     assert table[-1].split()[:3] == ["mechanisms", "export", "wheel"]
     with (folder / "mbsd.toml").open("a") as settings:
         settings.write('scale = "1:20"\n')
-    assert mbsd("print", "wheel", "--plan", at=folder).stdout.splitlines()[-1] == "clearance wheel --scale=1:20"
+    assert (
+        mbsd("print", "wheel", "--plan", at=folder).stdout.splitlines()[-1] == "mechanisms clearance wheel --scale=1:20"
+    )
     assert "--scale=1:5" in mbsd("print", "wheel", "--scale", "1:5", "--plan", at=folder).stdout
     for command in ("parts", "clearance", "film"):
         assert "scale" not in mbsd(command, "wheel", "--plan", at=folder).stdout

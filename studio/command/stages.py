@@ -48,11 +48,7 @@ PRINT = Stage("mechanisms", "print", ("bed", "gap"), solids=True)
 MODEL = Stage("mechanisms", "parts", ("scale", "anyway"), solids=True)
 MODEL_CLEARANCE = Stage("mechanisms", "clearance", ("scale",), solids=True)
 MODEL_PRINT = Stage("mechanisms", "print", (*PRINT.options, "scale"), solids=True)
-<<<<<<< HEAD
-"""Stages of a model at a scale, where one is given."""
-=======
 """The same for a model, where a scale is given."""
->>>>>>> 8de6bf6d (Gaps of small models are measured up to a millimetre; words)
 ANIMATE = Stage("mechanisms", "animate", ("view",))
 REPORT = Stage("render", "report")
 PLOTS = Stage("render", "plots", ("spectra",))

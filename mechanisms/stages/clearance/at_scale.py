@@ -12,11 +12,7 @@ if TYPE_CHECKING:
     from shared.contract.motion import BodyMotion, JointMotion
 
 LENGTHS = ("x", "y", "vx", "vy", "ax", "ay")
-<<<<<<< HEAD
-"""Series of a body that are lengths."""
-=======
 """Series of a body that are lengths and their rates."""
->>>>>>> 8de6bf6d (Gaps of small models are measured up to a millimetre; words)
 OF_SHAPE = ("radius_first", "radius_second", "pin_radius", "length")
 
 

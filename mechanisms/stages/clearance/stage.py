@@ -93,11 +93,7 @@ def is_fresh(name: str) -> bool:
 
 
 def _stage(out: Out, machine: Out, scale: Scale | None = None) -> Stage:
-<<<<<<< HEAD
-    """The proof of the model in ``out``, which moves as its machine does."""
-=======
     """The stage of the model in ``out``, which moves as its machine does."""
->>>>>>> 8de6bf6d (Gaps of small models are measured up to a millimetre; words)
     scaled = [] if scale is None else [str(scale)]
     key = key_of(out.parts, machine.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH, *scaled)
     return Stage(out, "clearance", key, [out.clearance])

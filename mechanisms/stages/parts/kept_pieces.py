@@ -42,11 +42,7 @@ class KeptPieces:
         self._waiting: dict[str, Kept] = {}
 
     def key(self, shape: Any, solid: Any, along: bool) -> str:
-<<<<<<< HEAD
-        """Key of the piece that becomes of ``solid``; ``shape`` is its ``cadquery.Solid``, as yet without a mesh."""
-=======
         """What the piece of ``solid`` is known by; ``shape`` is its ``cadquery.Solid``, as yet without a mesh."""
->>>>>>> 8de6bf6d (Gaps of small models are measured up to a millimetre; words)
         stream = io.BytesIO()
         shape.exportBin(stream)
         return key_of(self.program, stream.getvalue(), replace(solid, shape=None), along)

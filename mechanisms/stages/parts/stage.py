@@ -93,11 +93,7 @@ class _Wish(NamedTuple):
     mount: Kind | None
     """Mount that shot.py wishes."""
     scale: Scale | None = None
-<<<<<<< HEAD
-    """Scale of a model; None at full size."""
-=======
     """Scale of a model; None for the machine itself."""
->>>>>>> 8de6bf6d (Gaps of small models are measured up to a millimetre; words)
     masses: str = ""
     """Those of the machine, where the motion of its model follows from them."""
 

@@ -104,28 +104,22 @@ def peaks(solution: Any) -> dict[str, float]:
 
 def _summary(name: str, table: pandas.DataFrame, varied: list[str]) -> list[str]:
     """Where each measure is least and largest, and why points failed."""
+    rows: list[dict[str, Any]] = table.to_dict("records")
+    good = [row for row in rows if not isinstance(row["reason"], str)]
+    failed = [row for row in rows if isinstance(row["reason"], str)]
     lines = []
-    good = table[table["reason"].isna()]
-    for column in [] if good.empty else [c for c in table.columns if c not in (*varied, "reason")]:
-        low, high = good[column].idxmin(), good[column].idxmax()
-        lines.append(f"{name}: {column}: {_at(good, low, column, varied)} to {_at(good, high, column, varied)}")
-    failed = table[table["reason"].notna()]
-    for _, row in failed.head(WORST).iterrows():
-        at = ", ".join(
-            f"{field} {row[field]:.6g}" if isinstance(row[field], float) else f"{field} {row[field]}"
-            for field in varied
-        )
-        lines.append(f"{name}: not at {at}: {row['reason']}")
+    for column in [column for column in table.columns if column not in (*varied, "reason")] if good else []:
+        low, high = (choose(good, key=lambda row: row[column]) for choose in (min, max))
+        ends = [f"{row[column]:.4g} ({_point(row, varied)})" for row in (low, high)]
+        lines.append(f"{name}: {column}: {ends[0]} to {ends[1]}")
+    lines += [f"{name}: not at {_point(row, varied)}: {row['reason']}" for row in failed[:WORST]]
     if len(failed) > WORST:
-        lines.append(f"{name}: and {len(failed) - WORST} more of {len(table)} points failed; the table has the reasons")
+        lines.append(f"{name}: and {len(failed) - WORST} more of {len(rows)} points failed; the table has the reasons")
     return lines
 
 
-def _at(table: pandas.DataFrame, row: Any, column: str, varied: list[str]) -> str:
-    point = ", ".join(
-        f"{field} {table.loc[row, field]:.6g}"
-        if isinstance(table.loc[row, field], float)
-        else f"{field} {table.loc[row, field]}"
-        for field in varied
+def _point(row: dict[str, Any], varied: list[str]) -> str:
+    values = {field: row[field] for field in varied}
+    return ", ".join(
+        f"{field} {value:.6g}" if isinstance(value, float) else f"{field} {value}" for field, value in values.items()
     )
-    return f"{table.loc[row, column]:.4g} ({point})"

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from shared.stage.console import fail
 from shared.stage.paths import mechanism_names
+from shared.stage.scale import scale_of
 from shared.system.missing import missing_libraries, sentence
 from studio.command import stages
 from studio.command.options import SCENES
@@ -31,9 +32,9 @@ def in_turn(command: Command, operand: str, said: Mapping[str, str], run: Run) -
 
 def at_scale(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
     """Parts, plates and proof of a model: it moves as the machine does, whose parts have the masses. Without a scale
-    the stages are those of the machine.
+    the stages are those of the machine. Raises UserError for a scale that is none, before anything is made.
     """
-    if not said.get("scale"):
+    if scale_of(said.get("scale", "")) is None:
         return in_turn(command, name, said, run)
     plates = [stages.MODEL_PRINT] if command.name == "print" else []
     proof = [] if command.name == "parts" else [stages.SOLVE, stages.MODEL_CLEARANCE]

@@ -109,6 +109,7 @@ def test_settings_are_said_once_and_found_from_below(folder: Path) -> None:
         mbsd("print", "wheel", "--plan", at=folder).stdout.splitlines()[-1] == "mechanisms clearance wheel --scale=1:20"
     )
     assert "--scale=1:5" in mbsd("print", "wheel", "--scale", "1:5", "--plan", at=folder).stdout
+    assert "SCALE=tiny is no scale" in mbsd("print", "wheel", "--scale", "tiny", at=folder).stderr
     for command in ("parts", "clearance", "film"):
         assert "scale" not in mbsd(command, "wheel", "--plan", at=folder).stdout
     done = mbsd("solve", at=folder / "arm")

@@ -27,13 +27,14 @@ def refusal(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None
     bodies = _bodies(layout, kept)
     pins = [rule for rule in kept if any(items[k].source is not None for k in rule)] or kept
     crossed = any(all(items[k].what.startswith(SLOTTED) for k in rule) for rule in pins)
+    wish = "make pins thinner still (automatic(m, pin=...))" if layout.sizes.ratio == 1.0 else "make the model larger"
     meetings = [_meeting(layout, rule) for rule in _first_of_each(layout, pins)[:REPORTED]]
     return (
         f"{layout.m.name}: no order of layers lets {_listed(bodies)} pass each other with pins of "
         f"{layout.sizes.finished_pin:g} mm, on the base or on bridges, with one of them built up of "
         f"two webs: {'; '.join(meetings)}. Make links shorter or move joints "
-        "apart so that one stays clear of the other, make pins thinner still (automatic(m, pin=...)), or shape them by "
-        f"hand in parts.py{CROSSED if crossed else ''}"
+        f"apart so that one stays clear of the other, {wish}, or shape them by hand in parts.py"
+        f"{CROSSED if crossed else ''}"
     )
 
 

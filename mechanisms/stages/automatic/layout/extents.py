@@ -59,15 +59,17 @@ def extent(name: str) -> Callable[[ExtentOf], ExtentOf]:
 class Lengths:
     """Lengths of a mechanism (m) from which the size of its parts follows."""
 
-    apart: list[tuple[float, str]]
-    """Distances of two pins of a body, or what is like one, each with words for it; without those that are none."""
+    apart: list[tuple[float, str, float]]
+    """Distances of two pins of a body, or what is like one, each with words for it, and the length that these mean;
+    without those that are none.
+    """
     overall: float
     """The longer side of all that is swept."""
 
     @property
-    def shortest(self) -> tuple[float, str]:
-        """The shortest distance, with its words."""
-        return min(self.apart, default=(self.overall, "all that moves"))
+    def shortest(self) -> tuple[float, str, float]:
+        """The shortest distance, with its words and their length."""
+        return min(self.apart, default=(self.overall, "all that moves", self.overall))
 
 
 def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) -> tuple[float, float]:
@@ -84,7 +86,7 @@ def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ())
     places: dict[str, list[tuple[float, float]]] = {}
     pinned: dict[str, list[tuple[float, float]]] = {}
     studs: dict[str, list[tuple[float, float]]] = {}
-    least: list[tuple[float, str]] = []
+    least: list[tuple[float, str, float]] = []
     for joint in m.joints.values():
         for marker in (joint.i, joint.j):
             if marker.body.name in left_out:
@@ -95,7 +97,7 @@ def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ())
     for thing in (*m.joints.values(), *m.contacts.values(), *m.forces.values()):
         if thing.kind.name in EXTENTS and not any(body in left_out for body in thing.bodies):
             own = EXTENTS[thing.kind.name](thing, solution)
-            least += [(length * LINK / wanted, f"what '{thing.name}' needs") for length, wanted in own.least]
+            least += [(length * LINK / wanted, f"a length of '{thing.name}'", length) for length, wanted in own.least]
             for marker, radius in own.radii:
                 round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
                 places.setdefault(marker.body.name, []).extend(round_it)
@@ -112,16 +114,16 @@ def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ())
     seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
     overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0
     apart = [
-        (float(np.hypot(a[0] - b[0], a[1] - b[1])), f"the distance of two pins of '{body}'")
+        (d := float(np.hypot(a[0] - b[0], a[1] - b[1])), f"the distance of two pins of '{body}'", d)
         for body, at in pinned.items()
         for i, a in enumerate(at)
         for b in at[:i]
     ]
     for body, at in studs.items():
         beside = [math.dist(a, b) for i, a in enumerate(at) for b in [*at[:i], *pinned.get(body, [])]]
-        words = f"what pins and ends of springs on '{body}' need"
-        least += [(d * LINK / STUD, words) for d in beside if d > NEAR * overall]
-    return Lengths([(d, words) for d, words in [*apart, *least] if d > 1e-3 * overall], overall)
+        words = f"the distance of pins or ends of springs on '{body}'"
+        least += [(d * LINK / STUD, words, d) for d in beside if d > NEAR * overall]
+    return Lengths([length for length in [*apart, *least] if length[0] > 1e-3 * overall], overall)
 
 
 def stretching(m: Mechanism, left_out: Collection[str] = ()) -> list[Force | Joint]:

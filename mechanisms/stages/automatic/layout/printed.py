@@ -32,10 +32,10 @@ def printed_sizes(
     ``pin`` (mm of the machine) is what its author wishes there, ``fit`` (mm of the piece) what the printer does. Raises
     UserError naming the shortest link and the smallest scale that would do, if no pin fits it.
     """
-    shortest, link = lengths.shortest
+    shortest, link, own = lengths.shortest
     room = mm(shortest) * scale.ratio / LEAST_LINK
     if room < LEAST * (1 - 1e-9):
-        raise UserError(_too_short(name, shortest, link, scale))
+        raise UserError(_too_short(name, shortest, link, own, scale))
     wished = mm(lengths.overall) * scale.ratio / OVERALL if pin is None else pin * scale.ratio
     thick = max(standard(min(room, wished)), LEAST)
     thinner = [d for d in reversed(STANDARD) if max(thinnest * thick, LEAST) <= d < thick]
@@ -50,11 +50,11 @@ def printed_fit(pin: float) -> Fit:
     )
 
 
-def _too_short(name: str, shortest: float, link: str, scale: Scale) -> str:
+def _too_short(name: str, shortest: float, link: str, own: float, scale: Scale) -> str:
     needed = LEAST * LEAST_LINK
     times = mm(shortest) / needed
     least = f"1:{math.floor(times)}" if times >= 1 else f"{math.ceil(1 / times)}:1"
     return (
-        f"{name} at {scale}: {link} becomes {mm(shortest) * scale.ratio:.3g} mm, and the thinnest pins that can be "
-        f"printed, of {LEAST:g} mm, need {needed:g} mm; SCALE={least} is the smallest that would do"
+        f"{name} at {scale}: {link} becomes {mm(own) * scale.ratio:.3g} mm, and the thinnest pins that can be "
+        f"printed, of {LEAST:g} mm, need {needed * own / shortest:.3g} mm; SCALE={least} is the smallest that would do"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from studio.command.options import OPTIONS
 from studio.command.table import COMMANDS
 
 BASH = """\
@@ -11,6 +12,9 @@ _mbsd() {{
         COMPREPLY=($(compgen -W "{commands}" -- "$word"))
         return
     fi
+    case "${{COMP_WORDS[COMP_CWORD - 1]}}" in
+{choices}
+    esac
     case "$command" in
 {options}
     esac
@@ -24,7 +28,10 @@ _mbsd() {{
 }}
 complete -o default -F _mbsd mbsd
 """
-ZSH = "autoload -U +X bashcompinit && bashcompinit\n"
+ZSH = """\
+(( $+functions[compdef] )) || { autoload -U +X compinit && compinit -u; }
+autoload -U +X bashcompinit && bashcompinit
+"""
 FISH = """\
 function __mbsd_is_first
     test (count (commandline -opc)) -eq 1
@@ -40,8 +47,17 @@ def script(shell: str) -> str:
         return FISH.format(lines="\n".join(_fish()))
     options = "\n".join(f'        {name}) words="{" ".join(_options(name))}" ;;' for name in COMMANDS)
     machines = "|".join(name for name, command in COMMANDS.items() if command.of == "machine")
-    bash = BASH.format(commands=" ".join(COMMANDS), options=options, machines=machines)
+    bash = BASH.format(commands=" ".join(COMMANDS), choices=_choices(), options=options, machines=machines)
     return (ZSH if shell == "zsh" else "") + bash
+
+
+def _choices() -> str:
+    """Words behind an option that knows them."""
+    return "\n".join(
+        f'        --{option.name}) COMPREPLY=($(compgen -W "{" ".join(option.choices)}" -- "$word")); return ;;'
+        for option in OPTIONS.values()
+        if option.choices
+    )
 
 
 def _options(name: str) -> list[str]:
@@ -56,5 +72,13 @@ def _fish() -> list[str]:
         used = f"'__fish_seen_subcommand_from {name}'"
         if command.of == "machine":
             lines.append(f"complete -c mbsd -n {used} -a '(mbsd list --names 2>/dev/null)'")
-        lines += [f"complete -c mbsd -n {used} -l {option}" for option in command.options]
+        lines += [f"complete -c mbsd -n {used} -l {option}{_fish_value(option)}" for option in command.options]
     return lines
+
+
+def _fish_value(name: str) -> str:
+    """What follows an option: one of some words, any word, or nothing."""
+    option = OPTIONS[name]
+    if option.choices:
+        return f" -xa '{' '.join(option.choices)}'"
+    return "" if option.flag else " -x"

@@ -75,7 +75,5 @@ def test_the_coupled_units_converge_to_the_equation_of_both(tmp_path: Path) -> N
         errors.append(abs(reached - speed) / speed)
         assert flowing == pytest.approx(current, abs=0.05)
     assert errors[2] < 4e-3
-    assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.25), (
-        "of first order in the step, as both wait for the other"
-    )
-    assert errors[1] / errors[2] == pytest.approx(2.0, rel=0.25)
+    for coarse, fine in zip(errors, errors[1:], strict=False):
+        assert 1.6 < coarse / fine < 2.8, "of first order in the step, as both wait for the other"

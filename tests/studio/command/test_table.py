@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 import sys
 
@@ -81,9 +82,32 @@ def test_bash_completes_commands_options_and_machines(tmp_path) -> None:
     . {script}
     complete_of() {{ COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _mbsd; echo "${{COMPREPLY[@]}}"; }}
     complete_of mbsd sol; complete_of mbsd run ex; complete_of mbsd film excavator --as
+    complete_of mbsd film excavator --preset pre
     """
     done = subprocess.run(["bash", "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split("\n")[:3] == ["solve", "excavator", "--aspect"]
+    assert done.stdout.split("\n")[:4] == ["solve", "excavator", "--aspect", "preview"]
+
+
+@pytest.mark.skipif(not shutil.which("fish"), reason="there is no fish")
+def test_fish_completes_commands_options_machines_and_choices(tmp_path) -> None:
+    script = tmp_path / "mbsd.fish"
+    script.write_text(completion.script("fish"))
+    asked = ["mbsd sol", "mbsd run ex", "mbsd film excavator --as", "mbsd film excavator --preset pre"]
+    code = f"function mbsd; echo excavator; end; source {script}\n"
+    code += "\n".join(f"complete -C '{line}' | string split -f1 \\t" for line in asked)
+    done = subprocess.run(["fish", "--no-config", "-c", code], capture_output=True, text=True)
+    assert done.stdout.split() == ["solve", "excavator", "--aspect", "preview"], done.stderr
+
+
+@pytest.mark.skipif(not shutil.which("zsh"), reason="there is no zsh")
+def test_zsh_takes_the_script_in_with_and_without_its_own_completion(tmp_path) -> None:
+    script = tmp_path / "completion"
+    script.write_text(completion.script("zsh"))
+    for before in ("", "autoload -U compinit && compinit -u;"):
+        code = f"{before} source {script}; print $_comps[mbsd]"
+        done = subprocess.run(["zsh", "-f", "-c", code], capture_output=True, text=True, env={"HOME": str(tmp_path)})
+        assert done.stderr == ""
+        assert "_mbsd" in done.stdout
 
 
 def test_formats_and_settings_are_those_that_are_there() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import platform
 import shutil
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -75,5 +76,5 @@ def test_the_coupled_units_converge_to_the_equation_of_both(tmp_path: Path) -> N
         errors.append(abs(reached - speed) / speed)
         assert flowing == pytest.approx(current, abs=0.05)
     assert errors[2] < 4e-3
-    for coarse, fine in zip(errors, errors[1:], strict=False):
+    for coarse, fine in pairwise(errors):
         assert 1.6 < coarse / fine < 2.8, "of first order in the step, as both wait for the other"

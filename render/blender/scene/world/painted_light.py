@@ -50,23 +50,25 @@ class Shine(NamedTuple):
     """Heights (m) between which the room that is mirrored grows lighter, as behind a bench below a lamp."""
 
 
-def painted(name: str, colour: Colour, lamps: Sequence[Lamp], ambient: float, shine: Shine | None = None) -> Any:
-    """A material of a matt ``colour`` under ``lamps`` and light from all around (radiance of white)."""
+def painted(
+    name: str, colour: Colour, lamps: Sequence[Lamp], at: Vector3, ambient: float, shine: Shine | None = None
+) -> Any:
+    """A material of a matt ``colour`` under ``lamps`` as seen from ``at``, and ``ambient`` light from all around."""
     made, graph = new_material(name)
     made.cycles.emission_sampling = "NONE"
     coordinates = graph.add("TexCoord")
     place, normal = coordinates.outputs["Object"], coordinates.outputs["Normal"]
-    mirrored = _mirrored(graph, normal) if shine else None
+    mirrored = _mirrored(graph, normal) if shine is not None else None
     light: Any = (ambient,) * 3
     for lamp in lamps:
-        to_lamp = graph.vector("SUBTRACT", lamp.place, place)
-        unit = graph.vector("NORMALIZE", to_lamp)
-        strength = _strength(graph, lamp, to_lamp, unit)
-        lit = graph.math("MAXIMUM", _dot(graph, normal, unit), 0.0)
+        towards, strength = _seen_from(lamp, at)
+        if strength == 0.0:
+            continue
+        lit = graph.math("MAXIMUM", _dot(graph, normal, towards), 0.0)
         if shine is not None:
-            lobe = graph.math("POWER", graph.math("MAXIMUM", _dot(graph, mirrored, unit), 0.0), shine.sharp)
+            lobe = graph.math("POWER", graph.math("MAXIMUM", _dot(graph, mirrored, towards), 0.0), shine.sharp)
             lit = graph.math("MULTIPLY_ADD", lobe, shine.strength, lit)
-        light = graph.vector("MULTIPLY_ADD", lamp.colour, graph.math("MULTIPLY", lit, strength), light)
+        light = graph.vector("MULTIPLY_ADD", tuple(strength * part for part in lamp.colour), lit, light)
     if shine is not None and shine.room is not None:
         low, high = shine.room
         up = graph.add("SeparateXYZ", Vector=place).outputs["Z"]
@@ -84,17 +86,19 @@ def painted(name: str, colour: Colour, lamps: Sequence[Lamp], ambient: float, sh
     return made
 
 
-def _strength(graph: Graph, lamp: Lamp, to_lamp: Any, unit: Any) -> Any:
-    """E / (pi n . l) of a lamp."""
-    square = _dot(graph, to_lamp, to_lamp)
-    cosine = graph.math("MAXIMUM", graph.math("MULTIPLY", _dot(graph, unit, lamp.axis), -1.0), 1e-4)
-    falling = graph.math("DIVIDE", graph.math("MULTIPLY", cosine, lamp.power / math.pi**2), square)
-    if lamp.spread >= WIDE:
-        return falling
-    half = math.radians(lamp.spread) / 2.0
-    sine = graph.math("SQRT", graph.math("MULTIPLY_ADD", graph.math("MULTIPLY", cosine, -1.0), cosine, 1.0))
-    left = graph.math("MAXIMUM", graph.math("SUBTRACT", math.tan(half), graph.math("DIVIDE", sine, cosine)), 0.0)
-    return graph.math("MULTIPLY", falling, graph.math("MULTIPLY", left, 1.0 / (math.tan(half) - half)))
+def _seen_from(lamp: Lamp, at: Vector3) -> tuple[Vector3, float]:
+    """The direction of a lamp from a place, and E / (pi n . l) there."""
+    away = tuple(there - here for there, here in zip(lamp.place, at, strict=True))
+    far = math.hypot(*away)
+    towards = (away[0] / far, away[1] / far, away[2] / far)
+    cosine = -sum(a * b for a, b in zip(towards, lamp.axis, strict=True))
+    if cosine <= 0.0:
+        return towards, 0.0
+    strength = lamp.power * cosine / (math.pi * far) ** 2
+    if lamp.spread < WIDE:
+        half = math.radians(lamp.spread) / 2.0
+        strength *= max(math.tan(half) - math.sqrt(1.0 - min(cosine, 1.0) ** 2) / cosine, 0.0) / (math.tan(half) - half)
+    return towards, strength
 
 
 def _mirrored(graph: Graph, normal: Any) -> Any:

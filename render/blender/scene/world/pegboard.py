@@ -36,17 +36,22 @@ def build(thing: Thing, colour: Colour, away: float, clear: float, bounce: float
     thing.box((-WIDE, away - 0.03, 0.0), (WIDE, away + 0.05, 0.13), _paint(BATTEN), 0.006)
     thing.seen_only = True
     front = away - 0.05
-    steel = painted("tool", STEEL, lamps, AROUND, Shine(7.0, 9.0, (0.85 * thing.radius, 1.75 * thing.radius)))
-    black = painted("grip", BLACK, lamps, AROUND)
-    grips = [painted(f"grip {k}", paint, lamps, AROUND, Shine(0.25)) for k, paint in enumerate((RED, AMBER))]
-    ash = painted("ash", ASH, lamps, AROUND)
-    left, right = -clear - BESIDE, clear + BESIDE
+    radius, left, right = thing.radius, -clear - BESIDE, clear + BESIDE
+
+    def paint(colour: Colour, x: float, z: float, shine: Shine | None = None) -> Any:
+        return painted("tool", colour, lamps, (x * radius, front * radius, z * radius), AROUND, shine)
+
+    metal, plastic = Shine(7.0, 9.0, (0.85 * radius, 1.75 * radius)), Shine(0.25)
     for k in range(4):
-        _screwdriver(thing, left - 0.22 * k, front, 1.56 + 0.02 * k, 0.335 + 0.055 * k, steel, grips[k % 2])
-    _square(thing, left - 1.5, front, 1.02, steel, ash)
+        x = left - 0.22 * k
+        grip = paint((RED, AMBER)[k % 2], x, 1.4, plastic)
+        _screwdriver(thing, x, front, 1.56 + 0.02 * k, 0.335 + 0.055 * k, paint(STEEL, x, 1.1, metal), grip)
+    _square(thing, left - 1.5, front, 1.02, paint(STEEL, left - 1.5, 1.3, metal), paint(ASH, left - 1.3, 1.6))
     for k, x in enumerate((0.0, 0.20, 0.38, 0.54, 0.68)):
+        steel = paint(STEEL, right + x, 1.3, metal)
         _spanner(thing, right + x, front, 1.66, 0.78 - 0.09 * k, 0.072 - 0.008 * k, steel)
-    _hammer(thing, right + 1.23, front, 1.55, steel, ash, black)
+    x = right + 1.23
+    _hammer(thing, x, front, 1.55, paint(STEEL, x, 1.5, metal), paint(ASH, x, 1.0), paint(BLACK, x, 1.4))
 
 
 def _board(colour: Colour, radius: float, bounce: float) -> Any:

@@ -18,8 +18,9 @@ def build(thing: Thing, lamps: Sequence[Lamp], scale: float = 1.0) -> None:
 
     ``lamps`` are in the axes of ``thing``; their light is painted on it (painted_light.py).
     """
-    enamel = painted("enamel", ENAMEL, lamps, AROUND, Shine(0.9, 20.0))
-    steel = painted("cheek", STEEL, lamps, AROUND, Shine(5.0, 9.0))
+    middle = (0.0, 0.0, 0.25 * scale * thing.radius)
+    enamel = painted("enamel", ENAMEL, lamps, middle, AROUND, Shine(0.9, 20.0))
+    steel = painted("cheek", STEEL, lamps, middle, AROUND, Shine(5.0, 9.0))
 
     def box(low: Any, high: Any, paint: Any, bevel: float) -> None:
         thing.box(tuple(scale * c for c in low), tuple(scale * c for c in high), paint, scale * bevel)

@@ -91,10 +91,22 @@ def _joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
 def _free_bodies(packed: Packed, jac: np.ndarray, q: np.ndarray) -> tuple[str, ...]:
     """Bodies that can move at the pose of ``jac`` or at one near q (3 nb,): at a dead centre a slider rests."""
     moving = {*_moving(packed, jac)}
-    if len(moving) < len(packed.body_names) - 1:
+    if len(moving) + len(_fastened(packed)) < len(packed.body_names):
         for near in _nearby(packed, q):
             moving.update(_moving(packed, scaled_jacobian(packed, near)[: packed.driver_rows]))
     return tuple(name for name in packed.body_names if name in moving)
+
+
+def _fastened(packed: Packed) -> set[int]:
+    """Ground and the bodies that joints of three rows hold on it, one after the other: they never move."""
+    joints = packed.joints[: int(np.searchsorted(packed.first_row, packed.driver_rows))]
+    ends = packed.system.marker_body[packed.markers[: len(joints)]]
+    pairs = [tuple(pair) for pair, rows in zip(ends.tolist(), np.diff(packed.first_row), strict=False) if rows == 3]
+    held, before = {0}, 0
+    while len(held) > before:
+        before = len(held)
+        held.update(body for pair in pairs if held.intersection(pair) for body in pair)
+    return held
 
 
 def refuse_overdriven(m: Model, packed: Packed, time: float) -> None:

@@ -46,7 +46,7 @@ def main() -> int | None:
     away = commands.add_parser("export", help="the mechanism and its motion in the file of another program")
     away.add_argument("name", help="mechanism; four-bar and four_bar are one")
     away.add_argument(
-        "--format", default="csv", help="csv, parquet, svg, dxf, step, mjcf, urdf, fmu or modelica; csv if not given"
+        "--format", default="csv", help="of the file; csv if not given, and one that is unknown is answered by all"
     )
     away.add_argument(
         "--time", type=float, default=0.0, help="of the pose in a drawing or assembly (s); 0 if not given"

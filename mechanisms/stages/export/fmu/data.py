@@ -7,13 +7,20 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.dynamics import state as run_state
 from mbsd.equations.interactions.switching import WIDTH
+from mbsd.native import quantities as native
 from mbsd.native.quantities import INPUT, PARAMETER, STATE, Quantity
 
 DRIFT = 1e-9
 """Drift of an importer's steps in sizes or rad, beyond which the unit asks for an event that projects it away."""
 FAR = 0.05
 """A start that moves by more to fulfil the constraints is refused (sizes, rad)."""
+CODES = {
+    native: ("FRAME", "JOINT", "DRIVER", "ENERGY", "MASS", "INERTIA", "GRAVITY", "RATE", "LOAD"),
+    run_state: ("TIME", "STEP", "WORK", "POWER", "STARTED", "REACHED", "PAUSED", "STEP_TOO_SMALL"),
+}
+"""Codes that Python and C share: kinds of quantities, entries of clock and count, what advance returns."""
 ENTRIES = ("advance", "derivative", "project", "jacobian")
 
 
@@ -27,6 +34,9 @@ def data_header(
     lines = ["/* The mechanism's numbers; written by mbsd. */", f'#define MODEL_NAME "{_text(packed.name)}"']
     lines += ['#define TOKEN "@TOKEN@"', *(f"#define {name} {_real(value)}" for name, value in reals.items())]
     lines += [f"#define {name} {number}" for name, number in numbers.items()]
+    codes = {name: getattr(module, name) for module, names in CODES.items() for name in names}
+    codes["LAST_ERROR"] = run_state.ERROR
+    lines.append(f"enum {{ {', '.join(f'{name} = {code}' for name, code in codes.items())} }};")
     content = equations.memory.content
     words = np.frombuffer(content.ljust(-(-len(content) // 8) * 8, b"\0"), np.uint64).tolist()
     lines.append(_array("uint64_t", "MEMORY", [f"UINT64_C({word:#x})" if word else "0" for word in words]))

@@ -32,10 +32,6 @@ typedef int32_t Kernel(void *result, void **error, int64_t *table);
 
 #include "model.h"
 
-enum { MEMORY_NUMBER, FRAME, JOINT, DRIVER, ENERGY, MASS, INERTIA, GRAVITY, RATE, LOAD };
-enum { TIME, STEP, WORK, POWER, LAST_ERROR };                /* of the clock */
-enum { NEXT, ACCEPTED, REJECTED, EVALUATIONS, STARTED };     /* of the count */
-enum { REACHED, PAUSED, STEP_TOO_SMALL, NOT_FINITE };        /* what advance returns */
 enum { INSTANTIATED, INITIALIZATION, EVENT, CONTINUOUS, STEPPING, TERMINATED };
 
 typedef struct {

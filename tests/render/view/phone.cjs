@@ -38,8 +38,8 @@ const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimati
     const get = HTMLCanvasElement.prototype.getContext;
     HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
       if (kind === "webgl2" && !window.before) {
-        const plane = document.querySelector(".mbsd canvas.view"), colours = plane && new Set(new Uint32Array(get.call(plane, "2d").getImageData(0, 0, plane.width, plane.height).data.buffer));
-        window.before = { painted: performance.getEntriesByName("first-contentful-paint").length, view: document.querySelector(".mbsd")?.dataset.view, colours: colours?.size ?? 0 };
+        const sketch = document.querySelector("#mbsd > svg")?.getBoundingClientRect();
+        window.before = { painted: performance.getEntriesByName("first-contentful-paint").length, width: sketch?.width ?? 0, strokes: document.querySelectorAll("#mbsd > svg *").length };
       }
       return get.call(this, kind, ...more);
     };

@@ -77,6 +77,12 @@ def test_pins_are_within_two_pixels_of_where_data_json_projects(page: Any) -> No
         assert np.hypot(found[0] - wanted[0], found[1] - wanted[1]) < 2.0, (pin, found, wanted)
 
 
+def test_canvases_are_in_memory_where_webgl_is_in_software(page: Any) -> None:
+    _, seen, _ = page
+    assert len(seen["memory"]) >= 2, "the skeleton and at least a chart"
+    assert all(seen["memory"]), seen["memory"]
+
+
 def test_scrubbing_keys_and_playing_move_the_machine(page: Any) -> None:
     out, seen, _ = page
     motion = read_motion(out.motion)

@@ -37,6 +37,7 @@ const box = (page, name) => page.evaluate((one) => {
   await page.evaluate(() => window.mbsd.app.store.set({ view: "2d", selected: null, time: 0 }));
   const scrub = await box(page, ".scrub");
   await page.mouse.click(scrub.left + 8 + 0.5 * (scrub.width - 16), scrub.top + scrub.height / 2);
+  seen.memory = await page.evaluate(() => [window.mbsd.app.parts.canvases.plane, ...document.querySelectorAll(".chart canvas")].map((canvas) => canvas.getContext("2d")?.getContextAttributes().willReadFrequently));
   seen.scrubbed = await state(page);
   await page.evaluate(() => document.activeElement.blur());
   await page.keyboard.press("Home");

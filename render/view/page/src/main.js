@@ -13,11 +13,15 @@
 import { mount } from "./app.js";
 import { decode, fromBase64 } from "./data/decode.js";
 import { Live } from "./live/live.js";
+import { cardIsPlayed } from "./ui/canvases.js";
+import { afterPaint } from "./ui/painted.js";
 import "./style/page.css";
 
 async function start() {
   const root = document.getElementById("mbsd");
   try {
+    if (root.querySelector("svg") && !document.hidden) await new Promise(afterPaint);
+    cardIsPlayed(); // takes its time where it is so: better while the sketch is seen
     const payload = await decode(fromBase64(document.getElementById("mbsd-payload").textContent));
     const live = window.mbsdLive?.server ? new Live(decode) : window.mbsdLive ?? null;
     const app = mount(root, payload, { live: live?.options ?? null });

@@ -1,4 +1,5 @@
 /** A path drawn over the 2D view, in metres, that stays where it is when the view moves. */
+import { pen } from "../ui/canvases.js";
 import { el } from "../ui/dom.js";
 
 const APART = 4;
@@ -93,7 +94,7 @@ export class Drawn {
     const { width, height } = canvas.getBoundingClientRect(), ratio = Math.min(devicePixelRatio || 1, 2);
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
-    const g = canvas.getContext("2d");
+    const g = pen(canvas);
     g.scale(ratio, ratio);
     g.strokeStyle = getComputedStyle(canvas).color;
     Object.assign(g, { lineWidth: 2.5, lineJoin: "round", lineCap: "round" });

@@ -4,6 +4,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { clipped } from "../data/clipped.js";
 import { angleStep, figures, live, prefixed, written } from "../data/numbers.js";
+import { charted } from "../ui/canvases.js";
 import { el } from "../ui/dom.js";
 
 export const HEIGHT = 148;
@@ -29,7 +30,7 @@ export class Chart {
     const head = el("h3", {}, chart.title, " ", this.unit, this.clipping);
     this.box = el("figure", { class: "chart" }, el("figcaption", {}, head, legend));
     parent.append(this.box);
-    this.plot = new uPlot({
+    this.plot = charted(() => new uPlot({
       width: Math.max(parent.clientWidth - 28, 200), height: HEIGHT, legend: { show: false }, cursor: { show: false },
       padding: [6, 12, 0, 0],
       scales: { x: { time: false, range: () => [app.clock.start, app.clock.end] }, y: { range: (u, low, high) => this.cut ? [this.cut.low, this.cut.high] : room(u, low, high) } },
@@ -39,7 +40,7 @@ export class Chart {
       ],
       series: [{}, ...chart.lines.map((line, k) => ({ label: line.name, stroke: own[k], width: 2, dash: dashOf(own, k), points: { show: false } }))],
       hooks: { draw: [(u) => marks(u, app.payload.marks, colours)] },
-    }, [app.payload.time, ...chart.lines.map((line) => line.values)], this.box);
+    }, [app.payload.time, ...chart.lines.map((line) => line.values)], this.box));
     this.plot.over.append(this.line);
     this.plot.over.style.cursor = "ew-resize";
     this.drag();

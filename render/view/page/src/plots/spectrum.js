@@ -1,6 +1,7 @@
 /** Harmonics against the crank as bars: how large each order is, with the largest in words. */
 import uPlot from "uplot";
 import { figures, prefixed, written } from "../data/numbers.js";
+import { charted } from "../ui/canvases.js";
 import { el } from "../ui/dom.js";
 import { AXIS, HEIGHT } from "./chart.js";
 
@@ -20,7 +21,7 @@ export class Spectrum {
     this.box = el("figure", { class: "chart spectrum" }, el("figcaption", {}, el("h3", {}, spectrum.title, " ", this.unit), this.named));
     parent.append(this.box);
     this.of(spectrum);
-    this.plot = new uPlot({
+    this.plot = charted(() => new uPlot({
       width: Math.max(parent.clientWidth - 28, 200), height: HEIGHT, legend: { show: false }, cursor: { show: false },
       padding: [6, 12, 0, 0],
       scales: { x: { time: false, range: () => [0, this.last + this.step] }, y: { range: (_, low, high) => [0, high > 0 ? 1.08 * high : 1] } },
@@ -29,7 +30,7 @@ export class Spectrum {
         { font: AXIS, stroke: colours.quiet, grid: { stroke: colours.grid, width: 1 }, ticks: { show: false }, size: 54, gap: 4, space: 30, values: (_, ticks) => ticks.map((tick) => figures(tick * this.factor)) },
       ],
       series: [{}, { label: spectrum.title, stroke: ink, fill: ink, width: 0, paths: BAR, points: { show: false } }],
-    }, this.data, this.box);
+    }, this.data, this.box));
   }
 
   /** @param {import("../data/quantities.js").Spectrum} spectrum */

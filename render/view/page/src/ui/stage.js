@@ -2,6 +2,7 @@
 import { Skeleton } from "../view2d/skeleton.js";
 import { Solid } from "../view3d/scene.js";
 import { Legend } from "./legend.js";
+import { afterPaint } from "./painted.js";
 
 export class Stage {
   /** @param {import("../app.js").App} app */
@@ -81,18 +82,4 @@ export class Stage {
     else this.shown.draw();
     this.legend.draw();
   }
-}
-
-const PATIENCE = 2000;
-/** Milliseconds in which a browser that tells of its first paint has painted. */
-
-/** Once what is drawn now has been seen: two frames later, and where the browser tells of paints, after the first one. */
-function afterPaint(f) {
-  const ends = performance.now() + PATIENCE, tells = PerformanceObserver.supportedEntryTypes?.includes("paint");
-  const look = () => {
-    const seen = !tells || performance.getEntriesByName("first-contentful-paint").length || performance.now() > ends;
-    if (seen) f();
-    else setTimeout(look, 20);
-  };
-  requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(look)));
 }

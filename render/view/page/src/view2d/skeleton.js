@@ -1,6 +1,7 @@
 /** The 2D view: the skeleton with the standard symbols, and over it what is shown: trails, arrows, names. */
 import { Motion } from "../data/motion.js";
 import { same } from "../state.js";
+import { pen } from "../ui/canvases.js";
 import { arcsAt, arrowsAt, drawArrows } from "./arrows.js";
 import { moved } from "./carriers.js";
 import { drawGrid } from "./grid.js";
@@ -75,7 +76,7 @@ export class Skeleton {
 
   draw() {
     const { payload, motion, store } = this.app, { shown, selected } = store.state;
-    const { skeleton } = payload, g = this.canvas.getContext("2d"), colours = inks(this.app.dark, payload.bodies, showsArrows(shown));
+    const { skeleton } = payload, g = pen(this.canvas), colours = inks(this.app.dark, payload.bodies, showsArrows(shown));
     this.paper.fit(...this.size, ...this.box(skeleton), this.free);
     g.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     g.fillStyle = colours.paper;
@@ -93,7 +94,7 @@ export class Skeleton {
 
   /** The skeleton alone over another view, whose paper it is drawn on. */
   over(paper) {
-    const { payload, motion, store } = this.app, { shown } = store.state, own = this.paper, g = this.canvas.getContext("2d");
+    const { payload, motion, store } = this.app, { shown } = store.state, own = this.paper, g = pen(this.canvas);
     const colours = inks(this.app.dark, payload.bodies, showsArrows(shown));
     this.paper = paper;
     g.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);

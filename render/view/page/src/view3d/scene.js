@@ -1,6 +1,7 @@
 /** The 3D view. The machine is scaled so that the radius of its swept motion is 1, and turned so that z is up. */
 import { NeutralToneMapping, Group, Matrix4, PCFShadowMap, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { cardIsPlayed } from "../ui/canvases.js";
 import { inks, showsArrows } from "../view2d/inks.js";
 import { Arrows } from "./arrows.js";
 import { Ghosts } from "./ghosts.js";
@@ -23,7 +24,9 @@ export class Solid {
   constructor(canvas, app) {
     this.canvas = canvas;
     this.app = app;
-    this.soft = inSoftware();
+    const soft = cardIsPlayed();
+    if (soft === null) throw new Error("a context of WebGL 2 is refused");
+    this.soft = soft;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.enabled = true;
@@ -198,13 +201,3 @@ export class Solid {
 
 /** Turns places of the model into those of the picture. @param {number[][]} axes right, away, up */
 function turnOf([a, b, c]) { return new Matrix4().set(...a, 0, ...b, 0, ...c, 0, 0, 0, 0, 1); }
-
-/** Whether WebGL draws without a graphics card. Throws where there is none at all. */
-function inSoftware() {
-  const probe = document.createElement("canvas").getContext("webgl2");
-  if (!probe) throw new Error("a context of WebGL 2 is refused");
-  const info = probe.getExtension("WEBGL_debug_renderer_info");
-  const name = probe.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : probe.RENDERER);
-  probe.getExtension("WEBGL_lose_context")?.loseContext();
-  return /swiftshader|llvmpipe|software|basic render/i.test(name);
-}

@@ -100,7 +100,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers keep-numbers record-numbers schema docs site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers keep-numbers record-numbers schema docs docs-site site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
@@ -192,6 +192,9 @@ verify-%: libraries always ## solids, motion, some frames and the film made agai
 
 view-all: install ## all pages and a picture of each by Chromium: view.html, view.png; ONLY=four_bar,pendulum
 	@$(MBSD) view-all
+
+site: install ## a wall of all machines in motion and a page for each, for any web host: out/site/; ONLY=four_bar,pendulum
+	@$(MBSD) site
 
 view-engines: install ## pages used in Firefox and Safari's engine: a small four-bar, or ONLY=four_bar,pendulum
 	@$(PYTHON) -m tools.engines --name="$$ONLY"
@@ -314,7 +317,7 @@ docs: install ## docs/theory.md and the map of rooms from docstrings, pictures, 
 	@$(PYTHON) -m tools.lecture
 	@$(PYTHON) -m tools.site
 
-site: install ## the documents and all names of mbsd as pages, with a search, to read without a network: out/site/
+docs-site: install ## the documents and all names of mbsd as pages, with a search, to read without a network: out/docs/
 	@$(PYTHON) -m tools.site
 
 study-engines: install ## which bank angle suits which V engine: out/engines/ and the tables of docs/engines.md

@@ -108,6 +108,8 @@ COMMANDS: dict[str, Command] = {
         ),
         Command("view-all", "all pages and a picture of each by Chromium: view.html, view.png",
                 (Stage("studio.pages", options=("only",)),), of=""),
+        Command("site", "a wall of all machines in motion and a page for each, for any web host",
+                (Stage("studio.site", options=("only",)),), of="", example="mbsd site --only excavator,loader"),
         Command("showreel", "the finished films, each under its title, as one",
                 (Stage("render", "showreel", ("preset", "aspect", "only", "show")),), of=""),
         Command("gallery", "posters of all mechanisms and the page that shows them",

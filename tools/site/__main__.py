@@ -1,4 +1,4 @@
-"""``make site``: docs/ and what it links to as pages in out/site, with every link checked.
+"""``make docs-site``: docs/ and what it links to as pages in out/docs, with every link checked.
 
 python -m tools.site [--out FOLDER]
 """
@@ -21,7 +21,7 @@ NEEDED = {"mkdocs": "mkdocs", "material": "mkdocs-material"}
 def main() -> int:
     """Build, check, and say where the first page is."""
     parser = argparse.ArgumentParser("tools.site", description=__doc__)
-    parser.add_argument("--out", type=Path, default=out_root() / "site", help="the folder, out/site if not given")
+    parser.add_argument("--out", type=Path, default=out_root() / "docs", help="the folder, out/docs if not given")
     out = parser.parse_args().out.resolve()
     refuse_without_packages()
     say("site", "building, which takes half a minute")

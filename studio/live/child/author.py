@@ -75,6 +75,14 @@ class Author:
         solution, stop = until_it_stops(self.name, self.module, m, lambda: self._motion(m, p))
         return Answer(self._shown.of(solution, self._fitting(m), sources, self._shot_of(m), quick, arrows), stop)
 
+    def payload(self, values: dict[str, float], quick: bool = False) -> dict[str, Any]:
+        """What a page shows of the motion with these numbers; raises UserError also where it does not reach its end."""
+        p = self.changed(values)
+        m = self.build(p)
+        sources, _ = give_masses(m, self._fitting(m))
+        solution = self._motion(m, p)
+        return self._shown.payload(solution, self._fitting(m), sources, self._shot_of(m), quick)
+
     def solid(self) -> bytes | None:
         """What the payload says of the parts of the motion solved last, as the file has it; None without parts."""
         m = self.build(self.params)

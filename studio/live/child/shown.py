@@ -39,6 +39,18 @@ class Shown:
         arrows: bool = True,
     ) -> bytes:
         """Bytes of the payload without its parts; raises UserError for a shot that names what is not there."""
+        return encode(self.payload(solution, parts, sources, shot, quick, arrows), compress=False)
+
+    def payload(
+        self,
+        solution: Solution,
+        parts: Parts | None,
+        sources: Mapping[str, Any],
+        shot: Shot | None,
+        quick: bool,
+        arrows: bool = True,
+    ) -> dict[str, Any]:
+        """The payload itself."""
         skeleton = redrawn(solution, self._last) if quick and self._last is not None else None
         if skeleton is None:
             skeleton = moving(solution)
@@ -46,7 +58,7 @@ class Shown:
         motion = to_motion(solution, parts, "", {}, sources)
         skeleton_data = moving_of(solution, skeleton)
         self._motion = motion, skeleton_data
-        return encode(payload(motion, skeleton_data, shot, arrows or not quick), compress=False)
+        return payload(motion, skeleton_data, shot, arrows or not quick)
 
     def solid(self, parts: Parts, shot: Shot | None, folder: Path) -> bytes:
         """What the payload of the last motion says once its parts are there. Raises UserError."""

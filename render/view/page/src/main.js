@@ -8,10 +8,12 @@
  *   view2d/       the skeleton on a canvas          view3d/   the parts, with three.js
  *   plots/        curves under the same cursor      ui/       transport, keys, panels, help
  *   live/         the socket of a live page, sliders, dragging, fits
+ *   designs/      sliders whose motions are in the page itself, as #mbsd-designs
  *   style/        CSS: colours.css has the two themes, the others a part of the page each
  */
 import { mount } from "./app.js";
 import { decode, fromBase64 } from "./data/decode.js";
+import { Designs } from "./designs/designs.js";
 import { Live } from "./live/live.js";
 import { cardIsPlayed } from "./ui/canvases.js";
 import { afterPaint } from "./ui/painted.js";
@@ -23,7 +25,8 @@ async function start() {
     if (root.querySelector("svg") && !document.hidden) await new Promise(afterPaint);
     cardIsPlayed(); // takes its time where it is so: better while the sketch is seen
     const payload = await decode(fromBase64(document.getElementById("mbsd-payload").textContent));
-    const live = window.mbsdLive?.server ? new Live(decode) : window.mbsdLive ?? null;
+    const designs = document.getElementById("mbsd-designs")?.textContent;
+    const live = designs ? new Designs(await decode(fromBase64(designs))) : window.mbsdLive?.server ? new Live(decode) : window.mbsdLive ?? null;
     const app = mount(root, payload, { live: live?.options ?? null });
     window.mbsd = { app, decode, live };
     live?.mounted?.(app, decode);

@@ -1,0 +1,30 @@
+"""``python -m studio.site.designs NAME``: write out/<name>/designs.bin; empty where no number can be moved smoothly."""
+
+from __future__ import annotations
+
+import argparse
+
+from shared.stage.console import run_cli, say
+from shared.stage.files import write_bytes
+from shared.stage.paths import Out, known_name
+
+
+def main() -> int:
+    """Solve the designs and write them."""
+    parser = argparse.ArgumentParser(prog="python -m studio.site.designs", description=__doc__)
+    parser.add_argument("name")
+    name = known_name(parser.parse_args().name)
+    from studio.live.child.author import Author
+    from studio.site.designs.table import table_of
+
+    table = table_of(Author(name, lambda files: None))
+    write_bytes(Out(name).folder / "designs.bin", table.content if table else b"")
+    if table is None:
+        say("designs", f"{name}: none of its numbers can be moved smoothly")
+    else:
+        say("designs", f"{name}: {', '.join(table.names)}: {table.designs} designs, {len(table.content) / 1e6:.1f} MB")
+    return 0
+
+
+if __name__ == "__main__":
+    run_cli(main)

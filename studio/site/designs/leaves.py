@@ -1,0 +1,101 @@
+"""The numbers of a payload as one vector, so that payloads of several designs can be added."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+ROWS = 91
+"""Times of a motion that a stored design keeps, at most."""
+DENSE = 32
+"""Points of a curve of the skeleton that has more."""
+LEFT_OUT = ("marks", "clearance", "solid", "trails", "gravity", "mechanism", "title", "frame", "couple")
+"""What does not change with a design, or is not shown of one between the stored ones."""
+
+Path = tuple[str | int, ...]
+
+
+class Unlike(Exception):
+    """Two designs have payloads of different make, so nothing is between them."""
+
+
+def thinned(payload: dict[str, Any]) -> dict[str, Any]:
+    """A payload at no more than ROWS of its times, evenly taken, and without what is left out."""
+    count = len(payload["time"])
+    rows = np.unique(np.linspace(0, count - 1, min(count, ROWS)).round().astype(int))
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, np.ndarray):
+            if len(value) == count:
+                return value[rows]
+            return value[rows] if value.ndim > 1 and value.shape[0] == count else value
+        if isinstance(value, dict):
+            return {key: plain(part) for key, part in value.items()}
+        return [plain(part) for part in value] if isinstance(value, list | tuple) else value
+
+    out = {key: plain(value) for key, value in payload.items() if key not in LEFT_OUT}
+    for stroke in out["skeleton"]["strokes"]:
+        if stroke["shapes"] is None and len(stroke["points"]) > 2 * DENSE:
+            stroke["points"] = _even(stroke["points"])
+    return out
+
+
+def _even(points: np.ndarray) -> np.ndarray:
+    """DENSE points along a curve, (2 DENSE,), at even distances: how many there were depends on its size."""
+    places = np.asarray(points, float).reshape(-1, 2)
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))])
+    even = np.linspace(0.0, along[-1], DENSE)
+    return np.column_stack([np.interp(even, along, places[:, axis]) for axis in (0, 1)]).ravel().astype(np.float32)
+
+
+def leaves(payload: Any, path: Path = ()) -> Iterator[tuple[Path, np.ndarray]]:
+    """Every array and number with its place, in one order; whole numbers, words and None are no numbers of a design."""
+    if isinstance(payload, np.ndarray):
+        yield path, np.asarray(payload, float).ravel()
+    elif isinstance(payload, float):
+        yield path, np.array([payload])
+    elif isinstance(payload, dict):
+        for key in payload:
+            yield from leaves(payload[key], (*path, key))
+    elif isinstance(payload, list | tuple):
+        for k, part in enumerate(payload):
+            yield from leaves(part, (*path, k))
+
+
+def form(payload: Any) -> Any:
+    """A payload with {"#": length} in place of each array and {"#": None} of each number: what a vector is filled into.
+
+    Arrays of doubles say so.
+    """
+    if isinstance(payload, np.ndarray):
+        return {"#": payload.size} | ({"double": True} if payload.dtype == np.float64 else {})
+    if isinstance(payload, float):
+        return {"#": None}
+    if isinstance(payload, dict):
+        return {key: form(part) for key, part in payload.items()}
+    return [form(part) for part in payload] if isinstance(payload, list | tuple) else payload
+
+
+def vector(payload: dict[str, Any], base: list[tuple[Path, np.ndarray]] | None = None) -> np.ndarray:
+    """All numbers of a payload; angles within half a turn of those of ``base``. Raises Unlike."""
+    ours = list(leaves(payload))
+    if base is None:
+        return np.concatenate([values for _, values in ours])
+    if [(path, len(values)) for path, values in ours] != [(path, len(values)) for path, values in base]:
+        raise Unlike
+    out = []
+    for (path, values), (_, usual) in zip(ours, base, strict=True):
+        turns = math.tau * round((usual[0] - values[0]) / math.tau) if path[-1] == "theta" and len(values) else 0.0
+        out.append(values + turns)
+    joined = np.concatenate(out)
+    if not np.isfinite(joined).all():
+        raise Unlike
+    return joined
+
+
+def where(base: list[tuple[Path, np.ndarray]], *names: str) -> np.ndarray:
+    """Which numbers of the vector stand in arrays with one of these names, (N,) bool."""
+    return np.concatenate([np.full(len(values), path[-1] in names) for path, values in base])

@@ -1,0 +1,42 @@
+"""What the site says of a machine, read from its files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from render.gallery.page import sentences
+from render.report import description
+from render.report.facts import facts
+from render.view.payload import title_of
+from shared.contract import read_motion, read_parts
+from shared.contract.clearance import read_clearance
+from shared.stage.paths import Out
+from studio.site.downloads import Download
+from studio.site.purposes import purposes
+
+
+@dataclass
+class Entry:
+    """One machine. ``picture`` and ``loop`` are files in its folder of the site."""
+
+    name: str
+    title: str
+    said: str
+    facts: list[str]
+    purposes: list[str]
+    picture: str = ""
+    loop: str = ""
+    film: str = ""
+    designs: int = 0
+    downloads: list[Download] = field(default_factory=list)
+    neighbours: list[str] = field(default_factory=list)
+
+
+def entry_of(name: str) -> Entry:
+    """A machine whose motion is there. Raises UserError for files that cannot be read."""
+    out = Out(name)
+    motion = read_motion(out.motion, name)
+    parts = read_parts(out.parts, name) if out.parts.is_file() else None
+    clearance = read_clearance(out.clearance) if parts is not None and out.clearance.is_file() else None
+    text = description(name)
+    return Entry(name, title_of(name), sentences(text), facts(motion, parts, clearance), purposes(name, text, motion))

@@ -1,0 +1,58 @@
+"""The short silent film that plays on the wall: of the machine's film, else of its moving skeleton."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+from render.frames.encode import ffmpeg
+from render.presets import PRESETS
+from shared.stage.errors import UserError
+from shared.stage.files import whole_file
+from shared.stage.paths import Out
+
+WIDTH, HEIGHT = 480, 270
+SECONDS = 12.0
+PATIENCE = 600.0
+"""Seconds in which ffmpeg has to make a loop."""
+
+
+def film_of(out: Out) -> Path | None:
+    """The best film that is there: that of the finest preset, else the skeleton in motion."""
+    films = [out.film(preset) for preset in reversed(list(PRESETS))]
+    for path in (*films, out.animation("skeleton", ".mp4"), out.animation("", ".mp4")):
+        if path.is_file():
+            return path
+    return None
+
+
+def write_loop(film: Path, target: Path) -> None:
+    """A film in the size of a tile, without sound, cut after SECONDS. The same film gives the same bytes.
+
+    Raises UserError.
+    """
+    fitted = f"scale={WIDTH}:{HEIGHT}:force_original_aspect_ratio=increase,crop={WIDTH}:{HEIGHT},format=yuv420p"
+    options = (
+        *("-t", f"{SECONDS:g}", "-an", "-sn", "-vf", fitted, "-r", "30"),
+        *("-c:v", "libx264", "-preset", "slow", "-crf", "30", "-threads", "1", "-movflags", "+faststart"),
+        *("-map_metadata", "-1", "-map_chapters", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", "mp4"),
+    )
+    _run(film, target, options)
+
+
+def write_still(film: Path, target: Path) -> None:
+    """A picture of a film after a third of a second, as a JPEG of a tile's size, twice as fine. Raises UserError."""
+    fitted = f"scale={2 * WIDTH}:{2 * HEIGHT}:force_original_aspect_ratio=increase,crop={2 * WIDTH}:{2 * HEIGHT}"
+    _run(film, target, ("-ss", "0.3", "-frames:v", "1", "-vf", fitted, "-q:v", "4", "-f", "mjpeg"))
+
+
+def _run(film: Path, target: Path, options: tuple[str, ...]) -> None:
+    with whole_file(target) as part:
+        command = [ffmpeg(), "-y", "-v", "error", "-i", str(film), *options, str(part)]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            raise UserError(f"{film}: ffmpeg did not end within {PATIENCE:.0f} s; run it again") from None
+        if done.returncode:
+            said = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
+            raise UserError(f"{film}: ffmpeg made no loop of it ({said}); remove the film and make it again")

@@ -1,0 +1,70 @@
+"""The page of a machine as the site has it: that of ``make view`` with the designs that its sliders move through."""
+
+from __future__ import annotations
+
+import base64
+import subprocess
+import sys
+from pathlib import Path
+
+from render.view.binary import encode
+from render.view.bundle import bundle, sources_key
+from render.view.document import document
+from render.view.inputs import read_payload
+from render.view.sketch import sketch
+from shared.stage.console import warn
+from shared.stage.files import sources_hash, write_bytes
+from shared.stage.paths import ROOT, Out
+from shared.stage.stages import Stage, key_of, versions
+from studio.site.once import once
+
+SOURCES = [ROOT / "studio" / name for name in ("site/designs", "site/machine_page.py", "live/child", "live/numbers.py")]
+PATIENCE = 900.0
+"""Seconds in which the designs of a machine have to be there."""
+
+
+def write_machine_page(name: str, target: Path) -> int:
+    """Write the page unless it stands for the same inputs; the number of designs in it, 0 where it has no sliders.
+
+    Raises UserError.
+    """
+    out = Out(name)
+    designs = _designs(name)
+    table = designs.read_bytes() if designs.is_file() else b""
+    key = key_of(out.view, designs if table else "none", sources_key(), sources_hash(*SOURCES))
+    with once(target, key) as wanted:
+        if wanted:
+            payload = read_payload(out)
+            more = _script(table) if table else ""
+            page = document(payload["title"], encode(payload), bundle(), more, sketch=sketch(payload["skeleton"]))
+            write_bytes(target, page)
+    return len(table)
+
+
+def _script(table: bytes) -> str:
+    return f'<script type="text/plain" id="mbsd-designs">{base64.b64encode(table).decode()}</script>\n'
+
+
+def _designs(name: str) -> Path:
+    """The table of designs, made in a process of its own, for mechanism.py may do anything there.
+
+    Empty where no number can be moved; missing where the process failed, which is reported and tried again.
+    """
+    out = Out(name)
+    path = out.folder / "designs.bin"
+    key = key_of(out.motion, out.skeleton, sources_hash(*SOURCES, ROOT / "render" / "view"), versions("numpy"))
+    stage = Stage(out, "designs", key, [path])
+    if stage.is_fresh():
+        return path
+    words = [sys.executable, "-m", "studio.site.designs", name]
+    try:
+        done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False, timeout=PATIENCE)
+        said = (done.stderr.strip() or f"exit code {done.returncode}").splitlines()[-1] if done.returncode else ""
+    except subprocess.TimeoutExpired:
+        said = f"it did not end within {PATIENCE:.0f} s"
+    if said:
+        warn("site", f"{name}: its page has no sliders: {said}")
+        path.unlink(missing_ok=True)
+    else:
+        stage.done()
+    return path

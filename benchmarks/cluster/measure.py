@@ -18,9 +18,10 @@ from typing import Any
 import psutil
 
 from benchmarks.cluster import work
-from shared.cluster import hand
+from mbsd.dealing import hand
+from mbsd.dealing.connection import workers_of
 from shared.cluster.__main__ import scheduler_command, worker_command
-from shared.cluster.address import connected, workers_of
+from shared.cluster.address import connected
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal
 from shared.cluster.hands import Work
@@ -105,7 +106,7 @@ def _deal(where: str, workers: int, task: Callable[..., Any], orders: dict[str, 
     kind = Work(task, lambda _, result: result, len(work.PICTURE))
     with connected(where) as client:
         end = time.monotonic() + 300
-        while len(workers_of(client) or ()) < workers:
+        while len(workers_of(client)) < workers:
             if time.monotonic() > end:
                 raise UserError(f"bench: {workers} workers did not start within five minutes")
             time.sleep(0.1)

@@ -58,7 +58,7 @@ class _Pace:
     def words(self) -> str:
         passed = time.monotonic() - self.started
         each = passed / max(self.done - (self.counted or 0), 1)
-        left = f"{_duration(each * (self.total - self.done))} left" if self.done < self.total else "done"
+        left = f"{duration(each * (self.total - self.done))} left" if self.done < self.total else "done"
         failed = f", {self.failed} failed" if self.failed else ""
         known = f", {self.known} were known" if self.known and self.done == self.total else ""
         pace = f"{1 / each:.3g} points a second, " if each > 1e-9 and self.done > (self.counted or 0) else ""
@@ -78,7 +78,8 @@ class _Lines:
             print(f"study: {pace.done}/{pace.total}, {pace.words()}", file=sys.stderr, flush=True)
 
 
-def _duration(seconds: float) -> str:
+def duration(seconds: float) -> str:
+    """A time for people: ``12 s``, ``3 min 20 s``, ``2 h 05 min``."""
     whole = round(seconds)
     if whole < 60:
         return f"{whole} s"

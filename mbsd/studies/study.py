@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing, nullcontext
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
@@ -15,18 +15,18 @@ from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.shown import shown
 from mbsd.base.warn import warn
+from mbsd.dealing.connection import connected
 from mbsd.dependencies.recorder import Recorder
 from mbsd.mechanism import Mechanism
-from mbsd.studies.driver import Numbered, Workers, computed
+from mbsd.studies.dealt import Deals, by_cluster, by_here, by_processes
 from mbsd.studies.identity.content import Content, own_sources
 from mbsd.studies.identity.depends import StudyPlaces, loaded_inputs, root_of
-from mbsd.studies.local import Here, Processes
 from mbsd.studies.points import Point, points_of
 from mbsd.studies.progress import progress as reported
-from mbsd.studies.remote import Cluster, connected
 from mbsd.studies.sent import bytes_of
 from mbsd.studies.store import Store
 from mbsd.studies.table import pandas_here, refuse_format, refuse_taken, save_table, table_of
+from mbsd.studies.voice import VOICE
 from mbsd.studies.work import Order, Result
 
 if TYPE_CHECKING:
@@ -79,16 +79,18 @@ def study(
     results: dict[int, Result] = (
         {} if store is None else {n: store.known[k] for n, k in enumerate(keys) if k in store.known}
     )
-    todo: Numbered = [(number, point) for number, point in enumerate(points) if number not in results]
+    todo = {number: point for number, point in enumerate(points) if number not in results}
     if todo:
         names = {name for point in points for name in point}
         with (
             _client(client) as connected,
-            closing(_workers(build, measure, content, store and places, connected, processes, len(todo))) as workers,
+            closing(
+                _deals(build, measure, content, store and places, connected, processes, points, len(todo))(todo)
+            ) as parts,
             reported(len(points), len(results), progress) as tell,
         ):
             try:
-                for part, inputs in computed(workers, todo):
+                for part, inputs in parts:
                     if store is not None:
                         store.depend(inputs)
                     for number, result in part:
@@ -131,26 +133,27 @@ def _client(client: Any) -> Any:
         return nullcontext(client)
     if not isinstance(client, str):
         raise ModelError(f"study: client is {shown(client)}; give a distributed.Client or the address of a scheduler")
-    return connected(client)
+    return connected(client, VOICE)
 
 
-def _workers(
+def _deals(
     build: Any,
     measure: Any,
     content: Content,
     places: StudyPlaces | None,
     client: Any,
     processes: int | None,
+    points: Sequence[Point],
     todo: int,
-) -> Workers:
-    """Who computes ``todo`` points; ``places`` name what build and measure read, if that is recorded."""
+) -> Deals:
+    """Who computes ``todo`` of the points; ``places`` name what build and measure read, if that is recorded."""
     count = cores() if processes is None else processes
     if client is None and count < 1:
         raise ModelError(f"study: processes is {count}; it must be 1 at least")
     if client is None and min(count, todo) == 1:
         for cache in content.caches if places else ():
             cache.cache_clear()  # what is remembered would not be read, and not be recorded
-        return Here(build, measure, None if places is None else Recorder(places))
+        return by_here(build, measure, None if places is None else Recorder(places))
     root = None if places is None else str(places.root)
     order = Order(bytes_of(build, measure, content.modules), root, uuid4().hex)
-    return Processes(order, min(count, todo)) if client is None else Cluster(order, client)
+    return by_processes(order, min(count, todo)) if client is None else by_cluster(order, client, points)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from mbsd.dealing.wrong_answer import WrongAnswer, printable
 from render.blender.job import Answer, Job
 from render.blender.patience import START, Patience
 from render.blender.picture_file import name_of
@@ -17,7 +18,6 @@ from render.blender.received_picture import fault_of, most_bytes
 from render.frames import served
 from render.frames.store import FrameStore
 from shared.cluster.address import connected
-from shared.cluster.answers.wrong_answer import WrongAnswer, printable
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal
 from shared.cluster.hands import Work

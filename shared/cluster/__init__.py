@@ -1,1 +1,1 @@
-"""Work on many machines: the bridge to Dask distributed, and the same work in local processes without it."""
+"""Work of stages on many machines: where the cluster is, its scheduler and workers, and files by content."""

@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from shared.cluster.answers.report import Report, encoded
-from shared.cluster.answers.wrong_answer import printable
+from mbsd.dealing.report import Report, encoded
+from mbsd.dealing.wrong_answer import printable
 from shared.cluster.contents import Contents
 from shared.stage.errors import UserError
 

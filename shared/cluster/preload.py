@@ -6,8 +6,8 @@ from typing import Any
 
 from shared.cluster.identity import PACKAGES, identity
 
-FRAMES = ("render", "shared")
-"""Rooms that decide how a picture looks."""
+FRAMES = ("render", "shared", "mbsd/base", "mbsd/dealing")
+"""Rooms that decide how a picture looks, and how machines speak with each other."""
 PARTS = (
     *("mbsd", "shared", "mechanisms/stages"),
     *(f"mechanisms/{name}.py" for name in ("__init__", "__main__", "automatic")),

@@ -16,11 +16,11 @@ import distributed
 import psutil
 import pytest
 
+from mbsd.dealing import hand
 from mechanisms.stages.parts import stage as parts_stage
 from mechanisms.stages.parts.on_cluster import built, dealt
 from mechanisms.stages.parts.on_cluster.answer import Made
 from mechanisms.stages.parts.on_cluster.author_files import collected
-from shared.cluster import hand
 from shared.stage import locks
 from shared.stage.errors import UserError
 from tests.mechanisms.author_project import Project, put

@@ -11,13 +11,13 @@ import cadquery
 import msgspec
 import pytest
 
+from mbsd.dealing.wrong_answer import WrongAnswer
 from mechanisms.stages.loading.inputs import Inputs
 from mechanisms.stages.parts.described_body import described_body
 from mechanisms.stages.parts.on_cluster import answer
 from mechanisms.stages.parts.on_cluster.answer import Made
 from mechanisms.stages.parts.on_cluster.solids_check import refuse_wrong
 from mechanisms.stages.parts_files import binary_stl, read_triangles
-from shared.cluster.answers.wrong_answer import WrongAnswer
 from shared.contract import Parts, Provenance
 from shared.shapes.solid import Solid
 from shared.stage import jsonfile

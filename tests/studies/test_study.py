@@ -210,7 +210,7 @@ def test_progress_is_told_in_lines_where_no_terminal_listens(capsys: pytest.Capt
     ],
 )
 def test_what_cannot_be_is_refused(keywords: dict[str, Any], said: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mbsd.studies.remote.TIMEOUT", 0.2)
+    monkeypatch.setattr("mbsd.dealing.connection.TIMEOUT", 0.2)
     arguments = {"build": build, "grid": LENGTHS, "measure": swing} | keywords
     with pytest.raises(ModelError, match=said.replace("(", r"\(")):
         study(**arguments)

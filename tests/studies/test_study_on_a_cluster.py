@@ -17,7 +17,7 @@ from pandas.testing import assert_frame_equal
 
 import mbsd
 from mbsd import Mechanism, ModelError
-from mbsd.studies import remote
+from mbsd.studies import dealt
 
 LENGTHS = {"length": [0.1, 0.2, 0.3, -0.1, 0.5, 0.6]}
 QUIET = {"progress": False, "folder": None}
@@ -95,9 +95,9 @@ def test_a_point_that_ends_workers_is_told(client: Any) -> None:
 
 
 def test_workers_with_other_versions_are_refused_by_name(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    ours = remote.versions() | {"numpy": "1.0"}
-    monkeypatch.setattr(remote, "versions", lambda: ours)
-    [name, *_] = client.scheduler_info(n_workers=-1)["workers"]
-    with warnings.catch_warnings(), pytest.raises(ModelError, match=f"{name}: numpy .*, here 1.0; start workers"):
+    ours = dealt.identity() | {"numpy": "1.0"}
+    monkeypatch.setattr(dealt, "identity", lambda: ours)
+    names = ", ".join(sorted(client.scheduler_info(n_workers=-1)["workers"]))
+    with warnings.catch_warnings(), pytest.raises(ModelError, match=f"{names}: numpy .*, here 1.0; start workers"):
         warnings.simplefilter("ignore")
         mbsd.study(build, LENGTHS, fastest, client, **QUIET)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import threading
 import time
 import warnings
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +18,18 @@ from pandas.testing import assert_frame_equal
 
 import mbsd
 from mbsd import Mechanism, ModelError
+from mbsd.dealing import deal
+from mbsd.dealing.report import Report, encoded, read_report
+from mbsd.dealing.wrong_answer import WrongAnswer
 from mbsd.dependencies.inputs import Inputs
-from mbsd.studies import remote
-from mbsd.studies.cluster import members
-from mbsd.studies.cluster.answers import WrongAnswer, answer_of, read
+from mbsd.studies import dealt
+from mbsd.studies.answers import answer_of, reader
 from mbsd.studies.work import Order
 from tests.studies.fake_cluster import Acts, FakeClient, Held
 
-GRID = {"length": [0.1 * n for n in range(1, 9)]}
+GRID = {"length": [0.1 * n for n in range(1, 13)]}
 NO_INPUTS = Inputs().states()
+Numbered = Sequence[tuple[int, Any]]
 
 
 def build(length: float) -> Mechanism:
@@ -34,13 +39,19 @@ def build(length: float) -> Mechanism:
 
 
 def measured(m: Mechanism) -> dict[str, float]:
-    time.sleep(0.01)
+    time.sleep(0.02)
     length = float(m.bodies["bar"].length or 0.0)
     return {"double": 2.0 * length, "nothing": math.nan, "whole": int(1e20)}
 
 
-def told(chunk: str, results: Any, seconds: Any = 0.01, inputs: Any = NO_INPUTS) -> bytes:
-    return json.dumps({"chunk": chunk, "seconds": seconds, "results": results, "inputs": inputs}).encode()
+def told(points: Numbered, results: Sequence[Any], seconds: float = 0.01, inputs: Any = NO_INPUTS) -> bytes:
+    done = [(number, json.dumps(result).encode()) for (number, _), result in zip(points, results, strict=False)]
+    return encoded(Report(done=done, seconds=seconds, note=json.dumps(inputs).encode()))
+
+
+def each(result: Any) -> Acts:
+    """Answers with this for each point."""
+    return lambda f, p, _: told(p, [result for _ in p])
 
 
 def fine(points: Sequence[Any]) -> list[Any]:
@@ -48,29 +59,29 @@ def fine(points: Sequence[Any]) -> list[Any]:
 
 
 LIES: dict[str, Acts] = {
-    "None": lambda f, p, c: None,
-    "a list of results": lambda f, p, c: fine(p),
-    "text": lambda f, p, c: b"all done",
-    "cut short": lambda f, p, c: answer_of(f, p, c)[:-1],
-    "another chunk": lambda f, p, c: told("another", fine(p)),
-    "too few": lambda f, p, c: told(c, fine(p)[1:]),
-    "too many": lambda f, p, c: told(c, fine(p) * 2),
-    "no list": lambda f, p, c: told(c, {"0": 1.0}),
-    "numbers alone": lambda f, p, c: told(c, [1.0 for _ in p]),
-    "text as a number": lambda f, p, c: told(c, [[{"double": "1.0"}, None, False] for _ in p]),
-    "a list as a number": lambda f, p, c: told(c, [[{"double": [1.0]}, None, False] for _ in p]),
-    "a column of the points": lambda f, p, c: told(c, [[{"length": 1.0}, None, False] for _ in p]),
-    "numbers and a reason": lambda f, p, c: told(c, [[{"double": 1.0}, "no", False] for _ in p]),
-    "neither numbers nor a reason": lambda f, p, c: told(c, [[None, None, False] for _ in p]),
-    "a time that is none": lambda f, p, c: told(c, fine(p), math.nan),
-    "time that ran backwards": lambda f, p, c: told(c, fine(p), -1.0),
-    "inputs of no kind": lambda f, p, c: told(c, fine(p), inputs={"files": {}}),
-    "inputs without states": lambda f, p, c: told(c, fine(p), inputs=NO_INPUTS | {"files": ["data.txt"]}),
-    "nested without end": lambda f, p, c: b"[" * 90_000,
-    "a number without end": lambda f, p, c: b"9" * 90_000,
-    "endless data": lambda f, p, c: bytes(5_000_000 + 2_000_000 * len(p)),
-    "an error": lambda f, p, c: (_ for _ in ()).throw(RuntimeError("no")),
-    "functions that it cannot load": lambda f, p, c: answer_of(f._replace(functions=b"rubbish"), p, c),
+    "None": lambda f, p, _: None,
+    "a list of results": lambda f, p, _: fine(p),
+    "text": lambda f, p, _: b"all done",
+    "cut short": lambda f, p, s: answer_of(f, p, s)[:-1],
+    "other points": lambda f, p, _: told([(number + 100, point) for number, point in p], fine(p)),
+    "too few": lambda f, p, _: told(p, fine(p)[1:]),
+    "too many": lambda f, p, _: told([*p, *p], fine(p) * 2),
+    "a mapping": each({"0": 1.0}),
+    "numbers alone": each(1.0),
+    "text as a number": each([{"double": "1.0"}, None, False]),
+    "a list as a number": each([{"double": [1.0]}, None, False]),
+    "a column of the points": each([{"length": 1.0}, None, False]),
+    "numbers and a reason": each([{"double": 1.0}, "no", False]),
+    "neither numbers nor a reason": each([None, None, False]),
+    "a time that is none": lambda f, p, _: told(p, fine(p), math.nan),
+    "time that ran backwards": lambda f, p, _: told(p, fine(p), -1.0),
+    "inputs of no kind": lambda f, p, _: told(p, fine(p), inputs={"files": {}}),
+    "inputs without states": lambda f, p, _: told(p, fine(p), inputs=NO_INPUTS | {"files": ["data.txt"]}),
+    "nested without end": lambda f, p, _: (90_000).to_bytes(4, "big") + b"[" * 90_000,
+    "a number without end": lambda f, p, _: (90_000).to_bytes(4, "big") + b"9" * 90_000,
+    "endless data": lambda f, p, _: bytes(5_000_000 + 2_000_000 * len(p)),
+    "an error": lambda f, p, _: (_ for _ in ()).throw(RuntimeError("no")),
+    "functions that it cannot load": lambda f, p, s: answer_of(f._replace(functions=b"rubbish"), p, s),
 }
 
 
@@ -85,8 +96,8 @@ def alone() -> Any:
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(members, "SURVEY", 0.05)
-    monkeypatch.setattr("mbsd.studies.driver.WAIT", 0.05)
+    monkeypatch.setattr(deal, "SURVEY", 0.05)
+    monkeypatch.setattr(deal, "TICK", 0.01)
 
 
 @pytest.mark.parametrize("kind", LIES)
@@ -100,15 +111,17 @@ def test_a_worker_that_lies_is_left_out(kind: str, alone: Any) -> None:
 def test_where_all_lie_the_study_ends_with_their_names() -> None:
     client = FakeClient({"first": LIES["None"], "second": LIES["too few"]})
     began = time.monotonic()
-    with warnings.catch_warnings(), pytest.raises(ModelError, match=r"no worker .*; first: .*NoneType.*; second: "):
+    with warnings.catch_warnings(), pytest.raises(ModelError, match=r"no worker of tcp://scheduler") as refusal:
         warnings.simplefilter("ignore")
         study(client)
+    assert re.search(r"; first: [^;]*NoneType", str(refusal.value))
+    assert re.search(r"; second: [^;]*answers for 0 of 1", str(refusal.value))
     assert time.monotonic() - began < 5.0
 
 
 @pytest.mark.filterwarnings("ignore:study")
 def test_a_worker_that_never_answers_keeps_nothing_back(monkeypatch: pytest.MonkeyPatch, alone: Any) -> None:
-    monkeypatch.setattr(remote, "SILENT", 0.2)
+    monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, patience=0.3, grace=0.3))
 
     def hangs(*_: Any) -> None:
         threading.Event().wait(60.0)
@@ -117,29 +130,28 @@ def test_a_worker_that_never_answers_keeps_nothing_back(monkeypatch: pytest.Monk
 
 
 def test_the_first_answer_counts_and_a_late_one_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(remote, "SILENT", 0.0)
+    monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, patience=0.1))
     wakes, came = threading.Event(), threading.Event()
 
-    def late(_: bytes, points: Sequence[Any], chunk: str) -> bytes:
+    def late(_: Any, points: Numbered, __: Any) -> bytes:
+        client.workers["b"] = soon
         wakes.wait(10.0)
         came.set()
-        return told(chunk, [[{"by": 1.0}, None, False] for _ in points])
+        return told(points, [[{"by": 1.0}, None, False] for _ in points])
 
-    def soon(_: bytes, points: Sequence[Any], chunk: str) -> bytes:
-        return told(chunk, [[{"by": 2.0}, None, False] for _ in points])
+    def soon(_: Any, points: Numbered, __: Any) -> bytes:
+        if len(client.asked) == 2:
+            wakes.set()
+            came.wait(10.0)
+        return told(points, [[{"by": 2.0}, None, False] for _ in points])
 
     client = FakeClient({"a": late})
-    cluster = remote.Cluster(Order(b"", None, ""), client)
-    promise = cluster.submit([{"length": 0.1}])
-    client.workers["b"] = soon
-    while not promise.done():
-        cluster.look_after()
-        time.sleep(0.01)
-    wakes.set()
-    assert came.wait(10.0)
-    cluster.look_after()
-    assert client.asked == ["a", "b"]
-    assert promise.result().results[0].values == {"by": 2.0}
+    with pytest.warns(UserWarning, match="worker a has been silent for 0 s; what it had"):
+        table = study(client)
+    assert client.asked[:2] == ["a", "b"]
+    assert came.is_set()
+    assert len(table) == len(GRID["length"])
+    assert table["by"].isin([1.0, 2.0]).all()
 
 
 @pytest.mark.filterwarnings("ignore:study")
@@ -147,7 +159,7 @@ def test_a_worker_that_ends_each_time_is_not_the_points_fault(alone: Any) -> Non
     """Whoever keeps it starts it again under another name, and it ends again."""
     client = FakeClient({"0": answer_of})
 
-    def ends(_: bytes, __: Sequence[Any], ___: str) -> None:
+    def ends(*_: Any) -> None:
         name = next(name for name in client.workers if name != "0")
         del client.workers[name]
         client.workers[f"{int(name) + 1}"] = ends
@@ -162,14 +174,14 @@ def test_a_result_that_is_lost_with_its_worker_while_it_is_fetched_is_computed_a
     over = threading.Event()
 
     def goes() -> None:
-        client.workers.pop("a", None)
+        client.workers.pop(client.asked[0], None)
         over.wait(60.0)
         raise TimeoutError
 
     class Client(FakeClient):
         def submit(self, *arguments: Any, workers: list[str], **more: Any) -> Held:
             future = super().submit(*arguments, workers=workers, **more)
-            if workers == ["a"] and not self.asked.count("b"):
+            if len(self.asked) == 1:
                 future.fetched = goes
             return future
 
@@ -177,18 +189,18 @@ def test_a_result_that_is_lost_with_its_worker_while_it_is_fetched_is_computed_a
     began = time.monotonic()
     assert_frame_equal(study(client), alone)
     over.set()
-    assert client.asked[0] == "a"
+    assert client.asked[0] not in client.workers
     assert time.monotonic() - began < 10.0
 
 
 def test_a_scheduler_that_goes_is_a_sentence_and_what_is_computed_is_kept(tmp_path: Path, alone: Any) -> None:
     client = FakeClient({})
 
-    def goes(order: Order, points: Sequence[Any], chunk: str) -> bytes:
-        if len(client.asked) > 4:  # two are under way at a time, so three have come
+    def goes(order: Order, points: Numbered, sent: Any) -> bytes:
+        if len(client.asked) > 3:  # two are under way at a time, so two have come
             client.status = "connecting"
             threading.Event().wait(60.0)
-        return answer_of(order, points, chunk)
+        return answer_of(order, points, sent)
 
     client.workers["a"] = goes
     with pytest.raises(ModelError, match=r"the scheduler tcp://scheduler:8786 has gone; start it again .* goes on"):
@@ -213,8 +225,8 @@ def test_an_error_of_the_connection_is_a_sentence(error: Exception) -> None:
 
 
 def test_what_is_waited_for_is_told_soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(members, "SOON", 0.1)
-    monkeypatch.setattr(members, "PATIENCE", 0.5)
+    monkeypatch.setattr(deal, "SOON", 0.1)
+    monkeypatch.setattr(deal, "WAIT", 0.5)
     with (
         pytest.warns(UserWarning, match=r"has no worker that can compute it; silent: it does not answer; one is given"),
         pytest.raises(ModelError, match="silent: it does not answer"),
@@ -234,9 +246,11 @@ def test_where_all_are_refused_nobody_waits() -> None:
 
 def test_answers_survive_the_way_bit_by_bit() -> None:
     values = {"a": 0.1 + 0.2, "b": -0.0, "c": 10**30, "d": True, "e": math.inf, "f": 5e-324, "\u00e9 x": 1}
-    answer = told("c", [[values, None, False], [None, "why\x1b[2J", True]])
-    first, second = read(answer, [{"x": 1}, {"x": 2}], "c").results
+    points = [{"x": 1}, {"x": 2}]
+    answer = told(list(enumerate(points)), [[values, None, False], [None, "why\x1b[2J", True]])
+    read = reader(points)
+    first, second = (read(number, content) for number, content in read_report(answer, [0, 1], (), 10_000).done)
     assert repr(first.values) == repr(values)
     assert (second.reason, second.passing) == ("why [2J", True)
     with pytest.raises(WrongAnswer):
-        read(told("c", [[{"x": 1.0}, None, False]]), [{"x": 1}], "c")
+        read(0, json.dumps([{"x": 1.0}, None, False]).encode())

@@ -146,11 +146,12 @@ class Workers:
         self._wait(answers, "no scheduler")
 
     def _wait_for_workers(self, more: int = 0) -> None:
-        from shared.cluster.address import connected, workers_of
+        from mbsd.dealing.connection import workers_of
+        from shared.cluster.address import connected
 
         count = COUNT + more
         with connected(self.address) as client:
-            self._wait(lambda: len(workers_of(client) or ()) >= count, "not all workers")
+            self._wait(lambda: len(workers_of(client)) >= count, "not all workers")
 
     def _wait(self, ready: Callable[[], bool], what: str) -> None:
         end = time.monotonic() + BEGIN

@@ -15,10 +15,10 @@ import dask.config
 import distributed
 import pytest
 
+from mbsd.dealing import hand
 from render.frames import frames
 from render.frames.store import FrameIndex, FrameStore
 from render.presets import Preset
-from shared.cluster import hand
 from shared.contract.shot import Shot
 from shared.stage import jsonfile
 from tools.fixtures import film_fixture

@@ -13,13 +13,13 @@ import msgspec
 import pytest
 from PIL import Image
 
+from mbsd.dealing.wrong_answer import WrongAnswer
 from render.blender.picture_file import name_of
 from render.blender.received_picture import fault_of, most_bytes
 from render.blender.worker.plain_png import SIGNATURE, without_notes
 from render.frames import on_cluster
 from render.frames.served import Made
 from render.frames.store import FrameStore
-from shared.cluster.answers.wrong_answer import WrongAnswer
 from shared.stage.errors import UserError
 
 WIDTH, HEIGHT = 48, 27

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import time
 from collections.abc import Mapping, Sequence
@@ -10,12 +11,21 @@ from typing import Any
 
 import msgspec
 
-from shared.cluster.answers.report import Report, encoded
+from mbsd.dealing.report import Report, encoded
 from shared.cluster.hands import perform
 
 
 def _done(keys: Sequence[str], content: Any = b"x") -> bytes:
     return encoded(Report(done=[(key, content) for key in keys], seconds=0.001))
+
+
+def _header(done: list[Any]) -> dict[str, Any]:
+    return {"lacking": [], "done": done, "failed": None, "note": 0, "seconds": 0.1}
+
+
+def _with_header(header: Any) -> bytes:
+    text = json.dumps(header).encode()
+    return len(text).to_bytes(4, "big") + text
 
 
 LIES = {
@@ -25,11 +35,13 @@ LIES = {
     "no bytes": lambda keys: b"",
     "a report cut short": lambda keys: _done(keys)[:-1],
     "a report with a tail": lambda keys: _done(keys) + b"x",
-    "nested without end": lambda keys: b"\x91" * 100_000,
-    "another kind of report": lambda keys: msgspec.msgpack.encode({"code": "x"}),
-    "no text": lambda keys: b"\x81\xa4done\x91\x92\xa1\xff\xc4\x00",
-    "results of None": lambda keys: _done(keys, None),
-    "results of text": lambda keys: _done(keys, "x"),
+    "nested without end": lambda keys: (90_000).to_bytes(4, "big") + b"[" * 90_000,
+    "another kind of report": lambda keys: _with_header({"code": "x"}),
+    "no text": lambda keys: (2).to_bytes(4, "big") + b"\xff\xfe",
+    "results of no length": lambda keys: _with_header(_header([[key, None] for key in keys])),
+    "results of a negative length": lambda keys: _with_header(_header([[key, -1] for key in keys])),
+    "results that are not there": lambda keys: _with_header(_header([[key, 8] for key in keys])),
+    "a header of MessagePack": lambda keys: msgspec.msgpack.encode({"done": keys}),
     "another order": lambda keys: _done(["another"]),
     "an order of a folder above": lambda keys: _done(["../../x"]),
     "an order twice": lambda keys: _done([*keys, *keys]),

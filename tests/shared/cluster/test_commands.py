@@ -101,7 +101,7 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
                 assert {host for host, _ in listening(worker)} == {OTHER_HOST}
                 assert len(listening(worker)) == 2  # the worker and its nanny, no HTTP server
                 if life == "second":
-                    monkeypatch.setattr("shared.cluster.address.TIMEOUT", 1.0)
+                    monkeypatch.setattr("mbsd.dealing.connection.TIMEOUT", 1.0)
                     other = tmp_path / "others"
                     authority.make(other)
                     monkeypatch.setenv("CLUSTER_TLS", str(other))

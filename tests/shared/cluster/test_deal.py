@@ -13,11 +13,13 @@ import dask.config
 import distributed
 import pytest
 
-from shared.cluster import deal, hand
-from shared.cluster.address import tasks_of, workers_of
+from mbsd.dealing import deal, hand
+from mbsd.dealing.connection import tasks_of, workers_of
+from mbsd.dealing.identity import together
+from mbsd.dealing.manner import Manner
+from mbsd.dealing.pools import Dask, Gone
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal
-from shared.cluster.identity import together
 from shared.stage.errors import UserError
 from tests.shared.cluster import acting
 
@@ -110,7 +112,7 @@ def test_a_worker_that_stalls_keeps_nothing_back(client: distributed.Client) -> 
 
 
 def test_a_worker_that_answers_after_all_gets_orders_again() -> None:
-    one = hand.Hand("w", patience=0.0, fit=True, groups=[hand.Group(["a"])])
+    one = hand.Hand("w", Manner(patience=0.0), fit=True, groups=[hand.Group(["a"])])
     assert one.is_overdue()
     one.stalled = True
     assert not one.is_ready()
@@ -128,7 +130,8 @@ def test_workers_that_have_nothing_to_do_take_over_from_slow_ones(client: distri
 
 def test_workers_with_other_sources_are_refused_by_name(client: distributed.Client) -> None:
     work = dealt(client, acting.doubled, {"k": 1})
-    work.ours = work.ours | {"numpy": "0.1"}
+    assert work.trust is not None
+    work.trust = work.trust._replace(ours=dict(work.trust.ours) | {"numpy": "0.1"})
     name = first_worker(client)
     with pytest.raises(UserError, match=f"{name}, .*: numpy .*, here 0.1") as refusal:
         list(work.results())
@@ -168,7 +171,11 @@ def test_a_client_that_gives_up_while_it_asks_has_lost_the_scheduler() -> None:
     cluster = distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None)
     client = distributed.Client(cluster, set_as_default=False)
     client.sync(client.rpc.close)
-    assert workers_of(client) is None
+    with pytest.raises((OSError, RuntimeError)):
+        workers_of(client)
+    assert Dask(client).there() is None
     assert tasks_of(client) == {}
     client.close()
+    with pytest.raises(Gone):
+        Dask(client).there()
     cluster.close()

@@ -12,8 +12,9 @@ from typing import Any
 
 import pytest
 
-from shared.cluster import deal, hand
-from shared.cluster.answers.report import Report, encoded
+from mbsd.dealing import deal, hand
+from mbsd.dealing.manner import Manner
+from mbsd.dealing.report import Report, encoded
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal
 from shared.cluster.hands import perform
@@ -96,7 +97,7 @@ def test_a_worker_whose_results_never_arrive_is_left_out(capsys: pytest.CaptureF
 
     def fails(keys: list[str]) -> None:
         failed.extend(keys)
-        if len(failed) == hand.FAILURES:
+        if len(failed) == Manner().failures:
             client.workers["keeping"] = client.workers["losing"]
         raise OSError("Stream is closed")
 

@@ -11,8 +11,9 @@ from typing import Any
 import distributed
 import pytest
 
-from shared.cluster import deal, hand
-from shared.cluster.answers.wrong_answer import WrongAnswer, printable
+from mbsd.dealing import deal, hand
+from mbsd.dealing.pools import Dask
+from mbsd.dealing.wrong_answer import WrongAnswer, printable
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal
 from shared.cluster.hands import Work
@@ -67,7 +68,7 @@ def test_a_worker_that_lies_is_left_out_and_the_other_does_all(
     client: distributed.Client, kind: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     liar, honest = workers(client)
-    monkeypatch.setattr(deal, "perform", functools.partial(lying.lie, kind, liar))
+    monkeypatch.setattr("shared.cluster.deal.perform", functools.partial(lying.lie, kind, liar))
     found = list(dealt(client).results())
     assert Counter(key for key, _, _ in found) == Counter(ORDERS.keys())
     assert {(value, worker) for _, value, worker in found} == {("done", honest)}
@@ -82,7 +83,7 @@ def test_where_all_lie_the_run_ends_with_their_names(
     def all_lie(*_: Any) -> None:
         return None
 
-    monkeypatch.setattr(deal, "perform", all_lie)
+    monkeypatch.setattr("shared.cluster.deal.perform", all_lie)
     began = time.monotonic()
     with pytest.raises(UserError, match=r"no worker of the cluster can do this; .*answers with NoneType") as refusal:
         list(dealt(client).results())
@@ -131,7 +132,8 @@ def test_what_is_waited_for_is_told_soon(
     monkeypatch.setattr(deal, "SOON", 0.1)
     monkeypatch.setattr(deal, "WAIT", 0.5)
     work = dealt(client)
-    work.ours = work.ours | {"numpy": "0.1"}
+    assert work.trust is not None
+    work.trust = work.trust._replace(ours=dict(work.trust.ours) | {"numpy": "0.1"})
     work._lost_one = True
     began = time.monotonic()
     with pytest.raises(UserError, match=r"here 0\.1"):
@@ -143,14 +145,17 @@ def test_what_is_waited_for_is_told_soon(
 def test_a_result_that_never_comes_holds_up_nobody(client: distributed.Client, monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither the answers of others nor the end: four of these did for a minute."""
     slow, honest = workers(client)
-    fetch = Deal._fetch
+    submit = Dask.submit
 
-    def stuck(self: Deal, one: hand.Hand, group: hand.Group) -> None:
-        if one.name == slow:
-            time.sleep(20.0)
-        fetch(self, one, group)
+    def stuck(self: Dask, name: str, task: Any, arguments: Any, most: int, then: Any) -> Any:
+        def later(answer: Any) -> None:
+            if name == slow:
+                time.sleep(20.0)
+            then(answer)
 
-    monkeypatch.setattr(Deal, "_fetch", stuck)
+        return submit(self, name, task, arguments, most, later)
+
+    monkeypatch.setattr(Dask, "submit", stuck)
     began = time.monotonic()
     found = list(dealt(client).results())
     assert {worker for _, _, worker in found} == {honest}

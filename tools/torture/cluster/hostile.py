@@ -9,10 +9,10 @@ from typing import Any
 
 import msgspec
 
+from mbsd.dealing.report import Report, encoded
 from render.blender.picture_file import name_of
 from render.frames.served import Made
 from shared.cluster import hands
-from shared.cluster.answers.report import Report, encoded
 from tools.torture.stage import STAMP
 
 VARIABLE = "HOSTILE"

@@ -17,8 +17,8 @@ from typing import Any, NoReturn
 
 import msgspec
 
+from mbsd.dealing.wrong_answer import WrongAnswer, printable
 from mechanisms.stages.loading.inputs import Inputs
-from shared.cluster.answers.wrong_answer import WrongAnswer, printable
 from shared.contract import PARTS_UNITS, Parts, consistency
 from shared.stage import jsonfile
 from shared.stage.errors import UserError

@@ -4,19 +4,12 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
-AHEAD = 2
-"""Groups that a worker has, so that it need not wait for the next."""
-TARGET = 4.0
-"""Seconds that a group of orders takes."""
-LARGEST = 64
-"""Orders in a group."""
-TIMES = 10.0
-"""Multiple of what was expected: a worker that is silent for longer counts as stalled."""
-FAILURES = 3
-"""In a row, after which a worker is left out."""
+from mbsd.dealing.manner import Manner
+from mbsd.dealing.report import Key
+
 REST = 5.0
 """Seconds that a worker rests after a failure; twice as many after the next."""
 
@@ -25,10 +18,11 @@ REST = 5.0
 class Group:
     """Orders that a worker has got together."""
 
-    keys: list[str]
+    keys: list[Key]
     sent: frozenset[str] = frozenset()
     """Contents that went along."""
-    future: Any = None
+    release: Callable[[], object] = bool
+    """Calls it back."""
 
 
 @dataclass(eq=False)
@@ -36,10 +30,9 @@ class Hand:
     """A worker."""
 
     name: str
-    patience: float
-    """Seconds of silence that are never too long."""
-    grace: float = 0.0
-    """Seconds in which nobody does its orders too, as long as its pace is unknown."""
+    manner: Manner
+    threads: int = 1
+    """Groups that it does at a time."""
     fit: bool = False
     aside: str = ""
     """Why it is left out."""
@@ -59,15 +52,15 @@ class Hand:
 
     def is_ready(self) -> bool:
         """Whether it can get another group."""
-        ahead = AHEAD if math.isfinite(self.each) else 1
+        ahead = self.manner.ahead if math.isfinite(self.each) else 1
         able = self.fit and not self.aside and not self.stalled and time.monotonic() >= self.resting
-        return able and len(self.groups) < ahead
+        return able and len(self.groups) < ahead * self.threads
 
     def size(self, fair: int) -> int:
         """Orders of its next group, ``fair`` at most."""
         if not math.isfinite(self.each):
             return 1
-        return max(1, min(fair, LARGEST, int(TARGET / max(self.each, 1e-6))))
+        return max(1, min(fair, self.manner.largest, int(self.manner.target / max(self.each, 1e-6))))
 
     def take(self, group: Group) -> None:
         """Count a group as given to it."""
@@ -100,7 +93,7 @@ class Hand:
         """It failed; True where it is left out from now on."""
         self.failures += 1
         self.resting = time.monotonic() + REST * 2 ** (self.failures - 1)
-        if self.failures >= FAILURES:
+        if self.failures >= self.manner.failures:
             self.leave_out(reason)
         return bool(self.aside)
 
@@ -108,15 +101,17 @@ class Hand:
         """Whether it has been silent for much longer than its group should take."""
         if not self.groups or self.stalled:
             return False
-        expected = self.each * len(self.groups[0].keys) if math.isfinite(self.each) else self.patience
-        return time.monotonic() - self.began > max(TIMES * expected if self.made else 0.0, self.patience)
+        expected = self.each * len(self.groups[0].keys) if math.isfinite(self.each) else self.manner.patience
+        longest = max(self.manner.times * expected if self.made else 0.0, self.manner.patience)
+        return time.monotonic() - self.began > longest
 
-    def remaining(self) -> dict[str, float]:
+    def remaining(self) -> dict[Key, float]:
         """Seconds until each of its orders should be done, the last one last; infinite where its pace is unknown."""
         passed = time.monotonic() - self.began
         keys = [key for group in self.groups for key in group.keys]
         if not math.isfinite(self.each) or self.stalled:
-            if passed < self.grace and not self.stalled:
+            if passed < self.manner.grace and not self.stalled:
                 return {}
             return dict.fromkeys(keys, math.inf)
-        return {key: max((at + 1) * self.each - passed, 0.0) for at, key in enumerate(keys)}
+        each = self.each / self.threads
+        return {key: max((at + 1) * each - passed, 0.0) for at, key in enumerate(keys)}

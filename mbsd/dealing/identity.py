@@ -1,0 +1,60 @@
+"""What a machine works with. Machines with the same identity give the same results, as far as their processors do."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from importlib import metadata
+from typing import Any, NamedTuple
+
+SHOWN = 3
+"""Workers that are named beside the reason they have in common."""
+
+
+class Trust(NamedTuple):
+    """What workers must work with to be given anything."""
+
+    ours: Mapping[str, str]
+    """Versions and sources of this machine by name."""
+    asked: Callable[[], bytes]
+    """What a worker runs to say the same of itself, as JSON."""
+
+
+def versions(packages: Iterable[str]) -> dict[str, str]:
+    """Python's version and those of these packages, by name."""
+    out = {"Python": platform.python_version()}
+    for package in packages:
+        try:
+            out[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            out[package] = "none"
+    return out
+
+
+def asker(module: str, function: str, *arguments: Any) -> Callable[[], bytes]:
+    """A function that gives what ``module.function(*arguments)`` returns on a worker, as JSON.
+
+    A worker with other sources understands it as well, as it travels itself and not by its name.
+    """
+
+    def asked() -> bytes:
+        import importlib
+        import json
+
+        return json.dumps(getattr(importlib.import_module(module), function)(*arguments)).encode()
+
+    return asked
+
+
+def differences(theirs: Mapping[str, str], ours: Mapping[str, str]) -> str:
+    """Where another machine differs from this one: ``numpy 2.4.0, here 2.5.5``; empty where it does not."""
+    names = [name for name in ours if theirs.get(name) != ours[name]]
+    return "; ".join(f"{name} {theirs.get(name, 'unknown')}, here {ours[name]}" for name in names)
+
+
+def together(reasons: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Workers that have the same reason, the first three by name, and that reason."""
+    for reason in sorted(set(reasons.values())):
+        names = sorted(name for name, why in reasons.items() if why == reason)
+        more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+        yield ", ".join(names[:SHOWN]) + more, reason

@@ -1,0 +1,58 @@
+"""How work is dealt out: what is asked of workers, how much they get at once, and when they are given up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from mbsd.dealing.report import Key
+
+
+class Kind(NamedTuple):
+    """One kind of work, as a worker does it and as its answer is read by who ordered it."""
+
+    task: Callable[..., bytes]
+    """Does a group: called with ``given``, the orders as keys and what to do, and the contents sent along; gives a
+    Report as bytes.
+    """
+    given: tuple[Any, ...]
+    read: Callable[[Any, bytes], Any]
+    """The result of the order with this key from the bytes that came. Raises WrongAnswer if they are not one."""
+    most: int
+    """Bytes of the largest result that there can be."""
+    note: Callable[[bytes], Any] = bytes
+    """Reads what is said of the results of a group together. Raises WrongAnswer as well."""
+    deadly: Callable[[Key], Any] | None = None
+    """The result of an order that ends each worker; without it, workers that end say nothing of their orders."""
+    needed: Mapping[str, Callable[[], bytes]] = MappingProxyType({})
+    """Contents that a worker may ask for, by name."""
+    salt: str = ""
+    """So that not all deals begin with the same worker."""
+
+
+@dataclass(frozen=True)
+class Manner:
+    """Numbers by which work is dealt out. Times are in seconds."""
+
+    target: float = 4.0
+    """What a group of orders takes."""
+    largest: int = 64
+    """Orders in a group."""
+    ahead: int = 2
+    """Groups that a worker has, so that it need not wait for the next."""
+    patience: float = 300.0
+    """Silence that is never too long."""
+    times: float = 10.0
+    """Multiple of what was expected: a worker that is silent for longer counts as stalled."""
+    grace: float = 0.0
+    """For so long no worker whose pace is unknown is helped by others that have nothing to do."""
+    failures: int = 3
+    """In a row, after which a worker is left out."""
+    copies: int = 2
+    """Workers that do the same order at most, when others have nothing to do."""
+    threads: bool = False
+    """Whether a worker does as many groups at a time as it has threads."""
+    first_alone: bool = False
+    """Whether others wait until the first order is done, which compiles what they load."""

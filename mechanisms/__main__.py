@@ -35,6 +35,7 @@ def main() -> int | None:
         if command == "parts":
             sub.add_argument("--anyway", default="", help="1: also where the same was refused before")
             sub.add_argument("--or-none", action="store_true", help="go on where there are no automatic parts")
+            sub.add_argument("--if-needed", choices=("model", "proof"), help="those that a model or its proof needs")
     fresh = commands.add_parser("new", help="a new mechanism that already runs")
     fresh.add_argument("name", help="folder to make")
     fresh.add_argument("--kind", default="driven", help="driven or simulated")
@@ -67,6 +68,8 @@ def main() -> int | None:
             return stage.run(name, view=arguments.view)
         if arguments.command == "print":
             return stage.run(name, bed=arguments.bed, gap=arguments.gap, scale=arguments.scale)
+        if getattr(arguments, "if_needed", None):
+            return stage.run_for_model(name, arguments.if_needed == "proof")
         if getattr(arguments, "or_none", False):
             return stage.run_or_none(name)
         if arguments.command == "parts":

@@ -50,7 +50,7 @@ def imported(file: Path, package: str) -> Iterator[ModuleType]:
     """The loaded modules that the import statements of a Python file name, packages above them included."""
     if file.suffix != ".py":
         return
-    for name in _named(content_of(file), package):
+    for name in named_modules(content_of(file), package):
         module = sys.modules.get(name)
         if isinstance(module, ModuleType):
             yield module
@@ -95,7 +95,8 @@ def content_of(file: Path) -> bytes:
 
 
 @lru_cache(maxsize=8192)  # fewer than a project has modules would keep none: they come in the same order each time
-def _named(source: bytes, package: str) -> list[str]:
+def named_modules(source: bytes, package: str) -> list[str]:
+    """What the import statements of Python source name, packages above them included; none where it does not parse."""
     names: set[str] = set()
     try:
         tree = parsed(source)

@@ -31,14 +31,16 @@ def in_turn(command: Command, operand: str, said: Mapping[str, str], run: Run) -
 
 
 def at_scale(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
-    """Parts, plates and proof of a model: it moves as the machine does, whose parts have the masses. Without a scale
-    the stages are those of the machine. Raises UserError for a scale that is none, before anything is made.
+    """Parts, plates and proof of a model: it moves as the machine does, whose parts are made first where that motion
+    follows from their masses. Without a scale the stages are those of the machine. Raises UserError for a scale that
+    is none, before anything is made.
     """
     if scale_of(said.get("scale", "")) is None:
         return in_turn(command, name, said, run)
     plates = [stages.MODEL_PRINT] if command.name == "print" else []
     proof = [] if command.name == "parts" else [stages.SOLVE, stages.MODEL_CLEARANCE]
-    chain = [stages.PARTS_IF_ANY, stages.MODEL, *plates, *proof]
+    first = stages.PARTS_FOR_PROOF if proof else stages.PARTS_FOR_MODEL
+    chain = [first, stages.MODEL, *plates, *proof]
     *before, last = (stage.words(name, said, checked=True) for stage in chain)
     return run.all_of(before) or run.last(last)
 

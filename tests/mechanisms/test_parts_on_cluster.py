@@ -107,7 +107,7 @@ def test_what_a_worker_cannot_tell_is_made_here(
     made = Made(solids.pop("parts.json"), dict.fromkeys(solids, b"other"), stamp.notes())
     put("mechanisms/arm/data/width.txt", "9.0")(project)
     monkeypatch.setenv("CLUSTER", "tcp://127.0.0.1:1")
-    monkeypatch.setattr(dealt, "made_elsewhere", lambda _: made if "disk" in change else None)
+    monkeypatch.setattr(dealt, "made_elsewhere", lambda *_: made if "disk" in change else None)
     assert project.run()
     said = capsys.readouterr()
     assert ("has otherwise; it is made here" in said.err) == ("disk" in change)

@@ -25,6 +25,7 @@ from mechanisms.stages.loading.wished_mount import of_shot, wishing
 from mechanisms.stages.loading.wished_scale import scaling
 from mechanisms.stages.parts import remembered
 from mechanisms.stages.parts.kept_pieces import KeptPieces
+from mechanisms.stages.parts.of_models import needs_machine
 from mechanisms.stages.parts.plain_values import plain_text
 from mechanisms.stages.parts.traced_params import fields_of, traced
 from shared.cluster.address import address
@@ -34,7 +35,7 @@ from shared.contract.mount import Kind
 from shared.stage.console import Shown, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
-from shared.stage.paths import ROOT, Out, in_workshop, is_single_file, mechanism_file
+from shared.stage.paths import ROOT, Out, is_single_file, mechanism_file
 from shared.stage.scale import Scale, scale_of
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
@@ -54,6 +55,8 @@ AUTOMATIC = [
     *(_STAGES / "solve" / f"{name}.py" for name in _MOTION),
 ]
 """Sources of parts without a parts.py."""
+MACHINE = "machine"
+"""False in the notes of a model's parts that need nothing of the machine's."""
 PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "python-sat", "trimesh")
 
 
@@ -67,18 +70,21 @@ def run(name: str, scale: str = "", anyway: bool = False) -> None:
     before = set(sys.modules)
     with recording() as recorder:
         given = params(out.name)
-    wish = _wish(out.name, scale_of(scale))
+    with_machine = _notes(out).get(MACHINE) is not False
+    wish = _wish(out.name, scale_of(scale), with_machine)
     if _is_fresh(out, given, wish):
         say("parts", f"{out.title}: nothing to do")
         return
+    if wish.scale is not None and wish.by_itself:
+        with_machine = needs_machine(out.name)
+        wish = _wish(out.name, wish.scale, with_machine)
     if not anyway:
         remembered.refuse_again(out, lambda reads, inputs: _key(given, reads, inputs, wish))
-    # Files travel by their names below the project, which those of a user's own folder have not.
-    made = _of_cluster(out.name, given, wish) if address() and not in_workshop() and wish.scale is None else None
+    made = _of_cluster(out, given, wish, recorder) if address() else None
     made = made or _made_here(out, given, wish, before, recorder)
     written = _write(out, made.files, made.document)
     outputs = [out.parts, *(out.parts_folder / file for file in made.files)]
-    notes = {"parameters": made.reads, "inputs": made.inputs.names()}
+    notes = {"parameters": made.reads, "inputs": made.inputs.names(), **({} if with_machine else {MACHINE: False})}
     Stage(out, "parts", made.document.provenance.inputs, outputs).done(**notes)
     _kept_pieces(out).clear()
     remembered.forget(out)
@@ -98,11 +104,12 @@ class _Wish(NamedTuple):
     """Those of the machine, where the motion of its model follows from them."""
 
 
-def _wish(name: str, scale: Scale | None = None) -> _Wish:
+def _wish(name: str, scale: Scale | None = None, with_machine: bool = True) -> _Wish:
+    """What is wished; ``with_machine`` where a model depends on the parts of its machine."""
     from mechanisms.stages.parts.automatic_solids import masses_of_machine
 
     by_itself = not has(name, "parts")
-    masses = repr(masses_of_machine(name)) if by_itself and scale is not None else ""
+    masses = repr(masses_of_machine(name)) if by_itself and scale is not None and with_machine else ""
     return _Wish(by_itself, of_shot(name), scale, masses)
 
 
@@ -185,17 +192,22 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
     return _Found(document, files, reads, inputs)
 
 
-def _of_cluster(name: str, given: Any, wish: _Wish) -> _Found | None:
+def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Found | None:
     """The parts that a worker of the cluster made; None where they did not follow from what is here."""
     from mechanisms.stages.parts.on_cluster.dealt import made_elsewhere
 
-    made = made_elsewhere(name)
+    name, known = out.name, observed(_notes(out).get("inputs")) or Inputs()
+    read = [name for kind in ("files", "modules") for name in known.joined(recorder.inputs()).names()[kind]]
+    machine = Out(name).parts.read_bytes() if wish.masses and Out(name).parts.is_file() else b""
+    made = made_elsewhere(name, wish.scale, machine, read)
     if made is None:
         return None
     document = msgspec.json.decode(made.document, type=Parts)
     reads, inputs = made.notes["parameters"], observed(made.notes["inputs"])
     if inputs is None or _key(given, reads, inputs, wish) != document.provenance.inputs:
-        warn("parts", f"{name}: its files read something that the worker has not, or has otherwise; it is made here")
+        warn(
+            "parts", f"{out.title}: its files read something that the worker has not, or has otherwise; it is made here"
+        )
         return None
     return _Found(document, made.files, reads, inputs)
 
@@ -204,6 +216,15 @@ def are_current(name: str) -> bool:
     """Whether the parts that are there are those of the mechanism as it is. Raises UserError for one without Params."""
     out = Out(name)
     return _is_fresh(out, params(out.name), _wish(out.name))
+
+
+def run_for_model(name: str, proof: bool) -> None:
+    """The same where a model needs the machine's: its motion may follow from their masses, and a ``proof`` takes the
+    motion that is solved with those that are there, which must not be old.
+    """
+    out = Out(name)
+    if (proof and out.parts.is_file()) or ((proof or not has(out.name, "parts")) and needs_machine(out.name)):
+        run_or_none(name)
 
 
 def run_or_none(name: str) -> None:
@@ -221,11 +242,16 @@ def run_or_none(name: str) -> None:
 
 
 def _is_fresh(out: Out, given: Any, wish: _Wish) -> bool:
-    notes = Stage(out, "parts", "", []).notes()
+    notes = _notes(out)
     reads, inputs = notes.get("parameters"), observed(notes.get("inputs"))
     if not isinstance(reads, list) or not inputs:
         return False
     return Stage(out, "parts", _key(given, reads, inputs, wish), [out.parts]).is_fresh()
+
+
+def _notes(out: Out) -> dict[str, Any]:
+    """What the stage noted when it was done last."""
+    return Stage(out, "parts", "", []).notes()
 
 
 def _key(given: Any, reads: list[str], inputs: Inputs, wish: _Wish) -> str:

@@ -18,18 +18,22 @@ from pathlib import Path
 
 import msgspec
 
+from mechanisms.stages.loading.inputs import WORKSHOP
 from mechanisms.stages.parts.on_cluster.answer import Made
 from mechanisms.stages.parts.on_cluster.author_files import Order
 from shared.cluster.identity import sources_of
 from shared.cluster.preload import PARTS
-from shared.stage import lineage, locks
+from shared.stage import lineage, locks, paths
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
-from shared.stage.paths import ROOT, out_root
+from shared.stage.paths import ROOT, SOLVER, out_root
+from shared.stage.scale import scale_of
 
 LONGEST = 3600.0
 """Seconds that the parts of a mechanism may take."""
 LOCK = "lock"
+RESULTS = "out"
+"""Folder of results, beside the rooms."""
 BEGUN = 60.0
 """Seconds after which a folder has its lock."""
 LEAST = 50e6
@@ -51,8 +55,10 @@ def parts(files: Mapping[str, Path], common: str, name: str) -> bytes:
         if any(order.program.get(f"sources of {room}") != sources_of(room, tree) for room in PARTS):
             raise UserError("its sources have changed since it was started; start it again")
         for path, content in order.files.items():
-            _put(tree, path, files[content].read_bytes())
-        return msgspec.msgpack.encode(_stage(tree, name))
+            _put(tree, path, files[content].read_bytes(), own_folder(tree, order.folder))
+        if order.machine:
+            write_bytes(tree / RESULTS / name / "parts" / "parts.json", files[order.machine].read_bytes())
+        return msgspec.msgpack.encode(_stage(tree, order))
 
 
 @contextmanager
@@ -69,33 +75,41 @@ def _scratch(place: Path) -> Iterator[Path]:
 def copy_program(tree: Path) -> None:
     """The rooms that make parts, with their bytecode; of compiled kernels the worker's own are used."""
     for room in PARTS:
-        source, target = ROOT / room, tree / room
+        source, target = SOLVER if room == "mbsd" else ROOT / room, tree / room
         target.parent.mkdir(parents=True, exist_ok=True)
         if source.is_dir():
-            shutil.copytree(source, target, ignore=shutil.ignore_patterns("kernels"))
+            shutil.copytree(source, target, ignore=shutil.ignore_patterns("kernels", "rooms"))
         else:
             shutil.copy2(source, target)
 
 
-def _put(tree: Path, path: str, content: bytes) -> None:
+def own_folder(tree: Path, called: str) -> Path | None:
+    """The copy of a user's own folder, beside the program; None where the mechanism is not in one."""
+    return tree.parent / "own" / Path(called).name if called else None
+
+
+def _put(tree: Path, path: str, content: bytes, own: Path | None = None) -> None:
     """Write one of the author's files. Raises UserError for one that is not the author's."""
-    target = Path(os.path.abspath(tree / path))
-    inside = target.is_relative_to(tree / "mechanisms")
-    if not inside or any(target.is_relative_to(tree / room) for room in PARTS):
+    place = tree / "mechanisms" if own is None else own
+    target = Path(os.path.abspath(tree / path if own is None else own / path.removeprefix(WORKSHOP)))
+    ours = any(target.is_relative_to(tree / room) for room in PARTS)
+    if not target.is_relative_to(place) or target == place or ours:
         raise UserError(f"{path} is no file of an author's; it is not written")
     write_bytes(target, content)
 
 
-def _stage(tree: Path, name: str) -> Made:
-    results = tree / "out"
+def _stage(tree: Path, order: Order) -> Made:
+    name, results = order.name, tree / RESULTS
     changed = {
         "PYTHONPATH": str(tree),
         "MBSD_OUT": str(results),
-        "NUMBA_CACHE_DIR": os.environ.get("NUMBA_CACHE_DIR") or str(ROOT / "mbsd" / "__pycache__"),
+        "NUMBA_CACHE_DIR": os.environ.get("NUMBA_CACHE_DIR") or str(SOLVER / "__pycache__"),
         "CLUSTER": "",
+        paths.WORKSHOP: str(own_folder(tree, order.folder) or ""),
         lineage.VARIABLE: str(os.getpid()),
     }
-    command = [sys.executable, "-m", "mechanisms", "parts", name]
+    scale = ["--scale", order.scale] if order.scale else []
+    command = [sys.executable, "-m", "mechanisms", "parts", name, *scale]
     try:
         ran = subprocess.run(
             command, cwd=tree, env=os.environ | changed, capture_output=True, text=True, timeout=LONGEST, check=False
@@ -108,7 +122,8 @@ def _stage(tree: Path, name: str) -> Made:
         if ran.returncode != 1 or shutil.disk_usage(tree).free < LEAST or "memory ran out" in said:
             raise UserError(f"{name}: its parts could not be made here: {said} (exit code {ran.returncode})")
         return Made(refusal=said)
-    folder = results / name
+    scaled = scale_of(order.scale)
+    folder = results / name / (scaled.slug if scaled else "")
     stamp = msgspec.json.decode((folder / ".stamps" / "parts.json").read_bytes())
     solids = {Path(output).name: (folder / output).read_bytes() for output in stamp["outputs"]}
     document = solids.pop("parts.json")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import msgspec
 
+from mechanisms.stages.loading.inputs import name_of
 from mechanisms.stages.loading.loading import has
 from mechanisms.stages.parts.on_cluster import answer, built
 from mechanisms.stages.parts.on_cluster.answer import Made
@@ -18,6 +19,8 @@ from shared.cluster.identity import identity
 from shared.cluster.preload import OF_PARTS, PARTS
 from shared.stage import paths
 from shared.stage.console import say, warn
+from shared.stage.paths import Out
+from shared.stage.scale import Scale
 from shared.stage.signals import terminable
 
 PATIENCE = 600.0
@@ -26,23 +29,28 @@ GRACE = 120.0
 """Seconds after which a worker that has nothing to do makes them too; the first answer counts."""
 
 
-def made_elsewhere(name: str) -> Made | None:
+def made_elsewhere(name: str, scale: Scale | None, machine: bytes, before: Iterable[str]) -> Made | None:
     """The parts of ``name`` as a worker made them; None where the stage there refused, which is reported from here.
 
-    Raises UserError if no scheduler answers, no worker is fit, or several workers fail.
+    ``machine`` is the parts.json of the machine itself, where its model at ``scale`` needs it; ``before`` are names of
+    files from which the parts were made before. Raises UserError if no scheduler answers, no worker is fit, or several
+    workers fail.
     """
-    files = collected(name)
-    contents = by_content(files)
+    files = collected(name, before)
+    contents = by_content({**files, "": machine} if machine else files)
     order = Order(
         name=name,
         files={path: content_hash(content) for path, content in files.items()},
         program=identity(PARTS, OF_PARTS),
+        folder=paths.MECHANISMS.name if paths.in_workshop() else "",
+        scale=str(scale or ""),
+        machine=content_hash(machine) if machine else "",
     )
     common = msgspec.json.encode(order)
     contents[content_hash(common)] = common
     needed = {key: _given(content) for key, content in contents.items()}
-    own = paths.MECHANISMS / paths.owner_of(name) / ("parts.py" if has(name, "parts") else "mechanism.py")
-    own_file = own.relative_to(paths.ROOT).as_posix()
+    own_file = name_of(paths.mechanism_file(name, "parts" if has(name, "parts") else "mechanism"))
+    title = Out(name, scale).title
 
     def read(_: str, content: bytes) -> Made:
         return answer.read(name, content, own_file, order.program)
@@ -52,9 +60,9 @@ def made_elsewhere(name: str) -> Made | None:
         deal = Deal(client, work, content_hash(common), needed, {name: name}, PARTS, PATIENCE, OF_PARTS, GRACE)
         for _, made, worker in deal.results():
             if not made.refusal:
-                say("parts", f"{name}: made by worker {worker}")
+                say("parts", f"{title}: made by worker {worker}")
                 return made
-            warn("parts", f"{name}: worker {worker}: {made.refusal}; it is tried here")
+            warn("parts", f"{title}: worker {worker}: {made.refusal}; it is tried here")
     return None
 
 

@@ -172,6 +172,8 @@ class Deal:
             self._without, self._reported = time.monotonic(), ""
             return
         stalled = any(hand.stalled for hand in self.hands.values())
+        if stalled and self.manner.endless:
+            return
         asked = [hand.name for hand in self.hands.values() if not hand.fit and not hand.aside]
         none_left = bool(self.hands) and not stalled and not asked and not self._lost_one
         longest = max(WAIT, 6 * self.manner.patience) if stalled else WAIT
@@ -195,21 +197,19 @@ class Deal:
     def _hand_out(self) -> None:
         ready = [hand for hand in self.hands.values() if hand.is_ready()]
         for hand in sorted(ready, key=self._turn):
-            if self.manner.first_alone and self._nothing_done() and self._is_under_way():
-                return  # what the first one needs is compiled once; the others load it
             hands, keys = self.hands.values(), list[Key]()
-            if self._pending:
+            if self._pending and not self._is_first_alone():
                 keys = unclaimed(hand, hands, self._pending, self._left, self._failed_on, self._suspects)
             if not keys and not hand.groups and self.manner.copies > 1:
                 keys = stolen(hand, hands, self._left)
             if keys:
                 self._send(hand, keys)
 
-    def _nothing_done(self) -> bool:
-        return len(self._left) == len(self.orders)
-
-    def _is_under_way(self) -> bool:
-        return any(hand.groups and not hand.stalled for hand in self.hands.values())
+    def _is_first_alone(self) -> bool:
+        """Whether others wait for the first order: what it needs is compiled once, and they load it."""
+        nothing_done = len(self._left) == len(self.orders)
+        away = any(hand.groups and not hand.stalled for hand in self.hands.values())
+        return self.manner.first_alone and nothing_done and away
 
     def _turn(self, hand: Hand) -> tuple[float, ...]:
         """Who comes first: of equal workers one that has nothing to do for others, and not all deals the same one."""

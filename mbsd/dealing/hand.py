@@ -101,9 +101,10 @@ class Hand:
         """Whether it has been silent for much longer than its group should take."""
         if not self.groups or self.stalled:
             return False
-        expected = self.each * len(self.groups[0].keys) if math.isfinite(self.each) else self.manner.patience
-        longest = max(self.manner.times * expected if self.made else 0.0, self.manner.patience)
-        return time.monotonic() - self.began > longest
+        silent, manner = time.monotonic() - self.began, self.manner
+        if not math.isfinite(self.each):
+            return silent > (manner.patience if manner.unknown is None else manner.unknown)
+        return silent > max(manner.times * self.each * len(self.groups[0].keys), manner.patience)
 
     def remaining(self) -> dict[Key, float]:
         """Seconds until each of its orders should be done, the last one last; infinite where its pace is unknown."""

@@ -43,7 +43,11 @@ class Manner:
     ahead: int = 2
     """Groups that a worker has, so that it need not wait for the next."""
     patience: float = 300.0
-    """Silence that is never too long."""
+    """Silence that is never too long of a worker whose pace is known."""
+    unknown: float | None = None
+    """The same of one whose pace is not; no other than that if None."""
+    endless: bool = False
+    """Whether workers that are all silent may be so for ever."""
     times: float = 10.0
     """Multiple of what was expected: a worker that is silent for longer counts as stalled."""
     grace: float = 0.0

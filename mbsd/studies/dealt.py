@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from functools import partial
@@ -24,10 +25,11 @@ from mbsd.studies.work import Order, Result
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "cloudpickle")
 """Those whose version decides what comes out, beside mbsd's own sources and Python."""
-LOCAL = Manner(target=0.5, largest=2000, copies=1, first_alone=True)
+LOCAL = Manner(target=0.5, largest=2000, patience=math.inf, copies=1, first_alone=True)
 FAR = Manner(
-    target=2.0, largest=2000, patience=60.0, times=20.0, grace=60.0, failures=1, threads=True, first_alone=True
-)
+    target=2.0, largest=2000, patience=60.0, unknown=600.0, endless=True, times=20.0, grace=60.0, failures=1,
+    threads=True, first_alone=True,
+)  # fmt: skip
 ENDED = "its process was ended, by the system if the memory ran out, else by what build or measure called"
 
 Found = tuple[list[tuple[int, Result]], Inputs]

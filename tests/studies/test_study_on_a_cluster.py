@@ -97,7 +97,9 @@ def test_a_point_that_ends_workers_is_told(client: Any) -> None:
 def test_workers_with_other_versions_are_refused_by_name(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     ours = dealt.identity() | {"numpy": "1.0"}
     monkeypatch.setattr(dealt, "identity", lambda: ours)
-    names = ", ".join(sorted(client.scheduler_info(n_workers=-1)["workers"]))
-    with warnings.catch_warnings(), pytest.raises(ModelError, match=f"{names}: numpy .*, here 1.0; start workers"):
+    with (
+        warnings.catch_warnings(),
+        pytest.raises(ModelError, match=r"; tcp://[\d.:]+.*: numpy .*, here 1.0; start workers"),
+    ):
         warnings.simplefilter("ignore")
         mbsd.study(build, LENGTHS, fastest, client, **QUIET)

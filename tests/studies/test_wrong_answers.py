@@ -124,8 +124,11 @@ def test_where_all_lie_the_study_ends_with_their_names() -> None:
 
 
 @pytest.mark.filterwarnings("ignore:study")
-def test_a_worker_that_never_answers_keeps_nothing_back(monkeypatch: pytest.MonkeyPatch, alone: Any) -> None:
-    monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, patience=0.3, grace=0.3))
+@pytest.mark.parametrize("after", ["grace", "unknown"])
+def test_a_worker_that_never_answers_keeps_nothing_back(
+    after: str, monkeypatch: pytest.MonkeyPatch, alone: Any
+) -> None:
+    monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, **{after: 0.3}))
 
     def hangs(*_: Any) -> None:
         threading.Event().wait(60.0)
@@ -134,7 +137,7 @@ def test_a_worker_that_never_answers_keeps_nothing_back(monkeypatch: pytest.Monk
 
 
 def test_the_first_answer_counts_and_a_late_one_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, patience=0.1))
+    monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, unknown=0.1))
     wakes, came = threading.Event(), threading.Event()
 
     def late(_: Any, points: Numbered, __: Any) -> bytes:

@@ -39,6 +39,8 @@ class Notes(msgspec.Struct, forbid_unknown_fields=True):
 
     parameters: list[str]
     inputs: dict[str, list[str]]
+    machine: bool = True
+    """Whether parts of a model may follow from those of the machine."""
 
 
 class Made(msgspec.Struct, forbid_unknown_fields=True):

@@ -108,7 +108,9 @@ def test_settings_are_said_once_and_found_from_below(folder: Path) -> None:
     assert (
         mbsd("print", "wheel", "--plan", at=folder).stdout.splitlines()[-1] == "mechanisms clearance wheel --scale=1:20"
     )
-    assert "--scale=1:5" in mbsd("print", "wheel", "--scale", "1:5", "--plan", at=folder).stdout
+    model = mbsd("print", "wheel", "--scale", "1:5", "--plan", at=folder).stdout
+    assert model.splitlines()[0] == "mechanisms parts wheel --if-needed=proof"
+    assert "--scale=1:5" in model
     assert "SCALE=tiny is no scale" in mbsd("print", "wheel", "--scale", "tiny", at=folder).stderr
     for command in ("parts", "clearance", "film"):
         assert "scale" not in mbsd(command, "wheel", "--plan", at=folder).stdout

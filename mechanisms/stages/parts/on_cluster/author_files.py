@@ -107,9 +107,9 @@ def _place(module: str) -> Path:
     top, *rest = module.split(".")
     if top != "mechanisms" or not rest:
         return paths.MECHANISMS.joinpath(top, *rest)
+    owner, *below = rest
     try:
-        if paths.is_single_file(rest[0]):
-            return paths.MECHANISMS / rest[0]
-        return paths.mechanism_folder(rest[0]).joinpath(*rest[1:])
+        folder = paths.mechanism_folder(owner)
+        return folder / owner if below == ["mechanism"] and paths.is_single_file(owner) else folder.joinpath(*below)
     except UserError:
         return paths.MECHANISMS.joinpath(*rest)

@@ -30,6 +30,8 @@ FAR = Manner(
     target=2.0, largest=2000, patience=60.0, unknown=600.0, endless=True, times=20.0, grace=60.0, failures=1,
     threads=True, first_alone=True,
 )  # fmt: skip
+OWN_MOST = 2**40
+"""Bytes of the result of a point of this machine, which nobody needs to protect from."""
 ENDED = "its process was ended, by the system if the memory ran out, else by what build or measure called"
 
 Found = tuple[list[tuple[int, Result]], Inputs]
@@ -48,7 +50,7 @@ def by_here(build: Callable[..., Any], measure: Callable[[Any], Any], recorder: 
     def computed(points: Numbered, _: Mapping[str, bytes]) -> bytes:
         return answered(partial(work.chunk_of, build, measure, recorder), points)
 
-    return partial(_dealt, Here(), Kind(computed, (), own_result, MOST, inputs_of), LOCAL, None)
+    return partial(_dealt, Here(), Kind(computed, (), own_result, OWN_MOST, inputs_of), LOCAL, None)
 
 
 def by_processes(order: Order, count: int) -> Deals:
@@ -57,7 +59,7 @@ def by_processes(order: Order, count: int) -> Deals:
         pool = Processes(count, work.begin, order)
     except ImportError as error:
         raise ModelError("study needs loky: install mbsd[study]") from error
-    return partial(_dealt, pool, Kind(answer_of, (order,), own_result, MOST, inputs_of, _ended), LOCAL, None)
+    return partial(_dealt, pool, Kind(answer_of, (order,), own_result, OWN_MOST, inputs_of, _ended), LOCAL, None)
 
 
 def by_cluster(order: Order, client: Any, points: Sequence[Point]) -> Deals:

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from shared.cluster.identity import sources_of
+from shared.cluster.preload import PARTS
 from shared.stage.paths import ROOT
 from tools.wheel.archives import build
 
@@ -56,6 +58,31 @@ def test_the_rooms_are_no_names_for_others(program: Path, tmp_path: Path) -> Non
         [python, "-P", "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True
     )
     assert done.stdout == "[]\n"
+
+
+COPY = """
+import sys
+from pathlib import Path
+import mbsd
+sys.path.insert(0, str(Path(mbsd.__file__).parent / "rooms"))
+from mechanisms.stages.parts.on_cluster.built import copy_program
+from shared.cluster.identity import sources_of
+from shared.cluster.preload import PARTS
+copy_program(Path("tree"))
+assert all(sources_of(room) == sources_of(room, Path("tree").resolve()) for room in PARTS)
+print([sources_of(room) for room in PARTS])
+"""
+
+
+def test_a_worker_of_the_wheel_is_as_one_of_the_clone_and_makes_parts_in_the_same_copy(
+    program: Path, tmp_path: Path
+) -> None:
+    environment = {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "MBSD_WORKSHOP")}
+    python = program.parent / "python"
+    done = subprocess.run([python, "-P", "-c", COPY], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == str([sources_of(room) for room in PARTS])
+    assert not (tmp_path / "tree" / "mbsd" / "rooms").exists()
 
 
 def test_all_commands_are_there(program: Path, tmp_path: Path) -> None:

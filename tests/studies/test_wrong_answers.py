@@ -136,6 +136,19 @@ def test_a_worker_that_never_answers_keeps_nothing_back(
     assert_frame_equal(study(FakeClient({"a": hangs, "b": answer_of, "silent": answer_of})), alone)
 
 
+@pytest.mark.filterwarnings("ignore:study")
+def test_points_that_take_longer_than_all_patience_are_waited_for(monkeypatch: pytest.MonkeyPatch, alone: Any) -> None:
+    """A worker that is silent may be at work on a long point: a study ends for no such reason."""
+    monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, unknown=0.05, patience=0.05, times=0.1))
+    monkeypatch.setattr(deal, "WAIT", 0.1)
+
+    def slow(order: Order, points: Numbered, sent: Any) -> bytes:
+        time.sleep(0.4)
+        return answer_of(order, points, sent)
+
+    assert_frame_equal(study(FakeClient({"a": slow, "b": slow})), alone)
+
+
 def test_the_first_answer_counts_and_a_late_one_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dealt, "FAR", replace(dealt.FAR, unknown=0.1))
     wakes, came = threading.Event(), threading.Event()

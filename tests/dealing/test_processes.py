@@ -18,7 +18,7 @@ from mbsd.dealing.report import Report, encoded
 from mbsd.dealing.voice import Voice
 
 SAID: list[str] = []
-VOICE = Voice(SAID.append, SAID.append, RuntimeError, str, *(["{where}"] * 9))
+VOICE = Voice(SAID.append, SAID.append, RuntimeError, str, *["no worker"] * 9)
 
 
 def squares(orders: Sequence[tuple[int, int]], sent: Mapping[str, bytes]) -> bytes:
@@ -66,5 +66,5 @@ def test_an_order_that_ends_its_process_is_found_and_the_others_are_done(deadly:
 
 def test_a_wrong_answer_of_this_process_is_no_endless_loop() -> None:
     kind = KIND._replace(task=lambda orders, sent: b"rubbish")
-    with pytest.raises(RuntimeError):
+    with pytest.raises(RuntimeError, match="no worker"):
         list(Deal(Here(), kind, {1: 1}, VOICE).results())

@@ -27,4 +27,5 @@ def sources_of(room: str, root: Path = ROOT) -> str:
     """A short hash of the Python sources of a room, or of one file, in the project at ``root``."""
     top, *below = Path(room).parts
     folder = SOLVER.joinpath(*below) if top == "mbsd" and not (root / top).exists() else root / room
-    return sources_hash(folder, leave_out=[SOLVER / "rooms"])[:12]  # an installed package has the other rooms there
+    others = [folder / "rooms"] if room == "mbsd" else []  # where an installed package has the other rooms
+    return sources_hash(folder, leave_out=others)[:12]

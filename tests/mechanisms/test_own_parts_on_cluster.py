@@ -17,6 +17,7 @@ import msgspec
 import psutil
 import pytest
 
+from mechanisms.stages.loading.loading import author_code
 from mechanisms.stages.parts.on_cluster import answer, built
 from mechanisms.stages.parts.on_cluster.author_files import Order, by_content, collected
 from shared.cluster.contents import content_hash
@@ -173,6 +174,14 @@ def test_a_worker_writes_no_file_outside_the_copy_of_the_folder(tmp_path: Path, 
     with pytest.raises(UserError, match="is no file of an author's"):
         built._put(tree, path, b"", built.own_folder(tree, "../machines"))
     assert not list(tmp_path.rglob("*.py"))
+
+
+def test_functions_of_a_mechanism_run_where_its_folder_is_not(folder: Path) -> None:
+    """A worker of a study gets build() and measure() alone, and may have been started in a folder of its own."""
+    with author_code("arm"):
+        pass
+    with pytest.raises(ZeroDivisionError), author_code("elsewhere"):
+        raise ZeroDivisionError
 
 
 @pytest.fixture

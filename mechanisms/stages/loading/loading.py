@@ -36,7 +36,6 @@ from shared.stage.paths import (
     is_single_file,
     mechanism_file,
     mechanism_folder,
-    mechanism_name,
     owner_of,
     shown_file,
 )
@@ -106,7 +105,7 @@ def author_code(name: str) -> Iterator[None]:
     A UserError passes as it is. An exception that comes from elsewhere without touching the mechanism's folder
     is a fault of ours and passes too; ``MBSD_TRACEBACK=1`` shows the traceback of either (shared/stage/console.py).
     """
-    folder = mechanism_folder(name) if in_workshop() else MECHANISMS / owner_of(mechanism_name(name))
+    folder = _folder_of(name)
     token = _RUNNING.set(name)
     try:
         yield
@@ -126,6 +125,14 @@ def author_code(name: str) -> Iterator[None]:
         raise UserError(worded(error, lines, _shown)) from error
     finally:
         _RUNNING.reset(token)
+
+
+def _folder_of(name: str) -> Path:
+    """The folder of a mechanism; where it would be on a worker of a cluster, which has its functions alone."""
+    try:
+        return mechanism_folder(name) if in_workshop() else MECHANISMS / owner_of(name)
+    except UserError:
+        return MECHANISMS / owner_of(name)
 
 
 def running(folder: str) -> str:

@@ -45,13 +45,14 @@ def solids_of(name: str) -> dict[str, list[Solid]]:
 
 
 def masses_of_machine(name: str) -> dict[str, Mass]:
-    """By body, those of the parts of the machine itself; none where there are none."""
-    from shared.contract import read_parts
+    """By body, those of the parts of the machine itself; none where there are none. The solids need not be there."""
+    from shared.contract import Parts
+    from shared.stage import jsonfile
 
     out = Out(name)
     if not out.parts.is_file():
         return {}
-    bodies = read_parts(out.parts, out.name).bodies
+    bodies = jsonfile.read(out.parts, Parts).bodies
     return {body: described.mass for body, described in bodies.items() if body != "ground"}
 
 

@@ -13,6 +13,7 @@ AS ?=
 KIND ?=
 VIEW ?=
 SHOW ?=
+SOUND ?=
 SPECTRA ?=
 BED ?=
 SCALE ?=
@@ -47,6 +48,7 @@ override AS := $(value AS)
 override KIND := $(value KIND)
 override VIEW := $(value VIEW)
 override SHOW := $(value SHOW)
+override SOUND := $(value SOUND)
 override SPECTRA := $(value SPECTRA)
 override BED := $(value BED)
 override SCALE := $(value SCALE)
@@ -65,7 +67,7 @@ override PLAN := $(value PLAN)
 override CLUSTER := $(value CLUSTER)
 override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
-export FORMAT OVER TIME FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SPECTRA BED SCALE KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
+export FORMAT OVER TIME FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SOUND SPECTRA BED SCALE KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
 export CLUSTER CLUSTER_TLS ANYWAY STRICT PLAN MECHANISMS
 
 PRESETS := draft preview production final
@@ -106,6 +108,7 @@ help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
 	@echo "ASPECT=16:9|1:1|4:5|9:16 on these targets: the shape of the picture, composed for it (16:9 by default)."
 	@echo "SHOW=reactions,forces,velocities,accelerations,title on these targets: arrows and words in the picture."
+	@echo "SOUND=off on run- and film-<name>, run-all and overnight: films without their sound."
 	@echo "SPECTRA=\"shaking force,motor\" on run-, plot- and compare-<name>, run-all and all: spectra of these."
 	@echo "MECHANISMS=~/machines on these targets: a folder of your own; results are put into its out/."
 	@echo "A mechanism's name takes hyphens or underscores: run-four-bar, run-four_bar."

@@ -50,6 +50,8 @@ def main() -> int | None:
             )
         if command == "usd":
             sub.add_argument("--format", default="usd", help="usd (.usdc) or usdz; usd if not given")
+        if command == "film":
+            sub.add_argument("--sound", default="", help="on or off; on if not given")
         if command == "still":
             sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
     commands.add_parser("gallery", help="docs/gallery/: every mechanism that has a poster")
@@ -108,7 +110,7 @@ def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namesp
     if command == "film":
         from render.frames import film
 
-        film.run(name, preset, show)
+        film.run(name, preset, show, arguments.sound)
     elif command == "frames":
         from render.frames import frames
 

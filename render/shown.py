@@ -36,3 +36,10 @@ def _meant(word: str) -> str:
     if meant:
         return f"; these are among {' and '.join(meant)}"
     return did_you_mean(word, WORDS)
+
+
+def has_sound(text: str) -> bool:
+    """Whether SOUND, ``on`` if nothing is said, asks for a film with sound; raises UserError for another word."""
+    if text not in ("", "on", "off"):
+        raise UserError(f"SOUND={text!r} is neither on nor off; without SOUND a film has its sound")
+    return text != "off"

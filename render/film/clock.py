@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.poses import Moment
+from render.film.time_map import TimeMap
 from shared.contract import Motion
 from shared.contract.quantity import figures
 from shared.contract.shot import Shot
@@ -57,6 +58,13 @@ class Clock:
     def total(self) -> int:
         """Pictures in the whole film."""
         return self.showings * self.frames
+
+    @cached_property
+    def time_map(self) -> TimeMap:
+        """The same between the frames, for what is no picture."""
+        fps = self.shot.fps
+        film, model = [0.0, self.moving / fps, self.frames / fps], [self.start, self.end, self.end]
+        return TimeMap.through(film, model, closes=self.repeats)
 
     def moment(self, frame: int) -> Moment:
         """The moment that a frame shows; those beyond one showing, or before frame 0, go on with the loop.

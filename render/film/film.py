@@ -121,6 +121,11 @@ class Film:
         subject = Subject(self.space.machine, self.space.around, np.zeros((0, 3)), self.space.machine)
         return FilmCamera(self.shot.camera, self.parts.mount, self.clock, subject, self.aspect).pose(0)
 
+    @property
+    def way(self) -> Array | None:
+        """Where the camera goes (frames, 3) in the world (m); None where it stays."""
+        return self._way
+
     @cached_property
     def arrows(self) -> Arrows:
         """The straight arrows that the shot shows."""

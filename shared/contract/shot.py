@@ -94,6 +94,13 @@ class Title(_Strict, frozen=True):
     drivers that give something, else of what acts in their place, else of the traced points; "" is none."""
 
 
+class Sound(_Strict, frozen=True):
+    """What is heard. Everything is made from the motion; a shot says what is not to be heard."""
+
+    silent: tuple[str, ...] = ()
+    """Joints, drivers, forces and contacts that make no sound, as of drivers that are no motors: muscles, a hand."""
+
+
 class Surface(_Strict, frozen=True):
     """A surface for a piece, where none of the named materials will do."""
 
@@ -139,6 +146,7 @@ class Shot(_Strict, frozen=True):
     """null writes nothing but the rate of a motion without a period that is not in real time."""
     materials: dict[str, str | Surface] = {}
     """Other surfaces for the film alone, by ``body`` or ``body/piece``: the name of a material or a Surface."""
+    sound: Sound = Sound()
     poster: Unit = 0.3
     """Which moment the poster shows, as a part of the motion."""
 
@@ -182,17 +190,20 @@ class Names:
     pieces: dict[str, tuple[str, ...]]
     efforts: tuple[str, ...] = ()
     """Drivers and forces that have one."""
+    acting: tuple[str, ...] = ()
+    """Drivers, forces and contacts."""
 
     @classmethod
     def of(cls, motion: Motion, parts: Parts) -> Names:
         """The names in a motion and its parts."""
         pieces = {body: tuple(solids.pieces) for body, solids in parts.bodies.items()}
         forces = [name for name, force in motion.forces.items() if force.effort is not None]
-        return cls(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces, (*motion.drivers, *forces))
+        efforts, acting = (*motion.drivers, *forces), (*motion.drivers, *motion.forces, *motion.contacts)
+        return cls(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces, efforts, acting)
 
     def listed(self) -> tuple[object, ...]:
         """All of them, for the key of a stage."""
-        return self.mechanism, self.joints, self.points, tuple(self.pieces.items()), self.efforts
+        return self.mechanism, self.joints, self.points, tuple(self.pieces.items()), self.efforts, self.acting
 
 
 def refuse_unknown(shot: Shot, names: Names) -> None:
@@ -204,6 +215,8 @@ def refuse_unknown(shot: Shot, names: Names) -> None:
         known(f"labels[{index}].at", label.at, (*names.joints, *names.points))
     if shot.title is not None and shot.title.number:
         known("title.number", shot.title.number, (*names.efforts, *names.points))
+    for index, name in enumerate(shot.sound.silent):
+        known(f"sound.silent[{index}]", name, (*names.joints, *names.acting))
     pieces = [f"{body}/{piece}" for body, solids in names.pieces.items() for piece in solids]
     for name, surface in shot.materials.items():
         known("materials", name, [*names.pieces, *pieces])

@@ -45,6 +45,7 @@ OPTIONS: dict[str, Option] = {
         Option("preset", "quality of pictures", default="preview", choices=tuple(PRESETS), kept=True),
         Option("aspect", f"shape of the picture; {WIDE} if not given", choices=tuple(ASPECTS), kept=True),
         Option("show", "arrows and words in the picture: reactions,velocities,title", kept=True),
+        Option("sound", "of the film; on if not given", choices=("on", "off"), kept=True),
         Option("spectra", "spectra to plot: 'shaking force,motor'", kept=True),
         Option("bed", "size of a plate in mm; 220x220 if not given", "WxH", kept=True),
         Option("scale", "of a model: 1:20, 1/20, 0.05 or 2:1; the machine itself if not given", "1:N", kept=True),

@@ -17,6 +17,7 @@ class Settings(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, rename=
     preset: str = ""
     aspect: str = ""
     show: str = ""
+    sound: str = ""
     spectra: str = ""
     bed: str = ""
     gap: float | None = None

@@ -59,10 +59,10 @@ COMPARE = Stage("render", "compare", ("spectra",))
 GLB = Stage("render", "glb", solids=True)
 USD = Stage("render", "usd", ("format",), solids=True)
 VIEW = Stage("render", "view")
-POSTER, CONTACT, FRAMES, FILM, SCENE, SCENE_UI = (
-    Stage("render", name, _PICTURE, solids=True)
-    for name in ("poster", "contact", "frames", "film", "scene", "scene-ui")
+POSTER, CONTACT, FRAMES, SCENE, SCENE_UI = (
+    Stage("render", name, _PICTURE, solids=True) for name in ("poster", "contact", "frames", "scene", "scene-ui")
 )
+FILM = Stage("render", "film", (*_PICTURE, "sound"), solids=True)
 STILL = Stage("render", "still", ("frame", *_PICTURE), solids=True)
 BARE_MOTION = (PARTS_IF_ANY, SOLVE)
 """Motion and plots go on where there are no automatic parts."""

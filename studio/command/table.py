@@ -40,7 +40,7 @@ class Command:
         return "" if target == "-" else f"{target}-<name>" if self.of == "machine" else target
 
 
-_NIGHT = ("preset", "aspect", "only", "show", "spectra", "watts", "anyway")
+_NIGHT = ("preset", "aspect", "only", "show", "sound", "spectra", "watts", "anyway")
 COMMANDS: dict[str, Command] = {
     command.name: command
     for command in (

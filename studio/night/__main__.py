@@ -18,6 +18,7 @@ def main() -> int | None:
         sub.add_argument("--aspect", default="", help="of the pictures: 16:9, 1:1, 4:5 or 9:16; 16:9 if not given")
         sub.add_argument("--only", default="", help="mechanisms and variants, commas between them; all if not given")
         sub.add_argument("--show", default="", help="what films show, in place of what their shots say")
+        sub.add_argument("--sound", default="", help="of films: on or off; on if not given")
         sub.add_argument("--spectra", default="", help="spectra to plot of every mechanism that has them")
         sub.add_argument("--watts", default="", help="power of the machine while it renders (W), to tell the energy")
         sub.add_argument("--anyway", default="", help="1: begin though the disk is surely too small")
@@ -25,6 +26,7 @@ def main() -> int | None:
     fresh = commands.add_parser("fresh", help="which steps of mechanisms have nothing to do, a line of JSON each")
     fresh.add_argument("--preset", default="preview")
     fresh.add_argument("--show", default="")
+    fresh.add_argument("--sound", default="")
     fresh.add_argument("--spectra", default="")
     fresh.add_argument("names", nargs="*")
     commands.add_parser("status", help="what every film is at")
@@ -34,7 +36,8 @@ def main() -> int | None:
         from render.presets import preset_named
         from studio.night.plan import freshness
 
-        return freshness.tell(arguments.names, preset_named(arguments.preset), arguments.show, arguments.spectra)
+        preset = preset_named(arguments.preset)
+        return freshness.tell(arguments.names, preset, arguments.show, arguments.spectra, arguments.sound)
     if arguments.command == "status":
         from studio.night.commands import status
 
@@ -66,6 +69,7 @@ def _options(arguments: argparse.Namespace) -> Options:
         arguments.python,
         arguments.anyway,
         arguments.aspect,
+        arguments.sound,
     )
 
 

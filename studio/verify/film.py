@@ -1,4 +1,4 @@
-"""The film: its pictures encoded again, and the decoded frames of both films side by side."""
+"""The film: its pictures encoded again, its sound made again, and both films side by side."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
-from render.frames import encode
+from render.frames import encode, muxing
 from render.frames.store import FrameIndex, FrameStore
 from render.presets import Preset
 from shared.stage.errors import UserError
@@ -18,15 +18,23 @@ PATIENCE = 3600.0
 """Seconds for decoding a film."""
 
 
-def compared(film: Path, scratch: Path, store: FrameStore, index: FrameIndex, preset: Preset) -> Finding:
-    """Every frame of the film, decoded, beside those of the film that the same pictures give now."""
+def compared(
+    film: Path, scratch: Path, store: FrameStore, index: FrameIndex, preset: Preset, sound: Path | None = None
+) -> Finding:
+    """Every frame of the film, decoded, beside those of the film that the same pictures give now.
+
+    ``sound`` is its sound made again, of a film that has some.
+    """
     if not film.is_file():
         return Finding("film", "missing", f"{film.name} is not there")
     damaged = sorted({name for name in index.frames if store.read(name) is None})
     if damaged:
         return Finding("film", "differs", f"{len(damaged)} of its pictures are gone or damaged, such as {damaged[0]}")
     again = scratch / film.name
-    encode.encode(_pictures(store, index), len(index.frames), preset, index.fps, again)
+    silent = again if sound is None else again.with_suffix(".silent.mp4")
+    encode.encode(_pictures(store, index), len(index.frames), preset, index.fps, silent)
+    if sound is not None:
+        muxing.mux(silent, sound, len(index.frames), preset, index.fps, again)
     try:
         old, new = decoded(film), decoded(again)
     except UserError as error:

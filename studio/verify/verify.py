@@ -15,6 +15,7 @@ from pathlib import Path
 
 from render.blender.scratch import scratch_folder
 from render.film.inputs import named
+from render.frames.film import wav_of, write_sound
 from render.frames.store import FrameIndex, FrameStore
 from render.presets import Preset
 from shared.stage.console import fail, say
@@ -73,7 +74,13 @@ def _of_pictures(
     _stage(root, "studio.verify.again", out.name, again.preset_words(preset), ",".join(map(str, wanted)), show)
     made = FrameStore(root / out.name / "frames" / preset.name)
     findings = [pictures.compared(frame, index.frames[frame], store, made) for frame in wanted]
-    return [*findings, film.compared(named(out.film(preset.name), show), scratch, store, index, preset)]
+    there = named(out.film(preset.name), show)
+    sound = wav_of(there)
+    if not sound.is_file():
+        return [*findings, film.compared(there, scratch, store, index, preset)]
+    again = write_sound(out, preset, show, scratch / sound.name)
+    findings.append(files.compared(f"sound ({sound.name})", sound, again))
+    return [*findings, film.compared(there, scratch, store, index, preset, again)]
 
 
 def _of_parts(out: Out, again: Path) -> Finding:

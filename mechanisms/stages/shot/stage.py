@@ -116,6 +116,7 @@ class _Motion(msgspec.Struct):
     points: dict[str, msgspec.Raw]
     drivers: dict[str, msgspec.Raw]
     forces: dict[str, _Force] = {}
+    contacts: dict[str, msgspec.Raw] = {}
 
 
 class _Body(msgspec.Struct):
@@ -135,4 +136,5 @@ def _names(out: Out) -> Names | None:
         return None
     pieces = {body: tuple(solids.pieces) for body, solids in parts.bodies.items()}
     forces = [name for name, force in motion.forces.items() if bytes(force.effort) != b"null"]
-    return Names(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces, (*motion.drivers, *forces))
+    efforts, acting = (*motion.drivers, *forces), (*motion.drivers, *motion.forces, *motion.contacts)
+    return Names(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces, efforts, acting)

@@ -64,7 +64,7 @@ def start(asked: Options) -> int:
 def _command(asked: Options) -> list[str]:
     words = [sys.executable, "-m", "studio.night", "run", "--preset", asked.preset.name]
     words += [f"--only={','.join(asked.names)}"] if not asked.whole else []
-    words += [f"--show={asked.show}", f"--spectra={asked.spectra}"]
+    words += [f"--show={asked.show}", f"--sound={asked.sound}", f"--spectra={asked.spectra}"]
     words += [f"--watts={asked.watts:g}"] if asked.watts is not None else []
     words += ["--anyway=1"] if asked.anyway else []
     return [*words, f"--python={asked.python}"]

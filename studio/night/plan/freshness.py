@@ -26,7 +26,7 @@ SILENCE = 60.0
 def fresh_steps(asked: Options) -> dict[str, list[str]]:
     """By mechanism, the steps that have nothing to do."""
     words = [sys.executable, "-m", "studio.night", "fresh", "--preset", asked.preset.name]
-    words += [f"--show={asked.show}", f"--spectra={asked.spectra}", "--", *asked.names]
+    words += [f"--show={asked.show}", f"--sound={asked.sound}", f"--spectra={asked.spectra}", "--", *asked.names]
     fresh: dict[str, list[str]] = {}
     with subprocess.Popen(
         words, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
@@ -66,16 +66,16 @@ class _Watch:
             timer.cancel()
 
 
-def tell(names: Iterable[str], preset: Preset, show: str, spectra: str) -> None:
+def tell(names: Iterable[str], preset: Preset, show: str, spectra: str, sound: str = "") -> None:
     """Print a line of JSON for every mechanism: its name, and the steps that have nothing to do."""
     with remembered():
         for name in names:
-            print(json.dumps([name, fresh_of(name, preset, show, spectra)]), flush=True)
+            print(json.dumps([name, fresh_of(name, preset, show, spectra, sound)]), flush=True)
 
 
-def fresh_of(name: str, preset: Preset, show: str, spectra: str) -> list[str]:
+def fresh_of(name: str, preset: Preset, show: str, spectra: str, sound: str = "") -> list[str]:
     """The steps of one mechanism that have nothing to do, as far as the steps that they need have nothing to do."""
-    asking = _questions(name, preset, show, spectra)
+    asking = _questions(name, preset, show, spectra, sound)
     fresh: list[str] = []
     for step in STEPS:
         if set(step.needs) <= set(fresh) and _is_fresh(asking[step.name]):
@@ -90,7 +90,7 @@ def _is_fresh(question: Callable[[], bool]) -> bool:
         return False  # the stage tells why
 
 
-def _questions(name: str, preset: Preset, show: str, spectra: str) -> dict[str, Callable[[], bool]]:
+def _questions(name: str, preset: Preset, show: str, spectra: str, sound: str) -> dict[str, Callable[[], bool]]:
     """By step, whether it has nothing to do."""
     from mechanisms.stages.clearance import stage as clearance
     from mechanisms.stages.parts import stage as parts
@@ -108,5 +108,5 @@ def _questions(name: str, preset: Preset, show: str, spectra: str) -> dict[str, 
         "plots": lambda: plots.is_fresh(name, spectra, bool(spectra)),
         "glb": lambda: glb.is_fresh(name),
         "poster": lambda: still.is_fresh_poster(name, preset, show),
-        "film": lambda: film.is_fresh(name, preset, show),
+        "film": lambda: film.is_fresh(name, preset, show, sound),
     }

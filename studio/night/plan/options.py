@@ -8,6 +8,7 @@ import sys
 from dataclasses import dataclass
 
 from render.presets import PRESETS, Preset, preset_named
+from render.shown import has_sound
 from shared.stage.errors import UserError
 from shared.stage.paths import known_name, mechanism_names, unfit_names
 
@@ -23,6 +24,8 @@ class Options:
     """What SHOW asks for in place of the shots."""
     spectra: str = ""
     """What SPECTRA asks for; spectra of what a mechanism has not are left out."""
+    sound: str = ""
+    """What SOUND asks for: on, off, or nothing, which is on."""
     watts: float | None = None
     """Power of the machine while it renders (W)."""
     python: str = sys.executable
@@ -36,15 +39,25 @@ class Options:
 
 
 def options(
-    only: str, preset: str, show: str, spectra: str, watts: str, python: str, anyway: str = "", aspect: str = ""
+    only: str,
+    preset: str,
+    show: str,
+    spectra: str,
+    watts: str,
+    python: str,
+    anyway: str = "",
+    aspect: str = "",
+    sound: str = "",
 ) -> Options:
     """Options from words as the Makefile has them. Raises UserError naming the word that cannot be."""
     wanted = only_of(only)
+    has_sound(sound)
     return Options(
         names=wanted or tuple(mechanism_names()),
         preset=preset_named(preset, aspect),
         show=show,
         spectra=spectra,
+        sound=sound,
         watts=watts_of(watts),
         python=python or sys.executable,
         unfit=() if wanted else tuple(unfit_names()),

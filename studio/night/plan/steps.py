@@ -48,6 +48,8 @@ def command(step: str, name: str, asked: Options) -> list[str]:
     if step in (PROBE, FILM):
         words += ["--preset", asked.preset.name]
         words += [f"--show={asked.show}"] if asked.show else []
+    if step == FILM and asked.sound:
+        words.append(f"--sound={asked.sound}")
     return words
 
 

@@ -1,0 +1,41 @@
+"""Noise that is the same in every run: phases by a counter (Philox 4x64), so nothing depends on what was drawn before.
+
+A ring of N samples has the spectrum |X_k| exp(2 pi i u_k), u_k the k-th number of the counter's stream with its own key;
+its amplitudes are smooth, so it has no chance levels, and it closes without a seam. Source: Salmon et al., Parallel
+Random Numbers: As Easy as 1, 2, 3, SC 2011.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+KEY = 0x6D627364
+"""The key of all streams, beside their own numbers."""
+RATE = 48_000
+OCTAVE = 0.5
+"""Width of an octave's bell, in octaves."""
+
+
+def uniform(count: int, stream: int) -> Array:
+    """(count,) numbers 0 .. 1 of a stream."""
+    return (np.random.Philox(key=[KEY, stream]).random_raw(count) >> np.uint64(11)) * 2.0**-53
+
+
+def shaped(count: int, stream: int, amplitude: Array) -> Array:
+    """(count,) noise of rms 1 whose spectrum has these amplitudes (count // 2 + 1,)."""
+    spectrum = amplitude * np.exp(2j * np.pi * uniform(len(amplitude), stream))
+    spectrum[0] = 0.0
+    wave = np.fft.irfft(spectrum, count)
+    return wave / max(float(np.sqrt(np.mean(wave**2))), 1e-300)
+
+
+def octave_noise(count: int, centre: float, stream: int) -> Array:
+    """(count,) noise of rms 1 about a frequency (Hz)."""
+    return shaped(count, stream, np.exp(-0.5 * (np.log2(frequencies(count) / centre) / OCTAVE) ** 2))
+
+
+def frequencies(count: int) -> Array:
+    """Frequencies (Hz) of the spectrum of a ring; the first is near 0 and not 0."""
+    return np.maximum(np.fft.rfftfreq(count, 1 / RATE), 1e-3)

@@ -1,0 +1,77 @@
+"""A gain that brings a ring to a loudness without a peak above a ceiling.
+
+The gain is found in steps of a ms: what each needs, the least of its neighbours (so that it is down before a peak comes),
+smoothed by a bell that is no longer than these neighbours reach. Such a gain is nowhere above what a peak allows. How
+loud a ring is behind it follows from its energies, so the gain before it is found by halving. Peaks count between the
+samples, from four times as many.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render.sound.loudness import STEP, energies, of_energies
+
+Array = NDArray[np.float64]
+FINER = 4
+"""True peaks are looked for at so many times the rate."""
+REACH = 12
+"""ms by which the gain is down before and after a peak."""
+HALVINGS, NEAR = 24, 0.02
+"""Most tries, and how near to the loudness is near enough (LU)."""
+MOST = 24.0
+"""Peaks are pressed by so many dB at most."""
+
+
+def true_peaks(spectrum: NDArray[np.complex128], count: int) -> Array:
+    """(m,) largest size within each ms of a ring of so many samples (2, count // 2 + 1), also between the samples."""
+    scaled = spectrum * FINER
+    if count % 2 == 0:
+        scaled[:, -1] *= 0.5
+    fine = np.abs(np.fft.irfft(scaled, count * FINER)).max(axis=0)
+    steps = max(1, count // STEP)
+    edges = (np.arange(steps) * (count * FINER / steps)).astype(int)
+    return np.maximum.reduceat(fine, edges)
+
+
+def levelled(spectrum: NDArray[np.complex128], count: int, wanted: float, ceiling: float, showings: int) -> Array:
+    """A ring (2, count) with this spectrum at ``wanted`` LUFS, as far as peaks below ``ceiling`` (1 is full scale) let
+    it be."""
+    wave, energy = np.fft.irfft(spectrum, count), energies(spectrum, count)
+    now = of_energies(energy, showings, floor=-np.inf)
+    if not np.isfinite(now) or not energy.any():
+        return wave
+    gain = _gain(true_peaks(spectrum, count), energy, wanted, now, ceiling, showings)
+    middles = (np.arange(len(gain)) + 0.5) * (count / len(gain))
+    return wave * np.interp(np.arange(count), middles, gain, period=count)
+
+
+def _gain(peaks: Array, energy: Array, wanted: float, now: float, ceiling: float, showings: int) -> Array:
+    """(m,) gain in each ms: first without pressing any peak, then with as much more as it takes."""
+    plain = 10 ** ((wanted - now) / 20)
+    low, high, more = 0.0, MOST, 0.0
+    for _ in range(HALVINGS):
+        factor = plain * 10 ** (more / 20)
+        gain = factor * _pressed(peaks * factor, ceiling)
+        reached = of_energies(energy * gain**2, showings)
+        if abs(reached - wanted) < NEAR:
+            return gain
+        low, high = (more, high) if reached < wanted else (low, more)
+        more = (low + high) / 2
+    return gain
+
+
+def _pressed(peaks: Array, ceiling: float) -> Array:
+    """(m,) gains with which no step of a ring of peaks is above the ceiling."""
+    gain = np.minimum(1.0, ceiling / np.maximum(peaks, 1e-12))
+    reach = min(REACH, (len(gain) - 1) // 2)
+    if not reach:
+        return np.full(len(gain), gain.min())
+    least = gain.copy()
+    for shift in range(1, reach + 1):
+        np.minimum(least, np.minimum(np.roll(gain, shift), np.roll(gain, -shift)), out=least)
+    bell = np.hanning(2 * reach + 1)[1:-1]
+    half = len(bell) // 2
+    smooth = sum(weight * np.roll(least, k - half) for k, weight in enumerate(bell / bell.sum()))
+    return np.asarray(smooth)

@@ -1,0 +1,149 @@
+"""What sources read: the motion on the film's time, who is heard, and where in the picture things are.
+
+Sources work on series over the times of data.json, and bring them to the film by :meth:`Setting.series`; what happens at
+one moment is at the film seconds that :meth:`Setting.when` gives. Both follow the film's TimeMap and nothing else, so that
+a passage in slow motion is heard as it is seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render.film.camera import angles
+from render.film.film import Film
+from render.film.framing import axes
+from render.sound.ringing import Modes, modes_of
+
+Array = NDArray[np.float64]
+Item = TypeVar("Item")
+RATE = 48_000
+"""Samples a second."""
+CONTROL = 1000
+"""Values a second of whatever changes more slowly than a wave: levels, places, speeds."""
+WIDEST = 0.8
+"""How far to a side what is at the edge is heard, 0 .. 1."""
+FADE = 0.012
+"""Seconds in which a tone comes and goes where the film cuts."""
+
+
+class Setting:
+    """One showing of a film, as sources hear it."""
+
+    def __init__(self, film: Film) -> None:
+        self.film, self.motion, self.map = film, film.motion, film.clock.time_map
+        self.seconds = self.map.seconds
+        self.samples = max(64, round(self.seconds * RATE))
+        """Samples of a showing."""
+        self.time = np.asarray(film.motion.time)
+        self.steps = max(16, round(self.seconds * CONTROL))
+        self.at = np.linspace(0.0, self.seconds, self.steps + 1)
+        """(M + 1,) film seconds of what changes slowly, both ends included."""
+        self.model, self.rate = self.map.at(self.at)
+        """(M + 1,) moments of the motion (s), and its rate there."""
+
+    def heard(self, items: Mapping[str, Item]) -> Iterator[tuple[str, Item]]:
+        """Those that the shot does not silence, by name."""
+        silent = self.film.shot.sound.silent
+        return ((name, item) for name, item in items.items() if name not in silent)
+
+    def series(self, values: Array) -> Array:
+        """(M + 1,) a series (T,) of the motion on the film's time."""
+        return np.interp(self.model, self.time, values)
+
+    def when(self, times: Array) -> tuple[Array, NDArray[np.intp]]:
+        """Film seconds at which moments (n,) of the motion are shown, and the index of each."""
+        film, index = self.map.when(np.asarray(times, float))
+        return np.minimum(film, self.seconds), index
+
+    def angle(self, body: str) -> Array:
+        """(M + 1,) the angle of a body (rad), as exactly as the film shows it; 0 of ground."""
+        return self.film.poses.over(body, self.model)[:, 2]
+
+    def place(self, body: str, x: float, y: float) -> Array:
+        """(M + 1, 2) where a point (x, y) of a body's frame is (m)."""
+        pose = self.film.poses.over(body, self.model)
+        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        return pose[:, :2] + np.stack([c * x - s * y, s * x + c * y], axis=1)
+
+    def modes(self, body: str) -> Modes | None:
+        """What a body, or ground, rings with; None of one without solids."""
+        if body not in self._modes:
+            solids = self.film.parts.bodies.get(body)
+            self._modes[body] = modes_of(solids) if solids else None
+        return self._modes[body]
+
+    @cached_property
+    def _modes(self) -> dict[str, Modes | None]:
+        return {}
+
+    def mass(self, *bodies: str) -> float:
+        """Mass (kg) that two bodies have as they push on each other: ground does not move, and one is as heavy as it is."""
+        masses = [self.motion.bodies[name].mass for name in bodies if name in self.motion.bodies]
+        return 1.0 / sum(1.0 / max(mass, 1e-6) for mass in masses) if masses else 1.0
+
+    def slip(self, bodies: tuple[str, str], x: Array, y: Array) -> Array:
+        """(T,) speed (m/s) at which the second body slides on the first at places (T,) of the world (m)."""
+        first, second = (self._velocity(body, x, y) for body in bodies)
+        return np.hypot(*(second - first))
+
+    def turning(self, bodies: tuple[str, str]) -> Array:
+        """(T,) angular velocity of the second body against the first (rad/s)."""
+        first, second = (
+            np.asarray(self.motion.bodies[name].omega) if name in self.motion.bodies else np.zeros(len(self.time))
+            for name in bodies
+        )
+        return second - first
+
+    def _velocity(self, name: str, x: Array, y: Array) -> Array:
+        if name not in self.motion.bodies:
+            return np.zeros((2, len(self.time)))
+        body = self.motion.bodies[name]
+        omega = np.asarray(body.omega)
+        return np.stack(
+            [np.asarray(body.vx) - omega * (y - np.asarray(body.y)), np.asarray(body.vy) + omega * (x - np.asarray(body.x))]
+        )
+
+    def side(self, x: Array, y: Array) -> Array:
+        """(M + 1,) where places (T,) of the world are heard: -1 at the left, 1 at the right.
+
+        The edges of what moves are at the edges; the camera's distance, which is costly, is not asked for.
+        """
+        right, middle, half = self._across
+        return np.clip((self.series(right[0] * x + right[1] * y) - middle) / half, -1.0, 1.0) * WIDEST
+
+    def side_of(self, body: str) -> Array:
+        """(M + 1,) the same of a body's centre of mass; the middle of ground."""
+        if body not in self.motion.bodies:
+            return np.zeros(self.steps + 1)
+        moved = self.motion.bodies[body]
+        c, s = np.cos(moved.theta), np.sin(moved.theta)
+        x, y = moved.com
+        return self.side(np.asarray(moved.x) + c * x - s * y, np.asarray(moved.y) + s * x + c * y)
+
+    @cached_property
+    def _across(self) -> tuple[Array, Array | float, float]:
+        """The world's direction to the right of the picture (3,), where its middle is along it (m), and half its width."""
+        film, mount = self.film, self.film.parts.mount
+        right = axes(*angles(film.shot.camera, mount, film.aspect), mount.up)[0]
+        along = film.space.machine @ right
+        low, high = float(along.min()), float(along.max())
+        if film.way is None:
+            return right, (low + high) / 2, max((high - low) / 2, 1e-9)
+        times = np.arange(len(film.way)) / film.shot.fps
+        way = np.interp(self.at, times, film.way @ right)
+        return right, way + float(right @ film.space.middle - way.mean()), max(film.size / 2, 1e-9)
+
+    @cached_property
+    def fade(self) -> Array:
+        """(M + 1,) 0 where the film cuts to another moment, 1 away from there: for waves, whose phase jumps."""
+        cuts = self.map.cuts
+        if not cuts:
+            return np.ones_like(self.at)
+        away = np.abs(self.at[:, None] - np.array(cuts))
+        away = np.minimum(away, self.seconds - away).min(axis=1)
+        return np.clip(away / FADE, 0.0, 1.0)

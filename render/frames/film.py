@@ -91,9 +91,10 @@ def _silent_film(out: Out, preset: Preset, show: str, store: FrameStore, index: 
     """The pictures encoded, in the folder of the frames; not again, where these have not changed."""
     from render.frames import encode
 
-    target = named(store.folder / "pictures.mp4", show)
+    film = named(out.film(preset.name), show)
+    target = store.folder / film.name
     key = key_of(index.frames, index.fps, preset, encode.SETTINGS, encoder_version())
-    stage = Stage(out, f"pictures-{named(out.film(preset.name), show).stem}", key, [target])
+    stage = Stage(out, film.stem.replace(out.name, "pictures", 1), key, [target])
     if not stage.is_fresh():
         encode.encode(_pictures(out.name, store, index.frames), len(index.frames), preset, index.fps, target)
         stage.done()

@@ -32,8 +32,8 @@ SOFT = 0.015
 """Seconds over which levels are smoothed: nothing clicks."""
 SHORTEST = 1.5 / RATE
 """Shortest time of a strike (s)."""
-AUDIBLE = (25.0, 15_000.0)
-"""Harmonics within are heard (Hz)."""
+LOW, HIGH = (20.0, 28.0), (14_000.0, 16_000.0)
+"""Between these a harmonic comes, and goes (Hz)."""
 OCTAVES = 125.0 * 2.0 ** np.arange(7)
 
 
@@ -65,15 +65,10 @@ class Desk:
             self.struck[source].append((body, blows))
 
     def tone(self, source: str, phase: Array, level: Array, weights: Sequence[float], side: Array) -> None:
-        """A tone whose phase (M + 1,) counts cycles, with ``level`` (M + 1,) Pa and weights of its harmonics."""
-        cycles = phase[-1] - phase[0]
-        if self.setting.map.closes and abs(cycles) > 0.5:  # the wave closes as the motion does
-            phase = phase[0] + (phase - phase[0]) * round(cycles) / cycles
+        """A tone whose phase (M + 1,) counts cycles and closes as the film does, with ``level`` (M + 1,) Pa and weights of its harmonics."""
         speed = np.abs(np.gradient(phase, self.setting.at))
-        heard = {
-            k: weight * level * self.setting.fade * ((k * speed > AUDIBLE[0]) & (k * speed < AUDIBLE[1]))
-            for k, weight in enumerate(weights, 1)
-        }
+        level = level * self.setting.fade
+        heard = {k: weight * level * _audible(k * speed) for k, weight in enumerate(weights, 1)}
         heard = {k: row for k, row in heard.items() if row.any()}
         if not heard:
             return
@@ -148,6 +143,12 @@ class Desk:
         np.add.at(full, (np.arange(width) - width // 2) % len(ring), bell / bell.sum())
         smooth = np.maximum(np.fft.irfft(np.fft.rfft(ring) * np.fft.rfft(full), len(ring)), 0.0)
         return np.append(smooth, smooth[0])
+
+
+def _audible(frequency: Array) -> Array:
+    """(n,) how much of a harmonic at these frequencies (Hz) is heard, 0 .. 1."""
+    (low, begun), (going, gone) = LOW, HIGH
+    return np.clip((frequency - low) / (begun - low), 0, 1) * np.clip((gone - frequency) / (gone - going), 0, 1)
 
 
 def _gains(side: Array) -> Array:

@@ -60,6 +60,13 @@ class Setting:
         film, index = self.map.when(np.asarray(times, float))
         return np.minimum(film, self.seconds), index
 
+    def closed(self, phase: Array) -> Array:
+        """A phase (M + 1,) in cycles, so stretched that a film that loops has a whole number of them."""
+        cycles = float(phase[-1] - phase[0])
+        if not self.map.closes or abs(cycles) < 0.5:
+            return phase
+        return phase[0] + (phase - phase[0]) * (round(cycles) / cycles)
+
     def angle(self, body: str) -> Array:
         """(M + 1,) the angle of a body (rad), as exactly as the film shows it; 0 of ground."""
         return self.film.poses.over(body, self.model)[:, 2]
@@ -105,7 +112,10 @@ class Setting:
         body = self.motion.bodies[name]
         omega = np.asarray(body.omega)
         return np.stack(
-            [np.asarray(body.vx) - omega * (y - np.asarray(body.y)), np.asarray(body.vy) + omega * (x - np.asarray(body.x))]
+            [
+                np.asarray(body.vx) - omega * (y - np.asarray(body.y)),
+                np.asarray(body.vy) + omega * (x - np.asarray(body.x)),
+            ]
         )
 
     def side(self, x: Array, y: Array) -> Array:

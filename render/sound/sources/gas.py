@@ -43,7 +43,9 @@ def _blows(setting: Setting, desk: Desk, force: ForceMotion) -> None:
     steep = rate > STEEP * steepest
     first = np.flatnonzero(steep & ~np.roll(steep, 1))
     last = np.array([min(k + int(np.argmin(np.append(steep[k:], False))), len(steep) - 1) for k in first])
-    rise = np.array([float(np.trapezoid(rate[a : b + 1], setting.at[a : b + 1])) for a, b in zip(first, last, strict=True)])
+    rise = np.array(
+        [float(np.trapezoid(rate[a : b + 1], setting.at[a : b + 1])) for a, b in zip(first, last, strict=True)]
+    )
     kept = rise > 0
     film, long = setting.at[first][kept], (setting.at[last] - setting.at[first])[kept]
     side = np.interp(film, setting.at, setting.side(np.asarray(acting.x), np.asarray(acting.y)))

@@ -1,7 +1,7 @@
-"""Motors: drivers, and the forces that drive in their place.
+"""Motors: drivers, and the forces that drive in their place, as far as they give more than they take.
 
 A driver says a speed and a torque, not which motor and gearbox give them. Here it is a motor with twelve slots behind a
-gearbox with the ratio of the series 1, 1.6, 2.5, 4, 6.3, 10 ... with which its rotor makes some 25 turns a second of
+gearbox with the ratio of the series 1, 1.6, 2.5, 4, 6.3, 10 ... with which its rotor makes some 30 turns a second of
 the film where the driver is as fast as it gets. The ratio holds for the whole film, so speed and slow motion are heard:
 
     rotor    f = i |q'| / 2 pi       harmonics 1, 2, 3 of unbalance, 12 and 24 of slots, louder with load
@@ -24,7 +24,7 @@ from render.sound.setting import Setting
 
 Array = NDArray[np.float64]
 NAME = "motor"
-ROTOR = 25.0
+ROTOR = 30.0
 """Turns of the rotor in a second of film, about (1/s)."""
 EFFICIENCY = 1e-6
 SLOTS = 12
@@ -42,14 +42,14 @@ def play(setting: Setting, desk: Desk) -> None:
         bodies = driver.bodies or ("ground", "ground")
         _motor(setting, desk, np.asarray(driver.value), np.asarray(driver.effort), driver.unit == "rad", bodies)
     for _, force in setting.heard(setting.motion.forces):
-        if force.drives and force.value is not None and force.effort is not None and force.actions:
+        if not force.drives or force.value is None or force.effort is None or not force.actions:
+            continue
+        if np.trapezoid(force.power, setting.time) > 0:  # one that takes is a load
             bodies = (force.actions[0].body, force.actions[-1].body)
             _motor(setting, desk, np.asarray(force.value), np.asarray(force.effort), force.unit == "rad", bodies)
 
 
-def _motor(
-    setting: Setting, desk: Desk, value: Array, effort: Array, turns: bool, bodies: tuple[str, str]
-) -> None:
+def _motor(setting: Setting, desk: Desk, value: Array, effort: Array, turns: bool, bodies: tuple[str, str]) -> None:
     screw = math.tau if turns else max(float(np.ptp(value)) / 100, 1e-9)
     way = setting.series(value) / screw
     speed = np.abs(np.gradient(way, setting.at))
@@ -63,6 +63,7 @@ def _motor(
     load = np.abs(setting.series(effort)) + IDLE * weight * (setting.film.size if turns else 1.0)
     level = of_power(load * (own + REST * float(np.quantile(own, 0.98)) * moves), EFFICIENCY)
     side = setting.side_of(bodies[1] if bodies[1] != "ground" else bodies[0])
-    desk.tone(NAME, ratio * way, level, (1.0, 0.5, 0.25), side)
+    phase = setting.closed(ratio * way)
+    desk.tone(NAME, phase, level, (1.0, 0.5, 0.25), side)
     loaded = level * (0.15 + 0.35 * load / max(float(load.max()), 1e-12))
-    desk.tone(NAME, SLOTS * ratio * way, loaded, (1.0, 0.4), side)
+    desk.tone(NAME, SLOTS * phase, loaded, (1.0, 0.4), side)

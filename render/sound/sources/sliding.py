@@ -73,7 +73,9 @@ def _joint(setting: Setting, joint: JointMotion) -> Iterator[Rubbing]:
         yield from _touching(setting, joint, load, np.asarray(joint.acts.x), np.asarray(joint.acts.y))
 
 
-def _touching(setting: Setting, joint: JointMotion | ContactMotion, load: Array, x: Array, y: Array) -> Iterator[Rubbing]:
+def _touching(
+    setting: Setting, joint: JointMotion | ContactMotion, load: Array, x: Array, y: Array
+) -> Iterator[Rubbing]:
     """Slides as far as its surfaces have other speeds where they touch, and rolls as its bodies turn."""
     speed = setting.slip(joint.bodies, x, y)
     yield Rubbing(FRICTION * load * speed, speed, x, y)

@@ -1,0 +1,94 @@
+"""What is heard in the end: its loudness by ffmpeg, peaks, loops without a click, the same bytes, the room alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mbsd import Solution
+from mbsd.model.joint import KINDS
+from render.sound.loudness import loudness
+from render.sound.mix import mixed
+from render.sound.setting import RATE, Setting
+from render.sound.sound import sound_of
+from render.sound.wave_file import wav
+from shared.contract.shot import Shot, Sound
+from tests.render.sound.heard import ball, filmed, gears, measured
+from tests.render.test_kinds import four_bar
+
+
+def linkage() -> Solution:
+    return four_bar(KINDS["revolute"]).sweep(steps=90)
+
+
+@pytest.mark.parametrize("made", [ball, gears, linkage], ids=lambda made: made.__name__)
+def test_every_machine_has_sixteen_lufs_and_no_peak_that_clips(made, tmp_path: Path) -> None:
+    file = tmp_path / "film.wav"
+    file.write_bytes(wav(sound_of(filmed(made()))))
+    level, peak = measured(file)
+    assert abs(level + 16.0) < 1.0
+    assert peak < -1.0
+
+
+def test_loudness_is_that_of_the_recommendation_and_of_ffmpeg(tmp_path: Path) -> None:
+    t = np.arange(80 * RATE) / RATE
+    sine = np.sin(2 * np.pi * 1000 * t)
+    assert loudness(np.stack([sine, sine])[:, : 20 * RATE] * 10 ** (-23 / 20)) == pytest.approx(-23.0, abs=0.1)
+    level = np.where((t < 10) | (t > 70), 10 ** (-36 / 20), 10 ** (-23 / 20))  # EBU Tech 3341, case 3
+    assert loudness(np.stack([sine, sine]) * level) == pytest.approx(-23.0, abs=0.1)
+    noise = np.random.default_rng(1).normal(0, 0.05, (2, 6 * RATE)) * (1 + np.sin(2 * np.pi * 0.3 * t[: 6 * RATE]))
+    (tmp_path / "noise.wav").write_bytes(wav(noise))
+    assert loudness(noise) == pytest.approx(measured(tmp_path / "noise.wav")[0], abs=0.15)
+
+
+def test_where_nothing_makes_a_sound_the_room_is_heard_and_is_quiet(tmp_path: Path) -> None:
+    film = filmed(gears(), Shot(turns=40, sound=Sound(silent=("motor", "mesh", "A", "B", "load"))))
+    (tmp_path / "room.wav").write_bytes(wav(sound_of(film)))
+    level, peak = measured(tmp_path / "room.wav")
+    assert level == pytest.approx(-50.0, abs=1.0)
+    assert peak < -30.0
+    setting = Setting(film)
+    assert np.array_equal(
+        mixed({}, setting.samples, 1), mixed({"none": np.zeros((2, setting.samples // 2 + 1))}, setting.samples, 1)
+    )
+
+
+@pytest.mark.parametrize(
+    ("made", "shot"),
+    [
+        (gears, Shot(seconds_per_turn=1.0)),
+        (linkage, Shot(fps=24)),
+        (ball, Shot(hold=0.0)),
+        (gears, Shot(seconds_per_turn=0.05)),
+    ],
+)
+def test_a_film_loops_without_a_click_or_an_offset(made, shot: Shot) -> None:
+    film = filmed(made(), shot)
+    sound = sound_of(film)
+    assert sound.shape == (2, round(film.clock.total / film.shot.fps * RATE))
+    assert np.abs(sound.mean(axis=1)).max() < 1e-3
+    ring = Setting(film).samples
+    steps = np.abs(np.diff(sound[:, : ring + 1] if film.clock.showings > 1 else sound, axis=1))
+    for seam in (ring - 1,) if film.clock.showings > 1 else ():
+        assert (steps[:, seam] <= np.quantile(steps, 0.9999, axis=1)).all()
+    assert (np.abs(sound[:, 0] - sound[:, -1]) <= np.quantile(steps, 0.9999, axis=1)).all()
+
+
+def test_the_same_motion_gives_the_same_bytes_and_the_machine_is_heard_from_where_it_is() -> None:
+    first, again = (wav(sound_of(filmed(gears()))) for _ in range(2))
+    assert first == again
+    motion = filmed(ball()).motion
+    moved = [x + 0.08 for x in motion.contacts["floor"].x]
+    motion.contacts["floor"].x[:] = moved
+    left, right = np.sqrt((sound_of(filmed(motion)) ** 2).mean(axis=1))
+    assert right > 1.5 * left
+
+
+def test_a_kind_that_nobody_knows_sounds_as_what_it_says_it_is() -> None:
+    from dataclasses import replace
+
+    hinge = replace(KINDS["revolute"], name="hinge", sign="revolute")
+    known, new = (wav(sound_of(filmed(four_bar(kind).sweep(steps=90)))) for kind in (KINDS["revolute"], hinge))
+    assert known == new

@@ -1,0 +1,122 @@
+"""What is heard when: impacts at their events, teeth at their frequency, everything by the film's own time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from render.film.time_map import TimeMap
+from render.sound.ringing import modes_of
+from render.sound.setting import RATE, Setting
+from render.sound.solid_matter import OTHER, matter
+from render.sound.sound import sound_of, stems_of
+from render.sound.sources.mesh import crossings, teeth_passed
+from shared.contract.materials import MATERIALS
+from shared.contract.shot import Shot, Sound
+from tests.render.sound.heard import ball, bar, filmed, gears
+
+
+@pytest.mark.parametrize("rate", [1.0, 0.25])
+def test_impacts_are_heard_within_a_millisecond_of_their_events(rate: float) -> None:
+    film = filmed(ball(), Shot(rate=rate, turns=1))
+    sound = np.abs(sound_of(film)).max(axis=0)
+    impacts = [event.time for event in film.motion.events if event.what == "impact"][:3]
+    assert impacts[0] == pytest.approx(math.sqrt(2 * 0.1 / 9.81))
+    for time in impacts:
+        at = round(time * film.clock.moving / film.shot.fps * RATE / film.motion.time[-1])
+        before, blow = sound[at - 2400 : at - 48], sound[at - 48 : at + 960]
+        first = int(np.argmax(blow > max(0.2 * blow.max(), 2 * before.max())))
+        assert abs(first - 48) <= 48, (rate, time)
+
+
+@pytest.mark.parametrize(("rate", "frequency"), [(1.0, 200.0), (0.5, 100.0)])
+def test_teeth_are_heard_at_their_frequency_which_slow_motion_lowers(rate: float, frequency: float) -> None:
+    film = filmed(gears(10.0), Shot(rate=rate, turns=40, sound=Sound(silent=("motor", "A", "B"))))
+    sound = sound_of(film).sum(axis=0)
+    f = np.fft.rfftfreq(len(sound), 1 / RATE)
+    heard = (f > 60) & (f < 1.9 * frequency)
+    highest = f[heard][np.abs(np.fft.rfft(sound))[heard].argmax()]
+    assert highest == pytest.approx(frequency, rel=0.01)
+
+
+def test_each_tooth_passes_once() -> None:
+    for teeth in ((20, 20), (15, 45)):
+        film = filmed(gears(2.0, teeth), Shot(seconds_per_turn=1.0, turns=1))
+        setting = Setting(film)
+        shape = film.motion.joints["mesh"].shape
+        passed = crossings(setting.at, teeth_passed(setting, shape))
+        turns = round(abs(film.motion.drivers["motor"].value[-1]) / math.tau)
+        assert abs(len(passed) - turns * teeth[0]) <= 1
+        assert np.ptp(np.diff(passed)) < 1e-6
+
+
+def test_what_a_shot_silences_is_not_heard() -> None:
+    heard = stems_of(Setting(filmed(gears())))
+    assert {"mesh", "motor", "sliding"} <= set(heard)
+    silent = stems_of(Setting(filmed(gears(), Shot(sound=Sound(silent=("motor", "mesh", "A", "B", "load"))))))
+    assert not [name for name, stem in silent.items() if np.abs(stem).max() > 0]
+
+
+def test_the_motor_is_heard_on_its_harmonics_alone() -> None:
+    shot = Shot(seconds_per_turn=1.0, turns=1, sound=Sound(silent=("mesh", "A", "B")))
+    film = filmed(gears(), shot)
+    stem = np.abs(stems_of(Setting(film))["motor"]).sum(axis=0)
+    f = np.arange(len(stem)) / film.clock.time_map.seconds
+    strong = f[stem > 0.05 * stem.max()]
+    assert strong.min() == pytest.approx(30.0, rel=0.3)
+    assert np.allclose(strong / strong.min(), np.rint(strong / strong.min()), atol=0.02)
+
+
+def test_a_free_bar_rings_as_euler_and_bernoulli_say() -> None:
+    modes = modes_of(bar(0.2, 0.02, 0.005))
+    assert modes is not None
+    flat = 4.730**2 / (2 * math.pi * 0.2**2) * 0.005 * math.sqrt(205e9 / (12 * 7850))
+    assert modes.frequency[0] == pytest.approx(flat, rel=1e-6)
+    assert any(abs(f / (4 * flat) - 1) < 1e-6 for f in modes.frequency)  # on edge it is four times as high
+    response = modes.response(RATE, RATE)
+    spectrum = np.abs(np.fft.rfft(response))
+    assert min(abs(f - spectrum.argmax()) for f in modes.frequency) < 5.0
+    assert modes.response(480, RATE).sum() == pytest.approx(modes.response(48_000, RATE).sum(), rel=1e-3)
+
+
+def test_every_material_rings_as_one_of_its_family() -> None:
+    for name, known in MATERIALS.items():
+        assert matter(name).density == known.density
+        assert name.startswith("aluminium") or (matter(name).modulus, matter(name).loss) != OTHER, name
+
+
+def test_a_film_that_cuts_shows_moments_twice_or_not_at_all() -> None:
+    slow = TimeMap.through([0.0, 1.0, 3.0, 3.0, 4.0, 5.0], [0.0, 1.0, 1.5, 1.0, 2.0, 2.0], closes=False)
+    assert slow.seconds == 5.0
+    assert slow.cuts == [0.0, 3.0]
+    model, rate = slow.at(np.array([0.5, 2.0, 3.5, 4.5]))
+    assert model.tolist() == [0.5, 1.25, 1.5, 2.0]
+    assert rate.tolist() == [1.0, 0.25, 1.0, 0.0]
+    film, index = slow.when(np.array([0.5, 1.25, 1.75, 2.0, 2.5]))
+    assert sorted(zip(index.tolist(), film.tolist(), strict=True)) == [
+        (0, 0.5),
+        (1, 2.0),
+        (1, 3.25),
+        (2, 3.75),
+        (3, 4.0),
+    ]
+
+
+def test_the_map_of_a_clock_shows_what_its_frames_show() -> None:
+    for film in (filmed(gears(), Shot(seconds_per_turn=2.0)), filmed(ball(), Shot(hold=0.5))):
+        clock = film.clock
+        frames = np.arange(clock.frames)
+        shown = [clock.moment(int(frame)).time for frame in frames]
+        assert np.allclose(clock.time_map.at(frames / film.shot.fps)[0], shown, atol=1e-12)
+        assert clock.time_map.seconds == pytest.approx(clock.frames / film.shot.fps)
+
+
+def test_an_impact_at_the_seam_of_a_loop_is_heard_once() -> None:
+    whole = TimeMap.through([0.0, 2.0], [0.0, 1.0], closes=True)
+    assert whole.when(np.array([0.0, 1.0]))[1].tolist() == [0]
+    assert TimeMap.through([0.0, 2.0, 3.0], [0.0, 1.0, 1.0], closes=False).when(np.array([0.0, 1.0]))[0].tolist() == [
+        0,
+        2,
+    ]

@@ -1,6 +1,6 @@
 """How the lift is filmed: from the side."""
 
-from shared.shot import Camera, Shot, Trail
+from shared.shot import Camera, Shot, Sound, Trail
 
 shot = Shot(
     look="daylight",
@@ -10,4 +10,5 @@ shot = Shot(
     turns=2,
     seconds_per_turn=3.5,
     poster=0.12,
+    sound=Sound(without=("motors", "friction", "knocks")),  # muscles are no motors, and bones do not rattle
 )

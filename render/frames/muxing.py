@@ -35,7 +35,7 @@ def mux(pictures: Path, sound: Path, count: int, preset: Preset, fps: int, film:
             )
         except subprocess.TimeoutExpired:
             raise UserError(
-                f"{film.name}: ffmpeg did not join pictures and sound within {duration(limit)} and was stopped; run it again"
+                f"{film.name}: ffmpeg was stopped after {duration(limit)}, pictures and sound not joined; run it again"
             ) from None
         if done.returncode:
             said = (done.stderr.strip().splitlines() or [f"code {done.returncode}"])[-1]

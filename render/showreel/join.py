@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from render.frames import encode
 from render.frames.film_file import refuse_other_than
 from render.presets import Preset
-from render.showreel import card
+from render.showreel import card, reel_sound
 from render.showreel.card import Title
 from render.showreel.clip import Clip, read_clip
 from shared.stage.console import say
@@ -68,7 +68,9 @@ def _encoded_anew(clip: Clip, preset: Preset, fps: int, target: Path) -> Clip:
     settings = list(encode.SETTINGS)
     at = settings.index("-vf") + 1
     settings[at] = f"{fit},{settings[at]}"
-    _ffmpeg(clip.path.name, "-i", str(clip.path), "-map", "0:v:0", *settings, str(target))
+    _ffmpeg(
+        clip.path.name, "-i", str(clip.path), "-map", "0:v:0", "-map", "0:a:0?", *settings, "-c:a", "copy", str(target)
+    )
     return read_clip(target)
 
 
@@ -79,7 +81,7 @@ def _refuse_unlike(row: Sequence[Clip]) -> None:
 
 
 def _concatenate(row: Sequence[Clip], titles: Sequence[Title], target: Path, scratch: Path) -> None:
-    """ffmpeg's concat demuxer, which copies the packets; players show the chapters."""
+    """ffmpeg's concat demuxer, which copies the pictures' packets; players show the chapters. Sound is encoded anew."""
     listing, chapters, at = ["ffconcat version 1.0"], [";FFMETADATA1"], 0
     for clip in row:
         listing.append(f"file '{_quoted(clip.path.resolve())}'")
@@ -91,21 +93,13 @@ def _concatenate(row: Sequence[Clip], titles: Sequence[Title], target: Path, scr
         at += frames
     (scratch / "list.txt").write_text("\n".join(listing) + "\n")
     (scratch / "chapters.txt").write_text("\n".join(chapters) + "\n")
+    sound, heard = scratch / "sound.wav", reel_sound.write_sound(row, row[0].fps, scratch / "sound.wav")
+    inputs = ["-f", "concat", "-safe", "0", "-auto_convert", "0", "-i", str(scratch / "list.txt")]
+    inputs += ["-i", str(scratch / "chapters.txt"), *(["-i", str(sound)] if heard else [])]
+    streams = ["-map", "0:v:0", *(["-map", "2:a:0", *reel_sound.AAC] if heard else [])]
     _ffmpeg(
         target.name,
-        *(
-            "-f",
-            "concat",
-            "-safe",
-            "0",
-            "-auto_convert",
-            "0",
-            "-i",
-            str(scratch / "list.txt"),
-            "-i",
-            str(scratch / "chapters.txt"),
-        ),
-        *("-map", "0:v:0", "-map_metadata", "1", "-map_chapters", "1", "-c", "copy"),
+        *(*inputs, *streams, "-map_metadata", "1", "-map_chapters", "1", "-c:v", "copy"),
         *("-movflags", "+faststart", "-fflags", "+bitexact", str(target)),
     )
 

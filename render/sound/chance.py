@@ -1,4 +1,4 @@
-"""Noise that is the same in every run: phases by a counter (Philox 4x64), so nothing depends on what was drawn before.
+"""Noise that is the same in every run: phases by a counter (Philox 4x64), so nothing depends on earlier draws.
 
 A ring of N samples has the spectrum |X_k| exp(2 pi i u_k), u_k the k-th number of the counter's stream with its own key;
 its amplitudes are smooth, so it has no chance levels, and it closes without a seam. Source: Salmon et al., Parallel
@@ -20,7 +20,8 @@ OCTAVE = 0.5
 
 def uniform(count: int, stream: int) -> Array:
     """(count,) numbers 0 .. 1 of a stream."""
-    return (np.random.Philox(key=[KEY, stream]).random_raw(count) >> np.uint64(11)) * 2.0**-53
+    raw = np.random.Philox(key=[KEY, stream]).random_raw(count)
+    return (raw >> np.uint64(11)).astype(np.float64) * 2.0**-53
 
 
 def shaped(count: int, stream: int, amplitude: Array) -> Array:

@@ -1,7 +1,7 @@
 """The desk: strikes, tones and noises of all sources, added up as stereo waves, a stem for each source.
 
-A showing is a ring: its last sample is followed by its first, and what still rings at the end rings on at the start. So a
-film that loops has no click, and the sound of a film is that of a showing as often as it is shown.
+A showing is a ring: its last sample is followed by its first, and what still rings at the end rings on at the start. So
+a film that loops has no click, and the sound of a film is that of a showing as often as it is shown.
 
     strike   an impulse J within a time tau, as half a sine, on a body that rings:  J p(t) * h(t)
     tone     sum w_k a(t) sin(2 pi k phi(t)), each harmonic as far as it is heard
@@ -65,7 +65,8 @@ class Desk:
             self.struck[source].append((body, blows))
 
     def tone(self, source: str, phase: Array, level: Array, weights: Sequence[float], side: Array) -> None:
-        """A tone whose phase (M + 1,) counts cycles and closes as the film does, with ``level`` (M + 1,) Pa and weights of its harmonics."""
+        """A tone with ``level`` (M + 1,) Pa and weights of its harmonics; its phase (M + 1,) counts cycles, and closes as
+        the film does."""
         speed = np.abs(np.gradient(phase, self.setting.at))
         level = level * self.setting.fade
         heard = {k: weight * level * _audible(k * speed) for k, weight in enumerate(weights, 1)}
@@ -77,7 +78,7 @@ class Desk:
         for k in range(1, max(heard) + 1):
             power *= turn
             if k in heard:
-                mono += self._fine(self._soft(heard[k])) * power.imag
+                mono += self._fine(self._soft(heard[k])) * np.imag(power)
         wave = self._waves.setdefault(source, np.zeros((2, len(mono))))
         for channel, gain in zip(wave, _gains(side), strict=True):
             channel += mono * self._fine(gain)

@@ -1,6 +1,6 @@
 """A gain that brings a ring to a loudness without a peak above a ceiling.
 
-The gain is found in steps of a ms: what each needs, the least of its neighbours (so that it is down before a peak comes),
+The gain is found in steps of a ms: what each needs, the least of its neighbours (it is down before a peak comes),
 smoothed by a bell that is no longer than these neighbours reach. Such a gain is nowhere above what a peak allows. How
 loud a ring is behind it follows from its energies, so the gain before it is found by halving. Peaks count between the
 samples, from four times as many.
@@ -50,7 +50,7 @@ def levelled(spectrum: NDArray[np.complex128], count: int, wanted: float, ceilin
 def _gain(peaks: Array, energy: Array, wanted: float, now: float, ceiling: float, showings: int) -> Array:
     """(m,) gain in each ms: first without pressing any peak, then with as much more as it takes."""
     plain = 10 ** ((wanted - now) / 20)
-    low, high, more = 0.0, MOST, 0.0
+    low, high, more, gain = 0.0, MOST, 0.0, peaks
     for _ in range(HALVINGS):
         factor = plain * 10 ** (more / 20)
         gain = factor * _pressed(peaks * factor, ceiling)

@@ -10,6 +10,7 @@ What is measured here is a ring that is played several times; its blocks go roun
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,8 +38,8 @@ def weighting(count: int) -> NDArray[np.complex128]:
 
 
 def energies(spectrum: NDArray[np.complex128], count: int) -> Array:
-    """(m,) mean squares of each ms of a ring of so many samples with this spectrum (2, count // 2 + 1), K-weighted, both
-    channels together."""
+    """(m,) mean squares of each ms of a ring of so many samples, K-weighted, both channels together, from its spectrum
+    (2, count // 2 + 1)."""
     square = (np.fft.irfft(spectrum * weighting(count), count) ** 2).sum(axis=0)
     if count < STEP:
         return np.array([square.mean()])
@@ -60,7 +61,7 @@ def of_energies(energy: Array, showings: int = 1, floor: float = ABSOLUTE) -> fl
     heard = blocks[_lufs(blocks) > floor]
     if not len(heard):
         return -np.inf
-    kept = heard[_lufs(heard) > _lufs(heard.mean()) + RELATIVE]
+    kept = heard[_lufs(heard) > _lufs(np.mean(heard)) + RELATIVE]
     return float(_lufs(kept.mean()))
 
 
@@ -69,5 +70,5 @@ def loudness(wave: Array, showings: int = 1, floor: float = ABSOLUTE) -> float:
     return of_energies(energies(np.fft.rfft(wave), wave.shape[1]), showings, floor)
 
 
-def _lufs(square: Array) -> Array:
+def _lufs(square: Any) -> Any:
     return -0.691 + 10 * np.log10(np.maximum(square, 1e-30))

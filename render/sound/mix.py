@@ -1,7 +1,7 @@
 """From the stems of a machine to what is heard: balance, walls, loudness, and the room.
 
 Stems keep half of the difference (dB) between them, as at a mixing desk, so that a motor is heard beside blows; within a
-stem nothing is changed. Together they are brought to -16 LUFS, peaks below -2 dB so that AAC stays below -1 dBTP, and
+stem nothing is changed. Together they are brought to -16 LUFS, with peaks below -2 dB so that AAC stays below -1 dBTP;
 the room's air is added at its own level: it alone is heard where nothing makes a sound.
 """
 

@@ -3,7 +3,7 @@
     power P (W), of which a part eta leaves as sound:     p = sqrt(eta P rho_0 c / (4 pi r^2))
     force F (N) at frequency f on a frame that is small beside the waves:   p = F f / (2 c r)      (a dipole)
 
-Source: Fahy, Gardonio, Sound and Structural Vibration, 2007, sections 3.3 and 3.4.
+Source: Fahy, Gardonio, Sound and Structural Vibration, 2007, chapter 3.
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ class Modes:
     matter: Matter
 
     def response(self, count: int, rate: float) -> Array:
-        """(count,) what is heard at ``rate`` samples a second after a N s at sample 0; what lasts longer is folded in."""
+        """(count,) what is heard at ``rate`` samples a second after a N s at sample 0; what is longer is folded in."""
         length = max(count, math.ceil(rate * 7.0 / float(self.decay.min())))
         t = np.arange(length) / rate
         sound = np.zeros(-(-length // count) * count)

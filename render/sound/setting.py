@@ -1,7 +1,7 @@
 """What sources read: the motion on the film's time, who is heard, and where in the picture things are.
 
-Sources work on series over the times of data.json, and bring them to the film by :meth:`Setting.series`; what happens at
-one moment is at the film seconds that :meth:`Setting.when` gives. Both follow the film's TimeMap and nothing else, so that
+Sources work on series over the times of data.json, and bring them to the film by :meth:`Setting.series`; what happens
+at one moment is at the film seconds that :meth:`Setting.when` gives. Both follow the film's TimeMap and nothing else, so
 a passage in slow motion is heard as it is seen.
 """
 
@@ -89,7 +89,7 @@ class Setting:
         return {}
 
     def mass(self, *bodies: str) -> float:
-        """Mass (kg) that two bodies have as they push on each other: ground does not move, and one is as heavy as it is."""
+        """Mass (kg) that two bodies have as they push on each other; ground does not move."""
         masses = [self.motion.bodies[name].mass for name in bodies if name in self.motion.bodies]
         return 1.0 / sum(1.0 / max(mass, 1e-6) for mass in masses) if masses else 1.0
 
@@ -137,7 +137,7 @@ class Setting:
 
     @cached_property
     def _across(self) -> tuple[Array, Array | float, float]:
-        """The world's direction to the right of the picture (3,), where its middle is along it (m), and half its width."""
+        """The world's direction to the right (3,), where the picture's middle is along it (m), and half its width."""
         film, mount = self.film, self.film.parts.mount
         right = axes(*angles(film.shot.camera, mount, film.aspect), mount.up)[0]
         along = film.space.machine @ right

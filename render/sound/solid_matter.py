@@ -1,7 +1,7 @@
 """How materials ring: Young's modulus, density and loss factor by the names of shared/contract/materials.py.
 
 Handbook values; the loss factor is that of a part in a machine, whose joints take more than the material does. Sources:
-Cremer, Heckl, Petersson, Structure-Borne Sound, 2005, table 4.2; Ashby, Materials Selection in Mechanical Design, 2011.
+Cremer, Heckl, Petersson, Structure-Borne Sound, 2005; Ashby, Materials Selection in Mechanical Design, 2011.
 """
 
 from __future__ import annotations

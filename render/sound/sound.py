@@ -12,7 +12,7 @@ from render.sound.setting import RATE, Setting
 from render.sound.sources import gas, impacts, knocks, mesh, motor, sliding, springs
 
 Array = NDArray[np.float64]
-SOURCES = (impacts.play, knocks.play, mesh.play, gas.play, motor.play, sliding.play, springs.play)
+SOURCES = (impacts, knocks, mesh, gas, motor, sliding, springs)
 """Springs come after impacts, which they answer."""
 
 
@@ -29,5 +29,6 @@ def stems_of(setting: Setting) -> dict[str, Spectrum]:
     """(2, N // 2 + 1) the spectrum of what each source of a machine is heard as in a showing (Pa at 1 m)."""
     desk = Desk(setting)
     for source in SOURCES:
-        source(setting, desk)
+        if source.NAME not in setting.film.shot.sound.without:
+            source.play(setting, desk)
     return desk.stems()

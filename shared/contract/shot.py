@@ -94,11 +94,17 @@ class Title(_Strict, frozen=True):
     drivers that give something, else of what acts in their place, else of the traced points; "" is none."""
 
 
+Source = Literal["impacts", "knocks", "mesh", "gas", "motors", "friction", "springs"]
+"""What makes sound: blows, pins that change sides in their bores, teeth, combustion, drivers, what rubs, springs."""
+
+
 class Sound(_Strict, frozen=True):
     """What is heard. Everything is made from the motion; a shot says what is not to be heard."""
 
+    without: tuple[Source, ...] = ()
+    """Sources that are left out altogether."""
     silent: tuple[str, ...] = ()
-    """Joints, drivers, forces and contacts that make no sound, as of drivers that are no motors: muscles, a hand."""
+    """Joints, drivers, forces and contacts that make no sound, such as a driver that is a hand and no motor."""
 
 
 class Surface(_Strict, frozen=True):

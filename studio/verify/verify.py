@@ -78,9 +78,9 @@ def _of_pictures(
     sound = wav_of(there)
     if not sound.is_file():
         return [*findings, film.compared(there, scratch, store, index, preset)]
-    again = write_sound(out, preset, show, scratch / sound.name)
-    findings.append(files.compared(f"sound ({sound.name})", sound, again))
-    return [*findings, film.compared(there, scratch, store, index, preset, again)]
+    heard = write_sound(out, preset, show, scratch / sound.name)
+    findings.append(files.compared(f"sound ({sound.name})", sound, heard))
+    return [*findings, film.compared(there, scratch, store, index, preset, heard)]
 
 
 def _of_parts(out: Out, again: Path) -> Finding:

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 
-from render.frames import encode
+from render.frames import encode, muxing
 from render.presets import Preset
 from render.showreel import card, showreel
 from render.showreel.card import Title
 from render.showreel.clip import read_clip
+from render.sound.wave_file import wav
 from shared.stage.errors import UserError
 
 TINY = Preset("tiny", 128, 72, 1)
@@ -66,6 +67,28 @@ def test_only_some_in_their_order(out_root: Path) -> None:
     title = card.number(30)
     assert read_clip(target).packets[title : title + 7] == read_clip(second).packets
     assert read_clip(target).packets[-9:] == read_clip(first).packets
+
+
+def test_films_are_heard_under_their_pictures(out_root: Path) -> None:
+    film(out_root, "pendulum", 10)
+    path = film(out_root, "four_bar", 30)
+    silent, t = path.rename(path.with_suffix(".silent.mp4")), np.arange(48_000) / 48_000
+    tone = 0.3 * np.sin(2 * np.pi * 500 * t)
+    path.with_suffix(".wav").write_bytes(wav(np.stack([tone, tone])))
+    muxing.mux(silent, path.with_suffix(".wav"), 30, TINY, 30, path)
+    silent.unlink()
+    target = showreel.run(TINY, "pendulum,four_bar")
+    command = [encode.ffmpeg(), "-v", "error", "-i", str(target), "-map", "0:a:0", "-f", "s16le", "-"]
+    heard = np.frombuffer(subprocess.run(command, capture_output=True, check=True).stdout, "<i2")[::2] / 32768
+    first = (2 * card.number(30) + 10) * 1600
+    assert len(heard) >= first + 48_000
+    assert np.abs(heard[: first - 2400]).max() < 0.001
+    assert np.abs(heard[first + 2400 : first + 45_600]).max() == pytest.approx(0.3, abs=0.02)
+    title = card.number(30)
+    assert read_clip(target).packets[-30:] == read_clip(path).packets
+    assert read_clip(target).frames == 2 * title + 40
+    before = target.read_bytes()
+    assert showreel.run(TINY, "pendulum,four_bar").read_bytes() == before
 
 
 def test_what_is_missing_or_damaged_is_named(out_root: Path) -> None:

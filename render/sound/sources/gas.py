@@ -3,8 +3,7 @@
     F(t) = A p(t)      at each greatest rate of F within a cycle:    dF the rise from its foot, in the time tau that it
                        takes;    J = dF / (2 pi f_1),  f_1 the lowest mode of the piston
 
-Source: Heywood, Internal Combustion Engine Fundamentals, 2018, section 9.6: noise of combustion follows the rate at which
-the pressure rises.
+Source: Heywood, Internal Combustion Engine Fundamentals, 2018, chapter 9: noise follows the rate of the rise.
 """
 
 from __future__ import annotations

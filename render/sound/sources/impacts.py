@@ -1,11 +1,11 @@
 """Impacts: of rigid contacts, stops and ropes at their events, of contacts that yield where their gap closes.
 
     rigid     impulse J of the event; it lasts, after Hertz,
-              tau = 2.87 (m^2 / (R E^2 v))^(1/5)    v = J / m,    1 / E = 1 / E_1 + 1 / E_2,    1 / m = 1 / m_1 + 1 / m_2
+              tau = 2.87 (m^2 / (R E^2 v))^(1/5)     v = J / m    1 / E = 1 / E_1 + 1 / E_2    1 / m = 1 / m_1 + 1 / m_2
     yielding  J = m |v| with the rate v at which the gap closes;   tau = pi m |v| / F      F: the largest force of it
 
-Both bodies ring. R is the radius of the second wheel or disc, else a quarter of the second body's size. The impulse of a
-stop of angles (N m s) acts on the arm of half that size. Source: Johnson, Contact Mechanics, 1985, section 11.4.
+Both bodies ring. R is the radius of the second wheel or disc, else a quarter of the second body's size. That of a
+stop of angles (N m s) acts on the arm of half that size. Source: Johnson, Contact Mechanics, 1985, chapter 11.
 """
 
 from __future__ import annotations

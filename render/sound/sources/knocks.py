@@ -5,7 +5,7 @@ In its clearance c a pin is free while its force F passes zero at a rate F'; it 
     c = F' t^3 / (6 m)      v = F' t^2 / (2 m)      J = m v
 
 m is the mass of both bodies on each other. A force that jumps by dF within one step of the motion moves a mode of
-frequency f as the impulse J = dF / (2 pi f) does. Source: Haines, 1985, Survey: 2-Dimensional Motion and Impact at
+frequency f as the impulse J = dF / (2 pi f) does. Source: Haines 1980, Survey: 2-Dimensional Motion and Impact at
 Revolute Joints, Mech. Mach. Theory 15, 361.
 """
 

@@ -1,12 +1,12 @@
 """Teeth that mesh, of gears, racks, chains and toothed belts: each is a small stroke, together they are a tone.
 
-    phase    n = z (theta - phi) / 2 pi         a tooth of the wheel with z teeth meets the line of centres, at phi,
-                                                whenever n passes a whole number: f = z omega / 2 pi on a fixed axis
-    stroke   dF = e F                           as the number of pairs that share the load F changes: J = dF / (2 pi f_1)
+    phase    n = z (theta - phi) / 2 pi     a tooth of the wheel with z teeth meets the line of centres, at phi,
+                                            whenever n passes a whole number: f = z omega / 2 pi on a fixed axis
+    stroke   dF = e F                       as the number of pairs that share the load F changes: J = dF / (2 pi f_1)
     tone     harmonics k f of weight 1 / k^2, with the pressure of the force dF at f
 
-e = 0.15 is the change of a pair's stiffness with a contact ratio of about 1.6; teeth without a load still bear a part of
-the wheel's weight. In a film twenty times slower teeth pass twenty times more slowly: one hears each, where they were a tone.
+e = 0.15 is the change of a pair's stiffness with a contact ratio of about 1.6; without a load teeth bear a part of the
+wheel's weight. In a film twenty times slower teeth pass twenty times more slowly, and one hears each.
 Sources: Smith, Gear Noise and Vibration, 2003; Cai, Hayashi 1994, J. Mech. Des. 116, 558.
 """
 

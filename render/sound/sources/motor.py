@@ -8,7 +8,7 @@ the film where the driver is as fast as it gets. The ratio holds for the whole f
     level    P = (|Q| + Q_0) (|q'| + q'_max / 10),   of which 1e-6 leaves as sound     Q: torque or force, Q_0 when idle
 
 A motor of a way (m) drives a screw, one turn of which takes a hundredth of its whole way. Source of the part that is
-sound: Bies, Hansen, Engineering Noise Control, 2009, section 11.15, small electric motors.
+sound: Bies, Hansen, Engineering Noise Control, 2009, chapter 11.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from render.sound.radiated import of_power
 from render.sound.setting import Setting
 
 Array = NDArray[np.float64]
-NAME = "motor"
+NAME = "motors"
 ROTOR = 30.0
 """Turns of the rotor in a second of film, about (1/s)."""
 EFFICIENCY = 1e-6

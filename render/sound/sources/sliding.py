@@ -1,6 +1,6 @@
 """Friction: pins in bores, sliders on guides, followers on cams, contacts that slide, wheels that roll.
 
-    sliding   P = mu N v         v: speed of one surface on the other; of a pin omega r, r a fiftieth of the machine's size
+    sliding   P = mu N v         v: speed of the surfaces; of a pin omega r, r a fiftieth of the machine's size
     rolling   P = c N v          c = 0.002, v = omega r
     friction  P as data.json has it, of forces that are friction, and of dampers
 
@@ -23,7 +23,7 @@ from render.sound.setting import Setting
 from shared.contract import ContactMotion, ForceMotion, JointMotion
 
 Array = NDArray[np.float64]
-NAME = "sliding"
+NAME = "friction"
 FRICTION, ROLLING = 0.1, 0.002
 EFFICIENCY = 1e-6
 ROUGHNESS, ROLLED = 2e-4, 2e-3

@@ -3,8 +3,8 @@
     f_n = n / 2 sqrt(k / m_s)      surge, n = 1, 2, 3       k: stiffness;  m_s: mass of the wire
     m_s = 2 G rho U / tau^2        the least wire that stores U, the most that the spring holds, at tau = 500 MPa
 
-The ends of a spring move suddenly where a body that it holds is struck: it gets the part m_s / (m + m_s) of the impulse.
-Its coils creak with 1 % of the power that goes in and out. Source: Wahl, Mechanical Springs, 1963, chapter 26.
+The ends of a spring move suddenly where its body is struck: it gets the part m_s / (m + m_s) of the impulse.
+Its coils creak with 1 % of the power that goes in and out. Source: Wahl, Mechanical Springs, 1963.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def _spring(setting: Setting, desk: Desk, name: str, force: ForceMotion) -> None
     side = setting.side(np.asarray(acting.x), np.asarray(acting.y))
     for n in (1, 2, 3):
         desk.noise(NAME, creak / n, np.full(len(creak), n * surge), side)
-    rings = modes(surge * np.arange(1, 7), STEEL, wire, AREA * (wire / DENSITY) ** (2 / 3), 0.1)
+    rings = modes(surge * np.arange(1.0, 7.0), STEEL, wire, AREA * (wire / DENSITY) ** (2 / 3), 0.1)
     held = {action.body for action in force.actions}
     for body, blows in desk.struck[IMPACTS]:
         if body in held and body != "ground":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -11,10 +12,10 @@ from render.film.time_map import TimeMap
 from render.sound.ringing import modes_of
 from render.sound.setting import RATE, Setting
 from render.sound.solid_matter import OTHER, matter
-from render.sound.sound import sound_of, stems_of
+from render.sound.sound import SOURCES, sound_of, stems_of
 from render.sound.sources.mesh import crossings, teeth_passed
 from shared.contract.materials import MATERIALS
-from shared.contract.shot import Shot, Sound
+from shared.contract.shot import Shot, Sound, Source
 from tests.render.sound.heard import ball, bar, filmed, gears
 
 
@@ -54,15 +55,23 @@ def test_each_tooth_passes_once() -> None:
 
 def test_what_a_shot_silences_is_not_heard() -> None:
     heard = stems_of(Setting(filmed(gears())))
-    assert {"mesh", "motor", "sliding"} <= set(heard)
+    assert {"mesh", "motors", "friction"} <= set(heard)
     silent = stems_of(Setting(filmed(gears(), Shot(sound=Sound(silent=("motor", "mesh", "A", "B", "load"))))))
     assert not [name for name, stem in silent.items() if np.abs(stem).max() > 0]
+    assert set(stems_of(Setting(filmed(gears(), Shot(sound=Sound(without=("motors", "mesh"))))))) == set(heard) - {
+        "motors",
+        "mesh",
+    }
+
+
+def test_every_source_that_a_shot_may_leave_out_is_there() -> None:
+    assert {source.NAME for source in SOURCES} == set(get_args(Source))
 
 
 def test_the_motor_is_heard_on_its_harmonics_alone() -> None:
     shot = Shot(seconds_per_turn=1.0, turns=1, sound=Sound(silent=("mesh", "A", "B")))
     film = filmed(gears(), shot)
-    stem = np.abs(stems_of(Setting(film))["motor"]).sum(axis=0)
+    stem = np.abs(stems_of(Setting(film))["motors"]).sum(axis=0)
     f = np.arange(len(stem)) / film.clock.time_map.seconds
     strong = f[stem > 0.05 * stem.max()]
     assert strong.min() == pytest.approx(30.0, rel=0.3)

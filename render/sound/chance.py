@@ -1,6 +1,6 @@
 """Noise that is the same in every run: phases by a counter (Philox 4x64), so nothing depends on earlier draws.
 
-A ring of N samples has the spectrum |X_k| exp(2 pi i u_k), u_k the k-th number of the counter's stream with its own key;
+A ring of N samples has the spectrum |X_k| exp(2 pi i u_k), u_k the k-th number of a stream of the counter;
 its amplitudes are smooth, so it has no chance levels, and it closes without a seam. Source: Salmon et al., Parallel
 Random Numbers: As Easy as 1, 2, 3, SC 2011.
 """

@@ -65,8 +65,8 @@ class Desk:
             self.struck[source].append((body, blows))
 
     def tone(self, source: str, phase: Array, level: Array, weights: Sequence[float], side: Array) -> None:
-        """A tone with ``level`` (M + 1,) Pa and weights of its harmonics; its phase (M + 1,) counts cycles, and closes as
-        the film does."""
+        """A tone of ``level`` (M + 1,) Pa, with weights of its harmonics; its phase (M + 1,) counts cycles, and closes
+        as the film does."""
         speed = np.abs(np.gradient(phase, self.setting.at))
         level = level * self.setting.fade
         heard = {k: weight * level * _audible(k * speed) for k, weight in enumerate(weights, 1)}

@@ -1,6 +1,6 @@
 """From the stems of a machine to what is heard: balance, walls, loudness, and the room.
 
-Stems keep half of the difference (dB) between them, as at a mixing desk, so that a motor is heard beside blows; within a
+Stems keep two thirds of the difference (dB) between them, as at a mixing desk: a motor is heard beside blows. In a
 stem nothing is changed. Together they are brought to -16 LUFS, with peaks below -2 dB so that AAC stays below -1 dBTP;
 the room's air is added at its own level: it alone is heard where nothing makes a sound.
 """
@@ -21,7 +21,7 @@ Spectrum = NDArray[np.complex128]
 LOUDNESS = -16.0
 """LUFS"""
 CEILING = 10 ** (-2.0 / 20)
-BALANCE = 0.5
+BALANCE = 2 / 3
 """Part of the difference between stems, in dB, that is kept."""
 QUIETEST = -190.0
 """A stem below is nothing (LUFS, 1 Pa being full scale); 0 dB of hearing are -94."""

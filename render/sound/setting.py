@@ -1,8 +1,8 @@
 """What sources read: the motion on the film's time, who is heard, and where in the picture things are.
 
 Sources work on series over the times of data.json, and bring them to the film by :meth:`Setting.series`; what happens
-at one moment is at the film seconds that :meth:`Setting.when` gives. Both follow the film's TimeMap and nothing else, so
-a passage in slow motion is heard as it is seen.
+at one moment is at the film seconds that :meth:`Setting.when` gives. Both follow the film's TimeMap and nothing else: a
+passage in slow motion is heard as it is seen.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Motors: drivers, and the forces that drive in their place, as far as they give more than they take.
 
 A driver says a speed and a torque, not which motor and gearbox give them. Here it is a motor with twelve slots behind a
-gearbox with the ratio of the series 1, 1.6, 2.5, 4, 6.3, 10 ... with which its rotor makes some 30 turns a second of
+gearbox with the ratio of the series 1, 1.6, 2.5, 4, 6.3, 10 ... with which its rotor makes some 40 turns a second of
 the film where the driver is as fast as it gets. The ratio holds for the whole film, so speed and slow motion are heard:
 
     rotor    f = i |q'| / 2 pi       harmonics 1, 2, 3 of unbalance, 12 and 24 of slots, louder with load
@@ -24,10 +24,12 @@ from render.sound.setting import Setting
 
 Array = NDArray[np.float64]
 NAME = "motors"
-ROTOR = 30.0
+ROTOR = 40.0
 """Turns of the rotor in a second of film, about (1/s)."""
 EFFICIENCY = 1e-6
 SLOTS = 12
+UNBALANCE = (0.3, 0.25, 0.15)
+"""Weights of the harmonics of unbalance, beside those of the slots under load."""
 SERIES = 10.0 ** (np.arange(0, 41) / 5)
 """Ratios of gearboxes, R5."""
 IDLE = 0.005
@@ -64,6 +66,6 @@ def _motor(setting: Setting, desk: Desk, value: Array, effort: Array, turns: boo
     level = of_power(load * (own + REST * float(np.quantile(own, 0.98)) * moves), EFFICIENCY)
     side = setting.side_of(bodies[1] if bodies[1] != "ground" else bodies[0])
     phase = setting.closed(ratio * way)
-    desk.tone(NAME, phase, level, (1.0, 0.5, 0.25), side)
-    loaded = level * (0.15 + 0.35 * load / max(float(load.max()), 1e-12))
-    desk.tone(NAME, SLOTS * phase, loaded, (1.0, 0.4), side)
+    desk.tone(NAME, phase, level, UNBALANCE, side)
+    loaded = level * (0.3 + 0.7 * load / max(float(load.max()), 1e-12))
+    desk.tone(NAME, SLOTS * phase, loaded, (1.0, 0.3), side)

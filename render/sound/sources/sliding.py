@@ -29,7 +29,7 @@ EFFICIENCY = 1e-6
 ROUGHNESS, ROLLED = 2e-4, 2e-3
 """Wave lengths of roughness (m)."""
 PIN = 1 / 50
-BAND = (150.0, 5000.0)
+BAND = (300.0, 5000.0)
 """Frequencies of the noise (Hz)."""
 
 

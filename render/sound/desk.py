@@ -30,6 +30,8 @@ NARROW = 0.15
 """Strikes that come from sides this near each other are heard from one."""
 SOFT = 0.015
 """Seconds over which levels are smoothed: nothing clicks."""
+TOGETHER = 2_000_000
+"""Samples of strikes that are made at once."""
 SHORTEST = 1.5 / RATE
 """Shortest time of a strike (s)."""
 LOW, HIGH = (20.0, 28.0), (14_000.0, 16_000.0)
@@ -121,14 +123,22 @@ class Desk:
         return np.stack([np.fft.rfft(self._pulses(film, gain * impulse, tau)) for gain in gains])
 
     def _pulses(self, film: Array, impulse: Array, tau: Array) -> Array:
-        """(N,) half sines of these areas."""
+        """(N,) half sines of these areas; those that last about as long are made together."""
         count = self.setting.samples
-        wave = np.zeros(count)
-        for at, j, long in zip(film / self.setting.seconds * count, impulse, tau, strict=True):
-            first, width = math.floor(at), max(long, SHORTEST) * RATE
-            inside = (np.arange(math.ceil(width) + 2) - (at - first)) / width
-            pulse = np.where((inside >= 0) & (inside <= 1), np.sin(np.pi * np.clip(inside, 0, 1)), 0.0)
-            np.add.at(wave, (first + np.arange(len(pulse))) % count, j / pulse.sum() * pulse)
+        wave, place = np.zeros(count), film / self.setting.seconds * count
+        width = np.maximum(tau, SHORTEST) * RATE
+        order, at = np.argsort(width, kind="stable"), 0
+        while at < len(order):
+            long = math.ceil(2 * float(width[order[at]])) + 2
+            rows = order[at : at + max(1, TOGETHER // long)]
+            rows = rows[width[rows] <= long - 2]
+            first = np.floor(place[rows]).astype(int)
+            inside = (np.arange(long) - (place[rows] - first)[:, None]) / width[rows][:, None]
+            pulse = np.where((inside > 0) & (inside < 1), np.sin(np.pi * np.clip(inside, 0, 1)), 0.0)
+            pulse *= (impulse[rows] / pulse.sum(axis=1))[:, None]
+            where = (first[:, None] + np.arange(long)) % count
+            wave += np.bincount(where.ravel(), pulse.ravel(), minlength=count)
+            at += len(rows)
         return wave
 
     def _fine(self, values: Array) -> Array:

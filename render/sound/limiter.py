@@ -16,6 +16,8 @@ from render.sound.loudness import STEP, energies, of_energies
 Array = NDArray[np.float64]
 FINER = 4
 """True peaks are looked for at so many times the rate."""
+CHUNK, BESIDE = 16_000, 192
+"""Samples that are looked at together, and beside them, where a spectrum does not know how the wave goes on."""
 REACH = 12
 """ms by which the gain is down before and after a peak."""
 HALVINGS, NEAR = 24, 0.02
@@ -24,15 +26,26 @@ MOST = 24.0
 """Peaks are pressed by so many dB at most."""
 
 
-def true_peaks(spectrum: NDArray[np.complex128], count: int) -> Array:
-    """(m,) largest size within each ms of a ring of so many samples (2, count // 2 + 1), also between the samples."""
-    scaled = spectrum * FINER
-    if count % 2 == 0:
-        scaled[:, -1] *= 0.5
-    fine = np.abs(np.fft.irfft(scaled, count * FINER)).max(axis=0)
+def true_peaks(wave: Array) -> Array:
+    """(m,) largest size within each ms of a ring (2, N), also between the samples."""
+    count = wave.shape[1]
     steps = max(1, count // STEP)
-    edges = (np.arange(steps) * (count * FINER / steps)).astype(int)
-    return np.maximum.reduceat(fine, edges)
+    edges = (np.arange(steps + 1) * (count / steps)).astype(int)
+    fine = np.empty(count)
+    for first in range(0, count, CHUNK):
+        here = np.arange(first - BESIDE, min(first + CHUNK, count) + BESIDE)
+        between = _upsampled(wave[:, here % count]).reshape(2, -1, FINER)
+        fine[first : first + CHUNK] = np.abs(between).max(axis=(0, 2))[BESIDE:-BESIDE]
+    return np.maximum.reduceat(fine, edges[:-1])
+
+
+def _upsampled(wave: Array) -> Array:
+    """(2, FINER n) the wave between its samples (2, n); its ends are not to be used."""
+    count = wave.shape[1]
+    spectrum = np.fft.rfft(wave) * FINER
+    if count % 2 == 0:
+        spectrum[:, -1] *= 0.5
+    return np.fft.irfft(spectrum, count * FINER)
 
 
 def levelled(spectrum: NDArray[np.complex128], count: int, wanted: float, ceiling: float, showings: int) -> Array:
@@ -42,7 +55,7 @@ def levelled(spectrum: NDArray[np.complex128], count: int, wanted: float, ceilin
     now = of_energies(energy, showings, floor=-np.inf)
     if not np.isfinite(now) or not energy.any():
         return wave
-    gain = _gain(true_peaks(spectrum, count), energy, wanted, now, ceiling, showings)
+    gain = _gain(true_peaks(wave), energy, wanted, now, ceiling, showings)
     middles = (np.arange(len(gain)) + 0.5) * (count / len(gain))
     return wave * np.interp(np.arange(count), middles, gain, period=count)
 

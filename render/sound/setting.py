@@ -18,6 +18,7 @@ from render.film.camera import angles
 from render.film.film import Film
 from render.film.framing import axes
 from render.sound.ringing import Modes, modes_of
+from shared.stage.errors import UserError
 
 Array = NDArray[np.float64]
 Item = TypeVar("Item")
@@ -27,6 +28,8 @@ CONTROL = 1000
 """Values a second of whatever changes more slowly than a wave: levels, places, speeds."""
 WIDEST = 0.8
 """How far to a side what is at the edge is heard, 0 .. 1."""
+LONGEST = 300.0
+"""Film seconds of a showing that has a sound: all of its waves are in memory at once."""
 FADE = 0.012
 """Seconds in which a tone comes and goes where the film cuts."""
 
@@ -35,8 +38,14 @@ class Setting:
     """One showing of a film, as sources hear it."""
 
     def __init__(self, film: Film) -> None:
+        """Raises UserError where the showing is longer than what there is room for."""
         self.film, self.motion, self.map = film, film.motion, film.clock.time_map
         self.seconds = self.map.seconds
+        if self.seconds > LONGEST:
+            raise UserError(
+                f"{film.motion.mechanism}: a showing of the film lasts {self.seconds:.0f} s, and sound is made of "
+                f"{LONGEST:.0f} s at most; give the shot fewer seconds_per_turn, or film it with SOUND=off"
+            )
         self.samples = max(64, round(self.seconds * RATE))
         """Samples of a showing."""
         self.time = np.asarray(film.motion.time)

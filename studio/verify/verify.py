@@ -78,8 +78,13 @@ def _of_pictures(
     sound = wav_of(there)
     if not sound.is_file():
         return [*findings, film.compared(there, scratch, store, index, preset)]
-    heard = write_sound(out, preset, show, scratch / sound.name)
-    findings.append(files.compared(f"sound ({sound.name})", sound, heard))
+    what = f"sound ({sound.name})"
+    try:
+        heard = write_sound(out, preset, show, scratch / sound.name)
+    except UserError as error:
+        findings.append(Finding(what, "differs", f"it cannot be made again: {error}"))
+        return [*findings, film.compared(there, scratch, store, index, preset)]
+    findings.append(files.compared(what, sound, heard))
     return [*findings, film.compared(there, scratch, store, index, preset, heard)]
 
 

@@ -40,7 +40,7 @@ def play(setting: Setting, desk: Desk) -> None:
 
 
 def _joint(setting: Setting, desk: Desk, joint: JointMotion) -> None:
-    modes = [found for body in joint.bodies if body != "ground" and (found := setting.modes(body))]
+    modes = [each for body in joint.bodies if body != "ground" and (each := setting.modes(body))]
     force = np.stack([joint.fx, joint.fy])
     if not modes or np.hypot(*force).max() < 1e-9:
         return

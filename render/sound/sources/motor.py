@@ -32,6 +32,8 @@ UNBALANCE = (0.3, 0.25, 0.15)
 """Weights of the harmonics of unbalance, beside those of the slots under load."""
 SERIES = 10.0 ** (np.arange(0, 41) / 5)
 """Ratios of gearboxes, R5."""
+TAKEN = 0.01
+"""What takes no more than this part of the work that goes in and out takes none."""
 IDLE = 0.005
 """What a motor gives that has no load: this part of the machine's weight, at the arm of its size."""
 REST = 0.1
@@ -42,13 +44,20 @@ def play(setting: Setting, desk: Desk) -> None:
     """The motors of drivers, and of forces that drive."""
     for _, driver in setting.heard(setting.motion.drivers):
         bodies = driver.bodies or ("ground", "ground")
-        _motor(setting, desk, np.asarray(driver.value), np.asarray(driver.effort), driver.unit == "rad", bodies)
+        if not _takes(setting, driver.power):
+            _motor(setting, desk, np.asarray(driver.value), np.asarray(driver.effort), driver.unit == "rad", bodies)
     for _, force in setting.heard(setting.motion.forces):
         if not force.drives or force.value is None or force.effort is None or not force.actions:
             continue
-        if np.trapezoid(force.power, setting.time) > 0:  # one that takes is a load
+        if not _takes(setting, force.power):
             bodies = (force.actions[0].body, force.actions[-1].body)
             _motor(setting, desk, np.asarray(force.value), np.asarray(force.effort), force.unit == "rad", bodies)
+
+
+def _takes(setting: Setting, power: list[float]) -> bool:
+    """Whether it takes more work than it gives, as a load does, or what holds an engine at its speed."""
+    given, all_of_it = (float(np.trapezoid(values, setting.time)) for values in (power, np.abs(power)))
+    return given < -TAKEN * all_of_it
 
 
 def _motor(setting: Setting, desk: Desk, value: Array, effort: Array, turns: bool, bodies: tuple[str, str]) -> None:

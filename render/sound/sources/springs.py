@@ -52,7 +52,7 @@ def _spring(setting: Setting, desk: Desk, name: str, force: ForceMotion) -> None
     for body, blows in desk.struck[IMPACTS]:
         if body in held and body != "ground":
             part = wire / (wire + setting.motion.bodies[body].mass)
-            desk.strike(NAME, name, blows._replace(impulse=part * blows.impulse), rings)
+            desk.strike(NAME, f"\0{name}", blows._replace(impulse=part * blows.impulse), rings)
 
 
 def surge_of(force: ForceMotion) -> tuple[float, float]:

@@ -9,12 +9,14 @@ import pytest
 
 from mbsd import Solution
 from mbsd.model.joint import KINDS
+from render.sound.limiter import true_peaks
 from render.sound.loudness import loudness
 from render.sound.mix import mixed
 from render.sound.setting import RATE, Setting
 from render.sound.sound import sound_of
 from render.sound.wave_file import wav
 from shared.contract.shot import Shot, Sound
+from shared.stage.errors import UserError
 from tests.render.sound.heard import ball, filmed, gears, measured
 from tests.render.test_kinds import four_bar
 
@@ -74,6 +76,21 @@ def test_a_film_loops_without_a_click_or_an_offset(made, shot: Shot) -> None:
     for seam in (ring - 1,) if film.clock.showings > 1 else ():
         assert (steps[:, seam] <= np.quantile(steps, 0.9999, axis=1)).all()
     assert (np.abs(sound[:, 0] - sound[:, -1]) <= np.quantile(steps, 0.9999, axis=1)).all()
+
+
+def test_peaks_between_the_samples_count() -> None:
+    t = np.arange(RATE) / RATE
+    sine = 0.5 * np.sin(2 * np.pi * RATE / 4 * t + np.pi / 4)  # its samples reach 0.354
+    peaks = true_peaks(np.stack([sine, 0.0 * sine]))
+    assert len(peaks) == 1000
+    assert np.allclose(peaks, 0.5, rtol=0.01)
+
+
+def test_a_showing_that_takes_too_much_room_is_refused() -> None:
+    with pytest.raises(
+        UserError, match=r"gears: a showing of the film lasts 400 s, .* seconds_per_turn, or .* SOUND=off"
+    ):
+        sound_of(filmed(gears(), Shot(seconds_per_turn=400.0, turns=1)))
 
 
 def test_the_same_motion_gives_the_same_bytes_and_the_machine_is_heard_from_where_it_is() -> None:

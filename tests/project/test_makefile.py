@@ -52,6 +52,13 @@ def test_picture_targets_take_what_to_show(target: str) -> None:
     assert planned(f"{target}-four-bar", "SHOW=reactions,title")[-1].endswith(" --show=reactions,title")
 
 
+@pytest.mark.parametrize("target", ["run", "film"])
+def test_films_take_whether_they_have_a_sound(target: str) -> None:
+    assert "--sound" not in planned(f"{target}-four-bar")[-1]
+    assert planned(f"{target}-four-bar", "SOUND=off")[-1].endswith(" --sound=off")
+    assert "--sound" not in " ".join(planned("frames-four-bar", "SOUND=off"))
+
+
 @pytest.mark.parametrize("target", ["run", "plot", "compare"])
 def test_what_draws_plots_takes_the_spectra(target: str) -> None:
     stage = "compare" if target == "compare" else "plots"

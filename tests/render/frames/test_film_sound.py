@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import subprocess
+import sys
+import time
 from pathlib import Path
 
 import msgspec
@@ -12,7 +14,7 @@ from render.frames import encode, film, frames, muxing
 from render.presets import Preset
 from shared.contract.shot import Shot, Sound, write_shot
 from shared.stage.errors import UserError
-from shared.stage.paths import Out
+from shared.stage.paths import ROOT, Out
 from studio.verify.film import decoded
 from tests.render.sound.heard import measured
 from tools.fixtures import film_fixture
@@ -78,6 +80,38 @@ def test_a_shot_that_silences_the_motor_costs_no_picture(made: Out, monkeypatch:
     monkeypatch.setattr(encode, "encode", refused)
     film.run("four_bar", TINY)
     assert film.wav_of(made.film("tiny")).read_bytes() != before
+
+
+def test_a_film_of_before_gets_its_sound_without_a_frame_rendered(made: Out, monkeypatch: pytest.MonkeyPatch):
+    """Its silent pictures are not kept beside the frames yet, so they are encoded once."""
+    (made.frames("tiny") / "four_bar-tiny.mp4").unlink()
+    monkeypatch.setattr(frames, "render", refused)
+    film.run("four_bar", TINY)
+    assert streams(made.film("tiny")) == ["Video", "Audio"]
+
+
+def test_a_film_that_is_killed_while_it_is_muxed_goes_on_there(
+    made: Out, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    target = made.film("tiny")
+    silent = target.read_bytes()
+    slow = tmp_path / "ffmpeg"
+    slow.write_text('#!/bin/sh\nfor last; do :; done\necho part > "$last"\necho muxing >&2\nexec sleep 3\n')
+    slow.chmod(0o755)
+    code = f"from render.frames import film, muxing; muxing.ffmpeg = lambda: {str(slow)!r}; "
+    code += "from render.presets import Preset; film.run('four_bar', Preset('tiny', 96, 54, 2))"
+    with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.DEVNULL) as process:
+        end = time.monotonic() + 60
+        while not list(target.parent.glob(".four_bar-tiny-*.mp4")):
+            assert time.monotonic() < end
+            time.sleep(0.02)
+        process.kill()
+    assert target.read_bytes() == silent
+    monkeypatch.setattr(frames, "render", refused)
+    monkeypatch.setattr(encode, "encode", refused)
+    film.run("four_bar", TINY)
+    assert streams(target) == ["Video", "Audio"]
+    assert {path.name for path in target.parent.iterdir()} == {"four_bar-tiny.mp4", "four_bar-tiny.wav"}
 
 
 def test_a_mux_that_fails_leaves_the_film_that_was_there(made: Out, monkeypatch: pytest.MonkeyPatch):

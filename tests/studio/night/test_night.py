@@ -45,10 +45,12 @@ def test_a_failure_stops_no_other_and_table_and_exit_code_tell_it(night: Night):
 
 
 def test_what_is_asked_for_reaches_the_stages(night: Night):
-    code, out, _ = finished(night.start("four_bar", "--show=forces,title", "--spectra=shaking force", "--watts=85"))
+    code, out, _ = finished(
+        night.start("four_bar", "--show=forces,title", "--sound=off", "--spectra=shaking force", "--watts=85")
+    )
     assert code == 0
     assert "plots: four_bar: --spectra=shaking force --every" in out
-    assert "film: four_bar: --preset draft --show=forces,title" in out
+    assert "film: four_bar: --preset draft --show=forces,title --sound=off" in out
     log = (night.folder / "out" / "night" / "log.txt").read_text()
     assert "film: four_bar: done" in log
     assert "night: 1 done" in log

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from render.sound.loudness import STEP, energies, of_energies
+from render.sound.loudness import STEP, energies, loudness, of_energies
 
 Array = NDArray[np.float64]
 FINER = 4
@@ -20,10 +20,12 @@ CHUNK, BESIDE = 16_000, 192
 """Samples that are looked at together, and beside them, where a spectrum does not know how the wave goes on."""
 REACH = 12
 """ms by which the gain is down before and after a peak."""
+TRIES, ENOUGH = 4, 0.1
+"""Where a peak is pressed, energies tell the loudness roughly; so it is measured, and aimed at again (LU)."""
 HALVINGS, NEAR = 24, 0.02
 """Most tries, and how near to the loudness is near enough (LU)."""
-MOST = 24.0
-"""Peaks are pressed by so many dB at most."""
+MOST, LESS = 36.0, 12.0
+"""Peaks are pressed by so many dB at most; the gain is so many dB less than what pressing none gives, at most."""
 
 
 def true_peaks(wave: Array) -> Array:
@@ -48,26 +50,38 @@ def _upsampled(wave: Array) -> Array:
     return np.fft.irfft(spectrum, count * FINER)
 
 
-def levelled(spectrum: NDArray[np.complex128], count: int, wanted: float, ceiling: float, showings: int) -> Array:
-    """A ring (2, count) with this spectrum at ``wanted`` LUFS, as far as peaks below ``ceiling`` (1 is full scale) let
-    it be."""
+def levelled(spectrum: NDArray[np.complex128], beside: Array, wanted: float, ceiling: float, showings: int) -> Array:
+    """A ring (2, N) with this spectrum and what is heard ``beside`` it (2, N), together at ``wanted`` LUFS, as far as
+    peaks below ``ceiling`` (1 is full scale) let the former be.
+
+    What is beside it counts: the second gate of the loudness depends on how quiet the rest is.
+    """
+    count = beside.shape[1]
     wave, energy = np.fft.irfft(spectrum, count), energies(spectrum, count)
     now = of_energies(energy, showings, floor=-np.inf)
     if not np.isfinite(now) or not energy.any():
-        return wave
-    gain = _gain(true_peaks(wave), energy, wanted, now, ceiling, showings)
-    middles = (np.arange(len(gain)) + 0.5) * (count / len(gain))
-    return wave * np.interp(np.arange(count), middles, gain, period=count)
+        return beside
+    peaks, quiet, aim, out = true_peaks(wave), energies(np.fft.rfft(beside), count), wanted, beside
+    for _ in range(TRIES):
+        gain = _gain(peaks, energy, quiet, aim, 10 ** ((wanted - now) / 20), ceiling, showings)
+        middles = (np.arange(len(gain)) + 0.5) * (count / len(gain))
+        out = wave * np.interp(np.arange(count), middles, gain, period=count) + beside
+        off = wanted - loudness(out, showings)
+        if abs(off) < ENOUGH:
+            break
+        aim += off
+    return out
 
 
-def _gain(peaks: Array, energy: Array, wanted: float, now: float, ceiling: float, showings: int) -> Array:
-    """(m,) gain in each ms: first without pressing any peak, then with as much more as it takes."""
-    plain = 10 ** ((wanted - now) / 20)
-    low, high, more, gain = 0.0, MOST, 0.0, peaks
+def _gain(
+    peaks: Array, energy: Array, quiet: Array, wanted: float, plain: float, ceiling: float, showings: int
+) -> Array:
+    """(m,) gain in each ms: ``plain`` without pressing any peak, then with as much more as it takes."""
+    low, high, more, gain = -LESS, MOST, 0.0, peaks
     for _ in range(HALVINGS):
         factor = plain * 10 ** (more / 20)
         gain = factor * _pressed(peaks * factor, ceiling)
-        reached = of_energies(energy * gain**2, showings)
+        reached = of_energies(energy * gain**2 + quiet, showings)
         if abs(reached - wanted) < NEAR:
             return gain
         low, high = (more, high) if reached < wanted else (low, more)

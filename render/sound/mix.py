@@ -41,4 +41,4 @@ def mixed(stems: Mapping[str, Spectrum], count: int, showings: int) -> Array:
     whole = np.zeros((2, len(high)), complex)
     for name, level in sorted(heard.items()):
         whole += stems[name] * 10 ** ((1 - BALANCE) * (most - level) / 20)
-    return limiter.levelled(whole * high * room.walls(count), count, LOUDNESS, CEILING, showings) + air
+    return limiter.levelled(whole * high * room.walls(count), air, LOUDNESS, CEILING, showings)

@@ -14,6 +14,8 @@ KIND ?=
 VIEW ?=
 SHOW ?=
 SOUND ?=
+STORY ?=
+LOOP ?=
 SPECTRA ?=
 BED ?=
 SCALE ?=
@@ -49,6 +51,8 @@ override KIND := $(value KIND)
 override VIEW := $(value VIEW)
 override SHOW := $(value SHOW)
 override SOUND := $(value SOUND)
+override STORY := $(value STORY)
+override LOOP := $(value LOOP)
 override SPECTRA := $(value SPECTRA)
 override BED := $(value BED)
 override SCALE := $(value SCALE)
@@ -67,7 +71,7 @@ override PLAN := $(value PLAN)
 override CLUSTER := $(value CLUSTER)
 override CLUSTER_TLS := $(value CLUSTER_TLS)
 override MECHANISM = $(subst -,_,$*)
-export FORMAT OVER TIME FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SOUND SPECTRA BED SCALE KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
+export FORMAT OVER TIME FILE AS PRESET ASPECT FRAME FRAMES NAME KIND VIEW SHOW SOUND STORY LOOP SPECTRA BED SCALE KERNELS GAP MECHANISM N HOST FOLDER ONLY WITHIN WATTS SEED
 export CLUSTER CLUSTER_TLS ANYWAY STRICT PLAN MECHANISMS
 
 PRESETS := draft preview production final
@@ -181,7 +185,7 @@ still-%: libraries always ## one frame of the film: out/<name>/stills/; FRAME=15
 frames-%: libraries always ## the frames of the film: out/<name>/frames/<preset>/
 	@$(MBSD) frames -- "$$MECHANISM"
 
-film-%: libraries always ## the film: out/films/<name>-<preset>.mp4
+film-%: libraries always ## the film: out/films/<name>-<preset>.mp4; STORY=explain|compare of shots, LOOP=12 seconds
 	@$(MBSD) film -- "$$MECHANISM"
 
 scene-ui-%: libraries always ## open the scene in an installed Blender
@@ -205,7 +209,7 @@ view-engines: install ## pages used in Firefox and Safari's engine: a small four
 gallery: libraries ## posters of all mechanisms and the page that shows them: docs/gallery/
 	@$(MBSD) gallery
 
-showreel: install ## the finished films, each under its title, as one; ONLY=four_bar,geneva_drive
+showreel: install ## the finished films as one, stories where they are made (or STORY=loop); ONLY=four_bar,geneva_drive
 	@$(MBSD) showreel
 
 fetch: install ## bring the films of another machine home, what changed alone: HOST=user@machine FOLDER=mbsd

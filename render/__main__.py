@@ -39,6 +39,9 @@ def main() -> int | None:
             sub.add_argument(
                 "--show", default="", help="what to show: reactions,velocities,title; as shot.py says if not given"
             )
+        if command == "film":
+            sub.add_argument("--story", default="loop", help="loop, explain or compare; loop if not given")
+            sub.add_argument("--loop", type=float, default=0.0, help="seconds of a film that ends as it begins")
         if command in ("plots", "compare"):
             sub.add_argument(
                 "--spectra", default="", help="'shaking force', joints, ...; as mechanism.py says if not given"
@@ -108,9 +111,9 @@ def main() -> int | None:
 def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namespace) -> None:
     show = show_words(arguments.show)
     if command == "film":
-        from render.frames import film
+        from render.frames.story import kinds
 
-        film.run(name, preset, show, arguments.sound)
+        kinds.run(name, preset, show, arguments.story, arguments.loop, arguments.sound)
     elif command == "frames":
         from render.frames import frames
 

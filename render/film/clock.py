@@ -66,14 +66,14 @@ class Clock:
         film, model = [0.0, self.moving / fps, self.frames / fps], [self.start, self.end, self.end]
         return TimeMap.through(film, model, closes=self.repeats)
 
-    def moment(self, frame: int) -> Moment:
+    def moment(self, frame: float) -> Moment:
         """The moment that a frame shows; those beyond one showing, or before frame 0, go on with the loop.
 
         The same place in a showing gives the same float in every one, so later ones find their pictures made.
         """
         showing, step = divmod(frame, self.frames)
         if self.repeats:
-            return Moment(self.start + (self.end - self.start) * (step / self.moving), showing)
+            return Moment(self.start + (self.end - self.start) * (step / self.moving), int(showing))
         return Moment(self.end if step >= self.moving else self.start + (self.end - self.start) * step / self.moving, 0)
 
     def around(self, frame: int) -> tuple[int, int, int]:
@@ -87,11 +87,11 @@ class Clock:
         """The frame that shows the motion at a part of it, 0 .. 1."""
         return min(round(part * self.moving), self.frames - 1) if not self.repeats else round(part * self.moving)
 
-    def phase(self, frame: int) -> float:
+    def phase(self, frame: float) -> float:
         """Part of the showing that has passed, 0 .. 1."""
         return (frame % self.frames) / self.frames
 
-    def trail_times(self, frame: int, tail: float, count: int) -> Array:
+    def trail_times(self, frame: float, tail: float, count: int) -> Array:
         """(count,) times of the motion from now back to the end of a trail ``tail`` turns long.
 
         The trail of a motion that does not repeat grows from its start.

@@ -94,15 +94,17 @@ class Film:
             up=up,
         )
 
-    def state(self, frame: int) -> State:
-        """What frame ``frame`` shows; frames before 0 or after the first showing go on with the loop."""
+    def state(self, frame: float, camera: CameraPose | None = None) -> State:
+        """What frame ``frame`` shows; frames before 0 or after the first showing go on with the loop. With a ``camera``
+        of its own, it may lie between two frames.
+        """
         at = self.clock.moment(frame)
         arrows, arcs = self._arrow_heights
         return State(
             bodies={name: self.poses.body(name, at) for name in self.parts.bodies} | self.rollers.poses(at),
             trails=self.trails.paths(frame),
             labels=[self.heights.words(label, at) for label in self.shot.labels],
-            camera=self.camera(frame),
+            camera=camera or self.camera(int(frame)),
             tubes=[path for arrow in self.drawn for path in arrow.paths(self.poses, at)],
             arrows=self.arrows.at(at.time, arrows),
             arcs=self.arcs.at(at.time, arcs),
@@ -112,6 +114,18 @@ class Film:
     def camera(self, frame: int) -> CameraPose:
         """Where the camera is at a frame."""
         return self._camera.pose(frame)
+
+    def way(self, frame: float) -> Array:
+        """How far (3,) what is followed has come at a frame, in the world (m); nothing where the camera stands."""
+        if self._way is None:
+            return np.zeros(3)
+        at = np.arange(len(self._way))
+        return np.array([np.interp(min(max(frame, 0.0), at[-1]), at, part) for part in self._way.T])
+
+    @property
+    def subject(self) -> Subject:
+        """What is filmed, in points; those of what is followed are as seen from its way."""
+        return self._subject
 
     @cached_property
     def overview(self) -> CameraPose:

@@ -198,3 +198,7 @@ class State(msgspec.Struct, kw_only=True, frozen=True):
     arcs: list[tuple[Point, float]] = []
     number: str = ""
     """The number that lives, beside the title."""
+    lifts: dict[str, float] = {}
+    """By ``body/piece``: how far a piece is lifted along z (m); those that are not named are where they belong."""
+    bare: bool = False
+    """Whether solids alone are shown: no trails, tubes and labels."""

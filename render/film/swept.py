@@ -62,6 +62,10 @@ class SweptSpace:
                 corners.append(swept(points, self._poses.over(body, times)).reshape(len(times), -1, 3))
         return np.concatenate(corners, axis=1)
 
+    def outlines(self, body: str) -> list[Array]:
+        """The upright prism (n, 3) around each piece of a body, in its frame (m)."""
+        return self._outlines.get(body, [])
+
     @cached_property
     def standing(self) -> Array:
         """What stands still: corners of its pieces, and places between any two corners of one piece."""

@@ -14,7 +14,7 @@ from render.blender.child import blender
 from render.blender.job import Answer, Job, Picture
 from render.film.film import Film
 from render.film.inputs import blender_version, read_film, stage_key
-from render.film.scene import State
+from render.film.scene import Scene, State
 from render.frames.keys import frame_key, scene_key
 from render.frames.store import FrameIndex, FrameStore, Timing
 from render.presets import Preset
@@ -120,7 +120,16 @@ class Pictures:
     _states: dict[int, State] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.scene = scene_key(self.film.scene, self.preset, blender_version())
+        self.scene = scene_key(self.shown, self.preset, blender_version())
+
+    @property
+    def shown(self) -> Scene:
+        """What all of them have in common."""
+        return self.film.scene
+
+    def around(self, frame: int) -> tuple[int, int, int]:
+        """The frame between those that its shutter sees."""
+        return self.film.clock.around(frame)
 
     def state(self, frame: int) -> State:
         """The state a frame shows."""
@@ -130,7 +139,7 @@ class Pictures:
 
     def key(self, frame: int) -> str:
         """The name of the picture a frame shows."""
-        around = self.film.clock.around(frame) if self.preset.motion_blur else (frame,)
+        around = self.around(frame) if self.preset.motion_blur else (frame,)
         return frame_key(self.scene, [self.state(f) for f in around])
 
     def job(self, frames: Sequence[int], store: FrameStore) -> Job:
@@ -138,14 +147,14 @@ class Pictures:
         states: list[State] = []
         pictures = []
         for frame in frames:
-            around = [self.state(f) for f in self.film.clock.around(frame)] if self.preset.motion_blur else []
+            around = [self.state(f) for f in self.around(frame)] if self.preset.motion_blur else []
             at = len(states) + (1 if around else 0)
             states += around or [self.state(frame)]
             pictures.append(
                 Picture(state=at, folder=str(store.folder.resolve()), key=self.key(frame), name=f"frame {frame}")
             )
         return Job(
-            scene=self.film.scene,
+            scene=self.shown,
             states=states,
             pictures=pictures,
             width=self.preset.width,

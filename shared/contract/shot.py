@@ -107,6 +107,28 @@ class Sound(_Strict, frozen=True):
     """Joints, drivers, forces and contacts that make no sound, such as a driver that is a hand and no motor."""
 
 
+STORY_SHOTS = ("title", "assembly", "motion", "macro", "reason", "last")
+"""Shots of a story, in the order in which they follow each other where nothing else is said."""
+
+
+class Story(_Strict, frozen=True):
+    """What the story (``STORY=explain``) shows other than it would by itself; docs/stories.md."""
+
+    shots: Annotated[tuple[str, ...], msgspec.Meta(min_length=1, max_length=12)] | None = None
+    """Names of :data:`STORY_SHOTS` in the order of the film; null is all of them, as far as the motion has them."""
+    event: str | None = None
+    """What time stops for: words of a moment, "rocker turns back", or a joint, driver or point at its peak; null is
+    the first that the motion has of impacts, dead points, peaks."""
+    caption: Annotated[str, msgspec.Meta(min_length=1, max_length=200)] | None = None
+    """What is written there instead of the words of the report."""
+    joint: str | None = None
+    """Joint of the macro; null is a joint of the event, or the one that lies on top."""
+    curves: Annotated[tuple[str, ...], msgspec.Meta(max_length=3)] | None = None
+    """Joints (their reaction), drivers or forces (their effort), traced points (their speed) in the strip; () is no
+    strip, null what belongs to the event."""
+    language: str = "en"
+
+
 class Surface(_Strict, frozen=True):
     """A surface for a piece, where none of the named materials will do."""
 
@@ -155,6 +177,8 @@ class Shot(_Strict, frozen=True):
     sound: Sound = Sound()
     poster: Unit = 0.3
     """Which moment the poster shows, as a part of the motion."""
+    story: Story = Story()
+    """What STORY=explain shows other than by itself."""
 
 
 def read_shot(path: Path) -> Shot:
@@ -223,6 +247,12 @@ def refuse_unknown(shot: Shot, names: Names) -> None:
         known("title.number", shot.title.number, (*names.efforts, *names.points))
     for index, name in enumerate(shot.sound.silent):
         known(f"sound.silent[{index}]", name, (*names.joints, *names.acting))
+    for index, shot_name in enumerate(shot.story.shots or ()):
+        known(f"story.shots[{index}]", shot_name, STORY_SHOTS)
+    for index, curve in enumerate(shot.story.curves or ()):
+        known(f"story.curves[{index}]", curve, dict.fromkeys((*names.joints, *names.efforts, *names.points)))
+    if shot.story.joint is not None:
+        known("story.joint", shot.story.joint, names.joints)
     pieces = [f"{body}/{piece}" for body, solids in names.pieces.items() for piece in solids]
     for name, surface in shot.materials.items():
         known("materials", name, [*names.pieces, *pieces])

@@ -62,7 +62,7 @@ VIEW = Stage("render", "view")
 POSTER, CONTACT, FRAMES, SCENE, SCENE_UI = (
     Stage("render", name, _PICTURE, solids=True) for name in ("poster", "contact", "frames", "scene", "scene-ui")
 )
-FILM = Stage("render", "film", (*_PICTURE, "sound"), solids=True)
+FILM = Stage("render", "film", (*_PICTURE, "story", "loop", "sound"), solids=True)
 STILL = Stage("render", "still", ("frame", *_PICTURE), solids=True)
 BARE_MOTION = (PARTS_IF_ANY, SOLVE)
 """Motion and plots go on where there are no automatic parts."""

@@ -99,7 +99,7 @@ COMMANDS: dict[str, Command] = {
                 (*stages.SCENERY, stages.STILL), example="mbsd still excavator --frame 15"),
         Command("frames", "the frames of the film: out/<name>/frames/<preset>/", (*stages.SCENERY, stages.FRAMES)),
         Command("film", "the film: out/films/<name>-<preset>.mp4", (*stages.SCENERY, stages.FILM),
-                example="mbsd film excavator --preset final --aspect 9:16"),
+                example="mbsd film excavator --story explain --aspect 9:16"),
         Command("scene-ui", "open the scene in an installed Blender", (*stages.SCENERY, stages.SCENE_UI)),
         Command("scene", "save the scene: out/<name>/<name>.blend", (*stages.SCENERY, stages.SCENE)),
         Command(

@@ -12,9 +12,12 @@ import numpy as np
 
 from render.blender.job import Job
 from render.blender.scene import arcs, arrows, coded, labels, pieces, studio, trail, tubes
-from render.film.framing import SENSOR
+from render.film.framing import SENSOR, CameraPose
 from render.film.scene import State
 from shared.contract.mount import Z
+
+PINHOLE = 1000.0
+"""f-stop of a camera without a lens blur."""
 
 
 @dataclass
@@ -30,6 +33,8 @@ class BuiltScene:
     """The scene of what is drawn over the picture: arrows, on nothing; None where there are none."""
     arcs: list[Any] = field(default_factory=list)
     """In that scene."""
+    beside: list[Any] = field(default_factory=list)
+    """What a bare state hides; empty where none is bare."""
 
     def show(self, index: int) -> None:
         """Go to state ``index``."""
@@ -41,6 +46,8 @@ class BuiltScene:
             trail.place(thing, path, self.job.scene.trails[which].radius)
         for which, thing in enumerate(self.tubes):
             tubes.place(thing, self.job.states[index].tubes[which], self.job.scene.tubes[which].radius)
+        for thing in self.beside:
+            thing.hide_render = self.job.states[index].bare
         for which, thing in enumerate(self.arcs):
             arcs.place(thing, self.job.scene.arcs[which], *self.job.states[index].arcs[which])
 
@@ -53,8 +60,9 @@ def build(job: Job) -> BuiltScene:
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.unit_settings.system = "METRIC"
-    bodies = pieces.build(scene, job.scene.pieces, job.scene.studio.radius, job.flat)
-    camera = _camera(scene, job.states[0])
+    solids: dict[str, Any] = {}
+    bodies = pieces.build(scene, job.scene.pieces, job.scene.studio.radius, job.flat, solids)
+    camera = _camera(scene, job.states)
     texts: list[Any] = []
     trails: list[Any] = []
     wires: list[Any] = []
@@ -67,15 +75,17 @@ def build(job: Job) -> BuiltScene:
     if job.flat is not None or job.drawn:
         _dark(scene)
     if job.drawn:
-        solids = [thing for thing in scene.objects if thing.type == "MESH" and thing not in trails]
-        coded.number(solids, [*trails, *texts], job.scene.studio.radius)
+        meshes = [thing for thing in scene.objects if thing.type == "MESH" and thing not in trails]
+        coded.number(meshes, [*trails, *texts], job.scene.studio.radius)
     _animate(job, bodies, camera, texts)
+    _lift(job, solids)
     drawn = (job.scene.arrows or job.scene.arcs) and job.flat is None
     front = _front(job, camera) if drawn else None
     curved = [arcs.build(front, spec) for spec in job.scene.arcs] if drawn else []
     scene.frame_start, scene.frame_end = 0, len(job.states) - 1
     scene.render.fps = job.scene.fps
-    return BuiltScene(job, scene, bodies, trails, wires, front, curved)
+    beside = [*trails, *wires, *texts] if any(state.bare for state in job.states) else []
+    return BuiltScene(job, scene, bodies, trails, wires, front, curved, beside)
 
 
 def _front(job: Job, camera: Any) -> Any:
@@ -125,20 +135,25 @@ def _bake(thing: Any, shapes: list[np.ndarray]) -> None:
     _key(keys, "eval_time", [np.array([block.frame for block in keys.key_blocks])], "OBJECT")
 
 
-def _camera(scene: Any, state: State) -> Any:
+def _camera(scene: Any, states: list[State]) -> Any:
     import bpy
 
-    pose = state.camera
+    pose, focuses = states[0].camera, [state.camera.focus for state in states]
     lens = bpy.data.cameras.new("camera")
     lens.sensor_fit, lens.sensor_width, lens.lens = "AUTO", SENSOR, pose.lens
-    lens.clip_start, lens.clip_end = pose.focus / 100, pose.focus * 100
-    lens.dof.use_dof = pose.fstop > 0
+    lens.clip_start, lens.clip_end = min(focuses) / 100, max(focuses) * 100
+    lens.dof.use_dof = any(state.camera.fstop > 0 for state in states)
     lens.dof.focus_distance = pose.focus
-    lens.dof.aperture_fstop = max(pose.fstop, 0.01)
+    lens.dof.aperture_fstop = _stop(pose)
     camera = bpy.data.objects.new("camera", lens)
     scene.collection.objects.link(camera)
     scene.camera = camera
     return camera
+
+
+def _stop(pose: CameraPose) -> float:
+    """The f-stop of a camera that stands among others that have one."""
+    return max(pose.fstop, 0.01) if pose.fstop > 0 else PINHOLE
 
 
 def _dark(scene: Any) -> None:
@@ -163,10 +178,20 @@ def _animate(job: Job, bodies: dict[str, Any], camera: Any, texts: list[Any]) ->
     facing = _facing(states)
     _key(camera, "location", list(np.array([state.camera.position for state in states]).T))
     _key(camera, "rotation_euler", facing)
-    _key(camera.data, "dof.focus_distance", [np.array([state.camera.focus for state in states])], "CAMERA")
+    lenses = [state.camera for state in states]
+    _key(camera.data, "dof.focus_distance", [np.array([pose.focus for pose in lenses])], "CAMERA")
+    _key(camera.data, "dof.aperture_fstop", [np.array([_stop(pose) for pose in lenses])], "CAMERA")
+    _key(camera.data, "lens", [np.array([pose.lens for pose in lenses])], "CAMERA")
     for index, thing in enumerate(texts):
         _key(thing, "location", list(np.array([state.labels[index] for state in states]).T))
         _key(thing, "rotation_euler", facing)
+
+
+def _lift(job: Job, solids: dict[str, Any]) -> None:
+    """Keys of pieces that are ever lifted from where they belong."""
+    for name in sorted({name for state in job.states for name in state.lifts} & set(solids)):
+        heights = np.array([state.lifts.get(name, 0.0) for state in job.states])
+        _key(solids[name], "location", [np.zeros(len(heights)), np.zeros(len(heights)), heights])
 
 
 def _facing(states: list[State]) -> list[np.ndarray]:

@@ -21,11 +21,15 @@ SHARP = math.radians(32)
 
 
 def build(
-    scene: Any, pieces: list[PieceSpec], radius: float, only_flat: dict[str, Colour] | None = None
+    scene: Any,
+    pieces: list[PieceSpec],
+    radius: float,
+    only_flat: dict[str, Colour] | None = None,
+    solids: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Load every piece; returns the empties that carry them: of bodies, and of pieces that turn against theirs.
 
-    ``radius`` is that of the swept motion (m).
+    ``radius`` is that of the swept motion (m). The pieces themselves are put into ``solids``, by ``body/piece``.
 
     With ``only_flat`` just those pieces, in one flat colour.
     """
@@ -43,6 +47,8 @@ def build(
             continue
         solid = _load(piece.stl, name)
         solid.parent = bodies[carrier]
+        if solids is not None:
+            solids[name] = solid
         if piece.turns_about is not None:
             x, y = piece.turns_about
             solid.data.transform(Matrix.Translation((-x, -y, 0.0)))

@@ -20,6 +20,7 @@ import msgspec
 from render.blender.job import Answer, Job, Picture
 from render.blender.worker.libraries import missing_library
 from render.blender.worker.parent import die_with_parent
+from render.film.scene import State
 from shared.stage.errors import UserError
 from shared.stage.signals import end_with_parent
 
@@ -80,7 +81,7 @@ def _work(job: Job, more: Iterator[Picture], answer: Callable[..., None]) -> Non
         over = None
         with signs_of_life(lambda doing, name=picture.name: answer(doing=f"renders {name}: {doing}")):
             seconds = 0.0
-            if built.front is not None:
+            if built.front is not None and _is_drawn(job.states[picture.state]):
                 over = Path(picture.folder) / f".{picture.key}.over.part.png"
                 seconds += render(built.front)
                 bpy.data.images["Render Result"].save_render(str(over), scene=built.front)
@@ -89,6 +90,11 @@ def _work(job: Job, more: Iterator[Picture], answer: Callable[..., None]) -> Non
         answer(path=str(save_picture(built.scene, job, picture, over)), key=picture.key, cycles=seconds)
         if over is not None:
             over.unlink()
+
+
+def _is_drawn(state: State) -> bool:
+    """Whether any arrow is seen: one without a length takes as long as the picture, and changes nothing."""
+    return any(tail != tip for tail, tip in state.arrows) or any(sweep for _, sweep in state.arcs)
 
 
 if __name__ == "__main__":

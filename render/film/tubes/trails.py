@@ -54,7 +54,7 @@ class Trails:
             for trail, rings in zip(self.trails, self._rings, strict=True)
         ]
 
-    def paths(self, frame: int) -> list[list[Point]]:
+    def paths(self, frame: float) -> list[list[Point]]:
         """Where each point was, from now back to the end of its tail; where an impact turned it is among the places."""
         out = []
         for trail, rings in zip(self.trails, self._rings, strict=True):

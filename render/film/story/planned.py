@@ -1,0 +1,108 @@
+"""Chooses the shots of a story and their seconds, so that it costs little more than the loop film of the machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from render.film.film import Film
+from render.film.story.curves import curves_of
+from render.film.story.frame import Shot
+from render.film.story.reason import Reason
+from render.film.story.scenery import Scenery
+from render.film.story.shots.assembly import assembly
+from render.film.story.shots.last import last
+from render.film.story.shots.macro import macro
+from render.film.story.shots.motion import motion
+from render.film.story.shots.reason import reason
+from render.film.story.shots.title import title
+from render.film.story.story import Story
+from render.film.story.words import words_in
+from render.presets import Preset
+from shared.contract.shot import STORY_SHOTS
+from shared.stage.errors import UserError
+from shared.stage.suggestions import did_you_mean
+
+BUDGET = 2.2
+"""Pictures of a story beside those of the loop film; starting Blender twice takes the rest up to 2.5."""
+WAYS = ((True, 1.0), (False, 1.0), (False, 0.75), (False, 0.55), (False, 0.4), (False, 0.25), (False, 0.12))
+"""Whether the camera turns while the machine is shown, and the part of the seconds of moves: the first that fits."""
+ARROWED = 2.6
+"""What a picture with arrows takes, which are rendered for themselves, in one without."""
+TWOS = ("draft", "preview")
+"""Presets that move on twos."""
+BLUR = {"draft": 9.0, "preview": 11.0}
+SHALLOW = 13.0
+"""Lens blur of a macro by preset, and of all others, in pixels of a picture 1280 wide."""
+
+
+def planned(film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset) -> Story:
+    """The story of a film: ``forces`` is the same with arrows, None where nothing has any; the first of ``reasons`` is
+    what time stops for, unless the shot asks for another.
+
+    Raises UserError with place and remedy for wishes of the shot that cannot be.
+    """
+    wishes, mechanism = film.shot.story, film.motion.mechanism
+    base = preset.name.partition("-")[0]
+    reasons = _asked(mechanism, wishes.event, reasons)
+    scenery = Scenery(
+        film=film,
+        forces=forces,
+        wishes=wishes,
+        reasons=reasons,
+        curves=curves_of(film.motion, wishes.curves, reasons),
+        say=words_in(wishes.language, mechanism),
+        step=2 if base in TWOS else 1,
+        blur=BLUR.get(base, SHALLOW),
+    )
+    most = BUDGET * min(film.clock.frames, film.clock.moving + 1) * (2 / scenery.step)
+    story = _story(scenery)
+    for turning, scale in WAYS[1:]:
+        if _cost(story) <= most:
+            break
+        story = _story(replace(scenery, turning=turning, scale=scale))
+    return story
+
+
+def _cost(story: Story) -> float:
+    """What the pictures of a story take, in pictures without arrows."""
+    return sum(ARROWED if picture.grown else 1.0 for picture in story.pictures)
+
+
+def _story(scenery: Scenery) -> Story:
+    names = scenery.wishes.shots or STORY_SHOTS
+    made: list[Shot | None] = []
+    for name in reversed(names):  # a title shows the first picture of what follows
+        after = next((shot for shot in reversed(made) if shot is not None), None)
+        made.append(title(scenery, after) if name == "title" else SHOTS[name](scenery))
+    shots = [shot for shot in reversed(made) if shot is not None]
+    if not shots:
+        raise UserError(
+            f"{scenery.film.motion.mechanism}: shot.story.shots = {', '.join(names)} leaves nothing to show: this "
+            "machine has no such shots; add motion or last"
+        )
+    return Story(scenery.film.motion.mechanism, scenery.fps, scenery.step, shots, scenery.curves)
+
+
+SHOTS: dict[str, Callable[[Scenery], Shot | None]] = {
+    "assembly": assembly,
+    "motion": motion,
+    "macro": macro,
+    "reason": reason,
+    "last": last,
+}
+"""By the names that a shot.py gives; the title needs what follows it."""
+
+
+def _asked(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list[Reason]:
+    """The reasons, that of the shot's ``event`` first. Raises UserError where nothing like it ever happens."""
+    if event is None:
+        return list(reasons)
+    for reason_ in reasons:
+        if event in reason_.words:
+            return [reason_, *(other for other in reasons if other is not reason_)]
+    known = list(dict.fromkeys(words for other in reasons for words in other.words))
+    raise UserError(
+        f"{mechanism}: shot.story.event names '{event}', which never happens in this motion; what does: "
+        f"{', '.join(known) or 'nothing'}{did_you_mean(event, known)}"
+    )

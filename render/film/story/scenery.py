@@ -1,0 +1,138 @@
+"""What the shots of a story are made of: the film with and without arrows, its stands, its words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from render.film.camera import angles
+from render.film.composing.filling import View
+from render.film.exploded import Lift, exploded
+from render.film.film import Film
+from render.film.framing import CameraPose
+from render.film.story import cameras, layout
+from render.film.story.cameras import Stand
+from render.film.story.curves import Curve
+from render.film.story.frame import Over, Picture
+from render.film.story.reason import Reason
+from render.film.story.words import rate_words
+from shared.contract.shot import Story as Wishes
+
+Array = NDArray[np.float64]
+MARGIN = 0.05
+"""Empty part of the picture at each side at most: strip and captions stand apart already."""
+
+
+@dataclass
+class Scenery:
+    """Everything that a shot may ask for. ``forces`` is the same film with arrows; None where nothing has any."""
+
+    film: Film
+    forces: Film | None
+    wishes: Wishes
+    reasons: Sequence[Reason]
+    curves: Sequence[Curve]
+    say: Callable[..., str]
+    step: int
+    """Frames for which a picture that moves stands: 2 is on twos."""
+    blur: float
+    """Lens blur of a macro, in pixels of a picture 1280 wide; 0 is a pinhole."""
+    scale: float = 1.0
+    """Part of the seconds in which pictures move; what is cut is held instead."""
+    turning: bool = True
+    """Whether the camera moves while the machine is shown; else later turns find their pictures made."""
+
+    @property
+    def up(self) -> tuple[float, float, float]:
+        """What points up in the world."""
+        return self.film.parts.mount.up
+
+    @property
+    def rate(self) -> float:
+        """Seconds of the motion in a second of the loop film."""
+        return self.film.clock.rate
+
+    @property
+    def fps(self) -> int:
+        """Frames a second."""
+        return self.film.shot.fps
+
+    @cached_property
+    def lifts(self) -> list[Lift]:
+        """How the machine comes apart."""
+        return exploded(self.film.parts, self.across)
+
+    @cached_property
+    def across(self) -> float:
+        """Size (m) of the machine in the plane of its motion, at its start."""
+        points = np.concatenate([self.piece(lift) for lift in self._pieces])
+        return float(np.linalg.norm(np.ptp(points[:, :2], axis=0)))
+
+    @cached_property
+    def _pieces(self) -> list[Lift]:
+        return exploded(self.film.parts, 1.0)
+
+    def piece(self, lift: Lift, apart: float = 0.0) -> Array:
+        """Points (n, 3) around a piece at the start of the motion, lifted by a part of its distance (m)."""
+        names = list(self.film.parts.bodies[lift.body].pieces)
+        outline = self.film.space.outlines(lift.body)[names.index(lift.piece)]
+        x, y, theta = self.film.poses.body(lift.body, self.film.clock.moment(0))
+        c, s = np.cos(theta), np.sin(theta)
+        turned = outline @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        return turned + np.array([x, y, 0.0]) + apart * lift.distance * np.array(lift.axis)
+
+    def loop_frame(self, time: float) -> float:
+        """The frame of the loop, which may lie between two, that shows a time of the motion (s), also beyond a period.
+
+        Times that are nearer than a millionth of a frame are one, so that a second turn finds its pictures made.
+        """
+        clock = self.film.clock
+        frame = round((time - clock.start) / (clock.end - clock.start) * clock.moving, 6)
+        if clock.repeats:
+            return frame % clock.frames
+        return min(max(frame, 0.0), float(clock.moving))
+
+    @cached_property
+    def top(self) -> float:
+        """The highest point along the normal of the plane (m)."""
+        return float(self.film.space.all[:, 2].max())
+
+    def stand(self, azimuth: float = 0.0, elevation: float = 0.0, strip: bool = True, arrows: bool = False) -> Stand:
+        """The stand that holds the machine, turned by so many degrees from that of the shot, with room for words."""
+        film = self.forces if arrows and self.forces is not None else self.film
+        at = angles(film.shot.camera, film.parts.mount, film.aspect)
+        turned = at[0] + np.radians(azimuth), min(at[1] + np.radians(elevation), np.radians(85))
+        empty = layout.above(film.aspect), layout.below(film.aspect, strip and bool(self.curves))
+        camera = film.shot.camera
+        view = View(float(turned[0]), float(turned[1]), camera.lens, min(camera.margin, MARGIN), empty, film.aspect)
+        return cameras.raised(cameras.stand(film.subject, self.up, view), self.up, self.top)
+
+    def camera(self, stand: Stand, at: float) -> CameraPose:
+        """A camera at a stand, which goes along with what is followed."""
+        sharp = self.film.subject.few
+        return cameras.posed(stand, self.up, sharp, self.film.shot.camera.blur, self.film.way(at))
+
+    def picture(self, stand: Stand, time: float, forces: bool = False, grown: float = 0.0) -> Picture:
+        """The machine at a time of the motion (s), from a stand."""
+        at = self.loop_frame(time)
+        forces = forces and self.forces is not None
+        return Picture(at=at, camera=self.camera(stand, at), forces=forces, grown=grown if forces else 0.0)
+
+    def moving(self, seconds: float) -> float:
+        """Seconds of a move, as far as the budget of pictures lets it take them."""
+        return self.whole(max(seconds * self.scale, 3 * self.step / self.fps))
+
+    def whole(self, seconds: float) -> float:
+        """The nearest seconds that are whole steps of pictures, at least one."""
+        each = self.step / self.fps
+        return each * max(1, round(seconds / each))
+
+    def going(self, time: float, rate: float, strip: bool = True, **more: object) -> Over:
+        """What lies over a picture that moves: how fast time passes, and the strip with its playhead."""
+        over = Over(rate=rate_words(rate, self.say), strip=1.0 if strip and self.curves else 0.0, now=time)
+        return msgspec.structs.replace(over, **more)

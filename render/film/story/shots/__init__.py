@@ -1,0 +1,1 @@
+"""The shots of a story, a file each; they are chosen and timed from the files of a mechanism."""

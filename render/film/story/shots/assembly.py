@@ -1,0 +1,84 @@
+"""The assembly: parts lift apart in the order in which they are put together, get their names, and settle in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from render.film.camera import Subject
+from render.film.composing.filling import View
+from render.film.story import cameras, layout
+from render.film.story.cameras import Stand
+from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
+from render.film.story.ramp import eased
+from render.film.story.scenery import MARGIN, Scenery
+from render.film.story.shots.leaders import leaders
+from shared.contract.quantity import written
+
+WHOLE, LIFTS, APART, SETTLED = 0.5, 1.7, 3.2, 0.5
+"""Seconds: as a whole, coming apart (and together), apart, and as a whole again."""
+EACH = 0.45
+"""Part of the time of coming apart that each layer takes."""
+LYING, STANDING = (12.0, -14.0), (-22.0, 10.0)
+"""Azimuth and elevation (degrees) beside those of the shot: from lower down what lies is seen to be in layers, from
+the side what stands.
+"""
+
+
+def assembly(scenery: Scenery) -> Shot | None:
+    """The assembly; None of a machine of one layer."""
+    if not any(lift.distance for lift in scenery.lifts):
+        return None
+    lifts, move = scenery.lifts, scenery.moving(LIFTS)
+    layers = lifts[-1].order or 1
+    stand, begin = _stand(scenery), scenery.film.clock.start
+    camera = scenery.camera(stand, 0.0)
+    whole, rests = scenery.whole(WHOLE), scenery.whole(APART)
+    out = whole + move
+    back = out + rests
+    seconds = back + move + SETTLED
+
+    def apart(s: float) -> float:
+        """How far all is apart, 0 .. 1: what came last goes first, and comes back last."""
+        return min(max((s - whole) / move, 0.0), 1.0, max((back + move - s) / move, 0.0))
+
+    def picture(s: float) -> Picture:
+        part = round(apart(s), 6)
+        placed = []
+        for lift in lifts:
+            delay = (1 - lift.order / layers) * (1 - EACH)
+            height = lift.distance * eased((part - delay) / EACH)
+            if height > 0:
+                placed.append((lift.name, round(height, 9)))
+        return Picture(at=0.0, camera=camera, lifts=tuple(sorted(placed)), bare=True)
+
+    lines, text = leaders(scenery, camera), _caption(scenery)
+
+    def over(s: float) -> Over:
+        return Over(
+            leaders=lines, leaders_shown=shown_in(s, out - 0.15, back + 0.1, 0.4), caption=text,
+            caption_shown=shown_in(s, out - 0.3, back + 0.3),
+        )  # fmt: skip
+
+    captions = (Caption(out - 0.3, back + 0.3, text),)
+    return Shot("assembly", scenery.say("assembly"), seconds, picture, over, lambda s: begin, captions)
+
+
+def _caption(scenery: Scenery) -> str:
+    motion, count = scenery.film.motion, len(scenery.lifts)
+    if count == 1:
+        return scenery.say("together_one")
+    moving = sum(body.mass for body in motion.bodies.values())
+    return scenery.say("together", count=str(count), mass=written(moving, "kg"))
+
+
+def _stand(scenery: Scenery) -> Stand:
+    """A stand that holds the machine as it is, and apart."""
+    film = scenery.film
+    lies = film.parts.mount.kind == "desk"
+    azimuth, elevation = LYING if lies else STANDING
+    points = np.concatenate([scenery.piece(lift, part) for lift in scenery.lifts for part in (0.0, 1.0)])
+    subject = Subject(points, np.zeros((0, 3)), np.zeros((0, 3)), points)
+    at = scenery.stand(azimuth, elevation, strip=False)
+    empty = layout.above(film.aspect), layout.below(film.aspect, False)
+    view = View(at.azimuth, at.elevation, film.shot.camera.lens, MARGIN, empty, film.aspect)
+    return cameras.raised(cameras.stand(subject, scenery.up, view), scenery.up, float(points[:, 2].max()))

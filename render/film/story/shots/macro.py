@@ -1,0 +1,122 @@
+"""A close look along one joint with a shallow depth, while the machine moves slowly."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from render.film.camera import angles, point
+from render.film.framing import half_field, in_studio
+from render.film.poses import Moment
+from render.film.story import cameras
+from render.film.story.cameras import Stand, between, raised
+from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
+from render.film.story.ramp import Ramp, eased
+from render.film.story.scenery import Scenery
+from render.film.story.words import plain
+from shared.contract.quantity import written
+
+SECONDS, MOVES = 4.4, 3.8
+"""Of the shot, and of its move."""
+LENS, WIDE = 90.0, 0.36
+"""mm, and the width of what is seen, in sizes of the machine."""
+SLOWER = 0.4
+"""The rate beside that of the loop."""
+FOLLOWED = 0.85
+"""How much of the joint's way the camera goes."""
+LYING, STANDING = ((-34.0, 34.0), (14.0, 44.0)), ((-40.0, 16.0), (6.0, 26.0))
+"""Azimuth and elevation (degrees) at the start and at the end of the move."""
+
+
+def macro(scenery: Scenery) -> Shot | None:
+    """The macro; None of a machine without joints."""
+    name = _joint(scenery)
+    if name is None:
+        return None
+    clock, move = scenery.film.clock, scenery.moving(MOVES)
+    rate = SLOWER * clock.rate
+    begin = clock.start if clock.repeats else max(clock.start, _busy(scenery) - rate * move / 2)
+    ramp = Ramp(begin, ((move * 0.75, rate, rate), (move * 0.25, rate, 0.0)))
+    stands = _stands(scenery)
+
+    def picture(s: float) -> Picture:
+        time = ramp.at(min(s, move))
+        at = scenery.loop_frame(time)
+        a, b = (_aimed(scenery, stand, _place(scenery, name, at)) for stand in stands)
+        camera = cameras.focused(between(a, b, eased(s / move)), scenery.up, scenery.blur)
+        return Picture(at=at, camera=camera)
+
+    text = _caption(scenery, name)
+
+    def over(s: float) -> Over:
+        shown = shown_in(s, 0.5, SECONDS - 0.2)
+        return scenery.going(
+            ramp.at(s), ramp.rate(s) if s < move else 0.0, strip=False, caption=text, caption_shown=shown
+        )
+
+    captions = (Caption(0.5, SECONDS - 0.2, text),)
+    return Shot("macro", scenery.say("macro"), SECONDS, picture, over, ramp.at, captions)
+
+
+def _busy(scenery: Scenery) -> float:
+    """When what the story is about happens (s)."""
+    return scenery.reasons[0].time if scenery.reasons else scenery.film.clock.start
+
+
+def _joint(scenery: Scenery) -> str | None:
+    """The joint that is asked for; else of those on top the one of the event, or that carries most."""
+    joints = scenery.film.motion.joints
+    if scenery.wishes.joint is not None:
+        return scenery.wishes.joint
+    if not joints:
+        return None
+    tops = {name: scenery.film.heights.label(name, Moment(scenery.film.clock.start, 0))[2] for name in joints}
+    first = scenery.reasons[0].joint if scenery.reasons else ""
+    stack = scenery.top - min(tops.values())
+
+    def worth(name: str) -> tuple[bool, bool, bool, float]:
+        joint = joints[name]
+        on_top = tops[name] >= scenery.top - 0.35 * stack - 1e-9
+        return on_top, joint.pair == "pin", name == first, float(np.hypot(joint.fx, joint.fy).max())
+
+    return max(joints, key=worth)
+
+
+def _place(scenery: Scenery, name: str, at: float) -> tuple[float, float, float]:
+    """Where the joint is at a frame of the loop, for a camera that does not follow all of its way (m, world)."""
+    moment = scenery.film.clock.moment(at)
+    x, y, z = scenery.film.heights.label(name, Moment(moment.time, 0))
+    joint = scenery.film.motion.joints[name]
+    middle = np.array([np.mean(joint.x), np.mean(joint.y)])
+    away = scenery.film.way(at).any()
+    part = 1.0 if away else FOLLOWED
+    x, y = middle + part * (np.array([x, y]) - middle)
+    return float(x), float(y), z
+
+
+def _stands(scenery: Scenery) -> tuple[Stand, Stand]:
+    film = scenery.film
+    lies = film.parts.mount.kind == "desk"
+    azimuths, elevations = LYING if lies else STANDING
+    base = angles(film.shot.camera, film.parts.mount, film.aspect)[0]
+    size = min(scenery.across, film.size)
+    distance = WIDE * size / (2 * half_field(LENS, max(film.aspect, 1.0))[0])
+    first, last = (
+        Stand((0.0, 0.0, 0.0), base + math.radians(a), math.radians(e), distance * part, LENS)
+        for a, e, part in zip(azimuths, elevations, (1.0, 0.86), strict=True)
+    )
+    return first, last
+
+
+def _aimed(scenery: Scenery, stand: Stand, place: tuple[float, float, float]) -> Stand:
+    target = point(in_studio(np.array(place), scenery.up))
+    return raised(Stand(target, stand.azimuth, stand.elevation, stand.distance, stand.lens), scenery.up, scenery.top)
+
+
+def _caption(scenery: Scenery, name: str) -> str:
+    joint = scenery.film.motion.joints[name]
+    most = float(np.hypot(joint.fx, joint.fy).max())
+    if most <= 0:
+        return scenery.say("joint", name=plain(name))
+    return scenery.say("carries", name=plain(name), amount=written(most, "N"))

@@ -1,0 +1,109 @@
+"""A story: shots one after the other, what each of its frames shows, and which time of the motion it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import msgspec
+
+from render.film.story.curves import Curve
+from render.film.story.frame import Caption, Over, Picture, Shot
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A shot on the clock of the film: frames ``first`` .. ``end`` - 1."""
+
+    shot: Shot
+    first: int
+    end: int
+
+
+@dataclass(frozen=True)
+class Story:
+    """Shots one after the other."""
+
+    mechanism: str
+    fps: int
+    step: int
+    """Frames for which a picture that moves stands."""
+    shots: Sequence[Shot]
+    curves: Sequence[Curve] = ()
+    """Of the strip."""
+
+    @cached_property
+    def placed(self) -> list[Placed]:
+        """The shots with their frames."""
+        out, at = [], 0
+        for shot in self.shots:
+            count = max(1, round(shot.seconds * self.fps))
+            out.append(Placed(shot, at, at + count))
+            at += count
+        return out
+
+    @property
+    def total(self) -> int:
+        """Frames of the film."""
+        return self.placed[-1].end
+
+    @property
+    def seconds(self) -> float:
+        """Seconds of the film."""
+        return self.total / self.fps
+
+    def at(self, frame: int) -> Placed:
+        """The shot of a frame."""
+        return next(placed for placed in self.placed if frame < placed.end)
+
+    def picture(self, frame: int) -> Picture:
+        """What Blender makes for a frame."""
+        placed = self.at(frame)
+        return placed.shot.picture(self._second(placed, frame, self.step))
+
+    def around(self, frame: int) -> tuple[Picture, Picture, Picture]:
+        """That of a frame between those that a shutter sees before and after, none of another shot."""
+        placed = self.at(frame)
+        here = placed.first + (frame - placed.first) // self.step * self.step
+        near = (max(here - 1, placed.first), here, min(here + 1, placed.end - 1))
+        before, now, after = (placed.shot.picture(self._second(placed, k, 1)) for k in near)
+        return before, now, after
+
+    def over(self, frame: int) -> Over:
+        """What is laid over it; words go on ones, and the playhead with the picture."""
+        placed = self.at(frame)
+        over = placed.shot.over(self._second(placed, frame, 1))
+        still = placed.shot.over(self._second(placed, frame, self.step))
+        return msgspec.structs.replace(over, now=still.now, rate=still.rate)
+
+    def model_time(self, s: float) -> float:
+        """Time of the motion (s) at film second ``s``, 0 <= ``s`` <= ``seconds``.
+
+        It is monotone within a shot, jumps at cuts, and goes on beyond a period that begins anew.
+        """
+        frame = min(max(int(s * self.fps), 0), self.total - 1)
+        placed = self.at(frame)
+        return placed.shot.model(s - placed.first / self.fps)
+
+    @cached_property
+    def pictures(self) -> list[Picture]:
+        """All different pictures."""
+        return list(dict.fromkeys(self.picture(frame) for frame in range(self.total)))
+
+    @property
+    def captions(self) -> list[Caption]:
+        """Captions on the film's clock."""
+        return [
+            Caption(placed.first / self.fps + caption.start, placed.first / self.fps + caption.end, caption.text)
+            for placed in self.placed
+            for caption in placed.shot.captions
+        ]
+
+    @property
+    def chapters(self) -> list[tuple[float, float, str]]:
+        """Start and end (s) of each shot, and its name for players."""
+        return [(p.first / self.fps, p.end / self.fps, p.shot.chapter) for p in self.placed]
+
+    def _second(self, placed: Placed, frame: int, step: int) -> float:
+        return (frame - placed.first) // step * step / self.fps

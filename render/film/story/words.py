@@ -1,0 +1,103 @@
+"""Words of a story, in the language that its shot asks for: a table, so that another language is another column."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from shared.contract.quantity import figures
+from shared.stage.errors import UserError
+from shared.stage.suggestions import did_you_mean
+
+TABLE: dict[str, dict[str, str]] = {
+    "en": {
+        "title": "Title",
+        "assembly": "Assembly",
+        "motion": "Motion",
+        "macro": "Close up",
+        "reason": "Why",
+        "last": "The machine",
+        "compare": "Side by side",
+        "frame": "frame",
+        "together": "{count} pieces, put together from below; {mass} of them move.",
+        "together_one": "One piece.",
+        "repeats": "It repeats every {time}.",
+        "lasts": "All of it takes {time}.",
+        "carries": "Joint {name} carries up to {amount}.",
+        "joint": "Joint {name}",
+        "impact": "Here {name} hits: {amount}.",
+        "turns_back": "Here the {name} turns back.",
+        "turns_back_force": "Here the {name} turns back: {force} in {joint}.",
+        "event": "Here: {name}.",
+        "event_force": "Here: {name}; {force} in {joint}.",
+        "effort": "Here the {name} gives most: {amount}.",
+        "reaction": "Here the load of joint {name} peaks: {amount}.",
+        "speed": "Here {name} is fastest: {amount}.",
+        "stopped": "time stands still",
+        "real": "real time",
+        "slower": "{factor} times slower",
+        "faster": "{factor} times faster",
+        "difference": "{curve}: {first} with {a}, {second} with {b}.",
+    },
+    "de": {
+        "title": "Titel",
+        "assembly": "Zusammenbau",
+        "motion": "Bewegung",
+        "macro": "Aus der Nähe",
+        "reason": "Warum",
+        "last": "Die Maschine",
+        "compare": "Nebeneinander",
+        "frame": "Gestell",
+        "together": "{count} Teile, von unten nach oben; {mass} davon bewegen sich.",
+        "together_one": "Ein Teil.",
+        "repeats": "Das wiederholt sich alle {time}.",
+        "lasts": "Alles zusammen dauert {time}.",
+        "carries": "Gelenk {name} trägt bis zu {amount}.",
+        "joint": "Gelenk {name}",
+        "impact": "Hier stößt {name} an: {amount}.",
+        "turns_back": "Hier kehrt {name} um.",
+        "turns_back_force": "Hier kehrt {name} um: {force} in {joint}.",
+        "event": "Hier: {name}.",
+        "event_force": "Hier: {name}; {force} in {joint}.",
+        "effort": "Hier gibt {name} am meisten: {amount}.",
+        "reaction": "Hier ist Gelenk {name} am stärksten belastet: {amount}.",
+        "speed": "Hier ist {name} am schnellsten: {amount}.",
+        "stopped": "die Zeit steht",
+        "real": "Echtzeit",
+        "slower": "{factor}-mal langsamer",
+        "faster": "{factor}-mal schneller",
+        "difference": "{curve}: {first} bei {a}, {second} bei {b}.",
+    },
+}
+"""By language, then by what is said; every language says the same things with the same names in braces."""
+SAME = 0.02
+"""Rates that differ from real time by less are real time."""
+
+
+def words_in(language: str, mechanism: str) -> Callable[..., str]:
+    """``say(key, name=...)`` in a language; raises UserError for a language that the table has not."""
+    if language not in TABLE:
+        raise UserError(
+            f"{mechanism}: shot.story.language is '{language}'; there is: {', '.join(TABLE)}"
+            f"{did_you_mean(language, list(TABLE))}"
+        )
+    table = TABLE[language]
+
+    def say(key: str, **names: str) -> str:
+        return table[key].format(**names)
+
+    return say
+
+
+def rate_words(rate: float, say: Callable[..., str]) -> str:
+    """How fast time passes, in two figures: a ramp is readable while it changes."""
+    if rate <= 1e-6:
+        return say("stopped")
+    if abs(rate - 1) < SAME:
+        return say("real")
+    factor = 1 / rate if rate < 1 else rate
+    return say("slower" if rate < 1 else "faster", factor=figures(factor, 2 if factor < 100 else 1))
+
+
+def plain(name: str) -> str:
+    """A name as it is said: ``coupler_pin`` is coupler pin."""
+    return name.replace("_", " ")

@@ -1,0 +1,1 @@
+"""A story as a film: its pictures rendered, what lies over them drawn, captions and chapters."""

@@ -1,0 +1,261 @@
+"""A frame of a story: what was rendered, and over it title, caption, names, numbers and strip."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import msgspec
+
+from render.film.story import layout
+from render.film.story.frame import Leader, Note, Over
+from render.frames.story.letters import CARD, INK, LINE, QUIET, card, fitted, font
+from render.frames.story.strip import Strip
+from render.letters import width_of
+
+DARK, SOFT = 0.36, 1 / 42
+"""Light that is left behind a title, and how soft the picture is there, in its width."""
+NAME, SAID = 1 / 9.5, 1 / 26
+"""Heights of letters of a title, in the picture's shorter side."""
+ACCENT = (255, 142, 62)
+LEFT = 0.085
+
+
+@dataclass
+class Drawing:
+    """Lays what a story says over its pictures, which are ``wide`` x ``high`` pixels."""
+
+    wide: int
+    high: int
+    name: str
+    said: tuple[str, ...]
+    """Sentences under the name in the title."""
+    facts: str
+    """The line under the name at the end."""
+    strip: Strip | None
+    below: int = 0
+    """Pixels that the strip takes below the words."""
+    _kept: tuple[Over, Any] | None = None
+
+    @property
+    def unit(self) -> int:
+        """The picture's shorter side."""
+        return min(self.wide, self.high)
+
+    def frame(self, picture: Any, over: Over) -> Any:
+        """The picture (RGB) with all that lies over it."""
+        page = self._titled(picture, over) if over.title > 0 or (over.focus < 1 and over.title) else picture.copy()
+        layer = self._layer(over)
+        if layer is not None:
+            page.paste(layer, (0, 0), layer)
+        if over.strip > 0 and self.strip is not None:
+            strip = self.strip.drawn(over.now)
+            page.paste(strip, (0, self.high - strip.height), _faded(strip, over.strip))
+        if over.dark > 0:
+            from PIL import Image
+
+            page = Image.blend(page, Image.new("RGB", page.size, CARD), over.dark)
+        return page
+
+    def _titled(self, picture: Any, over: Over) -> Any:
+        from PIL import Image
+
+        soft = _soft(picture.tobytes(), picture.size)
+        page = Image.blend(soft, picture, over.focus)
+        words = self._title_words
+        page.paste(words, (0, 0), _faded(words, over.title))
+        return page
+
+    @property
+    def _title_words(self) -> Any:
+        if self.wide * self.high > 2.5e6:
+            return _title(self.wide, self.high, self.name, self.said)
+        return _title(3 * self.wide, 3 * self.high, self.name, self.said).reduce(3)
+
+    def _layer(self, over: Over) -> Any:
+        """All words, on nothing; None without any."""
+        if self._kept is None or self._kept[0] != msgspec.structs.replace(over, now=0.0):
+            self._kept = msgspec.structs.replace(over, now=0.0), self._fine_layer(over)
+        return self._kept[1]
+
+    def _fine_layer(self, over: Over) -> Any:
+        """Drawn larger, as small letters would stand unevenly, and averaged."""
+        times = 3 if self.wide * self.high <= 1e6 else 2 if self.wide * self.high <= 2.5e6 else 1
+        fine = Drawing(times * self.wide, times * self.high, self.name, self.said, self.facts, None)
+        fine.below = times * (self.strip.tall if over.strip > 0 and self.strip else 0)
+        layer = fine._drawn(over)
+        return layer.reduce(times) if layer is not None and times > 1 else layer
+
+    def _drawn(self, over: Over) -> Any:
+        """The words at this size."""
+        from PIL import Image, ImageDraw
+
+        if not (
+            over.rate or over.caption_shown > 0 or over.leaders_shown > 0 or over.notes_shown > 0 or over.ending > 0
+        ):
+            return None
+        page = Image.new("RGBA", (self.wide, self.high), (0, 0, 0, 0))
+        draw = ImageDraw.Draw(page)
+        if over.rate:
+            self._rate(draw, over.rate)
+        for leader in over.leaders if over.leaders_shown > 0 else ():
+            self._leader(draw, leader, over.leaders_shown)
+        if over.notes_shown > 0:
+            self._notes(draw, over.notes, over.notes_shown)
+        if over.caption and over.caption_shown > 0:
+            self._caption(draw, over)
+        if over.ending > 0:
+            ending = _ending(self.wide, self.high, self.name, self.facts)
+            page.paste(ending, (0, 0), _faded(ending, over.ending))
+        return page
+
+    def _rate(self, draw: Any, words: str) -> None:
+        size, edge = layout.SMALL * self.unit, layout.EDGE * self.unit
+        wide = size * width_of(words)
+        card(draw, (edge, edge, edge + wide + 1.2 * size, edge + 1.75 * size), size)
+        draw.text((edge + 0.6 * size, edge + 0.875 * size), words, fill=(*INK, 255), font=font(size), anchor="lm")
+
+    def _caption(self, draw: Any, over: Over) -> None:
+        """In the middle over the strip, or over where it would be."""
+        size, lines = caption_lines(over.caption, self.wide, self.high)
+        low = self.high - self.below - 0.35 * layout.EDGE * self.unit
+        half = max(size * width_of(line) for line in lines) / 2 + 0.7 * size
+        top, x = low - (LINE * len(lines) + 0.5) * size, self.wide / 2
+        card(draw, (x - half, top, x + half, low), size, over.caption_shown)
+        for k, line in enumerate(lines):
+            y = top + (0.25 + LINE * (k + 0.5)) * size
+            ink = (*INK, round(255 * over.caption_shown))
+            draw.text((x, y), line, fill=ink, font=font(size), anchor="mm")
+
+    def _leader(self, draw: Any, leader: Leader, shown: float) -> None:
+        size, edge = layout.SMALL * self.unit * 1.08, layout.EDGE * self.unit
+        at, y = (leader.x * self.wide, leader.y * self.high), leader.height * self.high
+        words = size * width_of(leader.words, True)
+        wide = words + (0.5 * size + size * width_of(leader.quiet) if leader.quiet else 0.0)
+        left = self.wide - edge - wide - 1.1 * size if leader.right else edge
+        near = left - 0.1 * size if leader.right else left + wide + 1.2 * size
+        alpha = round(255 * shown)
+        way = (near + (at[0] - near) * min(1.0, 1.4 * shown), y + (at[1] - y) * min(1.0, 1.4 * shown))
+        thin = max(1, round(self.unit / 360))
+        draw.line((near, y, *way), fill=(*CARD, round(150 * shown)), width=3 * thin)
+        draw.line((near, y, *way), fill=(*INK, alpha), width=thin)
+        dot = 0.008 * self.unit
+        draw.ellipse((way[0] - dot, way[1] - dot, way[0] + dot, way[1] + dot), fill=(*INK, alpha))
+        card(draw, (left, y - 0.85 * size, left + wide + 1.1 * size, y + 0.85 * size), size, shown)
+        draw.text((left + 0.55 * size, y), leader.words, fill=(*INK, alpha), font=font(size, True), anchor="lm")
+        if leader.quiet:
+            at_mass = (left + 1.05 * size + words, y)
+            draw.text(at_mass, leader.quiet, fill=(*QUIET, alpha), font=font(size), anchor="lm")
+
+    def _notes(self, draw: Any, notes: tuple[Note, ...], shown: float) -> None:
+        """Beyond the tips of arrows, within the picture, and apart from each other."""
+        size, edge = layout.SMALL * self.unit, layout.EDGE * self.unit
+        low = self.high - self.below - 0.12 * self.unit
+        taken: list[tuple[float, float, float, float]] = []
+        for note in notes:
+            wide, high = size * width_of(note.words, True) + 1.1 * size, 1.6 * size
+            x = note.x * self.wide + note.dx * (wide / 2 + 1.2 * size)
+            y = note.y * self.high + note.dy * (high / 2 + 1.2 * size)
+            x = min(max(x, edge + wide / 2), self.wide - edge - wide / 2)
+            y = min(max(y, edge + 2.2 * size + high / 2), low - high / 2)
+            for _ in range(6):
+                box = (x - wide / 2, y - high / 2, x + wide / 2, y + high / 2)
+                if not any(_overlap(box, other) for other in taken):
+                    break
+                y += -1.15 * high if y > 0.4 * self.high else 1.15 * high
+            box = (x - wide / 2, y - high / 2, x + wide / 2, y + high / 2)
+            taken.append(box)
+            card(draw, box, size, shown)
+            ink = tuple(int(note.colour[k : k + 2], 16) for k in (1, 3, 5))
+            draw.text((x, y), note.words, fill=(*ink, round(255 * shown)), font=font(size, True), anchor="mm")
+
+
+def caption_lines(text: str, wide: int, high: int) -> tuple[float, list[str]]:
+    """Height of letters (pixels) and lines of a caption; raises ValueError where it is too long for the frame."""
+    unit = min(wide, high)
+    return fitted(text, layout.LETTER * unit, wide - 2 * layout.EDGE * unit - 1.4 * layout.LETTER * unit, layout.LINES)
+
+
+def png(page: Any) -> bytes:
+    """A picture as a PNG that is made fast: it lives until ffmpeg has it."""
+    buffer = io.BytesIO()
+    page.save(buffer, format="PNG", compress_level=1)
+    return buffer.getvalue()
+
+
+def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+
+
+def _faded(layer: Any, shown: float) -> Any:
+    """The alpha of a layer, as far as it is shown."""
+    alpha = layer.getchannel("A")
+    return alpha if shown >= 1 else alpha.point([round(shown * value) for value in range(256)])
+
+
+@lru_cache(maxsize=1)
+def _soft(content: bytes, size: tuple[int, int]) -> Any:
+    """The picture, dark and out of focus."""
+    from PIL import Image, ImageFilter
+
+    picture = Image.frombytes("RGB", size, content).filter(ImageFilter.GaussianBlur(SOFT * size[0]))
+    return picture.point([round(DARK * value) for value in range(256)] * 3)
+
+
+@lru_cache(maxsize=2)
+def _title(wide: int, high: int, name: str, said: tuple[str, ...]) -> Any:
+    """Name, a short line, and as many whole sentences as there is room for."""
+    from PIL import Image, ImageDraw
+
+    unit, page = min(wide, high), Image.new("RGBA", (wide, high), (*INK, 0))
+    draw, room = ImageDraw.Draw(page), wide * (1 - 2 * LEFT)
+    large = min(NAME * unit, room / width_of(name, True))
+    size, most = SAID * unit, max(3, round(3 * high / wide * 16 / 9))
+    lines = _sentences(said, size, room, most)
+    x, y = wide * LEFT, high * 0.5 - 0.02 * unit * len(lines)
+    draw.text((x, y - 0.03 * unit), name, fill=(*INK, 255), font=font(large, True), anchor="ls")
+    draw.rectangle((x, y, x + 0.107 * unit, y + max(1, round(unit / 240))), fill=(*ACCENT, 255))
+    for k, line in enumerate(lines):
+        draw.text(
+            (x, y + 0.055 * unit + LINE * size * (k + 0.5)), line, fill=(*QUIET, 255), font=font(size), anchor="lm"
+        )
+    return page
+
+
+def _sentences(said: tuple[str, ...], size: float, room: float, most: int) -> list[str]:
+    """The lines of as many sentences as fit into ``most`` lines."""
+    for count in range(len(said), 0, -1):
+        try:
+            return fitted(" ".join(said[:count]), size, room, most)[1]
+        except ValueError:
+            continue
+    return []
+
+
+@lru_cache(maxsize=2)
+def _ending(wide: int, high: int, name: str, facts: str) -> Any:
+    """The name and a line of facts at the lower left, on a shade."""
+    from PIL import Image, ImageDraw
+
+    unit, page = min(wide, high), Image.new("RGBA", (wide, high), (*CARD, 0))
+    draw, room = ImageDraw.Draw(page), wide * (1 - 2 * LEFT)
+    small = 0.036 * unit
+    try:
+        small, lines = fitted(facts, small, room, 2 if wide > high else 4)
+    except ValueError:
+        lines = []
+    large = min(0.075 * unit, room / width_of(name, True))
+    deep = 1.9 * large + LINE * small * len(lines) + 0.06 * unit
+    shade = 1.5 * deep
+    for k in range(round(shade)):
+        alpha = min(1.0, 1.4 * k / shade)
+        draw.line(
+            (0, high - shade + k, wide, high - shade + k), fill=(*CARD, round(205 * alpha * alpha * (3 - 2 * alpha)))
+        )
+    x, y = wide * LEFT, high - 0.05 * unit - LINE * small * len(lines)
+    draw.text((x, y - 0.02 * unit), name, fill=(*INK, 255), font=font(large, True), anchor="ls")
+    for k, line in enumerate(lines):
+        draw.text((x, y + LINE * small * (k + 0.5)), line, fill=(*QUIET, 255), font=font(small), anchor="lm")
+    return page

@@ -1,0 +1,155 @@
+"""The strip under a story: a panel for each curve, with a playhead at the time of the frame and marks of events."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from render.film.story import layout
+from render.film.story.curves import Curve
+from render.film.story.words import plain
+from render.frames.story.letters import CARD, CARD_ALPHA, INK, QUIET, font
+from render.letters import width_of
+from shared.contract.quantity import live
+
+FINE = 3
+"""Curves are drawn so many times larger."""
+POINTS = 500
+NARROW = 1.2
+"""Pictures with a smaller aspect have room for two panels."""
+
+
+@dataclass
+class Strip:
+    """The strip of one story, for pictures of a size in pixels."""
+
+    curves: Sequence[Curve]
+    marks: Sequence[float]
+    """Times (s) of events."""
+    start: float
+    end: float
+    repeats: bool
+    wide: int
+    high: int
+    others: Sequence[Curve] = ()
+    """Curves of another variant, each drawn thinner over that of the same place."""
+
+    @cached_property
+    def unit(self) -> int:
+        """The picture's shorter side."""
+        return min(self.wide, self.high)
+
+    @cached_property
+    def tall(self) -> int:
+        """Pixels of its height."""
+        return round(layout.STRIP * self.unit)
+
+    @cached_property
+    def shown(self) -> list[Curve]:
+        """As many curves as there is room for."""
+        return list(self.curves)[: 2 if self.wide / self.high < NARROW else 3]
+
+    @cached_property
+    def panels(self) -> list[tuple[float, float, float, float]]:
+        """Left, upper, right and lower edge of each plot (pixels of the strip)."""
+        edge, gap = layout.EDGE * self.unit, 0.05 * self.unit
+        each = (self.wide - 2 * edge - gap * (len(self.shown) - 1)) / max(len(self.shown), 1)
+        top, low = 1.75 * layout.SMALL * self.unit, self.tall - 0.6 * layout.EDGE * self.unit
+        return [(edge + k * (each + gap), top, edge + k * (each + gap) + each, low) for k in range(len(self.shown))]
+
+    def drawn(self, time: float) -> Any:
+        """The strip (RGBA) with its playhead at a time of the motion (s)."""
+        from PIL import Image, ImageDraw
+
+        page = self._still.copy()
+        span = self.end - self.start
+        inside = self.start + (time - self.start) % span if self.repeats else min(max(time, self.start), self.end)
+        size = layout.SMALL * self.unit
+        head = Image.new("RGBA", (FINE * self.wide, FINE * self.tall), (0, 0, 0, 0))
+        fine, draw = ImageDraw.Draw(head), ImageDraw.Draw(page)
+        for curve, panel, (low, high), write in zip(self.shown, self.panels, self._ranges, self._writers, strict=True):
+            x = panel[0] + (inside - self.start) / span * (panel[2] - panel[0])
+            value = float(np.interp(inside, curve.time, curve.values))
+            y = panel[3] - (value - low) / (high - low) * (panel[3] - panel[1])
+            line, dot = max(1.0, self.unit / 360) / 2, 0.011 * self.unit
+            fine.rectangle(_times((x - line, panel[1], x + line, panel[3])), fill=(*INK, 235))
+            fine.ellipse(_times((x - dot, y - dot, x + dot, y + dot)), fill=(*INK, 255))
+            fine.ellipse(_times((x - 0.6 * dot, y - 0.6 * dot, x + 0.6 * dot, y + 0.6 * dot)), fill=_rgb(curve.colour))
+            draw.text((panel[2], 0.45 * size), write(value), fill=INK, font=font(size, True), anchor="ra")
+        page.alpha_composite(head.resize(page.size, Image.Resampling.BOX))
+        return page
+
+    @cached_property
+    def _writers(self) -> list[Any]:
+        return [live(curve.values.tolist(), curve.unit, 3) for curve in self.shown]
+
+    @cached_property
+    def _ranges(self) -> list[tuple[float, float]]:
+        """Lowest and highest value of each panel; 0 is in it."""
+        out = []
+        for k, curve in enumerate(self.shown):
+            both = [curve.values, *([self.others[k].values] if k < len(self.others) else [])]
+            low = min(0.0, *(float(values.min()) for values in both))
+            high = max(0.0, *(float(values.max()) for values in both))
+            out.append((low - 0.04 * (high - low), high + 0.04 * (high - low)))
+        return out
+
+    @cached_property
+    def _still(self) -> Any:
+        """Everything that does not move."""
+        from PIL import Image, ImageDraw
+
+        fine = Image.new("RGBA", (FINE * self.wide, FINE * self.tall), (0, 0, 0, 0))
+        draw = ImageDraw.Draw(fine)
+        for k, (curve, panel, span) in enumerate(zip(self.shown, self.panels, self._ranges, strict=True)):
+            self._axes(draw, panel, span)
+            if k < len(self.others):
+                self._curve(draw, self.others[k], panel, span, 0.8, (*QUIET, 255))
+            self._curve(draw, curve, panel, span, 1.5, _rgb(curve.colour))
+        page = Image.new("RGBA", (self.wide, self.tall), (*CARD, round(255 * CARD_ALPHA)))
+        page.alpha_composite(fine.resize(page.size, Image.Resampling.BOX))
+        words, size = ImageDraw.Draw(page), layout.SMALL * self.unit
+        for curve, panel, write in zip(self.shown, self.panels, self._writers, strict=True):
+            room = panel[2] - panel[0] - size * (width_of(write(float(np.abs(curve.values).max())), True) + 0.8)
+            name = plain(curve.name)
+            fit = min(size, max(0.6 * size, room / max(width_of(name, True), 1e-9)))
+            words.text((panel[0], 0.45 * size), name, fill=_rgb(curve.colour), font=font(fit, True), anchor="la")
+        return page
+
+    def _axes(self, draw: Any, panel: tuple[float, float, float, float], span: tuple[float, float]) -> None:
+        zero = panel[3] + span[0] / (span[1] - span[0]) * (panel[3] - panel[1])
+        thin = max(1.0, self.unit / 500) / 2
+        draw.rectangle(_times((panel[0], zero - thin, panel[2], zero + thin)), fill=(*QUIET, 110))
+        dash = 0.012 * self.unit
+        for mark in self.marks:
+            x = panel[0] + (mark - self.start) / (self.end - self.start) * (panel[2] - panel[0])
+            for y in np.arange(panel[1], panel[3], 2 * dash):
+                draw.rectangle(_times((x - thin, float(y), x + thin, float(y) + dash)), fill=(*QUIET, 190))
+
+    def _curve(
+        self, draw: Any, curve: Curve, panel: tuple[float, float, float, float], span: tuple[float, float],
+        weight: float, ink: tuple[int, ...],
+    ) -> None:  # fmt: skip
+        """Its highest and lowest values stay, however many times there are."""
+        times = np.linspace(self.start, self.end, POINTS)
+        inside = curve.time[(curve.time >= self.start) & (curve.time <= self.end)]
+        peaks = [curve.time[int(k)] for k in (curve.values.argmin(), curve.values.argmax())]
+        times = np.unique(np.concatenate([times, inside if len(inside) < 4 * POINTS else peaks]))
+        values = np.interp(times, curve.time, curve.values)
+        x = panel[0] + (times - self.start) / (self.end - self.start) * (panel[2] - panel[0])
+        y = panel[3] - (values - span[0]) / (span[1] - span[0]) * (panel[3] - panel[1])
+        points = [(FINE * float(a), FINE * float(b)) for a, b in zip(x, y, strict=True)]
+        draw.line(points, fill=ink, width=max(2, round(FINE * weight * self.unit / 360)), joint="curve")
+
+
+def _times(box: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    a, b, c, d = box
+    return FINE * a, FINE * b, FINE * c, FINE * d
+
+
+def _rgb(colour: str) -> tuple[int, int, int, int]:
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16), 255

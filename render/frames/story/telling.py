@@ -1,0 +1,155 @@
+"""Reads the files of a machine and makes its story: the films it is rendered from, its shots, what is drawn over."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+
+import msgspec
+import numpy as np
+
+from render.film.film import Film
+from render.film.inputs import refuse_missing
+from render.film.story.planned import planned
+from render.film.story.reason import Reason
+from render.film.story.story import Story
+from render.film.story.words import plain
+from render.frames.story.drawing import Drawing, caption_lines
+from render.frames.story.pictures import Around, StoryPictures
+from render.frames.story.strip import Strip
+from render.presets import Preset
+from render.report import description
+from render.report.facts import facts
+from render.report.moments import marks
+from render.report.reasons import reasons
+from shared.contract import Motion, read_motion, read_parts
+from shared.contract.clearance import read_clearance
+from shared.contract.shot import Shot, read_shot, shown
+from shared.contract.spanning import with_rods
+from shared.stage.console import duration
+from shared.stage.errors import UserError
+from shared.stage.paths import Out
+
+SHOWN = {"effort": "forces", "speed": "velocities"}
+"""What arrows show by the kind of what a story stops for; reactions else."""
+FACTS = 4
+"""Facts at the end, at most."""
+MARKS = 8
+"""Events in the strip, at most: more are a pattern of their own."""
+
+
+@dataclass
+class Telling:
+    """A story with all that its film is made of."""
+
+    film: Film
+    forces: Film | None
+    story: Story
+    drawing: Drawing
+
+    def pictures(self, preset: Preset) -> list[StoryPictures]:
+        """The different pictures of the story, in sets of one scene each."""
+        rows: dict[Around, None] = dict.fromkeys(self.row(frame, preset) for frame in range(self.story.total))
+        sets = []
+        for forces, film in ((False, self.film), (True, self.forces)):
+            own = tuple(row for row in rows if row[1].forces == forces)
+            if film is not None and own:
+                what = f"in the story, {'with' if forces else 'without'} arrows"
+                sets.append(StoryPictures(film, preset, rows=own, what=what))
+        return sets
+
+    def row(self, frame: int, preset: Preset) -> Around:
+        """What Blender makes for a frame, between its neighbours where the shutter blurs them."""
+        if preset.motion_blur:
+            return self.story.around(frame)
+        picture = self.story.picture(frame)
+        return picture, picture, picture
+
+    @cached_property
+    def count(self) -> int:
+        """Different pictures."""
+        return len(self.story.pictures)
+
+    def said(self) -> str:
+        """Shots and cost, for people."""
+        loop = self.film.clock.frames
+        shots = ", ".join(f"{placed.shot.name} {placed.shot.seconds:.1f} s" for placed in self.story.placed)
+        return f"{duration(self.story.seconds)}: {shots}; {self.count} pictures, the loop film has {loop}"
+
+
+def telling_of(out: Out, preset: Preset, show: str = "", loop: float = 0.0) -> Telling:
+    """The story of a machine. Raises UserError for what its shot asks of it and cannot be, with the remedy."""
+    refuse_missing(out)
+    shot, parts = read_shot(out.shot), read_parts(out.parts, out.name)
+    motion = read_motion(out.motion, out.name)
+    why = reasons(motion)
+    whole = with_rods(motion, parts)
+    film = Film(whole, parts, shown_plain(shot), out.parts_folder, preset.aspect)
+    chosen = _chosen(shot.story.event, why)
+    arrows = _with_arrows(show or _shows(motion, chosen), film)
+    story = planned(film, arrows, why, preset)
+    clearance = read_clearance(out.clearance) if out.clearance.is_file() else None
+    drawing = _drawing(out, preset, film, story, facts(motion, parts, clearance))
+    _refuse_long(out.name, story, preset)
+    return Telling(film, arrows, story, drawing)
+
+
+def shown_plain(shot: Shot) -> Shot:
+    """The shot without arrows and without words over it: the story has its own."""
+    return msgspec.structs.replace(shot, show=(), title=None)
+
+
+def _chosen(event: str | None, why: list[Reason]) -> Reason | None:
+    return next((reason for reason in why if event is None or event in reason.words), None)
+
+
+def _shows(motion: Motion, reason: Reason | None) -> str:
+    """What arrows show."""
+    if reason is None:
+        return "velocities"
+    show = SHOWN.get(reason.kind, "reactions")
+    carries = any(np.any(joint.fx) or np.any(joint.fy) for joint in motion.joints.values())
+    return show if show != "reactions" or carries else "velocities"
+
+
+def _with_arrows(show: str, film: Film) -> Film | None:
+    """The same film with arrows; None where none is ever seen."""
+    made = Film(film.motion, film.parts, shown(film.shot, show), film.folder, film.aspect)
+    return made if made.arrows.vectors or made.arcs.torques else None
+
+
+def _drawing(out: Out, preset: Preset, film: Film, story: Story, known: list[str]) -> Drawing:
+    words = out.name.replace("_", " ").replace("-", ": ")
+    said = tuple(re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", " ".join(description(out.name).split("\n\n")[0].split())))
+    said = tuple(sentence for sentence in said if sentence != "SI units.")
+    line = plain(" · ".join(known[1 : 1 + FACTS]))
+    return Drawing(
+        wide=preset.width, high=preset.height, name=words[:1].upper() + words[1:], said=said,
+        facts=line[:1].upper() + line[1:], strip=strip_of(film, story, preset),
+    )  # fmt: skip
+
+
+def strip_of(film: Film, story: Story, preset: Preset) -> Strip | None:
+    """The strip of a story; None where it has no curves."""
+    if not story.curves:
+        return None
+    times = sorted({at for at, _ in marks(film.motion)})
+    return Strip(
+        curves=story.curves, marks=times if len(times) <= MARKS else (), start=film.clock.start, end=film.clock.end,
+        repeats=film.clock.repeats, wide=preset.width, high=preset.height,
+    )  # fmt: skip
+
+
+def _refuse_long(mechanism: str, story: Story, preset: Preset) -> None:
+    """Raise UserError for the first caption that is too long for the frame."""
+    for placed in story.placed:
+        for caption in placed.shot.captions:
+            try:
+                caption_lines(caption.text, preset.width, preset.height)
+            except ValueError as error:
+                raise UserError(
+                    f"{mechanism}: the caption of the shot '{placed.shot.name}' is too long for a picture of "
+                    f"{preset.width}x{preset.height}: {error} of 2 ('{caption.text}'); write a shorter "
+                    "shot.story.caption"
+                ) from None

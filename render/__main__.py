@@ -65,6 +65,7 @@ def main() -> int | None:
     reel.add_argument(
         "--show", default="", help="the films that show this; those that show what shot.py says if not given"
     )
+    reel.add_argument("--story", default="explain", help="explain: stories where they are made; loop: none")
     commands.add_parser("overview", help="a table of the runs that its standard input tells of")
     arguments = parser.parse_args()
     if arguments.command == "overview":
@@ -78,7 +79,8 @@ def main() -> int | None:
     if arguments.command == "showreel":
         from render.showreel import showreel
 
-        showreel.run(preset_named(arguments.preset, arguments.aspect), arguments.only, show_words(arguments.show))
+        preset, show = preset_named(arguments.preset, arguments.aspect), show_words(arguments.show)
+        showreel.run(preset, arguments.only, show, arguments.story)
         return None
     name, command = mechanism_name(arguments.name), arguments.command.replace("_", "-")
     if command == "plots":

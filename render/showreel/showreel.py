@@ -7,6 +7,7 @@ from pathlib import Path
 
 from render.blender.scratch import scratch_folder
 from render.film.inputs import named
+from render.frames.story.stage import film_of
 from render.gallery.page import sentences
 from render.presets import Preset
 from render.report import description
@@ -18,15 +19,19 @@ from shared.stage.face import to_run
 from shared.stage.paths import Out, known_name, mechanism_file, mechanism_names, out_root, variants_in
 
 NAME = "showreel"
+STORIES = ("explain", "loop")
 
 
-def run(preset: Preset, only: str = "", show: str = "") -> Path:
-    """Join the finished films of a preset in alphabetical order, or those of ``only`` in its order.
+def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") -> Path:
+    """Join the finished films of a preset in alphabetical order, or those of ``only`` in its order: stories where they
+    are made, else loops; with ``story`` "loop" loops alone.
 
     Raises UserError if there is none, if one of ``only`` is missing, or if a film does not decode.
     """
     names = [known_name(word) for word in only.replace(",", " ").split()] or _all_names()
-    films = {name: film for name in names if (film := named(Out(name).film(preset.name), show)).is_file()}
+    if story not in STORIES:
+        raise UserError(f"showreel: there is no STORY={story} of several mechanisms; there is: {', '.join(STORIES)}")
+    films = {name: film for name in names if (film := _film(name, preset, show, story)).is_file()}
     left = [name for name in names if name not in films]
     if not films or (only.strip() and left):
         wanted = ", ".join(left) if only.strip() else "any mechanism"
@@ -54,6 +59,12 @@ def run(preset: Preset, only: str = "", show: str = "") -> Path:
         f"{target.stat().st_size / 1e6:.1f} MB",
     )
     return target
+
+
+def _film(name: str, preset: Preset, show: str, story: str) -> Path:
+    """The story of a mechanism if it is made and asked for, else its loop."""
+    explains = film_of(Out(name), preset.name, show)
+    return explains if story == "explain" and explains.is_file() else named(Out(name).film(preset.name), show)
 
 
 def title_of(name: str) -> Title:

@@ -69,6 +69,20 @@ def compare(command: Command, name: str, said: Mapping[str, str], run: Run) -> i
     return run.last(stages.COMPARE.words(name, said))
 
 
+def film(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
+    """The film; of two variants beside each other after what both need."""
+    if said.get("story") != "compare":
+        return in_turn(command, name, said, run)
+    names = run.output_of(Stage("mechanisms", "variants").words(name, said)) or []
+    if not names:
+        return 1
+    for variant in (names[0], name if name in names[1:] else names[min(1, len(names) - 1)]):
+        code = run.all_of(stage.words(variant, said) for stage in stages.SCENERY)
+        if code != 0:
+            return code
+    return run.last(stages.FILM.words(name, said))
+
+
 def export(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
     """The mechanism in a file of another program; a scene needs what pictures need."""
     if said.get("format") in SCENES:
@@ -86,6 +100,7 @@ def _has_libraries() -> bool:
 OTHERS: dict[str, Callable[[Command, str, Mapping[str, str], Run], int]] = {
     "gallery": gallery,
     "compare": compare,
+    "film": film,
     "export": export,
     "parts": at_scale,
     "print": at_scale,

@@ -12,6 +12,7 @@ from render.film.story.reason import Reason
 from render.film.story.scenery import Scenery
 from render.film.story.shots.assembly import assembly
 from render.film.story.shots.last import last
+from render.film.story.shots.loop import loop
 from render.film.story.shots.macro import macro
 from render.film.story.shots.motion import motion
 from render.film.story.shots.reason import reason
@@ -36,16 +37,30 @@ SHALLOW = 13.0
 """Lens blur of a macro by preset, and of all others, in pixels of a picture 1280 wide."""
 
 
-def planned(film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset) -> Story:
+def planned(film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset, seconds: float = 0.0) -> Story:
     """The story of a film: ``forces`` is the same with arrows, None where nothing has any; the first of ``reasons`` is
-    what time stops for, unless the shot asks for another.
+    what time stops for, unless the shot asks for another. With ``seconds`` it is a loop of that length.
 
     Raises UserError with place and remedy for wishes of the shot that cannot be.
     """
+    scenery = scenery_of(film, forces, reasons, preset)
+    if seconds:
+        return Story(film.motion.mechanism, scenery.fps, scenery.step, [loop(scenery, seconds)], scenery.curves)
+    most = BUDGET * min(film.clock.frames, film.clock.moving + 1) * (2 / scenery.step)
+    story = _story(scenery)
+    for turning, scale in WAYS[1:]:
+        if _cost(story) <= most:
+            break
+        story = _story(replace(scenery, turning=turning, scale=scale))
+    return story
+
+
+def scenery_of(film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset) -> Scenery:
+    """What the shots are made of. Raises UserError for an event or a language that is not there."""
     wishes, mechanism = film.shot.story, film.motion.mechanism
     base = preset.name.partition("-")[0]
     reasons = _asked(mechanism, wishes.event, reasons)
-    scenery = Scenery(
+    return Scenery(
         film=film,
         forces=forces,
         wishes=wishes,
@@ -55,13 +70,6 @@ def planned(film: Film, forces: Film | None, reasons: Sequence[Reason], preset: 
         step=2 if base in TWOS else 1,
         blur=BLUR.get(base, SHALLOW),
     )
-    most = BUDGET * min(film.clock.frames, film.clock.moving + 1) * (2 / scenery.step)
-    story = _story(scenery)
-    for turning, scale in WAYS[1:]:
-        if _cost(story) <= most:
-            break
-        story = _story(replace(scenery, turning=turning, scale=scale))
-    return story
 
 
 def _cost(story: Story) -> float:

@@ -36,6 +36,7 @@ TABLE: dict[str, dict[str, str]] = {
         "real": "real time",
         "slower": "{factor} times slower",
         "faster": "{factor} times faster",
+        "usual": "as it is",
         "difference": "{curve}: {first} with {a}, {second} with {b}.",
     },
     "de": {
@@ -65,6 +66,7 @@ TABLE: dict[str, dict[str, str]] = {
         "real": "Echtzeit",
         "slower": "{factor}-mal langsamer",
         "faster": "{factor}-mal schneller",
+        "usual": "wie sie ist",
         "difference": "{curve}: {first} bei {a}, {second} bei {b}.",
     },
 }

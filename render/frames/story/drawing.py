@@ -35,6 +35,10 @@ class Drawing:
     facts: str
     """The line under the name at the end."""
     strip: Strip | None
+    heads: tuple[tuple[float, str, str], ...] = ()
+    """Names of pictures beside each other: the middle (in parts of the width), words, colour of their curves."""
+    heads_at: tuple[float, ...] = ()
+    """Their upper edges, in parts of the height."""
     below: int = 0
     """Pixels that the strip takes below the words."""
     _kept: tuple[Over, Any] | None = None
@@ -84,6 +88,7 @@ class Drawing:
         """Drawn larger, as small letters would stand unevenly, and averaged."""
         times = 3 if self.wide * self.high <= 1e6 else 2 if self.wide * self.high <= 2.5e6 else 1
         fine = Drawing(times * self.wide, times * self.high, self.name, self.said, self.facts, None)
+        fine.heads, fine.heads_at = self.heads, self.heads_at
         fine.below = times * (self.strip.tall if over.strip > 0 and self.strip else 0)
         layer = fine._drawn(over)
         return layer.reduce(times) if layer is not None and times > 1 else layer
@@ -100,6 +105,8 @@ class Drawing:
         draw = ImageDraw.Draw(page)
         if over.rate:
             self._rate(draw, over.rate)
+        if over.rate and self.heads:
+            self._heads(draw)
         for leader in over.leaders if over.leaders_shown > 0 else ():
             self._leader(draw, leader, over.leaders_shown)
         if over.notes_shown > 0:
@@ -110,6 +117,17 @@ class Drawing:
             ending = _ending(self.wide, self.high, self.name, self.facts)
             page.paste(ending, (0, 0), _faded(ending, over.ending))
         return page
+
+    def _heads(self, draw: Any) -> None:
+        """Names of variants, each with a line as its curves are."""
+        size, edge = layout.LETTER * self.unit, layout.EDGE * self.unit
+        for (middle, words, colour), top in zip(self.heads, self.heads_at, strict=True):
+            wide = size * width_of(words, True) + 3.0 * size
+            x, y = middle * self.wide - wide / 2, top * self.high + edge
+            card(draw, (x, y, x + wide, y + 1.7 * size), size)
+            ink, mid = tuple(int(colour[k : k + 2], 16) for k in (1, 3, 5)), y + 0.85 * size
+            draw.line((x + 0.6 * size, mid, x + 1.8 * size, mid), fill=(*ink, 255), width=max(2, round(0.16 * size)))
+            draw.text((x + 2.3 * size, mid), words, fill=(*INK, 255), font=font(size, True), anchor="lm")
 
     def _rate(self, draw: Any, words: str) -> None:
         size, edge = layout.SMALL * self.unit, layout.EDGE * self.unit

@@ -15,12 +15,19 @@ def run(name: str, preset: Preset, show: str = "", story: str = "loop", loop: fl
     """Make the film of a kind. Raises UserError for one that is none, and for a LOOP that nobody would watch."""
     if story not in KINDS:
         raise UserError(f"there is no STORY={story}; there is: {', '.join(KINDS)}{did_you_mean(story, KINDS)}")
+    if loop and story == "compare":
+        raise UserError("STORY=compare has no LOOP; leave one of them out")
     if loop and not SHORTEST <= loop <= LONGEST:
         raise UserError(f"LOOP={loop:g} is no length of a loop; give {SHORTEST:g} to {LONGEST:g} s")
     if story == "loop" and not loop:
         from render.frames import film
 
         film.run(name, preset, show, sound)
+        return
+    if story == "compare":
+        from render.frames.story import beside
+
+        beside.run(name, preset)
         return
     from render.frames.story import stage
 

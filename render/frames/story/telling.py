@@ -88,10 +88,10 @@ def telling_of(out: Out, preset: Preset, show: str = "", loop: float = 0.0) -> T
     film = Film(whole, parts, shown_plain(shot), out.parts_folder, preset.aspect)
     chosen = _chosen(shot.story.event, why)
     arrows = _with_arrows(show or _shows(motion, chosen), film)
-    story = planned(film, arrows, why, preset)
+    story = planned(film, arrows, why, preset, loop)
     clearance = read_clearance(out.clearance) if out.clearance.is_file() else None
     drawing = _drawing(out, preset, film, story, facts(motion, parts, clearance))
-    _refuse_long(out.name, story, preset)
+    refuse_long(out.name, story, preset)
     return Telling(film, arrows, story, drawing)
 
 
@@ -141,7 +141,7 @@ def strip_of(film: Film, story: Story, preset: Preset) -> Strip | None:
     )  # fmt: skip
 
 
-def _refuse_long(mechanism: str, story: Story, preset: Preset) -> None:
+def refuse_long(mechanism: str, story: Story, preset: Preset) -> None:
     """Raise UserError for the first caption that is too long for the frame."""
     for placed in story.placed:
         for caption in placed.shot.captions:

@@ -12,6 +12,7 @@ from mechanisms.stages.parts.mesh_check import VOLUME_TOLERANCE
 from mechanisms.stages.parts_files import read_mesh
 from render import glb
 from render.film.inputs import read_film
+from render.frames.story.telling import telling_of
 from render.presets import PRESETS, WIDE
 from shared import contract
 from shared.contract.shot import Names, read_shot, refuse_unknown
@@ -122,6 +123,23 @@ def test_solids_are_closed_and_of_the_size_that_is_told(out: Out) -> None:
             assert mesh.volume * 1e-9 == pytest.approx(piece.mass.volume, rel=VOLUME_TOLERANCE)
             assert mesh.bounds[:, 2] / 1000 == pytest.approx(np.array(piece.z_range), abs=1e-6)
             assert len(mesh.faces) == piece.triangles
+
+
+def test_its_story_is_made_without_a_line_in_its_folder(out: Out) -> None:
+    """20 to 40 s, hardly more pictures than the loop film, time monotone in every shot, no camera among the parts."""
+    telling = telling_of(out, PRESETS["draft"])
+    story, clock = telling.story, telling.film.clock
+    assert 20 <= story.seconds <= 40
+    assert len(story.pictures) <= 2.5 * clock.frames
+    assert story.placed[0].shot.name == "title"
+    assert all(caption.text and 0 <= caption.start < caption.end <= story.seconds for caption in story.captions)
+    top = float(telling.film.space.all[:, 2].max())
+    assert min(picture.camera.position[2] for picture in story.pictures) > top
+    for placed in story.placed:
+        times = [placed.shot.model(k / story.fps) for k in range(placed.end - placed.first)]
+        back = np.flatnonzero(np.diff(times) < -1e-12)
+        assert clock.repeats or placed.shot.name == "motion" or not len(back)
+        assert all(times[k + 1] == pytest.approx(clock.start, abs=1e-3 * (clock.end - clock.start)) for k in back)
 
 
 def test_the_glb_moves_as_data_json_has_it(out: Out) -> None:

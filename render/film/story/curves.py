@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.story.reason import Reason
+from render.magnitudes import NOISE, effort_floor, force_scale, without_noise
 from shared.contract import Motion
 from shared.contract.signals import SIGNALS
 
@@ -38,7 +39,7 @@ def curve_of(motion: Motion, name: str) -> Curve | None:
     if name in motion.joints:
         joint = motion.joints[name]
         size = np.hypot(joint.fx, joint.fy)
-        return Curve(name, "N", SIGNALS["reactions"].dark, time, size)
+        return Curve(name, "N", SIGNALS["reactions"].dark, time, without_noise(size, NOISE * force_scale(motion)))
     if name in motion.contacts:
         contact = motion.contacts[name]
         values = np.asarray(contact.normal, float)
@@ -46,7 +47,8 @@ def curve_of(motion: Motion, name: str) -> Curve | None:
     load = motion.drivers.get(name) or motion.forces.get(name)
     if load is not None and load.effort is not None:
         colour = SIGNALS["forces" if load.effort_unit == "N" else "torques"].dark
-        return Curve(name, load.effort_unit, colour, time, np.asarray(load.effort, float))
+        floor = effort_floor(motion, load.effort_unit == "N")
+        return Curve(name, load.effort_unit, colour, time, without_noise(np.asarray(load.effort, float), floor))
     if name in motion.points:
         point = motion.points[name]
         return Curve(name, "m/s", SIGNALS["velocities"].dark, time, np.hypot(point.vx, point.vy))

@@ -18,7 +18,7 @@ TABLE: dict[str, dict[str, str]] = {
         "last": "The machine",
         "compare": "Side by side",
         "frame": "frame",
-        "together": "{count} pieces, put together from below; {mass} of them move.",
+        "together": "{count} pieces in {layers} layers; {mass} move.",
         "together_one": "One piece.",
         "repeats": "It repeats every {time}.",
         "lasts": "All of it takes {time}.",
@@ -29,8 +29,8 @@ TABLE: dict[str, dict[str, str]] = {
         "turns_back_force": "Here the {name} turns back: {force} in {joint}.",
         "event": "Here: {name}.",
         "event_force": "Here: {name}; {force} in {joint}.",
-        "effort": "Here the {name} gives most: {amount}.",
-        "reaction": "Here the load of joint {name} peaks: {amount}.",
+        "effort": "Here is the peak of {name}: {amount}.",
+        "reaction": "Here is the peak load of joint {name}: {amount}.",
         "speed": "Here {name} is fastest: {amount}.",
         "stopped": "time stands still",
         "real": "real time",
@@ -48,7 +48,7 @@ TABLE: dict[str, dict[str, str]] = {
         "last": "Die Maschine",
         "compare": "Nebeneinander",
         "frame": "Gestell",
-        "together": "{count} Teile, von unten nach oben; {mass} davon bewegen sich.",
+        "together": "{count} Teile in {layers} Lagen; {mass} bewegen sich.",
         "together_one": "Ein Teil.",
         "repeats": "Das wiederholt sich alle {time}.",
         "lasts": "Alles zusammen dauert {time}.",
@@ -59,7 +59,7 @@ TABLE: dict[str, dict[str, str]] = {
         "turns_back_force": "Hier kehrt {name} um: {force} in {joint}.",
         "event": "Hier: {name}.",
         "event_force": "Hier: {name}; {force} in {joint}.",
-        "effort": "Hier gibt {name} am meisten: {amount}.",
+        "effort": "Hier ist der Höchstwert von {name}: {amount}.",
         "reaction": "Hier ist Gelenk {name} am stärksten belastet: {amount}.",
         "speed": "Hier ist {name} am schnellsten: {amount}.",
         "stopped": "die Zeit steht",
@@ -71,7 +71,7 @@ TABLE: dict[str, dict[str, str]] = {
     },
 }
 """By language, then by what is said; every language says the same things with the same names in braces."""
-SAME = 0.02
+SAME = 0.05
 """Rates that differ from real time by less are real time."""
 
 

@@ -230,8 +230,8 @@ def _title(wide: int, high: int, name: str, said: tuple[str, ...]) -> Any:
     unit, page = min(wide, high), Image.new("RGBA", (wide, high), (*INK, 0))
     draw, room = ImageDraw.Draw(page), wide * (1 - 2 * LEFT)
     large = min(NAME * unit, room / width_of(name, True))
-    size, most = SAID * unit, max(3, round(3 * high / wide * 16 / 9))
-    lines = _sentences(said, size, room, most)
+    most = max(3, round(3 * high / wide * 16 / 9))
+    size, lines = _sentences(said, SAID * unit, room, most)
     x, y = wide * LEFT, high * 0.5 - 0.02 * unit * len(lines)
     draw.text((x, y - 0.03 * unit), name, fill=(*INK, 255), font=font(large, True), anchor="ls")
     draw.rectangle((x, y, x + 0.107 * unit, y + max(1, round(unit / 240))), fill=(*ACCENT, 255))
@@ -242,14 +242,14 @@ def _title(wide: int, high: int, name: str, said: tuple[str, ...]) -> Any:
     return page
 
 
-def _sentences(said: tuple[str, ...], size: float, room: float, most: int) -> list[str]:
-    """The lines of as many sentences as fit into ``most`` lines."""
+def _sentences(said: tuple[str, ...], size: float, room: float, most: int) -> tuple[float, list[str]]:
+    """Height of letters and lines of as many sentences as fit into ``most`` lines."""
     for count in range(len(said), 0, -1):
         try:
-            return fitted(" ".join(said[:count]), size, room, most)[1]
+            return fitted(" ".join(said[:count]), size, room, most)
         except ValueError:
             continue
-    return []
+    return size, []
 
 
 @lru_cache(maxsize=2)
@@ -275,5 +275,6 @@ def _ending(wide: int, high: int, name: str, facts: str) -> Any:
     x, y = wide * LEFT, high - 0.05 * unit - LINE * small * len(lines)
     draw.text((x, y - 0.02 * unit), name, fill=(*INK, 255), font=font(large, True), anchor="ls")
     for k, line in enumerate(lines):
-        draw.text((x, y + LINE * small * (k + 0.5)), line, fill=(*QUIET, 255), font=font(small), anchor="lm")
+        words = line.strip("· ")
+        draw.text((x, y + LINE * small * (k + 0.5)), words, fill=(*QUIET, 255), font=font(small), anchor="lm")
     return page

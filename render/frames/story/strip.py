@@ -70,7 +70,7 @@ class Strip:
         inside = self.start + (time - self.start) % span if self.repeats else min(max(time, self.start), self.end)
         size = layout.SMALL * self.unit
         head = Image.new("RGBA", (FINE * self.wide, FINE * self.tall), (0, 0, 0, 0))
-        fine, draw = ImageDraw.Draw(head), ImageDraw.Draw(page)
+        fine = ImageDraw.Draw(head)
         for curve, panel, (low, high), write in zip(self.shown, self.panels, self._ranges, self._writers, strict=True):
             x = panel[0] + (inside - self.start) / span * (panel[2] - panel[0])
             value = float(np.interp(inside, curve.time, curve.values))
@@ -79,8 +79,9 @@ class Strip:
             fine.rectangle(_times((x - line, panel[1], x + line, panel[3])), fill=(*INK, 235))
             fine.ellipse(_times((x - dot, y - dot, x + dot, y + dot)), fill=(*INK, 255))
             fine.ellipse(_times((x - 0.6 * dot, y - 0.6 * dot, x + 0.6 * dot, y + 0.6 * dot)), fill=_rgb(curve.colour))
-            draw.text((panel[2], 0.45 * size), write(value), fill=INK, font=font(size, True), anchor="ra")
-        page.alpha_composite(head.resize(page.size, Image.Resampling.BOX))
+            at = (FINE * panel[2], FINE * 0.45 * size)
+            fine.text(at, write(value), fill=INK, font=font(FINE * size, True), anchor="ra")
+        page.alpha_composite(head.reduce(FINE))
         return page
 
     @cached_property
@@ -110,14 +111,15 @@ class Strip:
             if k < len(self.others):
                 self._curve(draw, self.others[k], panel, span, 0.8, (*QUIET, 255))
             self._curve(draw, curve, panel, span, 1.5, _rgb(curve.colour))
-        page = Image.new("RGBA", (self.wide, self.tall), (*CARD, round(255 * CARD_ALPHA)))
-        page.alpha_composite(fine.resize(page.size, Image.Resampling.BOX))
-        words, size = ImageDraw.Draw(page), layout.SMALL * self.unit
+        size = layout.SMALL * self.unit
         for curve, panel, write in zip(self.shown, self.panels, self._writers, strict=True):
             room = panel[2] - panel[0] - size * (width_of(write(float(np.abs(curve.values).max())), True) + 0.8)
             name = plain(curve.name)
             fit = min(size, max(0.6 * size, room / max(width_of(name, True), 1e-9)))
-            words.text((panel[0], 0.45 * size), name, fill=_rgb(curve.colour), font=font(fit, True), anchor="la")
+            at = (FINE * panel[0], FINE * 0.45 * size)
+            draw.text(at, name, fill=_rgb(curve.colour), font=font(FINE * fit, True), anchor="la")
+        page = Image.new("RGBA", (self.wide, self.tall), (*CARD, round(255 * CARD_ALPHA)))
+        page.alpha_composite(fine.reduce(FINE))
         return page
 
     def _axes(self, draw: Any, panel: tuple[float, float, float, float], span: tuple[float, float]) -> None:

@@ -68,7 +68,9 @@ def _caption(scenery: Scenery) -> str:
     if count == 1:
         return scenery.say("together_one")
     moving = sum(body.mass for body in motion.bodies.values())
-    return scenery.say("together", count=str(count), mass=written(moving, "kg"))
+    return scenery.say(
+        "together", count=str(count), layers=str(scenery.lifts[-1].order + 1), mass=written(moving, "kg")
+    )
 
 
 def _stand(scenery: Scenery) -> Stand:

@@ -8,6 +8,7 @@ import numpy as np
 
 from render.film.camera import angles, point
 from render.film.framing import half_field, in_studio
+from render.film.heights import tops as tops_of
 from render.film.poses import Moment
 from render.film.story import cameras
 from render.film.story.cameras import Stand, between, raised
@@ -71,28 +72,41 @@ def _joint(scenery: Scenery) -> str | None:
         return scenery.wishes.joint
     if not joints:
         return None
-    tops = {name: scenery.film.heights.label(name, Moment(scenery.film.clock.start, 0))[2] for name in joints}
+    tops = {name: _height(scenery, name) for name in joints}
     first = scenery.reasons[0].joint if scenery.reasons else ""
-    stack = scenery.top - min(tops.values())
+    highest = max(tops.values())
+    stack = highest - min(tops.values())
 
-    def worth(name: str) -> tuple[bool, bool, bool, float]:
+    def worth(name: str) -> tuple[bool, bool, bool, bool, float]:
         joint = joints[name]
-        on_top = tops[name] >= scenery.top - 0.35 * stack - 1e-9
-        return on_top, joint.pair == "pin", name == first, float(np.hypot(joint.fx, joint.fy).max())
+        on_top = tops[name] >= highest - 0.35 * stack - 1e-9
+        moves = float(max(np.ptp(joint.x), np.ptp(joint.y))) > 0.02 * scenery.across
+        return joint.pair == "pin", on_top, moves, name == first, float(np.hypot(joint.fx, joint.fy).max())
 
     return max(joints, key=worth)
+
+
+def _height(scenery: Scenery, name: str) -> float:
+    """The highest piece of a moving body at a joint, at the start of the motion (m)."""
+    film = scenery.film
+    at = film.clock.moment(0)
+    x, y = film.poses.joint(name, at)
+    bodies = [body for body in film.motion.joints[name].bodies if body in film.motion.bodies]
+    heights = [top for body in bodies for top in film.space.tops_at(body, x, y, at)]
+    heights = heights or [top for body in bodies for top in tops_of(film.parts, body)]
+    return max(heights, default=scenery.top)
 
 
 def _place(scenery: Scenery, name: str, at: float) -> tuple[float, float, float]:
     """Where the joint is at a frame of the loop, for a camera that does not follow all of its way (m, world)."""
     moment = scenery.film.clock.moment(at)
-    x, y, z = scenery.film.heights.label(name, Moment(moment.time, 0))
+    x, y = scenery.film.poses.joint(name, Moment(moment.time, 0))
     joint = scenery.film.motion.joints[name]
     middle = np.array([np.mean(joint.x), np.mean(joint.y)])
     away = scenery.film.way(at).any()
     part = 1.0 if away else FOLLOWED
     x, y = middle + part * (np.array([x, y]) - middle)
-    return float(x), float(y), z
+    return float(x), float(y), _height(scenery, name)
 
 
 def _stands(scenery: Scenery) -> tuple[Stand, Stand]:

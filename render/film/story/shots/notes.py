@@ -25,12 +25,18 @@ def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
     film = scenery.forces
     assert film is not None
     time = film.clock.moment(picture.at).time
-    rows = film.state(picture.at, picture.camera).arrows
+    state = film.state(picture.at, picture.camera)
+    rows = state.arrows
     wide, high = max(1.0, film.aspect), max(1.0, 1 / film.aspect)
     sizes = [float(np.interp(time, film.poses.time, vector.size)) for vector in film.arrows.vectors]
     lengths = [math.dist(tail, tip) for tail, tip in rows]
     longest = max(lengths, default=0.0)
     out: list[Note] = []
+    for (middle, sweep), torque in zip(state.arcs, film.arcs.torques, strict=True):
+        if scenery.reasons and torque.name.startswith(f"{scenery.reasons[0].name} on ") and sweep and not out:
+            x, y = project(picture.camera, np.array(middle), wide, high)[0]
+            words = f"{plain(scenery.reasons[0].name)}  {scenery.reasons[0].amount}"
+            out.append(Note(float(x / wide), float(y / high), 0.0, -1.6, words, SIGNALS["torques"].dark))
     for k in sorted(range(len(rows)), key=lambda k: -lengths[k]):
         if lengths[k] < LEAST * longest or not longest or len(out) == MOST:
             break

@@ -1,0 +1,151 @@
+"""A story from files alone: its shots, their times, what they cost, and what is refused, without Blender."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from render.film.story.story import Story
+from render.frames.story import kinds
+from render.frames.story.telling import Telling, telling_of
+from render.presets import PRESETS, preset_named
+from shared.contract.shot import STORY_SHOTS, Shot
+from shared.contract.shot import Story as Wishes
+from shared.stage.errors import UserError
+from tools.fixtures import film_fixture
+
+
+def made(wishes: Wishes | None = None, preset: str = "draft", loop: float = 0.0, **shot) -> Telling:
+    out = film_fixture.write(Shot(story=wishes or Wishes(), **shot))
+    return telling_of(out, preset_named(preset), "", loop)
+
+
+def check(telling: Telling) -> Story:
+    """What holds for every story: time is monotone within a shot, with the rate that is written over the picture."""
+    story = telling.story
+    for placed in story.placed:
+        seconds = np.arange(placed.end - placed.first) / story.fps
+        times = [placed.shot.model(float(s)) for s in seconds]
+        assert np.all(np.diff(times) >= -1e-12) or not telling.film.clock.repeats
+    ends = [row[:2] for row in story.chapters]
+    assert ends[0][0] == 0.0
+    assert ends[-1][1] == pytest.approx(story.seconds)
+    assert all(a[1] == b[0] for a, b in itertools.pairwise(ends))
+    assert all(0 <= c.start < c.end <= story.seconds + 1e-9 and c.text for c in story.captions)
+    top = telling.film.space.all[:, 2].max()
+    lifted = max((lift.distance for lift in _lifts(telling)), default=0.0)
+    for picture in story.pictures:
+        assert picture.camera.position[2] > top + (lifted if picture.lifts else 0.0)  # it never goes through a part
+    return story
+
+
+def _lifts(telling: Telling):
+    from render.film.exploded import exploded
+
+    return exploded(telling.film.parts, telling.film.size)
+
+
+def test_it_has_all_shots_and_costs_little_more_than_the_loop(out_root) -> None:
+    telling = made()
+    story = check(telling)
+    assert [placed.shot.name for placed in story.placed] == list(STORY_SHOTS)
+    assert 20 <= story.seconds <= 40
+    assert story.step == 2
+    assert len(story.pictures) <= 2.5 * telling.film.clock.frames
+    assert made(preset="final").story.step == 1
+
+
+def test_time_stops_at_the_dead_point_and_says_so(out_root) -> None:
+    telling = made()
+    story = telling.story
+    placed = next(placed for placed in story.placed if placed.shot.name == "reason")
+    caption = placed.shot.captions[0]
+    assert caption.text.startswith("Here the rocker turns back: ")
+    middle = (caption.start + caption.end) / 2 + placed.first / story.fps
+    frame = int(middle * story.fps)
+    assert story.over(frame).rate == "time stands still"
+    assert story.picture(frame) == story.picture(frame + 10)
+    assert story.picture(frame).grown == 1.0
+    rocker = telling.film.motion.bodies["rocker"]
+    at = (story.model_time(middle) - rocker_time(telling)) % telling.film.motion.period
+    omega = np.interp(at + rocker_time(telling), telling.film.motion.time, rocker.omega)
+    assert abs(omega) < 1e-3 * np.abs(rocker.omega).max()
+
+
+def rocker_time(telling: Telling) -> float:
+    return telling.film.motion.time[0]
+
+
+def test_words_and_numbers_of_the_picture_agree_with_its_time(out_root) -> None:
+    """The rate that is written is the slope of the time of the motion; the playhead stands where the picture is."""
+    telling = made()
+    story = telling.story
+    placed = next(placed for placed in story.placed if placed.shot.name == "motion")
+    frame = placed.first + 40
+    slope = story.model_time((frame + 2) / story.fps) - story.model_time(frame / story.fps)
+    assert slope * story.fps / 2 == pytest.approx(telling.film.clock.rate)
+    assert telling.film.clock.moment(story.picture(frame).at).time == pytest.approx(
+        (story.over(frame).now - rocker_time(telling)) % telling.film.motion.period + rocker_time(telling)
+    )
+
+
+def test_an_assembly_comes_together_as_it_came_apart(out_root) -> None:
+    """So that it costs half: every picture of the way back is one of the way out."""
+    story = made().story
+    placed = next(placed for placed in story.placed if placed.shot.name == "assembly")
+    pictures = [story.picture(frame) for frame in range(placed.first, placed.end)]
+    middle = len(pictures) // 2
+    assert pictures[0].lifts == pictures[-1].lifts == ()
+    assert set(pictures[middle:]) <= set(pictures[:middle])
+    assert {name for name, _ in pictures[middle].lifts} == {lift.name for lift in _lifts(made()) if lift.distance}
+    names = [leader.words for leader in story.over(placed.first + middle).leaders]
+    assert sorted(names) == ["coupler", "crank", "frame", "rocker"]
+
+
+def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:
+    story = made(Wishes(shots=("motion", "reason"), event="B", caption="Look here", curves=("P",), language="de")).story
+    assert [placed.shot.chapter for placed in story.placed] == ["Bewegung", "Warum"]
+    assert story.captions[-1].text == "Look here"
+    assert [curve.name for curve in story.curves] == ["P"]
+    assert made(Wishes(curves=())).drawing.strip is None
+
+
+@pytest.mark.parametrize(
+    ("wishes", "message"),
+    [
+        (Wishes(event="rocker flies"), r"four_bar: shot\.story\.event names 'rocker flies', which never happens in "
+         r"this motion; what does: rocker turns back.*"),
+        (Wishes(caption="much too long a word " * 9), r"four_bar: the caption of the shot 'reason' is too long for a "
+         r"picture of 640x360: it takes \d\.\d lines of 2 .*; write a shorter shot\.story\.caption"),
+        (Wishes(shots=("titel",)), r"four_bar: shot\.story\.shots\[0\] names 'titel', which is not there; known: "
+         r"title, assembly, .*; did you mean 'title'\?"),
+        (Wishes(joint="Z"), r"four_bar: shot\.story\.joint names 'Z', which is not there; known: A, B, C, D"),
+        (Wishes(language="xx"), r"language is 'xx'"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused_with_place_and_remedy(out_root, wishes: Wishes, message: str) -> None:
+    with pytest.raises(UserError, match=message):
+        made(wishes)
+
+
+def test_kinds_of_films_are_known(out_root) -> None:
+    with pytest.raises(UserError, match=r"there is no STORY=explian; .*, explain, compare; did you mean 'explain'"):
+        kinds.run("four_bar", PRESETS["draft"], story="explian")
+    with pytest.raises(UserError, match="LOOP=2 is no length of a loop; give 4 to 60 s"):
+        kinds.run("four_bar", PRESETS["draft"], story="explain", loop=2.0)
+    with pytest.raises(UserError, match="STORY=compare has no LOOP"):
+        kinds.run("four_bar", PRESETS["draft"], story="compare", loop=9.0)
+
+
+@pytest.mark.parametrize("seconds", [4.0, 12.0, 33.3])
+def test_a_loop_ends_as_it_begins(out_root, seconds: float) -> None:
+    telling = made(loop=seconds, preset="draft-9x16")
+    story = check(telling)
+    assert story.total == round(seconds * story.fps)
+    turns = (story.shots[0].model(seconds) - story.shots[0].model(0.0)) / telling.film.motion.period
+    assert turns == pytest.approx(round(turns), abs=1e-9)
+    assert turns >= 1
+    assert story.shots[0].over(seconds / 2).rate
+    assert telling.drawing.wide < telling.drawing.high

@@ -1,0 +1,74 @@
+"""A story of postage stamps is rendered, killed, goes on where it was, and comes to the same bytes."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from render.frames.encode import ffmpeg
+from render.frames.film_file import refuse_other_than
+from render.frames.store import FrameStore
+from render.frames.story import stage
+from render.frames.story.telling import telling_of
+from render.presets import Preset
+from render.showreel import showreel
+from shared.contract.shot import Shot, Story
+from shared.stage.paths import ROOT, Out
+from tools.fixtures import film_fixture
+
+TINY = Preset("draft-tiny", 96, 54, 1)
+SHORT = Shot(seconds_per_turn=0.3, story=Story(shots=("title", "assembly", "reason")))
+
+
+def stamps(out: Out) -> dict[str, int]:
+    folder = FrameStore(out.frames("draft-tiny-story")).folder
+    return {path.name: path.stat().st_mtime_ns for path in folder.glob("[!.]*.png")}
+
+
+def test_a_story_is_killed_and_goes_on(out_root: Path, tmp_path: Path, monkeypatch, capsys) -> None:
+    out = film_fixture.write(SHORT)
+    code = "from render.frames.story import stage; from render.presets import Preset; "
+    code += "stage.run('four_bar', Preset('draft-tiny', 96, 54, 1))"
+    process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.DEVNULL)
+    end = time.monotonic() + 120
+    while len(stamps(out)) < 2:
+        assert time.monotonic() < end
+        assert process.poll() is None
+        time.sleep(0.02)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    before = stamps(out)
+    film = stage.film_of(out, TINY.name)
+    assert not film.exists()
+
+    stage.run("four_bar", TINY)
+    said = capsys.readouterr().out
+    rendered = [int(n) for n in re.findall(r"(\d+) of \d+ pictures to render", said)]
+    assert 0 < sum(rendered) <= telling_of(out, TINY).count - len(before)
+    assert {name: at for name, at in stamps(out).items() if name in before} == before
+    _check(out, film)
+    content, subtitles = film.read_bytes(), film.with_suffix(".srt").read_bytes()
+    stage.run("four_bar", TINY)
+    assert "nothing to do" in capsys.readouterr().out
+    film.unlink()
+    stage.run("four_bar", TINY)
+    assert "0 of" in capsys.readouterr().out
+    assert (film.read_bytes(), film.with_suffix(".srt").read_bytes()) == (content, subtitles)
+
+    film.rename(film.with_name("four_bar-draft-tiny-explain.mp4"))
+    reel = showreel.run(TINY, "four_bar")
+    assert b"Four bar" in reel.read_bytes()
+
+
+def _check(out: Out, film: Path) -> None:
+    """Every frame is there in its size, the chapters are the shots."""
+    story = telling_of(out, TINY).story
+    refuse_other_than(film, film.name, ffmpeg(), story.total, TINY, story.fps, 60.0)
+    listing = subprocess.run([ffmpeg(), "-i", str(film)], capture_output=True, text=True).stderr
+    assert re.findall(r"title\s*: (.*)", listing) == ["Four bar", "Title", "Assembly", "Why"]
+    starts = [float(start) for start in re.findall(r"start (\d+\.\d+), end", listing)]
+    assert all(abs(a - b[0]) < 2e-3 for a, b in zip(starts, story.chapters, strict=True))

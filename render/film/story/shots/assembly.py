@@ -18,7 +18,7 @@ WHOLE, LIFTS, APART, SETTLED = 0.5, 1.7, 3.2, 0.5
 """Seconds: as a whole, coming apart (and together), apart, and as a whole again."""
 EACH = 0.45
 """Part of the time of coming apart that each layer takes."""
-LYING, STANDING = (12.0, -14.0), (-22.0, 10.0)
+LYING, STANDING = (12.0, -14.0), (-17.0, 10.0)
 """Azimuth and elevation (degrees) beside those of the shot: from lower down what lies is seen to be in layers, from
 the side what stands.
 """

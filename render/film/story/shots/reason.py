@@ -14,7 +14,7 @@ GOES, SLOWS, GROWS, STANDS, ON = 0.9, 1.7, 0.8, 3.4, 1.3
 """Seconds: at the rate of the loop, slowing down, arrows growing, standing still, going on."""
 GOES_AWAY = 0.3
 """Seconds in which arrows go when time goes on."""
-BEFORE, AFTER = (14.0, 3.0), (6.0, 7.0)
+BEFORE, AFTER = (9.0, 3.0), (3.0, 7.0)
 """Azimuth and elevation (degrees) beside those of the shot, when it begins and when time stands still."""
 NEARER = 0.92
 

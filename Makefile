@@ -209,7 +209,7 @@ view-engines: install ## pages used in Firefox and Safari's engine: a small four
 gallery: libraries ## posters of all mechanisms and the page that shows them: docs/gallery/
 	@$(MBSD) gallery
 
-showreel: install ## the finished films as one, stories where they are made (or STORY=loop); ONLY=four_bar,geneva_drive
+showreel: install ## the finished films, each under its title, as one, stories where made or STORY=loop; ONLY=four_bar,geneva_drive
 	@$(MBSD) showreel
 
 fetch: install ## bring the films of another machine home, what changed alone: HOST=user@machine FOLDER=mbsd

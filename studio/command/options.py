@@ -48,9 +48,7 @@ OPTIONS: dict[str, Option] = {
         Option("sound", "of the film; on if not given", choices=("on", "off"), kept=True),
         Option(
             "story",
-            "the loop of the motion, or a film that explains it, or variants beside each other",
-            "WORD",
-            default="loop",
+            "explain: a film of shots; compare: variants beside each other; loop: the motion, if not given",
             choices=("loop", "explain", "compare"),
         ),
         Option("loop", "seconds of a silent film with captions that ends as it begins: 12", "S"),

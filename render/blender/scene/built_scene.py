@@ -12,7 +12,7 @@ import numpy as np
 
 from render.blender.job import Job
 from render.blender.scene import arcs, arrows, coded, labels, pieces, studio, trail, tubes
-from render.film.framing import SENSOR, CameraPose
+from render.film.framing import SENSOR
 from render.film.scene import State
 from shared.contract.mount import Z
 
@@ -151,7 +151,7 @@ def _camera(scene: Any, states: list[State]) -> Any:
     return camera
 
 
-def _stop(pose: CameraPose) -> float:
+def _stop(pose: Any) -> float:
     """The f-stop of a camera that stands among others that have one."""
     return max(pose.fstop, 0.01) if pose.fstop > 0 else PINHOLE
 

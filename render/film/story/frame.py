@@ -33,7 +33,7 @@ class Leader(msgspec.Struct, frozen=True):
     """What stands behind the words: a mass."""
     right: bool
     height: float
-    """Of the middle of the words, in parts of the picture's height."""
+    """Height of the middle of the words, in parts of the picture's height."""
 
 
 class Note(msgspec.Struct, frozen=True):

@@ -31,7 +31,7 @@ class Story:
     """Frames for which a picture that moves stands."""
     shots: Sequence[Shot]
     curves: Sequence[Curve] = ()
-    """Of the strip."""
+    """Those of the strip."""
 
     @cached_property
     def placed(self) -> list[Placed]:

@@ -7,6 +7,8 @@ from render.film.story.ramp import Ramp, eased
 from render.film.story.scenery import Scenery
 from render.film.story.shots.notes import notes
 from render.film.story.shots.reason import sentence
+from render.film.story.words import plain
+from shared.contract.quantity import figures
 
 SLOWS, GROWS, GOES = 1.1, 0.6, 0.3
 STANDS = 0.26
@@ -51,7 +53,9 @@ def loop(scenery: Scenery, seconds: float) -> Shot:
         return scenery.picture(stand, ramp.at(s), forces=True, grown=round(grown, 6))
 
     text = "" if what is None else scenery.wishes.caption or sentence(scenery, what)
-    name = scenery.say("repeats" if clock.repeats else "lasts", time=f"{period:.3g} s")
+    name = plain(scenery.film.motion.mechanism.partition("-")[0])
+    name = f"{name[:1].upper()}{name[1:]}. "
+    name += scenery.say("repeats" if clock.repeats else "lasts", time=f"{figures(period, 3)} s")
     labels = notes(scenery, picture(begins - 0.05)) if scenery.forces is not None and what is not None else ()
     rows = [Caption(0.3, max(stop - 0.5, 0.8), name), Caption(stop - 0.3, min(begins + 0.5, seconds), text)]
     captions = tuple(row for row in rows if row.text and row.end - row.start > 0.6)

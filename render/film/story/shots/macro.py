@@ -19,7 +19,7 @@ from render.film.story.words import plain
 from shared.contract.quantity import written
 
 SECONDS, MOVES = 4.4, 3.8
-"""Of the shot, and of its move."""
+"""Seconds of the shot, and of its move."""
 LENS, WIDE = 90.0, 0.36
 """mm, and the width of what is seen, in sizes of the machine."""
 SLOWER = 0.4

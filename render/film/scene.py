@@ -5,6 +5,8 @@ Metres and radians. A Scene is what stays the same over the film, a State is wha
 
 from __future__ import annotations
 
+from typing import Literal
+
 import msgspec
 
 from render.film.framing import CameraPose
@@ -14,6 +16,7 @@ from shared.contract.signals import Head
 
 Colour = tuple[float, float, float]
 Point = tuple[float, float, float]
+Hidden = Literal["", "trails", "all"]
 
 
 class SurfaceSpec(msgspec.Struct, kw_only=True, frozen=True):
@@ -200,5 +203,5 @@ class State(msgspec.Struct, kw_only=True, frozen=True):
     """The number that lives, beside the title."""
     lifts: dict[str, float] = {}
     """By ``body/piece``: how far a piece is lifted along z (m); those that are not named are where they belong."""
-    bare: bool = False
-    """Whether solids alone are shown: no trails, tubes and labels."""
+    hidden: Hidden = ""
+    """What is not shown: trails, or all but the solids (trails, tubes, labels)."""

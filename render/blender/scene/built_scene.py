@@ -34,7 +34,7 @@ class BuiltScene:
     arcs: list[Any] = field(default_factory=list)
     """In that scene."""
     beside: list[Any] = field(default_factory=list)
-    """What a bare state hides; empty where none is bare."""
+    """What states may hide; empty where none does."""
 
     def show(self, index: int) -> None:
         """Go to state ``index``."""
@@ -47,7 +47,8 @@ class BuiltScene:
         for which, thing in enumerate(self.tubes):
             tubes.place(thing, self.job.states[index].tubes[which], self.job.scene.tubes[which].radius)
         for thing in self.beside:
-            thing.hide_render = self.job.states[index].bare
+            hidden = self.job.states[index].hidden
+            thing.hide_render = hidden == "all" or (hidden == "trails" and thing in self.trails)
         for which, thing in enumerate(self.arcs):
             arcs.place(thing, self.job.scene.arcs[which], *self.job.states[index].arcs[which])
 
@@ -84,7 +85,7 @@ def build(job: Job) -> BuiltScene:
     curved = [arcs.build(front, spec) for spec in job.scene.arcs] if drawn else []
     scene.frame_start, scene.frame_end = 0, len(job.states) - 1
     scene.render.fps = job.scene.fps
-    beside = [*trails, *wires, *texts] if any(state.bare for state in job.states) else []
+    beside = [*trails, *wires, *texts] if any(state.hidden for state in job.states) else []
     return BuiltScene(job, scene, bodies, trails, wires, front, curved, beside)
 
 

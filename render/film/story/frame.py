@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import msgspec
 
 from render.film.framing import CameraPose
+from render.film.scene import Hidden
 
 
 class Picture(msgspec.Struct, kw_only=True, frozen=True):
@@ -20,7 +21,7 @@ class Picture(msgspec.Struct, kw_only=True, frozen=True):
     """Whether it is of the scene with arrows, which ``grown`` (0 .. 1) makes long."""
     grown: float = 0.0
     lifts: tuple[tuple[str, float], ...] = ()
-    bare: bool = False
+    hidden: Hidden = ""
 
 
 class Leader(msgspec.Struct, frozen=True):

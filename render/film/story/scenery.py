@@ -15,6 +15,7 @@ from render.film.composing.filling import View
 from render.film.exploded import Lift, exploded
 from render.film.film import Film
 from render.film.framing import CameraPose
+from render.film.scene import Hidden
 from render.film.story import cameras, layout
 from render.film.story.cameras import Stand
 from render.film.story.curves import Curve
@@ -117,11 +118,15 @@ class Scenery:
         sharp = self.film.subject.few
         return cameras.posed(stand, self.up, sharp, self.film.shot.camera.blur, self.film.way(at))
 
-    def picture(self, stand: Stand, time: float, forces: bool = False, grown: float = 0.0) -> Picture:
+    def picture(
+        self, stand: Stand, time: float, forces: bool = False, grown: float = 0.0, hidden: Hidden = ""
+    ) -> Picture:
         """The machine at a time of the motion (s), from a stand."""
         at = self.loop_frame(time)
         forces = forces and self.forces is not None
-        return Picture(at=at, camera=self.camera(stand, at), forces=forces, grown=grown if forces else 0.0)
+        return Picture(
+            at=at, camera=self.camera(stand, at), forces=forces, grown=grown if forces else 0.0, hidden=hidden
+        )
 
     def moving(self, seconds: float) -> float:
         """Seconds of a move, as far as the budget of pictures lets it take them."""

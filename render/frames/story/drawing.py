@@ -35,10 +35,9 @@ class Drawing:
     facts: str
     """The line under the name at the end."""
     strip: Strip | None
-    heads: tuple[tuple[float, str, str], ...] = ()
-    """Names of pictures beside each other: the middle (in parts of the width), words, colour of their curves."""
-    heads_at: tuple[float, ...] = ()
-    """Their upper edges, in parts of the height."""
+    heads: tuple[tuple[bool, float, str, str], ...] = ()
+    """Names of pictures beside or over each other: whether at the right, the upper edge of the picture (in parts of the
+    height), words, colour of the curves."""
     below: int = 0
     """Pixels that the strip takes below the words."""
     _kept: tuple[Over, Any] | None = None
@@ -88,7 +87,7 @@ class Drawing:
         """Drawn larger, as small letters would stand unevenly, and averaged."""
         times = 3 if self.wide * self.high <= 1e6 else 2 if self.wide * self.high <= 2.5e6 else 1
         fine = Drawing(times * self.wide, times * self.high, self.name, self.said, self.facts, None)
-        fine.heads, fine.heads_at = self.heads, self.heads_at
+        fine.heads = self.heads
         fine.below = times * (self.strip.tall if over.strip > 0 and self.strip else 0)
         layer = fine._drawn(over)
         return layer.reduce(times) if layer is not None and times > 1 else layer
@@ -121,19 +120,22 @@ class Drawing:
     def _heads(self, draw: Any) -> None:
         """Names of variants, each with a line as its curves are."""
         size, edge = layout.LETTER * self.unit, layout.EDGE * self.unit
-        for (middle, words, colour), top in zip(self.heads, self.heads_at, strict=True):
+        for right, top, words, colour in self.heads:
             wide = size * width_of(words, True) + 3.0 * size
-            x, y = middle * self.wide - wide / 2, top * self.high + edge
+            x, y = self.wide - edge - wide if right else edge, top * self.high + edge
             card(draw, (x, y, x + wide, y + 1.7 * size), size)
             ink, mid = tuple(int(colour[k : k + 2], 16) for k in (1, 3, 5)), y + 0.85 * size
             draw.line((x + 0.6 * size, mid, x + 1.8 * size, mid), fill=(*ink, 255), width=max(2, round(0.16 * size)))
             draw.text((x + 2.3 * size, mid), words, fill=(*INK, 255), font=font(size, True), anchor="lm")
 
     def _rate(self, draw: Any, words: str) -> None:
+        """At the upper left; where names are there, in the middle between them, or at the right."""
         size, edge = layout.SMALL * self.unit, layout.EDGE * self.unit
-        wide = size * width_of(words)
-        card(draw, (edge, edge, edge + wide + 1.2 * size, edge + 1.75 * size), size)
-        draw.text((edge + 0.6 * size, edge + 0.875 * size), words, fill=(*INK, 255), font=font(size), anchor="lm")
+        wide, x = size * width_of(words) + 1.2 * size, edge
+        if self.heads:
+            x = (self.wide - wide) / 2 if self.wide > self.high else self.wide - edge - wide
+        card(draw, (x, edge, x + wide, edge + 1.75 * size), size)
+        draw.text((x + 0.6 * size, edge + 0.875 * size), words, fill=(*INK, 255), font=font(size), anchor="lm")
 
     def _caption(self, draw: Any, over: Over) -> None:
         """In the middle over the strip, or over where it would be."""

@@ -99,10 +99,10 @@ def _name(out: Out, film: Film) -> str:
 
 def _drawing(out: Out, preset: Preset, names: tuple[str, str], strip: Strip | None) -> Drawing:
     words = plain(out.name)
-    middles, tops = ((0.25, 0.75), (0.0, 0.0)) if preset.width >= preset.height else ((0.5, 0.5), (0.0, 0.5))
-    heads = ((middles[0], names[0], FIRST), (middles[1], names[1], SECOND))
+    side = preset.width >= preset.height
+    heads = ((False, 0.0, names[0], FIRST), (side, 0.0 if side else 0.5, names[1], SECOND))
     said = (f"{names[0][:1].upper()}{names[0][1:]} / {names[1]}",)
     return Drawing(
         wide=preset.width, high=preset.height, name=words[:1].upper() + words[1:], said=said, facts="", strip=strip,
-        heads=heads, heads_at=tops,
+        heads=heads,
     )  # fmt: skip

@@ -53,7 +53,7 @@ def _state(film: Film, picture: Picture) -> State:
         arcs=[(middle, sweep * grown) for middle, sweep in state.arcs],
         number="",
         lifts=dict(picture.lifts),
-        bare=picture.bare,
+        hidden=picture.hidden,
     )
 
 

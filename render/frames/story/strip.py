@@ -68,21 +68,39 @@ class Strip:
         page = self._still.copy()
         span = self.end - self.start
         inside = self.start + (time - self.start) % span if self.repeats else min(max(time, self.start), self.end)
-        size = layout.SMALL * self.unit
         head = Image.new("RGBA", (FINE * self.wide, FINE * self.tall), (0, 0, 0, 0))
         fine = ImageDraw.Draw(head)
-        for curve, panel, (low, high), write in zip(self.shown, self.panels, self._ranges, self._writers, strict=True):
+        for k, panel in enumerate(self.panels):
             x = panel[0] + (inside - self.start) / span * (panel[2] - panel[0])
-            value = float(np.interp(inside, curve.time, curve.values))
-            y = panel[3] - (value - low) / (high - low) * (panel[3] - panel[1])
-            line, dot = max(1.0, self.unit / 360) / 2, 0.011 * self.unit
+            line = max(1.0, self.unit / 360) / 2
             fine.rectangle(_times((x - line, panel[1], x + line, panel[3])), fill=(*INK, 235))
-            fine.ellipse(_times((x - dot, y - dot, x + dot, y + dot)), fill=(*INK, 255))
-            fine.ellipse(_times((x - 0.6 * dot, y - 0.6 * dot, x + 0.6 * dot, y + 0.6 * dot)), fill=_rgb(curve.colour))
-            at = (FINE * panel[2], FINE * 0.45 * size)
-            fine.text(at, write(value), fill=INK, font=font(FINE * size, True), anchor="ra")
+            right = panel[2]
+            for curve in (*self.others[k : k + 1], self.shown[k]):
+                value = float(np.interp(inside, curve.time, curve.values))
+                self._dot(fine, x, self._height(k, value), _rgb(curve.colour))
+                right -= self._number(fine, k, value, right, _rgb(curve.colour) if self.others else (*INK, 255))
         page.alpha_composite(head.reduce(FINE))
         return page
+
+    def _height(self, k: int, value: float) -> float:
+        """Where a value is in a panel (pixels)."""
+        low, high = self._ranges[k]
+        return self.panels[k][3] - (value - low) / (high - low) * (self.panels[k][3] - self.panels[k][1])
+
+    def _dot(self, draw: Any, x: float, y: float, ink: tuple[int, ...]) -> None:
+        for radius, fill in ((0.011 * self.unit, (*INK, 255)), (0.0066 * self.unit, ink)):
+            draw.ellipse(_times((x - radius, y - radius, x + radius, y + radius)), fill=fill)
+
+    def _number(self, draw: Any, k: int, value: float, right: float, ink: tuple[int, ...]) -> float:
+        """Write the value that lives; how much room (pixels) it takes, whatever it will be."""
+        size = layout.SMALL * self.unit
+        letters = font(FINE * size, True)
+        draw.text((FINE * right, FINE * 0.45 * size), self._writers[k](value), fill=ink, font=letters, anchor="ra")
+        return self._room(k)
+
+    def _room(self, k: int) -> float:
+        widest = self._writers[k](-max(abs(value) for value in self._ranges[k]))
+        return layout.SMALL * self.unit * (width_of(widest, True) + 0.7)
 
     @cached_property
     def _writers(self) -> list[Any]:
@@ -109,11 +127,11 @@ class Strip:
         for k, (curve, panel, span) in enumerate(zip(self.shown, self.panels, self._ranges, strict=True)):
             self._axes(draw, panel, span)
             if k < len(self.others):
-                self._curve(draw, self.others[k], panel, span, 0.8, (*QUIET, 255))
+                self._curve(draw, self.others[k], panel, span, 1.0, _rgb(self.others[k].colour))
             self._curve(draw, curve, panel, span, 1.5, _rgb(curve.colour))
         size = layout.SMALL * self.unit
-        for curve, panel, write in zip(self.shown, self.panels, self._writers, strict=True):
-            room = panel[2] - panel[0] - size * (width_of(write(float(np.abs(curve.values).max())), True) + 0.8)
+        for k, (curve, panel) in enumerate(zip(self.shown, self.panels, strict=True)):
+            room = panel[2] - panel[0] - self._room(k) * (2 if self.others else 1)
             name = plain(curve.name)
             fit = min(size, max(0.6 * size, room / max(width_of(name, True), 1e-9)))
             at = (FINE * panel[0], FINE * 0.45 * size)

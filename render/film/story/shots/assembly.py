@@ -49,7 +49,7 @@ def assembly(scenery: Scenery) -> Shot | None:
             height = lift.distance * eased((part - delay) / EACH)
             if height > 0:
                 placed.append((lift.name, round(height, 9)))
-        return Picture(at=0.0, camera=camera, lifts=tuple(sorted(placed)), bare=True)
+        return Picture(at=0.0, camera=camera, lifts=tuple(sorted(placed)), hidden="all")
 
     lines, text = leaders(scenery, camera), _caption(scenery)
 

@@ -46,7 +46,7 @@ def macro(scenery: Scenery) -> Shot | None:
         at = scenery.loop_frame(time)
         a, b = (_aimed(scenery, stand, _place(scenery, name, at)) for stand in stands)
         camera = cameras.focused(between(a, b, eased(s / move)), scenery.up, scenery.blur)
-        return Picture(at=at, camera=camera)
+        return Picture(at=at, camera=camera, hidden="trails")
 
     text = _caption(scenery, name)
 

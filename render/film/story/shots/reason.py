@@ -39,7 +39,7 @@ def reason(scenery: Scenery) -> Shot | None:
     def picture(s: float) -> Picture:
         way = eased(s / stop) if s < stop else 1.0
         grown = min(eased((s - stop) / grows), eased((begins + GOES_AWAY - s) / GOES_AWAY)) if s >= stop else 0.0
-        return scenery.picture(between(wide, near, way), model(s), forces=True, grown=round(grown, 6))
+        return scenery.picture(between(wide, near, way), model(s), forces=True, grown=round(grown, 6), hidden="trails")
 
     text = scenery.wishes.caption or sentence(scenery, what)
     labels = notes(scenery, picture(begins - 0.1)) if scenery.forces is not None else ()

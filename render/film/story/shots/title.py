@@ -16,6 +16,6 @@ def title(scenery: Scenery, after: Shot | None) -> Shot | None:
     first = after.picture(0.0)
 
     def over(s: float) -> Over:
-        return Over(title=shown_in(s, -FADE / 2, SECONDS - FADE, FADE), focus=eased((s - SECONDS + FADE) / FADE))
+        return Over(title=shown_in(s, -FADE, SECONDS - FADE, FADE), focus=eased((s - SECONDS + FADE) / FADE))
 
     return Shot("title", scenery.say("title"), SECONDS, lambda s: first, over, lambda s: after.model(0.0))

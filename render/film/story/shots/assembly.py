@@ -10,7 +10,7 @@ from render.film.story import cameras, layout
 from render.film.story.cameras import Stand
 from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
 from render.film.story.ramp import eased
-from render.film.story.scenery import MARGIN, Scenery
+from render.film.story.scenery import MARGIN, Array, Scenery
 from render.film.story.shots.leaders import leaders
 from shared.contract.quantity import written
 
@@ -30,8 +30,8 @@ def assembly(scenery: Scenery) -> Shot | None:
         return None
     lifts, move = scenery.lifts, scenery.moving(LIFTS)
     layers = lifts[-1].order or 1
-    stand, begin = _stand(scenery), scenery.film.clock.start
-    camera = scenery.camera(stand, 0.0)
+    points, begin = _points(scenery), scenery.film.clock.start
+    camera = cameras.posed(_stand(scenery, points), scenery.up, points, scenery.film.shot.camera.blur)
     whole, rests = scenery.whole(WHOLE), scenery.whole(APART)
     out = whole + move
     back = out + rests
@@ -73,12 +73,16 @@ def _caption(scenery: Scenery) -> str:
     )
 
 
-def _stand(scenery: Scenery) -> Stand:
+def _points(scenery: Scenery) -> Array:
+    """Points (n, 3) around all pieces, as they are and apart."""
+    return np.concatenate([scenery.piece(lift, part) for lift in scenery.lifts for part in (0.0, 1.0)])
+
+
+def _stand(scenery: Scenery, points: Array) -> Stand:
     """A stand that holds the machine as it is, and apart."""
     film = scenery.film
     lies = film.parts.mount.kind == "desk"
     azimuth, elevation = LYING if lies else STANDING
-    points = np.concatenate([scenery.piece(lift, part) for lift in scenery.lifts for part in (0.0, 1.0)])
     subject = Subject(points, np.zeros((0, 3)), np.zeros((0, 3)), points)
     at = scenery.stand(azimuth, elevation, strip=False)
     empty = layout.above(film.aspect), layout.below(film.aspect, False)

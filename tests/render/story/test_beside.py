@@ -1,0 +1,91 @@
+"""Two variants beside each other: one clock, a stop where they differ most, curves over each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from render.frames.story import beside
+from render.frames.story.pair import FIRST, SECOND, Pair, pair_of
+from render.presets import PRESETS, preset_named
+from shared.contract import read_motion, write_motion
+from shared.stage.errors import UserError
+from shared.stage.paths import Out
+from tools.fixtures import film_fixture
+
+NAMES = ("v_twin", "v_twin-bank_45")
+
+
+@pytest.fixture
+def pair(out_root) -> Pair:
+    """The same motion twice; the second's reaction in C is three times as large in the second half of its turn."""
+    outs = [film_fixture.write(name=name) for name in NAMES]
+    motion = read_motion(outs[1].motion)
+    joint, half = motion.joints["C"], len(motion.time) // 2
+    for key in ("fx", "fy"):
+        values = np.array(getattr(joint, key))
+        values[half:] *= 3
+        setattr(joint, key, values.tolist())
+    write_motion(outs[1].motion, motion)
+    return pair_of(outs, PRESETS["draft"], beside.half(PRESETS["draft"]))
+
+
+def test_both_are_on_one_clock(pair: Pair) -> None:
+    first, second = (telling.story for telling in pair.tellings)
+    assert first.total == second.total
+    assert first.fps == second.fps
+    assert 10 <= first.seconds <= 40
+    for s in np.linspace(0, first.seconds - 0.01, 50):
+        assert first.model_time(float(s)) == pytest.approx(second.model_time(float(s)), abs=1e-12)
+
+
+def test_time_stops_where_they_differ_most_and_both_numbers_are_said(pair: Pair) -> None:
+    story = pair.tellings[0].story
+    curves = {curve.name: curve for curve in story.curves}
+    strip = pair.drawing.strip
+    assert strip is not None
+    assert [curve.name for curve in strip.curves] == [curve.name for curve in strip.others] == list(curves)
+    assert {curve.colour for curve in strip.curves} == {FIRST}
+    assert {curve.colour for curve in strip.others} == {SECOND}
+    if "C" in curves:
+        assert story.captions[0].text.startswith("C: ")
+    for caption in story.captions:
+        frame = int((caption.start + caption.end) / 2 * story.fps)
+        assert story.over(frame).rate == "time stands still"
+        assert "(as it is)" in caption.text
+        assert "(bank 45)" in caption.text
+
+
+def test_halves_fill_the_picture() -> None:
+    wide, tall = PRESETS["draft"], preset_named("draft-9x16")
+    assert (beside.half(wide).width, beside.half(wide).height) == (320, 360)
+    assert (beside.half(tall).width, beside.half(tall).height) == (360, 320)
+
+    class Made:
+        def __init__(self, preset, colour: tuple[int, int, int]) -> None:
+            self.picture = Image.new("RGB", (preset.width, preset.height), colour)
+
+        def pages(self):
+            yield str(self.picture.getpixel((0, 0))), self.picture
+
+    for preset in (wide, tall):
+        half = beside.half(preset)
+        [(_, page)] = beside._beside(preset, [Made(half, (255, 0, 0)), Made(half, (0, 0, 255))])  # pyright: ignore[reportArgumentType]
+        assert page.size == (preset.width, preset.height)
+        assert page.getpixel((5, 5)) == (255, 0, 0)
+        assert page.getpixel((page.width - 5, page.height - 5)) == (0, 0, 255)
+
+
+def test_a_name_means_the_machine_and_a_variant() -> None:
+    assert beside.both("v_twin") == beside.both("v-twin-bank-45") == NAMES
+    assert beside.both("geneva_drive-six_slots") == ("geneva_drive", "geneva_drive-six_slots")
+    with pytest.raises(UserError, match="four_bar: there is nothing to compare"):
+        beside.both("four_bar")
+
+
+def test_what_is_missing_is_named(out_root) -> None:
+    film_fixture.write(name=NAMES[0])
+    with pytest.raises(UserError, match="v_twin-bank_45"):
+        beside.run("v_twin", PRESETS["draft"])
+    assert Out(NAMES[0]).shot.is_file()

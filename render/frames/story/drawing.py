@@ -11,7 +11,7 @@ import msgspec
 
 from render.film.story import layout
 from render.film.story.frame import Leader, Note, Over
-from render.frames.story.letters import CARD, INK, LINE, QUIET, card, fitted, font
+from render.frames.story.letters import CARD, INK, LINE, QUIET, card, fitted, font, readable
 from render.frames.story.strip import Strip
 from render.letters import width_of
 
@@ -188,7 +188,7 @@ class Drawing:
             box = (x - wide / 2, y - high / 2, x + wide / 2, y + high / 2)
             taken.append(box)
             card(draw, box, size, shown)
-            ink = tuple(int(note.colour[k : k + 2], 16) for k in (1, 3, 5))
+            ink = readable(note.colour)
             draw.text((x, y), note.words, fill=(*ink, round(255 * shown)), font=font(size, True), anchor="mm")
 
 

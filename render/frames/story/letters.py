@@ -10,10 +10,20 @@ from render.letters import font_of, width_of
 
 INK, QUIET, CARD = (240, 243, 247), (184, 192, 203), (9, 12, 17)
 CARD_ALPHA = 0.74
+SIGNAL = 0.68
+"""Part of a signal colour in letters."""
 LINE = 1.32
 """From one line to the next, in heights of letters."""
 SMALLEST = 0.74
 """To this part letters shrink before words count as too long."""
+
+
+def readable(colour: str) -> tuple[int, int, int]:
+    """A signal colour (``#rrggbb``) as letters have it on a card: a part lighter, so that red is read on dark."""
+    red, green, blue = (
+        round(SIGNAL * int(colour[k : k + 2], 16) + (1 - SIGNAL) * ink) for k, ink in zip((1, 3, 5), INK, strict=True)
+    )
+    return red, green, blue
 
 
 @lru_cache(maxsize=64)

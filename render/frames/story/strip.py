@@ -12,7 +12,7 @@ import numpy as np
 from render.film.story import layout
 from render.film.story.curves import Curve
 from render.film.story.words import plain
-from render.frames.story.letters import CARD, CARD_ALPHA, INK, QUIET, font
+from render.frames.story.letters import CARD, CARD_ALPHA, INK, QUIET, font, readable
 from render.letters import width_of
 from shared.contract.quantity import live
 
@@ -135,7 +135,7 @@ class Strip:
             name = plain(curve.name)
             fit = min(size, max(0.6 * size, room / max(width_of(name, True), 1e-9)))
             at = (FINE * panel[0], FINE * 0.45 * size)
-            draw.text(at, name, fill=_rgb(curve.colour), font=font(FINE * fit, True), anchor="la")
+            draw.text(at, name, fill=(*readable(curve.colour), 255), font=font(FINE * fit, True), anchor="la")
         page = Image.new("RGBA", (self.wide, self.tall), (*CARD, round(255 * CARD_ALPHA)))
         page.alpha_composite(fine.reduce(FINE))
         return page

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
     from mbsd.drawing.picture import Picture, Svg
+    from mbsd.dynamics.many.measures import Measure
+    from mbsd.dynamics.many.simulate_many import Simulations
     from mbsd.kinematics.batch import Batch
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
@@ -148,6 +150,43 @@ class Mechanism(Building):
         return simulate(
             self, duration, steps, times, method, tolerance, step, progress, options, event_rows, formulation
         )
+
+    def simulate_many(
+        self,
+        duration: float | None = None,
+        vary: Mapping[str, Mapping[str, Sequence[float] | np.ndarray]] | None = None,
+        start: Mapping[str, Sequence[float] | np.ndarray] | None = None,
+        moving: Mapping[str, Sequence[float] | np.ndarray] | None = None,
+        measure: Mapping[str, Measure] | Callable[[Solution[Mechanism]], Mapping[str, float]] | None = None,
+        steps: int = 360,
+        times: Sequence[float] | np.ndarray | None = None,
+        method: str = "dop853",
+        tolerance: float = 1e-7,
+        step: float | None = None,
+        formulation: str = "auto",
+        threads: int | None = None,
+        progress: Callable[[float], None] | None = None,
+        **options: float,
+    ) -> Simulations:
+        """Simulate n times with other numbers and starts, on all cores, and keep measures alone.
+
+        ``vary``: names to arguments of :meth:`change` and their (n,) values. ``start`` and ``moving``: names of bodies
+        to what :meth:`start_near` (degrees) and :meth:`start_moving` take, (n,) or (n, 3). A single value is that of
+        all. ``measure``: names to measures (mbsd.measures), or a function of a solution that gives numbers by name,
+        for which each simulation is made by itself. The other arguments are those of :meth:`simulate`; ``progress``
+        gets the part that is done, ``threads`` is one a core by default.
+
+        What can be simulated in one compiled loop is, the rest one by one: ``way`` of the result says which and why.
+        Simulations that fail have a reason there. Raises ModelError for what cannot be asked.
+        """
+        from mbsd.analyses.suspicious_units import tell
+        from mbsd.dynamics.many.simulate_many import simulate_many
+
+        tell(self)
+        return simulate_many(
+            self, duration, vary, start, moving, measure, steps, times, method, tolerance, step, formulation, threads,
+            progress, options,
+        )  # fmt: skip
 
     def equilibrium(self, time: float = 0.0, nearest: bool = False) -> Equilibrium:
         """Static equilibrium: pose, reactions, efforts of the drivers, stiffness and stability.

@@ -1,0 +1,144 @@
+"""The simulations that are asked for: values of numbers, of starts and of velocities, row by row, as mechanisms.
+
+    vary={"closer": {"stiffness": [...], "damping": [...]}, "door": {"mass": [...]}}     as m.change takes them
+    start={"door": [...]}       as m.start_near: degrees (n,), or (x, y, degrees) (n, 3)
+    moving={"door": [...]}      as m.start_moving: rad/s (n,), or (vx, vy, omega) (n, 3)
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.arguments import number_array
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.model.mechanism import Model
+
+MOST = 100_000_000
+"""Simulations of one call."""
+
+
+@dataclass
+class Designs:
+    """What varies, as arrays over ``count`` rows."""
+
+    m: Model
+    count: int
+    changes: dict[str, dict[str, np.ndarray]]
+    """By name and argument (count,) or (count, k)."""
+    starts: dict[str, np.ndarray]
+    """(count, 1) degrees or (count, 3)."""
+    velocities: dict[str, np.ndarray]
+    """(count, 1) rad/s or (count, 3)."""
+
+    def copied(self) -> Any:
+        """A mechanism of its own to be changed, row by row."""
+        return copy.deepcopy(self.m)
+
+    def put(self, work: Any, row: int) -> None:
+        """Change ``work`` into the mechanism of a row. Raises ModelError for numbers that it refuses."""
+        for name, values in self.changes.items():
+            work.change(name, **{key: _plain(column[row]) for key, column in values.items()})
+        self.put_start(work, row)
+
+    def put_start(self, work: Any, row: int) -> None:
+        """Only the start of it."""
+        if self.starts:
+            work.start_near(**{name: _plain(values[row]) for name, values in self.starts.items()})
+        if self.velocities:
+            work.start_moving(**{name: _plain(values[row]) for name, values in self.velocities.items()})
+
+
+def _plain(value: Any) -> Any:
+    """A number, or several of them, as the methods take them."""
+    out = np.asarray(value).tolist()
+    return out[0] if isinstance(out, list) and len(out) == 1 else out
+
+
+def designs_of(m: Model, vary: Any, start: Any, moving: Any) -> Designs:
+    """Check what is asked for. Raises ModelError for names that do not exist and lists that do not fit."""
+    changes: dict[str, dict[str, np.ndarray]] = {}
+    for name, values in _named(m, "vary", vary).items():
+        if not isinstance(values, Mapping):
+            raise ModelError(
+                f"{m.name}: vary: '{name}' is {shown(values)}; give its arguments and their values, as change() takes "
+                "them: {'spring': {'stiffness': [...]}}"
+            )
+        changes[name] = {key: _column(f"{m.name}: vary: {key} of '{name}'", column) for key, column in values.items()}
+    starts, velocities = (
+        {name: _wide(m, what, name, values) for name, values in _named(m, what, given).items()}
+        for what, given in (("start", start), ("moving", moving))
+    )
+    columns = [
+        *((f"{key} of '{name}'", column) for name, values in changes.items() for key, column in values.items()),
+        *((f"start of '{name}'", column) for name, column in starts.items()),
+        *((f"moving of '{name}'", column) for name, column in velocities.items()),
+    ]
+    if not columns:
+        raise ModelError(f"{m.name}: simulate_many: nothing varies; give vary=, start= or moving=")
+    count = max(len(column) for _, column in columns)
+    for what, column in columns:
+        if len(column) not in (1, count):
+            raise ModelError(
+                f"{m.name}: simulate_many: {what} has {len(column)} values and another list has {count}; they must be "
+                "equally long, or a single number"
+            )
+        if not len(column):
+            raise ModelError(f"{m.name}: simulate_many: {what} has no values; give one or more")
+    if count > MOST:
+        raise ModelError(f"{m.name}: simulate_many: {count} simulations; take {MOST} at most, in several calls")
+
+    def spread(column: np.ndarray) -> np.ndarray:
+        return np.broadcast_to(column, (count, *column.shape[1:]))
+
+    out = Designs(
+        m,
+        count,
+        {name: {key: spread(column) for key, column in values.items()} for name, values in changes.items()},
+        {name: spread(values) for name, values in starts.items()},
+        {name: spread(values) for name, values in velocities.items()},
+    )
+    _refuse_unknown(out)
+    return out
+
+
+def _refuse_unknown(designs: Designs) -> None:
+    """Raise ModelError for names and arguments that the mechanism does not have, as its own methods do."""
+    work = designs.copied()
+    for name, values in designs.changes.items():
+        try:
+            work.change(name, **{key: _plain(column[0]) for key, column in values.items()})
+        except ModelError as error:
+            if "there is no" in str(error):
+                raise ModelError(str(error).replace(f"{work.name}: ", f"{work.name}: vary: ", 1)) from None
+    for name in (*designs.starts, *designs.velocities):
+        work.known_body(name)
+
+
+def _named(m: Model, what: str, given: Any) -> Mapping[str, Any]:
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping) or not all(isinstance(name, str) for name in given):
+        raise ModelError(f"{m.name}: {what} is {shown(given)}; give names and their values: {{name: [...]}}")
+    return given
+
+
+def _column(what: str, values: Any) -> np.ndarray:
+    """(n,) or (n, k)."""
+    column = np.atleast_1d(number_array(what, values))
+    if column.ndim > 2:
+        raise ModelError(f"{what} has shape {column.shape}; give (n,), or (n, k) of what takes k numbers")
+    return column
+
+
+def _wide(m: Model, what: str, name: str, values: Any) -> np.ndarray:
+    column = np.atleast_1d(number_array(f"{m.name}: {what}: '{name}'", values))
+    column = column[:, None] if column.ndim == 1 else column
+    if column.ndim != 2 or column.shape[1] not in (1, 3):
+        raise ModelError(f"{m.name}: {what}: '{name}' has shape {np.shape(values)}; give (n,) or (n, 3)")
+    return column

@@ -1,0 +1,159 @@
+"""What is kept of each of many simulations: a few numbers of a quantity along its outputs, by functions of their own.
+
+    final("door.theta")                      at the last output
+    largest("A.fx"), smallest("A.fx")        over all outputs, and when: two columns
+    integral("motor.power")                  over time, by the trapezoidal rule
+    first("door.theta", below=0.02)          when it first is there, by a straight line between two outputs
+    samples("P.x", [0.5, 1.0])               at chosen outputs
+
+Quantities are named as the columns of a solution are, without their units (quantities.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.base.arguments import finite_number, number_array, text
+from mbsd.base.errors import ModelError
+
+TIME = "_time"
+"""Ending of the column that says when."""
+NEAR = 1e-9
+"""Part of the duration within which a time is that of an output."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """Numbers of one quantity."""
+
+    quantity: str
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """All that it reads."""
+        return (self.quantity,)
+
+    def columns(self, name: str) -> tuple[str, ...]:
+        """Names of what it gives."""
+        return (name,)
+
+    def check(self, what: str, t: np.ndarray) -> None:
+        """Raise ModelError where it does not suit output times (T,)."""
+
+    def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """By column, (n,) or (n, k) from values (n, T) of each quantity at times (T,)."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class _Final(Measure):
+    def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        return {name: along[self.quantity][:, -1].copy()}
+
+
+@dataclass(frozen=True)
+class _Extreme(Measure):
+    sign: float = 1.0
+
+    def columns(self, name: str) -> tuple[str, ...]:
+        return name, name + TIME
+
+    def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        values = along[self.quantity]
+        at = np.argmax(self.sign * values, axis=1)
+        return {name: values[np.arange(len(values)), at], name + TIME: t[at]}
+
+
+@dataclass(frozen=True)
+class _Integral(Measure):
+    def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        values = along[self.quantity]
+        return {name: (0.5 * (values[:, 1:] + values[:, :-1]) * np.diff(t)).sum(axis=1)}
+
+
+@dataclass(frozen=True)
+class _First(Measure):
+    level: float = 0.0
+    below: bool = True
+    give: str | None = None
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        return (self.quantity,) if self.give is None else (self.quantity, self.give)
+
+    def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        values = along[self.quantity] - self.level
+        there = values < 0.0 if self.below else values > 0.0
+        k, rows = np.argmax(there, axis=1), np.arange(len(values))
+        before = np.maximum(k - 1, 0)
+        here, last = values[rows, k], values[rows, before]
+        rise = np.where(k > 0, here - last, 1.0)
+        share = np.where(k > 0, -last / np.where(rise == 0.0, 1.0, rise), 0.0)
+        given = np.broadcast_to(t, values.shape) if self.give is None else along[self.give]
+        out = given[rows, before] + share * (given[rows, k] - given[rows, before])
+        return {name: np.where(there.any(axis=1), out, np.nan)}
+
+
+@dataclass(frozen=True)
+class _Samples(Measure):
+    times: tuple[float, ...] = ()
+
+    def check(self, what: str, t: np.ndarray) -> None:
+        for time in self.times:
+            if np.abs(t - time).min() > NEAR * np.ptp(t):
+                raise ModelError(
+                    f"{what}: {time:g} s is no output; the nearest is at {t[np.abs(t - time).argmin()]:g} s. "
+                    "Give such times, or other steps or times of the simulation"
+                )
+
+    def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        at = np.abs(t[:, None] - np.array(self.times)).argmin(axis=0)
+        return {name: along[self.quantity][:, at]}
+
+
+def final(quantity: str) -> Measure:
+    """The value of ``quantity`` at the last output."""
+    return _Final(text("final: quantity", quantity))
+
+
+def largest(quantity: str) -> Measure:
+    """The largest value of ``quantity`` among the outputs, and in a second column, ``..._time``, when (s)."""
+    return _Extreme(text("largest: quantity", quantity))
+
+
+def smallest(quantity: str) -> Measure:
+    """The smallest value of ``quantity`` among the outputs, and in a second column, ``..._time``, when (s)."""
+    return _Extreme(text("smallest: quantity", quantity), -1.0)
+
+
+def integral(quantity: str) -> Measure:
+    """The integral of ``quantity`` over time, by the trapezoidal rule over the outputs."""
+    return _Integral(text("integral: quantity", quantity))
+
+
+def first(
+    quantity: str, below: float | None = None, above: float | None = None, give: str | None = None
+) -> Measure:
+    """When (s) ``quantity`` first is ``below`` or ``above`` a number at an output; NaN where it never is.
+
+    The time is where the straight line from the output before passes that number. ``give`` names another quantity,
+    whose value at that time is given in its place. Raises ModelError unless one of ``below`` and ``above`` is given.
+    """
+    if (below is None) == (above is None):
+        raise ModelError(f"first('{quantity}'): give either below= or above=, a number")
+    level = finite_number(f"first('{quantity}'): {'below' if above is None else 'above'}",
+                          below if above is None else above)  # fmt: skip
+    return _First(
+        text("first: quantity", quantity), level, above is None, None if give is None else text("first: give", give)
+    )
+
+
+def samples(quantity: str, times: Sequence[float]) -> Measure:
+    """Values (n, k) of ``quantity`` at ``times`` (k,) (s), each of them that of an output."""
+    wanted = number_array(f"samples('{quantity}'): times", times)
+    if wanted.ndim != 1 or not len(wanted):
+        raise ModelError(f"samples('{quantity}'): times are a list of one or more numbers (s)")
+    return _Samples(text("samples: quantity", quantity), tuple(wanted.tolist()))

@@ -1,0 +1,244 @@
+"""Numbers that vary, put straight into the block of a prepared run: nothing is prepared anew for a row.
+
+Known are numbers of forces that are plain parameters of them, masses and moments of inertia, poses and velocities at
+the start. What a row then differs by is found for all rows at once. Some rows are prepared in full, too, and all
+numbers of their blocks compared: where any differs, all rows are prepared one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mbsd.base.errors import MechanismError
+from mbsd.dynamics.embedding.arrays import Embedding
+from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE
+from mbsd.dynamics.many.designs import Designs
+from mbsd.dynamics.many.starts import Starts, starts_of
+from mbsd.dynamics.prepare.mass_ratio import USUAL
+from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA
+from mbsd.model.body import rod_inertia
+from mbsd.model.force import Force
+
+if TYPE_CHECKING:
+    from mbsd.dynamics.many.worker import Base
+
+ROUNDING = 1e-12
+"""Part of a number by which it may differ from that of a row prepared in full."""
+FRAME = 7
+"""Numbers of an interaction before its own."""
+Column = tuple[int, np.ndarray]
+"""Place in the block, and values (n,) of all rows."""
+
+
+class NotPatched(Exception):
+    """Why rows must be prepared one by one."""
+
+
+class Patches:
+    """Numbers of all rows of ``designs`` by their places in the block of ``base``. Raises NotPatched."""
+
+    def __init__(self, designs: Designs, base: Base) -> None:
+        self.designs, self.base, self.dyn, self.scratch = designs, base, base.arguments[0], base.arguments[1]
+        self.ready = base.run.ready
+        self.mass: np.ndarray | None = None
+        self.inertia: np.ndarray | None = None
+        columns: list[Column] = []
+        m = designs.m
+        for name, values in designs.changes.items():
+            if name in m.forces:
+                columns += self._of_force(name, values)
+            elif name in m.bodies and set(values) <= {"mass", "inertia"}:
+                self._take_masses(name, values)
+            else:
+                raise NotPatched(f"{', '.join(values)} of '{name}'")
+        if self.mass is not None:
+            columns += self._of_masses()
+        self.place = np.array([place for place, _ in columns], np.int64)
+        self.columns = np.array([values for _, values in columns]).reshape(len(columns), designs.count)
+        self.starts: Starts | None = None
+        if designs.starts or designs.velocities:
+            self.starts = starts_of(designs, base)
+            self.place = np.concatenate([self.place, self._start_places()])
+
+    def __call__(self, rows: range) -> tuple[np.ndarray, np.ndarray | None, list[str | None]]:
+        """Values (R, k) of rows, their start poses (R, 3 nb) if these vary, and why a row has none."""
+        at = slice(rows.start, rows.stop)
+        own = self.columns[:, at].T
+        if self.starts is None:
+            return np.ascontiguousarray(own), None, [None] * len(rows)
+        q, v, reasons = self.starts(rows)
+        return np.concatenate([own, self._start_values(q, v)], axis=1), q, reasons
+
+    # -- forces --------------------------------------------------------------------------------------------------
+
+    def _of_force(self, name: str, values: dict[str, np.ndarray]) -> Iterator[Column]:
+        m, loads = self.designs.m, self.dyn.loads
+        force = self._plain(name, values)
+        if force.kind.of_reactions or force.kind.oil or force.kind.chamber or "function" in force.params:
+            raise NotPatched(f"force '{name}'")
+        term = number = 0
+        for other in m.forces.values():
+            elements = (force if other.name == name else other).kind.elements(force if other.name == name else other)
+            for element in elements:
+                for addend in element.terms:
+                    if other.name == name:
+                        for c, value in enumerate((addend.a, addend.b, addend.c)):
+                            if isinstance(value, np.ndarray):
+                                yield self.base.layout.place(loads.number, term, c), value
+                    term += 1
+            masses = self.ready.packed.masses
+            for interaction in (force if other.name == name else other).kind.interactions(
+                force if other.name == name else other, masses
+            ):
+                if other.name == name:
+                    first = int(loads.interaction[number, 3]) + FRAME + interaction.calls_law
+                    for c, value in enumerate(interaction.numbers):
+                        if isinstance(value, np.ndarray):
+                            yield self.base.layout.place(loads.given, first + c), value
+                number += 1
+
+    def _plain(self, name: str, values: dict[str, np.ndarray]) -> Force:
+        """The force with arrays in place of numbers, if they are parameters that nothing else is made of."""
+        params: dict[str, Any] = {}
+        for key, column in values.items():
+            if column.ndim > 1:
+                raise NotPatched(f"{key} of '{name}'")
+            for number in (float(column.min()), float(column.max())):
+                work = self.designs.copied()
+                before = dict(work.forces[name].params)
+                try:
+                    work.change(name, **{key: number})
+                except MechanismError:
+                    raise NotPatched(f"some {key} of '{name}' are refused") from None
+                after = work.forces[name].params
+                changed = {other for other in {*before, *after} if not _same(before.get(other), after.get(other))}
+                if not changed <= {key} or after.get(key) != number:
+                    raise NotPatched(f"{key} of '{name}'")
+            params[key] = np.ascontiguousarray(column)
+        force = self.designs.m.forces[name]
+        made = replace(force, params={**force.params, **params})
+        try:
+            made.kind.elements(made), made.kind.interactions(made, self.ready.packed.masses)
+        except Exception:
+            raise NotPatched(f"{', '.join(values)} of '{name}'") from None
+        return made
+
+    # -- masses --------------------------------------------------------------------------------------------------
+
+    def _take_masses(self, name: str, values: dict[str, np.ndarray]) -> None:
+        packed, count, body = self.ready.packed, self.designs.count, self.designs.m.bodies[name]
+        if self.mass is None:
+            self.mass = np.repeat(packed.system.mass[None], count, axis=0)
+            self.inertia = np.repeat(packed.system.inertia[None], count, axis=0)
+        assert self.inertia is not None
+        b = packed.body_names.index(name)
+        if any((column <= 0.0).any() or column.ndim > 1 for column in values.values()):
+            raise NotPatched(f"some {' or '.join(values)} of '{name}' are not above zero")
+        if "mass" in values:
+            self.mass[:, b] = values["mass"]
+            if "inertia" in body.derived:
+                assert body.length is not None
+                self.inertia[:, b] = rod_inertia(values["mass"], body.length)  # pyright: ignore[reportArgumentType]
+        if "inertia" in values:
+            self.inertia[:, b] = values["inertia"]
+
+    def _of_masses(self) -> Iterator[Column]:
+        assert self.mass is not None
+        assert self.inertia is not None
+        dyn, layout, dynamics = self.dyn, self.base.layout, self.ready.dynamics
+        gravity = self.ready.packed.system.gravity
+        whole = np.repeat(self.mass, 3, axis=1)
+        whole[:, 2::3] = self.inertia
+        self._refuse_light(whole, dynamics.per_size)
+        changed = np.flatnonzero((self.mass != self.mass[:1]).any(axis=0) | (self.inertia != self.inertia[:1]).any(0)
+                                 | (self.mass[0] != self.ready.packed.system.mass)
+                                 | (self.inertia[0] != self.ready.packed.system.inertia))  # fmt: skip
+        for b in changed.tolist():
+            for c in range(3):
+                at, value = 3 * b + c, whole[:, 3 * b + c].copy()
+                yield layout.place(dyn.inertia, at), value
+                yield layout.place(dyn.weight, at), value * (gravity[c] if c < 2 else 0.0)
+                if not isinstance(dyn, Embedding):
+                    yield layout.place(dyn.inverse, at), 1.0 / value
+                    yield layout.place(dyn.metric, at), 1.0 / value
+            if isinstance(dyn, Embedding):
+                yield layout.place(self.scratch.body, b, MASS), self.mass[:, b].copy()
+                yield layout.place(self.scratch.body, b, INERTIA), self.inertia[:, b].copy()
+            else:
+                yield layout.place(dyn.system.mass, b), self.mass[:, b].copy()
+                yield layout.place(dyn.system.inertia, b), self.inertia[:, b].copy()
+
+    def _refuse_light(self, whole: np.ndarray, per_size: np.ndarray) -> None:
+        """Raise NotPatched where masses are so far apart, or zero, that equations are solved otherwise."""
+        moving = whole[:, 3:] / np.where(per_size > 0.0, per_size, 1.0)[3:] ** 2
+        if not (moving > 0.0).all() or (moving.max(axis=1) > USUAL * moving.min(axis=1)).any():
+            raise NotPatched("masses that are zero or far apart")
+        packed = self.ready.packed
+        other = packed.masses._replace(mass=2.0 * packed.masses.mass + 1.0, inertia=2.0 * packed.masses.inertia + 1.0)
+        for force in packed.forces:
+            made = [
+                [list(interaction.numbers) for interaction in force.kind.interactions(force, masses)]
+                for masses in (packed.masses, other)
+            ]
+            if made[0] != made[1]:
+                raise NotPatched(f"force '{force.name}' is made of masses")
+
+    # -- starts --------------------------------------------------------------------------------------------------
+
+    def _start_places(self) -> np.ndarray:
+        state, layout, scratch = self.base.arguments[2], self.base.layout, self.scratch
+        places = [layout.place(state.y, part, c) for part in range(2) for c in range(state.y.shape[1])]
+        if isinstance(self.dyn, Embedding):
+            bodies, count = len(scratch.base), state.y.shape[1] - 3
+            places += [layout.place(scratch.base, b, THETA) for b in range(bodies)]
+            places += [layout.place(scratch.coordinate, k, BASE) for k in range(count)]
+            if self.dyn.block[KEPT_SIZE]:
+                first = int(self.dyn.block[KEPT_Q])
+                places += [layout.place(scratch.block_work, first + c) for c in range(3 * bodies)]
+        return np.array(places, np.int64)
+
+    def _start_values(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        if not isinstance(self.dyn, Embedding):
+            return np.concatenate([q, v], axis=1)
+        independent = self.base.run.independent
+        assert independent is not None
+        z = coordinates_along(self.base.run.coordinates, q, v)
+        parts = [z[:, 0], z[:, 1], q[:, 2::3], z[:, 0, 3:]]
+        if self.dyn.block[KEPT_SIZE]:
+            parts.append(q)
+        return np.concatenate(parts, axis=1)
+
+
+def coordinates_along(coordinates: list[Any], q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(R, 2, 3 + f) independent coordinates and their rates at q, v (R, 3 nb)."""
+    out = np.zeros((len(q), 2, 3 + len(coordinates)))
+    for k, coordinate in enumerate(coordinates):
+        if coordinate.slide is None:
+            i, j = 3 * coordinate.body + 2, 3 * coordinate.other + 2
+            out[:, 0, 3 + k], out[:, 1, 3 + k] = q[:, i] - q[:, j], v[:, i] - v[:, j]
+        else:
+            out[:, 0, 3 + k] = [coordinate.at(row) for row in q]
+            out[:, 1, 3 + k] = [coordinate.rate(*row) for row in zip(q, v, strict=True)]
+    return out
+
+
+def _same(a: Any, b: Any) -> bool:
+    try:
+        return bool(a == b)
+    except Exception:
+        return a is b
+
+
+def agrees(patches: Patches, row: int, fresh: np.ndarray, content_of: Callable[[], np.ndarray]) -> bool:
+    """Whether the block of a row is the one that preparing it in full makes."""
+    value, _, reasons = patches(range(row, row + 1))
+    if reasons[0] is not None:
+        return True
+    mine, other = fresh.copy(), content_of()
+    mine[patches.place] = value[0]
+    close = np.abs(mine - other) <= ROUNDING * np.maximum(np.abs(other), 1.0)
+    return bool((close | (np.isnan(mine) & np.isnan(other)) | (mine == other)).all())

@@ -1,0 +1,115 @@
+"""Quantities of a motion by name, for measures: the columns of a solution, without their units.
+
+    door.theta   P.vx   A.fx   motor.effort   spring.length   kinetic   work
+
+Where two things have one name, ``joint A.fx``, ``trace A.x``, ``driver A.power`` or ``force A.length`` says which is
+meant. Motions of bodies and traced points, kinetic energy and work are found of many simulations at once; the others
+are those of single solutions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.model.mechanism import Model
+from mbsd.results.columns import FRAME
+from mbsd.results.moved_frame import moved_frame
+from mbsd.results.solution import Solution
+
+
+@dataclass
+class Motions:
+    """R simulations at T outputs, of one mechanism but for its numbers."""
+
+    body_names: list[str]
+    q: np.ndarray
+    """(R, T, nb, 3) centres of mass, as v and a."""
+    v: np.ndarray
+    a: np.ndarray
+    work: np.ndarray
+    """(R, T) J."""
+    com: np.ndarray
+    """(R or 1, nb, 2) in the author's frames (m)."""
+    mass: np.ndarray
+    """(R or 1, nb), as ``inertia``."""
+    inertia: np.ndarray
+    traces: dict[str, tuple[int, np.ndarray, float]]
+    """Of each traced point its body, its places (R or 1, 2) in the author's frame (m), and its angle (rad)."""
+    kept: dict[Any, Any] = field(default_factory=dict)
+
+    def frame(self, body: int, place: np.ndarray, turned: float) -> Any:
+        """Motion of a frame at places (R or 1, 2) of a body, as (R T,) arrays."""
+        count, times = self.q.shape[:2]
+        local = np.broadcast_to(place - self.com[:, body], (count, 2)).repeat(times, axis=0)
+        q, v, a = (np.ascontiguousarray(part[:, :, body]).reshape(-1, 3) for part in (self.q, self.v, self.a))
+        return moved_frame(q, v, a, local.T, turned)
+
+    def of_frame(self, name: str, kind: str, component: str) -> np.ndarray:
+        """(R, T) of one component of a body or a traced point."""
+        if kind == "body":
+            body, place, turned = self.body_names.index(name), np.zeros((1, 2)), 0.0
+        else:
+            body, place, turned = self.traces[name]
+        shape = self.q.shape[:2]
+        direct = {"theta": self.q, "omega": self.v, "alpha": self.a}.get(component)
+        if direct is not None:
+            return direct[:, :, body, 2] + turned if component == "theta" else direct[:, :, body, 2]
+        if (kind, name) not in self.kept:
+            self.kept[kind, name] = self.frame(body, place, turned)
+        return getattr(self.kept[kind, name], component).reshape(shape)
+
+    def kinetic(self) -> np.ndarray:
+        """(R, T) J."""
+        v, mass, inertia = self.v, self.mass[:, None], self.inertia[:, None]
+        return 0.5 * (mass * (v[..., 0] ** 2 + v[..., 1] ** 2) + inertia * v[..., 2] ** 2).sum(axis=-1)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One quantity by name."""
+
+    name: str
+    of_solution: Callable[[Solution], np.ndarray]
+    """(T,) of a single solution."""
+    of_motions: Callable[[Motions], np.ndarray] | None = None
+    """(R, T), if it is found of many at once."""
+
+
+def quantity_named(m: Model, name: str, columns: list[str]) -> Quantity:
+    """The quantity of this name; ``columns`` are those of a solution. Raises ModelError for one that there is not."""
+    plain = [column.rpartition(" [")[0] for column in columns]
+    known = {key: column for key, column in zip(plain, columns, strict=True)}
+    whole, _, component = name.rpartition(".")
+    if name == "work":
+        return Quantity(name, _work, lambda motions: motions.work)
+    if name == "kinetic":
+        return Quantity(name, lambda sol: sol.energy.kinetic, Motions.kinetic)
+    bare = whole.removeprefix("trace ")
+    traced = whole not in m.bodies and bare in m.traces and component in FRAME
+    if name not in known and not traced:
+        raise ModelError(f"{m.name}: measure: {no_such('quantity', name, [*plain, 'work'])}")
+    if whole in m.bodies and component in FRAME:
+        return Quantity(
+            name,
+            lambda sol: getattr(sol.body(whole), component),
+            lambda motions: motions.of_frame(whole, "body", component),
+        )
+    if traced and (bare != whole or whole not in {*m.joints, *m.drivers, *m.forces}):
+        return Quantity(
+            name,
+            lambda sol: getattr(sol.point(bare), component),
+            lambda motions: motions.of_frame(bare, "trace", component),
+        )
+    column = known[name]
+    return Quantity(name, lambda sol: sol.columns()[column])
+
+
+def _work(sol: Solution) -> np.ndarray:
+    assert sol.work is not None
+    return sol.work

@@ -1,0 +1,85 @@
+"""The compiled loop over simulations: each from its numbers to its last output, by the steps of a single one.
+
+Between steps it does what Python does for a single simulation (prepare/stops.py, runs/): it ends steps where loads or
+laws jump, and goes on after. What it cannot go on with it leaves to Python, by the status of the row.
+"""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import internal, threaded
+from mbsd.dynamics.integrators.dop853.loop import advance
+from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STARTED, STEP, TIME, Output
+
+STOPPED = -1
+"""Status of rows that were not computed because all was stopped."""
+
+
+@internal
+def next_stop(before, t):
+    """The first stop after the time t; as many as there are if there is none."""
+    low = 0
+    high = before.shape[0]
+    while low < high:
+        middle = (low + high) // 2
+        if before[middle] <= t:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@internal
+def cross(state, before, after):
+    """Go on after the jump right before which the state stands, if it stands there."""
+    t = state.clock[TIME]
+    k = next_stop(before, t) - 1
+    if k >= 0 and before[k] == t and t < after[k]:
+        state.clock[TIME] = after[k]
+        state.clock[STEP] = 0.0
+        state.count[STARTED] = 0
+
+
+@threaded
+def run_rows(
+    dyn, scratch, state, settings, block, fresh, place, value, t, before, after, at_once, most, stop,
+    y, a, lam, work, margin, status, steps,
+):  # fmt: skip
+    """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
+
+    All arrays of numbers of dyn, scratch, state and settings stand in ``block`` (N,). Row r begins with row r of
+    ``fresh`` (R or 1, N) there, with ``value`` (R, k) at ``place`` (k,). Steps end at ``before`` (s) and go on from
+    ``after``. ``at_once`` steps are taken between two looks at ``stop`` (1,), ``most`` altogether.
+    """
+    end = t[t.shape[0] - 1]
+    for r in range(y.shape[0]):
+        status[r] = STOPPED
+        if stop[0] != 0:
+            continue
+        own = min(r, fresh.shape[0] - 1)
+        for i in range(block.shape[0]):
+            block[i] = fresh[own, i]
+        for i in range(place.shape[0]):
+            block[place[i]] = value[r, i]
+        for i in range(state.count.shape[0]):
+            state.count[i] = 0
+        out = Output(t, y[r], a[r], lam[r], work[r], margin[r])
+        ended = PAUSED
+        while ended == PAUSED and stop[0] == 0 and state.count[ACCEPTED] < most:
+            left = at_once
+            while True:
+                if state.clock[TIME] < end:
+                    cross(state, before, after)
+                k = next_stop(before, state.clock[TIME])
+                if k == before.shape[0] or before[k] >= end:
+                    ended = advance(dyn, scratch, state, out, settings, end, left)
+                    break
+                taken = state.count[ACCEPTED]
+                ended = advance(dyn, scratch, state, out, settings, before[k], left)
+                left -= state.count[ACCEPTED] - taken
+                if ended != REACHED or left <= 0:
+                    if ended == REACHED:
+                        ended = PAUSED
+                    break
+        if stop[0] == 0:
+            status[r] = ended
+        steps[r] = state.count[ACCEPTED]

@@ -1,0 +1,228 @@
+"""Many simulations of one mechanism on all cores: what is asked, chunks of it in threads, and a table of results."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mbsd.base.arguments import whole_number
+from mbsd.base.cores import cores
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.dynamics.many.designs import Designs, designs_of
+from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.many.quantities import Quantity, quantity_named
+from mbsd.dynamics.many.single_run import Asked, NotCompiled, single_run
+from mbsd.dynamics.many.worker import Done, Work, Worker, joined
+from mbsd.dynamics.runs.run import FORMULATIONS
+from mbsd.dynamics.simulate import integrator_named, output_times, simulate
+from mbsd.model.mechanism import Model
+from mbsd.model.output_times import refuse_beyond_memory
+
+if TYPE_CHECKING:
+    import pandas
+
+MOST_THREADS = 1024
+MOST_AT_ONCE = 64
+"""Simulations of a chunk."""
+NUMBERS_AT_ONCE = 4_000_000
+"""Numbers of a chunk's outputs."""
+LOOK = 0.2
+"""s between two looks at the keyboard."""
+REASON = "reason"
+
+
+@dataclass(frozen=True, eq=False)
+class Simulations:
+    """Measures of n simulations, in the order of the values that were given."""
+
+    columns: dict[str, np.ndarray]
+    """(n,), or (n, k), by name; NaN where there is a reason."""
+    reason: list[str | None]
+    """(n,) why a simulation failed; None where it did not."""
+    compiled: np.ndarray
+    """(n,) which were simulated in the compiled loop; the others by ``simulate``, one by one."""
+    why: str | None
+    """Why none was, if so: what the mechanism or the measures have."""
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A column. Raises ModelError for one that there is not."""
+        if name not in self.columns:
+            raise ModelError(f"simulations: {no_such('column', name, self.columns)}")
+        return self.columns[name]
+
+    def __len__(self) -> int:
+        return len(self.reason)
+
+    @property
+    def good(self) -> np.ndarray:
+        """(n,) which did not fail."""
+        return np.array([reason is None for reason in self.reason])
+
+    @property
+    def way(self) -> str:
+        """How they were simulated, in words."""
+        inside, count = int(self.compiled.sum()), len(self)
+        why = f" ({self.why})" if self.why else ""
+        if inside == count:
+            return f"all {count} in the compiled loop"
+        if not inside:
+            return f"all {count} one by one{why}"
+        return f"{inside} of {count} in the compiled loop, {count - inside} one by one"
+
+    def table(self) -> pandas.DataFrame:
+        """As a pandas DataFrame, a row a simulation. Needs the extra ``pandas``."""
+        try:
+            import pandas
+        except ImportError as error:
+            raise ModelError("table needs pandas: install mbsd[pandas]") from error
+        flat: dict[str, Any] = {}
+        for name, column in self.columns.items():
+            wide = column.reshape(len(column), -1)
+            flat |= {name if column.ndim == 1 else f"{name}_{k}": wide[:, k] for k in range(wide.shape[1])}
+        return pandas.DataFrame(flat | {REASON: self.reason})
+
+    def __repr__(self) -> str:
+        bad = len(self) - int(self.good.sum())
+        return f"<Simulations: {self.way}; {bad} failed; {', '.join(self.columns)}>"
+
+
+def simulate_many(
+    m: Model,
+    duration: float | None,
+    vary: Any,
+    start: Any,
+    moving: Any,
+    measure: Any,
+    steps: int,
+    times: Sequence[float] | np.ndarray | None,
+    method: str,
+    tolerance: float,
+    step: float | None,
+    formulation: str,
+    threads: int | None,
+    progress: Callable[[float], None] | None,
+    options: Mapping[str, float],
+) -> Simulations:
+    """See :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
+    integrator = integrator_named(m.name, method)
+    integrator.numbers(m.name, options)
+    if formulation not in FORMULATIONS:
+        raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
+    if threads is not None and whole_number(f"{m.name}: threads", threads) > MOST_THREADS:
+        raise ModelError(f"{m.name}: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
+    if progress is not None and not callable(progress):
+        raise ModelError(f"{m.name}: progress is {shown(progress)}; it must be a function of the part done, 0 .. 1")
+    grid = output_times(m, duration, steps, times)
+    asked = Asked(grid, integrator, tolerance, step, formulation, options)
+    designs = designs_of(m, vary, start, moving)
+    measures = _measures(m, measure, grid)
+    quantities = {} if callable(measures) else _quantities(designs, measures, asked)
+    why = _why_single(designs, asked, measures, quantities)
+    width = 1 if callable(measures) else sum(len(each.columns(name)) for name, each in measures.items())
+    refuse_beyond_memory(f"{m.name}: {designs.count} simulations", 3 * width * designs.count, "Take fewer at once")
+    work = Work(designs, asked, measures, quantities, why, np.zeros(1, np.int64))
+    done = _all(work, len(m.bodies), min(threads or cores(), designs.count), progress)
+    return Simulations(done.columns, done.reasons, done.compiled, why)
+
+
+def _measures(m: Model, measure: Any, grid: np.ndarray) -> Any:
+    """As given, checked."""
+    if callable(measure):
+        return measure
+    if not isinstance(measure, Mapping) or not measure:
+        raise ModelError(
+            f"{m.name}: measure is {shown(measure)}; give names and measures, {{'angle': final('door.theta')}}, or a "
+            "function of a solution that gives names and numbers"
+        )
+    names: set[str] = set()
+    for name, each in measure.items():
+        if not isinstance(name, str) or not isinstance(each, Measure):
+            raise ModelError(
+                f"{m.name}: measure: {shown(name)} is {shown(each)}; it must be a measure under a name, such as "
+                "final('door.theta') of mbsd.measures"
+            )
+        for column in each.columns(name):
+            if column in names or column == REASON:
+                raise ModelError(f"{m.name}: measure: there are two columns '{column}'; take another name")
+            names.add(column)
+        each.check(f"{m.name}: measure '{name}'", grid)
+    return dict(measure)
+
+
+def _quantities(designs: Designs, measures: Mapping[str, Measure], asked: Asked) -> dict[str, Quantity]:
+    """By name, all that the measures read. Raises ModelError for one that there is not."""
+    names = list(dict.fromkeys(name for each in measures.values() for name in each.quantities))
+    return {name: quantity_named(designs.m, name, column_names(designs.m)) for name in names}
+
+
+def column_names(m: Model) -> list[str]:
+    """Names of the columns of its solutions, from a solution of an instant."""
+    from mbsd.results.columns import columns
+
+    return list(columns(simulate(m, 1e-9, 1, None, "dop853", 1e-6, None, None, {})))
+
+
+def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mapping[str, Quantity]) -> str | None:
+    if callable(measures):
+        return "measure is a function of a solution"
+    slow = [name for name, quantity in quantities.items() if quantity.of_motions is None]
+    if slow:
+        return f"'{slow[0]}' is that of a single solution"
+    for row in {0, designs.count // 2, designs.count - 1}:
+        model = designs.copied()
+        try:
+            designs.put(model, row)
+            single_run(model, asked)
+        except NotCompiled as why:
+            return str(why)
+        except Exception:
+            continue  # a row may fail
+        return None
+    return None
+
+
+def _all(work: Work, bodies: int, threads: int, progress: Callable[[float], None] | None) -> Done:
+    """All chunks, in order."""
+    count, numbers = work.designs.count, len(work.asked.times) * 12 * bodies
+    size = max(1, min(MOST_AT_ONCE, NUMBERS_AT_ONCE // numbers, -(-count // threads)))
+    chunks = [range(first, min(first + size, count)) for first in range(0, count, size)]
+    own = threading.local()
+
+    def part(rows: range) -> Done:
+        if not hasattr(own, "worker"):
+            own.worker = Worker(work)
+        return own.worker(rows)
+
+    done = [part(chunks[0])]  # compiles before the threads start
+    finished = len(chunks[0])
+    if progress is not None:
+        progress(finished / count)
+    if work.why is not None or len(chunks) == 1 or threads == 1:
+        for rows in chunks[1:]:
+            done.append(part(rows))
+            finished += len(rows)
+            if progress is not None:
+                progress(finished / count)
+        return joined(done)
+    with ThreadPoolExecutor(threads) as pool:
+        futures = [pool.submit(part, rows) for rows in chunks[1:]]
+        try:
+            left = set(futures)
+            while left:
+                ended, left = wait(left, LOOK, FIRST_COMPLETED)
+                finished += sum(len(chunks[1 + futures.index(future)]) for future in ended) if progress else 0
+                if progress is not None and ended:
+                    progress(finished / count)
+        except BaseException:
+            work.stop[0] = 1
+            for future in futures:
+                future.cancel()
+            raise
+    return joined([*done, *(future.result() for future in futures)])

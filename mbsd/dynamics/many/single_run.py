@@ -1,0 +1,104 @@
+"""One simulation prepared up to its first step, as arguments of the compiled loop; or why it cannot go there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mbsd.dynamics.embedding.coordinates import Coordinate
+from mbsd.dynamics.integrators.kind import Integrator
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.runs.carried_steps import can_carry
+from mbsd.dynamics.runs.embed import embedded_at_start
+from mbsd.dynamics.runs.independent_steps import IndependentSteps
+from mbsd.dynamics.runs.indexing import Genevas
+from mbsd.dynamics.runs.run import REFERENCE, Run
+from mbsd.dynamics.runs.to_end import independent_steps
+from mbsd.dynamics.state import State
+from mbsd.model.mechanism import Model
+
+
+@dataclass(frozen=True)
+class Asked:
+    """How each is simulated, as ``simulate`` takes it."""
+
+    times: np.ndarray
+    """(T,) s."""
+    integrator: Integrator
+    tolerance: float
+    step: float | None
+    formulation: str
+    options: Mapping[str, float]
+
+
+class NotCompiled(Exception):
+    """Why a simulation does not go in the compiled loop; the text says what it has."""
+
+
+@dataclass
+class SingleRun:
+    """A run before its first step."""
+
+    ready: PreparedDynamics
+    run: Run
+    state: State
+    independent: IndependentSteps | None
+    coordinates: list[Coordinate]
+    """Independent ones, if it has some."""
+
+    @property
+    def arguments(self) -> tuple[Any, ...]:
+        """dyn, scratch, state and settings of the integrator's loop."""
+        if self.independent is not None:
+            own = self.independent
+            return own.arrays, own.scratch, own.own, own.settings
+        return self.ready.dynamics, self.run.scratch, self.state, self.run.settings
+
+
+def single_run(m: Model, asked: Asked) -> SingleRun:
+    """Prepare it as ``simulate`` does. Raises what ``simulate`` raises, and NotCompiled."""
+    if asked.integrator.name != "dop853":
+        raise NotCompiled(f"method '{asked.integrator.name}' has no loop over many")
+    if m.events:
+        raise NotCompiled("events are functions of Python")
+    times = asked.times
+    ready = prepare_dynamics(m, float(times[0]), float(times[-1]), contacts=True)
+    _refuse(m, ready)
+    longest = asked.step or float(np.diff(times).max())
+    run = Run(
+        ready, asked.integrator, asked.tolerance, longest, float(times[-1] - times[0]), asked.options, asked.formulation
+    )
+    state, _ = ready.begun(times)
+    ready.approaches.forget()
+    independent = independent_steps(run, state)
+    if independent is not None and independent.genevas:
+        raise NotCompiled("steps end where the pin of a Geneva enters its slot")
+    if independent is None and asked.formulation == REFERENCE and can_carry(run):
+        raise NotCompiled("steps in reference coordinates are carried across singular poses; formulation='auto' is not")
+    made = None if independent is None else embedded_at_start(ready)
+    return SingleRun(ready, run, state, independent, [] if made is None else made.coordinates)
+
+
+def _refuse(m: Model, ready: PreparedDynamics) -> None:
+    """Raise NotCompiled for what Python decides between steps, and what it looks at after a simulation."""
+    packed = ready.packed
+    stopping = [*(contact.name for contact in ready.switches.contacts), *(stick.name for stick in ready.sticks)]
+    if stopping:
+        raise NotCompiled(f"'{stopping[0]}' opens, closes or sticks by events")
+    if ready.following:
+        raise NotCompiled("points on curves that cross themselves, or wheels that may meet, are followed step by step")
+    if ready.switches.spare or ready.dropped:
+        raise NotCompiled("joints repeat others, of which a set is chosen anew on the way")
+    if ready.approaches:
+        raise NotCompiled("the damping of a contact remembers how fast it approached")
+    for force in packed.forces:
+        if force.kind.chamber is not None or force.kind.states is not None:
+            raise NotCompiled(f"force '{force.name}' is looked after between outputs")
+    if packed.specials.callbacks:
+        raise NotCompiled(f"{packed.specials.callbacks[0].what} is a function of the user")
+    if ready.initial.velocities:
+        raise NotCompiled("the start was made consistent: " + "; ".join(ready.initial.velocities))

@@ -1,0 +1,352 @@
+"""What one thread does: simulations in chunks, each in the compiled loop or by ``simulate``, and their measures."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.users_function import described
+from mbsd.dynamics.many.arguments import Layout, content, kind_of, laid_out
+from mbsd.dynamics.many.designs import Designs
+from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.many.patches import NotPatched, Patches, agrees
+from mbsd.dynamics.many.quantities import Motions, Quantity
+from mbsd.dynamics.many.rows import STOPPED, run_rows
+from mbsd.dynamics.many.single_run import Asked, NotCompiled, SingleRun, single_run
+from mbsd.dynamics.simulate import simulate
+from mbsd.dynamics.state import REACHED
+
+MOST_STEPS = 200_000
+"""Steps after which a simulation is left to ``simulate``, which knows what to say of it."""
+TRIED = 64
+"""Rows of which the first that can be prepared is what others go by."""
+COMPARED = 6
+"""Rows that are prepared for comparison."""
+NEAR = 1e-9
+"""Part of the size, and rad, by which a start may differ from what it is."""
+OTHER = -2
+"""Status of rows that the loop is not made for."""
+STOP = "stopped"
+
+
+@dataclass
+class Done:
+    """Rows that were simulated: columns of numbers, NaN where there is a reason, and which went in the loop."""
+
+    columns: dict[str, np.ndarray]
+    reasons: list[str | None]
+    compiled: np.ndarray
+
+    def row(self, k: int) -> Done:
+        """One of them."""
+        columns = {name: column[k : k + 1] for name, column in self.columns.items()}
+        return Done(columns, [self.reasons[k]], self.compiled[k : k + 1])
+
+
+@dataclass
+class Base:
+    """A run laid out in a block, which all others of its kind share."""
+
+    run: SingleRun
+    arguments: tuple[Any, ...]
+    block: np.ndarray
+    layout: Layout
+    kind: tuple[Any, ...]
+    fresh: np.ndarray
+    """(1, N) the block before the first step."""
+
+
+def based_on(run: SingleRun) -> Base:
+    """Lay out a run that has not begun."""
+    arguments, block, layout = laid_out(run.arguments)
+    return Base(run, arguments, block, layout, kind_of(run.arguments), block[None].copy())
+
+
+@dataclass
+class Work:
+    """What all threads share."""
+
+    designs: Designs
+    asked: Asked
+    measures: Mapping[str, Measure] | Callable[[Any], Mapping[str, float]]
+    quantities: Mapping[str, Quantity]
+    why: str | None
+    """Why none goes in the compiled loop, if so."""
+    stop: np.ndarray
+    """(1,) not zero where all is to stop."""
+    patched: bool | None = None
+    """Whether rows go without being prepared; None: not looked at yet."""
+    note: str | None = None
+    """Why not, if so."""
+
+
+class Worker:
+    """One thread's own mechanism and block."""
+
+    def __init__(self, work: Work) -> None:
+        self.work, self.designs = work, work.designs
+        self.model = work.designs.copied()
+        self.base: Base | None = None
+        self.patches: Patches | None = None
+
+    def __call__(self, rows: range) -> Done:
+        """Simulate some rows."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if self.work.why is not None:
+                return joined([self._single(row) for row in rows])
+            return self._compiled(rows)
+
+    # -- in the compiled loop ------------------------------------------------------------------------------------
+
+    def _compiled(self, rows: range) -> Done:
+        if self.work.patched is None:
+            self.work.patched = self._can_patch()
+        if not self.work.patched:
+            return self._prepared(rows)
+        if self.patches is None:
+            self.base = self._first_base()
+            assert self.base is not None
+            self.patches = Patches(self.designs, self.base)
+        return self._patched(rows)
+
+    def _first_base(self) -> Base | None:
+        """The first row that can be prepared."""
+        for row in range(min(self.designs.count, TRIED)):
+            try:
+                return based_on(self._run_of(row))
+            except Exception:
+                continue
+        return None
+
+    def _run_of(self, row: int) -> SingleRun:
+        self.designs.put(self.model, row)
+        return single_run(self.model, self.work.asked)
+
+    def _can_patch(self) -> bool:
+        """Whether rows can go without being prepared; some are prepared for comparison."""
+        base, count = self._first_base(), self.designs.count
+        if base is None:
+            return False
+        try:
+            patches = Patches(self.designs, base)
+        except NotPatched as why:
+            self.work.note = f"each is prepared anew: {why}"
+            return False
+        for row in sorted({0, count - 1, *np.linspace(0, count - 1, COMPARED, dtype=int).tolist()}):
+            try:
+                run = self._run_of(row)
+            except Exception:
+                continue
+            same = kind_of(run.arguments) == base.kind
+            if not same or not agrees(patches, row, base.fresh[0], partial(content, run.arguments)):
+                self.work.note = "each is prepared anew: more than what varies depends on it"
+                return False
+        return True
+
+    def _patched(self, rows: range) -> Done:
+        """Rows by their numbers alone."""
+        assert self.base is not None
+        assert self.patches is not None
+        value, q, reasons = self.patches(rows)
+        out = self._run(self.base.fresh, self.patches.place, value)
+        odd = np.array([reason is not None for reason in reasons])
+        if q is not None:  # closed forms may stand on another branch than the start does
+            odd |= np.abs(out.y[:, 0, 0] - q).max(axis=1) > NEAR * self.base.run.ready.packed.size
+        out.status[odd] = OTHER
+        mass = None if self.patches.mass is None else self.patches.mass[rows.start : rows.stop]
+        inertia = None if self.patches.inertia is None else self.patches.inertia[rows.start : rows.stop]
+        return self._measured(rows, self._motions([self.base.run], mass, inertia), out)
+
+    def _prepared(self, rows: range) -> Done:
+        """Rows whose arrays are those that a single simulation prepares."""
+        runs: dict[int, SingleRun] = {}
+        blocks: list[np.ndarray] = []
+        done: dict[int, Done] = {}
+        for row in rows:
+            try:
+                run = self._run_of(row)
+                if self.base is None:
+                    self.base = based_on(run)
+                elif kind_of(run.arguments) != self.base.kind:
+                    raise NotCompiled("its tables are others")
+                runs[row] = run
+                blocks.append(content(run.arguments))
+            except NotCompiled:
+                done[row] = self._single(row)
+            except Exception as error:
+                done[row] = failed(described(error))
+        if runs:
+            out = self._run(np.array(blocks), np.zeros(0, np.int64), np.zeros((1, 0)))
+            together = self._measured(list(runs), self._motions(list(runs.values())), out)
+            done |= {row: together.row(k) for k, row in enumerate(runs)}
+        return joined([done[row] for row in rows])
+
+    def _run(self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray) -> Outputs:
+        assert self.base is not None
+        ready, run, times = self.base.run.ready, self.base.run.run, self.work.asked.times
+        count = max(len(fresh), len(value))
+        wide, rows = len(ready.initial.q), len(ready.packed.ws.phi)
+        out = Outputs(
+            np.zeros((count, len(times), 2, wide)),
+            np.zeros((count, len(times), wide)),
+            np.zeros((count, len(times), rows)),
+            np.zeros((count, len(times))),
+            np.zeros((count, len(times))),
+            np.zeros(count, np.int64),
+            np.zeros(count, np.int64),
+        )
+        stops = ready.stops
+        run_rows(
+            *self.base.arguments, self.base.block, fresh, place, value, times, stops.before, stops.after,
+            run.steps_at_once, MOST_STEPS, self.work.stop, *out.arrays,
+        )  # fmt: skip
+        return out
+
+    def _motions(
+        self, runs: Sequence[SingleRun], mass: np.ndarray | None = None, inertia: np.ndarray | None = None
+    ) -> Callable[[Outputs, np.ndarray], Motions]:
+        """Motions of some rows, from the outputs of all; their masses are those of the runs, unless given."""
+        packed = [run.ready.packed for run in runs]
+        end = len(packed[0].body_names) - packed[0].states
+        names = packed[0].body_names[:end]
+        com = np.array([part.com[:end] for part in packed])
+        masses = np.array([part.system.mass[:end] for part in packed]) if mass is None else mass
+        inertias = np.array([part.system.inertia[:end] for part in packed]) if inertia is None else inertia
+        traces = {
+            name: (names.index(marker.body.name), np.array([[marker.x, marker.y]]), marker.angle)
+            for name, marker in self.model.traces.items()
+        }
+
+        def some(part: np.ndarray, which: np.ndarray) -> np.ndarray:
+            return part[which] if len(part) > 1 else part
+
+        def motions(out: Outputs, which: np.ndarray) -> Motions:
+            parts = out.y[which, :, 0], out.y[which, :, 1], out.a[which]
+            q, v, a = (part[..., : 3 * end].reshape(*part.shape[:2], end, 3) for part in parts)
+            own = (some(part, which) for part in (com, masses, inertias))
+            return Motions(names, q, v, a, out.work[which], *own, traces)
+
+        return motions
+
+    def _measured(
+        self, rows: Sequence[int], motions: Callable[[Outputs, np.ndarray], Motions], out: Outputs
+    ) -> Done:
+        """Measure rows that came to their end, and give the others to ``simulate``."""
+        count, good = len(rows), np.flatnonzero(out.status == REACHED)
+        reasons: list[str | None] = [None] * count
+        compiled = out.status == REACHED
+        columns: dict[str, np.ndarray] = {}
+
+        def put(part: dict[str, np.ndarray], at: Any) -> None:
+            for name, values in part.items():
+                if name not in columns:
+                    columns[name] = np.full((count, *values.shape[1:]), np.nan)
+                columns[name][at] = values
+
+        if len(good):
+            put(self._columns(motions(out, good)), good)
+        for k in np.flatnonzero(~compiled).tolist():
+            done = failed(STOP) if out.status[k] == STOPPED else self._single(rows[k])
+            put(done.columns, [k])
+            reasons[k] = done.reasons[0]
+        return Done(columns, reasons, compiled)
+
+    def _columns(self, motions: Motions) -> dict[str, np.ndarray]:
+        assert isinstance(self.work.measures, Mapping)
+        along = {}
+        for name, quantity in self.work.quantities.items():
+            assert quantity.of_motions is not None
+            along[name] = quantity.of_motions(motions)
+        return columns_of(self.work.measures, self.work.asked.times, along)
+
+    # -- by simulate ---------------------------------------------------------------------------------------------
+
+    def _single(self, row: int) -> Done:
+        if self.work.stop[0]:
+            return failed(STOP)
+        try:
+            return self._simulated(row)
+        except Exception as error:
+            return failed(described(error))
+
+    def _simulated(self, row: int) -> Done:
+        asked, measures = self.work.asked, self.work.measures
+        self.designs.put(self.model, row)
+        sol = simulate(
+            self.model, None, 1, asked.times, asked.integrator.name, asked.tolerance, asked.step, None, asked.options,
+            formulation=asked.formulation,
+        )  # fmt: skip
+        if isinstance(measures, Mapping):
+            along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}
+            columns = columns_of(measures, sol.t, along)
+        else:
+            columns = {name: np.array([value]) for name, value in numbers_of(measures(sol)).items()}
+        return Done(columns, [None], np.zeros(1, bool))
+
+
+@dataclass
+class Outputs:
+    """Arrays that the compiled loop fills; see there."""
+
+    y: np.ndarray
+    a: np.ndarray
+    lam: np.ndarray
+    work: np.ndarray
+    margin: np.ndarray
+    status: np.ndarray
+    steps: np.ndarray
+
+    @property
+    def arrays(self) -> tuple[np.ndarray, ...]:
+        """In the order of the loop's arguments."""
+        return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps
+
+
+def columns_of(
+    measures: Mapping[str, Measure], t: np.ndarray, along: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """All columns, from values (n, T) of the quantities."""
+    out: dict[str, np.ndarray] = {}
+    for name, measure in measures.items():
+        out |= measure.of(name, t, along)
+    return out
+
+
+def numbers_of(given: Any) -> dict[str, float]:
+    """What a function that measures gave. Raises ModelError for anything but names and numbers."""
+    from mbsd.base.shown import shown
+
+    if not isinstance(given, Mapping):
+        raise ModelError(f"measure gives {shown(given)}; it must give names and numbers {{name: number}}")
+    out = {}
+    for name, value in given.items():
+        value = value.item() if getattr(value, "size", 0) == 1 and hasattr(value, "item") else value
+        if not isinstance(name, str) or not isinstance(value, bool | int | float):
+            raise ModelError(f"measure gives {shown(value)} as {shown(name)}; it must be a number under a name")
+        out[name] = float(value)
+    return out
+
+
+def failed(reason: str) -> Done:
+    """One row with a reason."""
+    return Done({}, [reason], np.zeros(1, bool))
+
+
+def joined(parts: Sequence[Done]) -> Done:
+    """Rows one after the other; NaN where a row has no number."""
+    names = list(dict.fromkeys(name for part in parts for name in part.columns))
+    columns = {}
+    for name in names:
+        shape = next(part.columns[name].shape[1:] for part in parts if name in part.columns)
+        columns[name] = np.concatenate(
+            [part.columns.get(name, np.full((len(part.reasons), *shape), np.nan)) for part in parts]
+        )
+    reasons = [reason for part in parts for reason in part.reasons]
+    return Done(columns, reasons, np.concatenate([part.compiled for part in parts]))

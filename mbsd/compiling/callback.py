@@ -101,6 +101,16 @@ class Callback:
     def _serious(self) -> BaseException | None:
         return None if isinstance(self._error, OF_NUMBERS) else self._error
 
+    @property
+    def compiled(self) -> bool:
+        """Whether it is machine code, of which several threads may call copies."""
+        return isinstance(self.function, CFunc | Dispatcher)
+
+    @property
+    def failed(self) -> bool:
+        """Whether it failed since the last check, as far as is known."""
+        return bool(self._failure[0])
+
     def check(self) -> None:
         """Raise what the function raised since the last check, as a ModelError; interrupts as they are."""
         failed, error = bool(self._failure[0]), self._error

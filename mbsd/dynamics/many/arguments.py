@@ -44,7 +44,7 @@ def laid_out(arguments: tuple[Any, ...]) -> tuple[tuple[Any, ...], np.ndarray, L
         at += -(-array.size // ALIGNED) * ALIGNED
     block = _aligned(at)
     views = {key: _view(block, places[key], array) for key, array in arrays.items()}
-    new = {view.ctypes.data: places[key] for key, view in views.items()}
+    new = {view.ctypes.data: places[key] for key, view in views.items() if view.size}
 
     def put(value: Any) -> Any:
         if isinstance(value, tuple):

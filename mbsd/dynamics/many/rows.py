@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.integrators.dop853.loop import advance
+from mbsd.dynamics.integrators.formulation import derivative
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STARTED, STEP, TIME, Output
 
-STOPPED = -1
-"""Status of rows that were not computed because all was stopped."""
+STOPPED, NEARLY_SINGULAR = -1, -3
+"""Status of rows that were not computed because all was stopped, and of those that came near a singular pose."""
 
 
 @internal
@@ -41,14 +42,15 @@ def cross(state, before, after):
 
 @threaded
 def run_rows(
-    dyn, scratch, state, settings, block, fresh, place, value, t, before, after, at_once, most, stop,
+    dyn, scratch, state, settings, block, fresh, place, value, t, before, after, at_once, most, near, stop,
     y, a, lam, work, margin, status, steps,
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 
     All arrays of numbers of dyn, scratch, state and settings stand in ``block`` (N,). Row r begins with row r of
     ``fresh`` (R or 1, N) there, with ``value`` (R, k) at ``place`` (k,). Steps end at ``before`` (s) and go on from
-    ``after``. ``at_once`` steps are taken between two looks at ``stop`` (1,), ``most`` altogether.
+    ``after``. ``at_once`` steps are taken between two looks at ``stop`` (1,), ``most`` altogether. Where ``near`` is
+    above 0, a row ends where its margin falls below this part of the largest so far (runs/carried_steps.py).
     """
     end = t[t.shape[0] - 1]
     for r in range(y.shape[0]):
@@ -64,6 +66,10 @@ def run_rows(
             state.count[i] = 0
         out = Output(t, y[r], a[r], lam[r], work[r], margin[r])
         ended = PAUSED
+        widest = 0.0
+        if near > 0.0:
+            derivative(dyn, scratch, state.clock[TIME], state.y, scratch.stages[0], scratch.multipliers)
+            widest = scratch.report[0]
         while ended == PAUSED and stop[0] == 0 and state.count[ACCEPTED] < most:
             left = at_once
             while True:
@@ -80,6 +86,10 @@ def run_rows(
                     if ended == REACHED:
                         ended = PAUSED
                     break
+            if near > 0.0 and ended != REACHED:
+                widest = max(widest, scratch.report[0])
+                if not scratch.report[0] > near * widest:
+                    ended = NEARLY_SINGULAR
         if stop[0] == 0:
             status[r] = ended
         steps[r] = state.count[ACCEPTED]

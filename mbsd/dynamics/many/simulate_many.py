@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from dataclasses import dataclass
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 MOST_THREADS = 1024
 MOST_AT_ONCE = 64
 """Simulations of a chunk."""
-NUMBERS_AT_ONCE = 4_000_000
+NUMBERS_AT_ONCE = 400_000
 """Numbers of a chunk's outputs."""
 LOOK = 0.2
 """s between two looks at the keyboard."""
@@ -46,10 +47,10 @@ class Simulations:
     """(n,), or (n, k), by name; NaN where there is a reason."""
     reason: list[str | None]
     """(n,) why a simulation failed; None where it did not."""
-    compiled: np.ndarray
-    """(n,) which were simulated in the compiled loop; the others by ``simulate``, one by one."""
-    why: str | None
-    """Why none was, if so: what the mechanism or the measures have."""
+    alone: list[str | None]
+    """(n,) why a simulation was made by itself; None of those in the compiled loop."""
+    note: str | None
+    """Why those in the loop were prepared one by one, if they were."""
 
     def __getitem__(self, name: str) -> np.ndarray:
         """A column. Raises ModelError for one that there is not."""
@@ -68,13 +69,13 @@ class Simulations:
     @property
     def way(self) -> str:
         """How they were simulated, in words."""
-        inside, count = int(self.compiled.sum()), len(self)
-        why = f" ({self.why})" if self.why else ""
-        if inside == count:
-            return f"all {count} in the compiled loop"
-        if not inside:
-            return f"all {count} one by one{why}"
-        return f"{inside} of {count} in the compiled loop, {count - inside} one by one"
+        whys = Counter(why for why in self.alone if why is not None)
+        count, outside = len(self), sum(whys.values())
+        parts = [f"{number} one by one ({why})" for why, number in whys.most_common()]
+        if outside < count:
+            prepared = f" ({self.note})" if self.note else ""
+            parts.insert(0, f"{'all' if not outside else count - outside} of {count} in the compiled loop{prepared}")
+        return ", ".join(parts)
 
     def table(self) -> pandas.DataFrame:
         """As a pandas DataFrame, a row a simulation. Needs the extra ``pandas``."""
@@ -129,7 +130,7 @@ def simulate_many(
     refuse_beyond_memory(f"{m.name}: {designs.count} simulations", 3 * width * designs.count, "Take fewer at once")
     work = Work(designs, asked, measures, quantities, why, np.zeros(1, np.int64))
     done = _all(work, len(m.bodies), min(threads or cores(), designs.count), progress)
-    return Simulations(done.columns, done.reasons, done.compiled, why)
+    return Simulations(done.columns, done.reasons, done.alone, work.note)
 
 
 def _measures(m: Model, measure: Any, grid: np.ndarray) -> Any:

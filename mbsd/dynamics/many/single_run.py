@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from mbsd.dynamics.embedding.coordinates import Coordinate
 from mbsd.dynamics.integrators.kind import Integrator
+from mbsd.dynamics.many.arguments import kind_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.runs.carried_steps import can_carry
+from mbsd.dynamics.runs.carried_steps import NEAR, can_carry
 from mbsd.dynamics.runs.embed import embedded_at_start
 from mbsd.dynamics.runs.independent_steps import IndependentSteps
 from mbsd.dynamics.runs.indexing import Genevas
@@ -51,6 +53,34 @@ class SingleRun:
     """Independent ones, if it has some."""
 
     @property
+    def steps_at_once(self) -> int:
+        """Steps between which a single simulation looks at something."""
+        one_by_one = bool(self.ready.approaches) or self.near > 0.0
+        return 1 if one_by_one else self.run.steps_at_once
+
+    @cached_property
+    def kind(self) -> tuple[Any, ...]:
+        """What runs that share a block have in common."""
+        stops = self.ready.stops
+        return kind_of(self.arguments), stops.before.tobytes(), stops.after.tobytes(), self.steps_at_once, self.near
+
+    @property
+    def failed(self) -> bool:
+        """Whether a function of the user failed in this thread."""
+        return any(callback.failed for callback in self.ready.packed.specials.callbacks)
+
+    def forget(self) -> None:
+        """That it did."""
+        for callback in self.ready.packed.specials.callbacks:
+            callback.forget()
+
+    @cached_property
+    def near(self) -> float:
+        """Part of the largest margin below which a pose is nearly singular, if steps are then carried across; else 0."""
+        carried = self.independent is None and self.run.formulation == REFERENCE and can_carry(self.run)
+        return NEAR if carried else 0.0
+
+    @property
     def arguments(self) -> tuple[Any, ...]:
         """dyn, scratch, state and settings of the integrator's loop."""
         if self.independent is not None:
@@ -77,8 +107,6 @@ def single_run(m: Model, asked: Asked) -> SingleRun:
     independent = independent_steps(run, state)
     if independent is not None and independent.genevas:
         raise NotCompiled("steps end where the pin of a Geneva enters its slot")
-    if independent is None and asked.formulation == REFERENCE and can_carry(run):
-        raise NotCompiled("steps in reference coordinates are carried across singular poses; formulation='auto' is not")
     made = None if independent is None else embedded_at_start(ready)
     return SingleRun(ready, run, state, independent, [] if made is None else made.coordinates)
 
@@ -93,12 +121,11 @@ def _refuse(m: Model, ready: PreparedDynamics) -> None:
         raise NotCompiled("points on curves that cross themselves, or wheels that may meet, are followed step by step")
     if ready.switches.spare or ready.dropped:
         raise NotCompiled("joints repeat others, of which a set is chosen anew on the way")
-    if ready.approaches:
-        raise NotCompiled("the damping of a contact remembers how fast it approached")
     for force in packed.forces:
         if force.kind.chamber is not None or force.kind.states is not None:
             raise NotCompiled(f"force '{force.name}' is looked after between outputs")
-    if packed.specials.callbacks:
-        raise NotCompiled(f"{packed.specials.callbacks[0].what} is a function of the user")
+    slow = [callback.what for callback in packed.specials.callbacks if not callback.compiled]
+    if slow:
+        raise NotCompiled(f"{slow[0]}: the function is one of Python; compile it with numba.njit")
     if ready.initial.velocities:
         raise NotCompiled("the start was made consistent: " + "; ".join(ready.initial.velocities))

@@ -12,15 +12,15 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.users_function import described
-from mbsd.dynamics.many.arguments import Layout, content, kind_of, laid_out
+from mbsd.dynamics.many.arguments import Layout, content, laid_out
 from mbsd.dynamics.many.designs import Designs
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.many.quantities import Motions, Quantity
-from mbsd.dynamics.many.rows import STOPPED, run_rows
+from mbsd.dynamics.many.rows import NEARLY_SINGULAR, STOPPED, run_rows
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, SingleRun, single_run
 from mbsd.dynamics.simulate import simulate
-from mbsd.dynamics.state import REACHED
+from mbsd.dynamics.state import CHOOSE, PAUSED, REACHED, UNCLEAR
 
 MOST_STEPS = 200_000
 """Steps after which a simulation is left to ``simulate``, which knows what to say of it."""
@@ -30,23 +30,33 @@ COMPARED = 6
 """Rows that are prepared for comparison."""
 NEAR = 1e-9
 """Part of the size, and rad, by which a start may differ from what it is."""
-OTHER = -2
-"""Status of rows that the loop is not made for."""
-STOP = "stopped"
+OTHER, FAILED = -2, -4
+"""Status of rows that the loop is not made for, and of those beside which a function of the user failed."""
+LEFT = {
+    OTHER: "its start is that of another branch",
+    FAILED: "a function of the user failed in one of them",
+    NEARLY_SINGULAR: "it came near a singular pose",
+    CHOOSE: "other coordinates became better on the way",
+    UNCLEAR: "an output fell on a pose that coordinates do not tell clearly",
+    PAUSED: f"it took more than {MOST_STEPS} steps",
+}
+"""Why a row left the loop, by its status."""
+STOP, SMALL = "stopped", "its steps became too small"
 
 
 @dataclass
 class Done:
-    """Rows that were simulated: columns of numbers, NaN where there is a reason, and which went in the loop."""
+    """Rows that were simulated: columns of numbers, NaN where there is a reason."""
 
     columns: dict[str, np.ndarray]
     reasons: list[str | None]
-    compiled: np.ndarray
+    alone: list[str | None]
+    """Why each was simulated by itself; None of those in the compiled loop."""
 
     def row(self, k: int) -> Done:
         """One of them."""
         columns = {name: column[k : k + 1] for name, column in self.columns.items()}
-        return Done(columns, [self.reasons[k]], self.compiled[k : k + 1])
+        return Done(columns, [self.reasons[k]], [self.alone[k]])
 
 
 @dataclass
@@ -65,7 +75,7 @@ class Base:
 def based_on(run: SingleRun) -> Base:
     """Lay out a run that has not begun."""
     arguments, block, layout = laid_out(run.arguments)
-    return Base(run, arguments, block, layout, kind_of(run.arguments), block[None].copy())
+    return Base(run, arguments, block, layout, run.kind, block[None].copy())
 
 
 @dataclass
@@ -94,13 +104,14 @@ class Worker:
         self.model = work.designs.copied()
         self.base: Base | None = None
         self.patches: Patches | None = None
+        self.room: Outputs | None = None
 
     def __call__(self, rows: range) -> Done:
         """Simulate some rows."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             if self.work.why is not None:
-                return joined([self._single(row) for row in rows])
+                return joined([self._single(row, self.work.why) for row in rows])
             return self._compiled(rows)
 
     # -- in the compiled loop ------------------------------------------------------------------------------------
@@ -144,7 +155,7 @@ class Worker:
                 run = self._run_of(row)
             except Exception:
                 continue
-            same = kind_of(run.arguments) == base.kind
+            same = run.kind == base.kind
             if not same or not agrees(patches, row, base.fresh[0], partial(content, run.arguments)):
                 self.work.note = "each is prepared anew: more than what varies depends on it"
                 return False
@@ -174,12 +185,12 @@ class Worker:
                 run = self._run_of(row)
                 if self.base is None:
                     self.base = based_on(run)
-                elif kind_of(run.arguments) != self.base.kind:
+                elif run.kind != self.base.kind:
                     raise NotCompiled("its tables are others")
                 runs[row] = run
                 blocks.append(content(run.arguments))
-            except NotCompiled:
-                done[row] = self._single(row)
+            except NotCompiled as why:
+                done[row] = self._single(row, str(why))
             except Exception as error:
                 done[row] = failed(described(error))
         if runs:
@@ -190,23 +201,20 @@ class Worker:
 
     def _run(self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray) -> Outputs:
         assert self.base is not None
-        ready, run, times = self.base.run.ready, self.base.run.run, self.work.asked.times
+        run, ready, times = self.base.run, self.base.run.ready, self.work.asked.times
         count = max(len(fresh), len(value))
-        wide, rows = len(ready.initial.q), len(ready.packed.ws.phi)
-        out = Outputs(
-            np.zeros((count, len(times), 2, wide)),
-            np.zeros((count, len(times), wide)),
-            np.zeros((count, len(times), rows)),
-            np.zeros((count, len(times))),
-            np.zeros((count, len(times))),
-            np.zeros(count, np.int64),
-            np.zeros(count, np.int64),
-        )
+        if self.room is None or len(self.room.status) < count:
+            self.room = room_for(count, len(times), len(ready.initial.q), len(ready.packed.ws.phi))
+        out = Outputs(*(array[:count] for array in self.room.arrays))
+        run.forget()
         stops = ready.stops
         run_rows(
             *self.base.arguments, self.base.block, fresh, place, value, times, stops.before, stops.after,
-            run.steps_at_once, MOST_STEPS, self.work.stop, *out.arrays,
+            run.steps_at_once, MOST_STEPS, run.near, self.work.stop, *out.arrays,
         )  # fmt: skip
+        if run.failed:  # in some row, or in a trial step that was not taken: single simulations can tell
+            out.status[out.status == REACHED] = FAILED
+            run.forget()
         return out
 
     def _motions(
@@ -241,7 +249,7 @@ class Worker:
         """Measure rows that came to their end, and give the others to ``simulate``."""
         count, good = len(rows), np.flatnonzero(out.status == REACHED)
         reasons: list[str | None] = [None] * count
-        compiled = out.status == REACHED
+        alone: list[str | None] = [None] * count
         columns: dict[str, np.ndarray] = {}
 
         def put(part: dict[str, np.ndarray], at: Any) -> None:
@@ -252,11 +260,12 @@ class Worker:
 
         if len(good):
             put(self._columns(motions(out, good)), good)
-        for k in np.flatnonzero(~compiled).tolist():
-            done = failed(STOP) if out.status[k] == STOPPED else self._single(rows[k])
+        for k in np.flatnonzero(out.status != REACHED).tolist():
+            status = int(out.status[k])
+            done = failed(STOP) if status == STOPPED else self._single(rows[k], LEFT.get(status, SMALL))
             put(done.columns, [k])
-            reasons[k] = done.reasons[0]
-        return Done(columns, reasons, compiled)
+            reasons[k], alone[k] = done.reasons[0], done.alone[0]
+        return Done(columns, reasons, alone)
 
     def _columns(self, motions: Motions) -> dict[str, np.ndarray]:
         assert isinstance(self.work.measures, Mapping)
@@ -268,27 +277,26 @@ class Worker:
 
     # -- by simulate ---------------------------------------------------------------------------------------------
 
-    def _single(self, row: int) -> Done:
+    def _single(self, row: int, why: str) -> Done:
         if self.work.stop[0]:
-            return failed(STOP)
+            return failed(STOP, why)
         try:
-            return self._simulated(row)
+            columns = self._simulated(row)
         except Exception as error:
-            return failed(described(error))
+            return failed(described(error), why)
+        return Done(columns, [None], [why])
 
-    def _simulated(self, row: int) -> Done:
+    def _simulated(self, row: int) -> dict[str, np.ndarray]:
         asked, measures = self.work.asked, self.work.measures
         self.designs.put(self.model, row)
         sol = simulate(
             self.model, None, 1, asked.times, asked.integrator.name, asked.tolerance, asked.step, None, asked.options,
             formulation=asked.formulation,
         )  # fmt: skip
-        if isinstance(measures, Mapping):
-            along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}
-            columns = columns_of(measures, sol.t, along)
-        else:
-            columns = {name: np.array([value]) for name, value in numbers_of(measures(sol)).items()}
-        return Done(columns, [None], np.zeros(1, bool))
+        if not isinstance(measures, Mapping):
+            return {name: np.array([value]) for name, value in numbers_of(measures(sol)).items()}
+        along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}
+        return columns_of(measures, sol.t, along)
 
 
 @dataclass
@@ -307,6 +315,19 @@ class Outputs:
     def arrays(self) -> tuple[np.ndarray, ...]:
         """In the order of the loop's arguments."""
         return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps
+
+
+def room_for(count: int, times: int, coordinates: int, rows: int) -> Outputs:
+    """Outputs of ``count`` simulations, used again and again: memory that is touched first costs more than a step."""
+    return Outputs(
+        np.zeros((count, times, 2, coordinates)),
+        np.zeros((count, times, coordinates)),
+        np.zeros((count, times, rows)),
+        np.zeros((count, times)),
+        np.zeros((count, times)),
+        np.zeros(count, np.int64),
+        np.zeros(count, np.int64),
+    )
 
 
 def columns_of(
@@ -334,9 +355,9 @@ def numbers_of(given: Any) -> dict[str, float]:
     return out
 
 
-def failed(reason: str) -> Done:
+def failed(reason: str, why: str | None = None) -> Done:
     """One row with a reason."""
-    return Done({}, [reason], np.zeros(1, bool))
+    return Done({}, [reason], [why])
 
 
 def joined(parts: Sequence[Done]) -> Done:
@@ -349,4 +370,4 @@ def joined(parts: Sequence[Done]) -> Done:
             [part.columns.get(name, np.full((len(part.reasons), *shape), np.nan)) for part in parts]
         )
     reasons = [reason for part in parts for reason in part.reasons]
-    return Done(columns, reasons, np.concatenate([part.compiled for part in parts]))
+    return Done(columns, reasons, [why for part in parts for why in part.alone])

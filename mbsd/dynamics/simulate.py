@@ -61,16 +61,7 @@ def simulate(
     integrator = integrator_named(m.name, method)
     integrator.numbers(m.name, options)
     grid = output_times(m, duration, steps, times)
-    if not LEAST_TOLERANCE <= tolerance <= 1.0:
-        raise ModelError(
-            f"{m.name}: tolerance is {tolerance:g}; it must be positive, within {LEAST_TOLERANCE:g} .. 1, and 1e-12 is "
-            "near what rounding allows"
-        )
-    if step is not None and not (step > 0 and (grid[-1] - grid[0]) / step <= MOST_STEPS):
-        raise ModelError(
-            f"{m.name}: step is {step:g} s; it must be positive, and {grid[-1] - grid[0]:g} s may take {MOST_STEPS:g} "
-            "steps at most"
-        )
+    refuse_bad_steps(m, grid, tolerance, step)
     if progress is not None and not callable(progress):
         raise ModelError(f"{m.name}: progress is {shown(progress)}; it must be a function of the part done, 0 .. 1")
     if formulation not in FORMULATIONS:
@@ -104,6 +95,20 @@ def simulate(
     anew = partial(simulate, m, None, 1, grid, method, tolerance, step, None, options, event_rows, formulation)
     sol = solution(m, ready, recording, Between(at, anew, recording.out.y[-1, 0]))
     return sol if asked is None else asked.rows(sol)
+
+
+def refuse_bad_steps(m: Model, grid: np.ndarray, tolerance: float, step: float | None) -> None:
+    """Raise ModelError for a tolerance or a step (s) with which nothing can be integrated over ``grid`` (T,) (s)."""
+    if not LEAST_TOLERANCE <= tolerance <= 1.0:
+        raise ModelError(
+            f"{m.name}: tolerance is {tolerance:g}; it must be positive, within {LEAST_TOLERANCE:g} .. 1, and 1e-12 is "
+            "near what rounding allows"
+        )
+    if step is not None and not (step > 0 and (grid[-1] - grid[0]) / step <= MOST_STEPS):
+        raise ModelError(
+            f"{m.name}: step is {step:g} s; it must be positive, and {grid[-1] - grid[0]:g} s may take {MOST_STEPS:g} "
+            "steps at most"
+        )
 
 
 def integrator_named(model: str, method: str) -> Integrator:

@@ -1,1 +1,1 @@
-"""Many simulations of one mechanism: numbers that differ, one compiled loop over them, measures instead of solutions."""
+"""Many simulations of one mechanism in one compiled loop: numbers that differ, and measures of each."""

@@ -1,13 +1,14 @@
 """The simulations that are asked for: values of numbers, of starts and of velocities, row by row, as mechanisms.
 
-    vary={"closer": {"stiffness": [...], "damping": [...]}, "door": {"mass": [...]}}     as m.change takes them
-    start={"door": [...]}       as m.start_near: degrees (n,), or (x, y, degrees) (n, 3)
-    moving={"door": [...]}      as m.start_moving: rad/s (n,), or (vx, vy, omega) (n, 3)
+vary={"closer": {"stiffness": [...], "damping": [...]}, "door": {"mass": [...]}}     as m.change takes them
+start={"door": [...]}       as m.start_near: degrees (n,), or (x, y, degrees) (n, 3)
+moving={"door": [...]}      as m.start_moving: rad/s (n,), or (vx, vy, omega) (n, 3)
 """
 
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -17,7 +18,7 @@ import numpy as np
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
-from mbsd.model.mechanism import Model
+from mbsd.model.mechanism import Model, Start, StartVelocity
 
 MOST = 100_000_000
 """Simulations of one call."""
@@ -47,11 +48,13 @@ class Designs:
         self.put_start(work, row)
 
     def put_start(self, work: Any, row: int) -> None:
-        """Only the start of it."""
-        if self.starts:
-            work.start_near(**{name: _plain(values[row]) for name, values in self.starts.items()})
-        if self.velocities:
-            work.start_moving(**{name: _plain(values[row]) for name, values in self.velocities.items()})
+        """Only the start of it, as start_near and start_moving set it."""
+        for name, values in self.starts.items():
+            *place, degrees = values[row].tolist()
+            work.starts[name] = Start(math.radians(degrees), tuple(place) or None)
+        for name, values in self.velocities.items():
+            *place, omega = values[row].tolist()
+            work.velocities[name] = StartVelocity(omega, tuple(place) or None)
 
 
 def _plain(value: Any) -> Any:

@@ -134,9 +134,7 @@ def integral(quantity: str) -> Measure:
     return _Integral(text("integral: quantity", quantity))
 
 
-def first(
-    quantity: str, below: float | None = None, above: float | None = None, give: str | None = None
-) -> Measure:
+def first(quantity: str, below: float | None = None, above: float | None = None, give: str | None = None) -> Measure:
     """When (s) ``quantity`` first is ``below`` or ``above`` a number at an output; NaN where it never is.
 
     The time is where the straight line from the output before passes that number. ``give`` names another quantity,

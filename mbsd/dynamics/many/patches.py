@@ -7,24 +7,23 @@ numbers of their blocks compared: where any differs, all rows are prepared one b
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mbsd.base.errors import MechanismError
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE
+from mbsd.dynamics.many.base import Base
 from mbsd.dynamics.many.designs import Designs
 from mbsd.dynamics.many.starts import Starts, starts_of
 from mbsd.dynamics.prepare.mass_ratio import USUAL
 from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA
 from mbsd.model.body import rod_inertia
 from mbsd.model.force import Force
-
-if TYPE_CHECKING:
-    from mbsd.dynamics.many.worker import Base
 
 ROUNDING = 1e-12
 """Part of a number by which it may differ from that of a row prepared in full."""
@@ -63,6 +62,13 @@ class Patches:
         if designs.starts or designs.velocities:
             self.starts = starts_of(designs, base)
             self.place = np.concatenate([self.place, self._start_places()])
+
+    def of_thread(self, base: Base) -> Patches:
+        """The same for a block of another thread, which is laid out alike."""
+        out = copy.copy(self)
+        out.base, out.dyn, out.scratch, out.ready = base, base.arguments[0], base.arguments[1], base.run.ready
+        out.starts = None if self.starts is None else starts_of(self.designs, base)
+        return out
 
     def __call__(self, rows: range) -> tuple[np.ndarray, np.ndarray | None, list[str | None]]:
         """Values (R, k) of rows, their start poses (R, 3 nb) if these vary, and why a row has none."""
@@ -122,7 +128,8 @@ class Patches:
         force = self.designs.m.forces[name]
         made = replace(force, params={**force.params, **params})
         try:
-            made.kind.elements(made), made.kind.interactions(made, self.ready.packed.masses)
+            made.kind.elements(made)
+            made.kind.interactions(made, self.ready.packed.masses)
         except Exception:
             raise NotPatched(f"{', '.join(values)} of '{name}'") from None
         return made

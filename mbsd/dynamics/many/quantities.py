@@ -84,7 +84,7 @@ class Quantity:
 def quantity_named(m: Model, name: str, columns: list[str]) -> Quantity:
     """The quantity of this name; ``columns`` are those of a solution. Raises ModelError for one that there is not."""
     plain = [column.rpartition(" [")[0] for column in columns]
-    known = {key: column for key, column in zip(plain, columns, strict=True)}
+    known = dict(zip(plain, columns, strict=True))
     whole, _, component = name.rpartition(".")
     if name == "work":
         return Quantity(name, _work, lambda motions: motions.work)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import threading
+import warnings
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,9 +22,9 @@ from mbsd.dynamics.many.designs import Designs, designs_of
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.quantities import Quantity, quantity_named
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, single_run
-from mbsd.dynamics.many.worker import Done, Work, Worker, joined
+from mbsd.dynamics.many.worker import Done, Measures, Work, Worker, joined, numbers_of, simulated
 from mbsd.dynamics.runs.run import FORMULATIONS
-from mbsd.dynamics.simulate import integrator_named, output_times, simulate
+from mbsd.dynamics.simulate import integrator_named, output_times, refuse_bad_steps, simulate
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
 
@@ -34,6 +36,8 @@ MOST_AT_ONCE = 64
 """Simulations of a chunk."""
 NUMBERS_AT_ONCE = 400_000
 """Numbers of a chunk's outputs."""
+NUMBERS_OF_A_BODY = 12
+"""Numbers of an output of a body and its joints."""
 LOOK = 0.2
 """s between two looks at the keyboard."""
 REASON = "reason"
@@ -121,19 +125,22 @@ def simulate_many(
     if progress is not None and not callable(progress):
         raise ModelError(f"{m.name}: progress is {shown(progress)}; it must be a function of the part done, 0 .. 1")
     grid = output_times(m, duration, steps, times)
+    refuse_bad_steps(m, grid, tolerance, step)
     asked = Asked(grid, integrator, tolerance, step, formulation, options)
     designs = designs_of(m, vary, start, moving)
     measures = _measures(m, measure, grid)
-    quantities = {} if callable(measures) else _quantities(designs, measures, asked)
+    quantities = {} if callable(measures) else _quantities(designs, measures)
     why = _why_single(designs, asked, measures, quantities)
     width = 1 if callable(measures) else sum(len(each.columns(name)) for name, each in measures.items())
     refuse_beyond_memory(f"{m.name}: {designs.count} simulations", 3 * width * designs.count, "Take fewer at once")
+    if callable(measures):
+        _refuse_no_numbers(designs, asked, measures)
     work = Work(designs, asked, measures, quantities, why, np.zeros(1, np.int64))
     done = _all(work, len(m.bodies), min(threads or cores(), designs.count), progress)
     return Simulations(done.columns, done.reasons, done.alone, work.note)
 
 
-def _measures(m: Model, measure: Any, grid: np.ndarray) -> Any:
+def _measures(m: Model, measure: Any, grid: np.ndarray) -> Measures:
     """As given, checked."""
     if callable(measure):
         return measure
@@ -157,10 +164,23 @@ def _measures(m: Model, measure: Any, grid: np.ndarray) -> Any:
     return dict(measure)
 
 
-def _quantities(designs: Designs, measures: Mapping[str, Measure], asked: Asked) -> dict[str, Quantity]:
+def _quantities(designs: Designs, measures: Mapping[str, Measure]) -> dict[str, Quantity]:
     """By name, all that the measures read. Raises ModelError for one that there is not."""
     names = list(dict.fromkeys(name for each in measures.values() for name in each.quantities))
     return {name: quantity_named(designs.m, name, column_names(designs.m)) for name in names}
+
+
+def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], Any]) -> None:
+    """Raise ModelError if ``measure`` gives anything but numbers of the first simulation."""
+    model = designs.copied()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            designs.put(model, 0)
+            given = measure(simulated(model, asked))
+    except Exception:
+        return  # that is the reason of the first row
+    numbers_of(given)
 
 
 def column_names(m: Model) -> list[str]:
@@ -190,10 +210,10 @@ def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mappi
 
 
 def _all(work: Work, bodies: int, threads: int, progress: Callable[[float], None] | None) -> Done:
-    """All chunks, in order."""
-    count, numbers = work.designs.count, len(work.asked.times) * 12 * bodies
+    """All chunks, in order. This thread does none, so that it hears Ctrl-C at once."""
+    count, numbers = work.designs.count, len(work.asked.times) * NUMBERS_OF_A_BODY * bodies
     size = max(1, min(MOST_AT_ONCE, NUMBERS_AT_ONCE // numbers, -(-count // threads)))
-    chunks = [range(first, min(first + size, count)) for first in range(0, count, size)]
+    chunks = [range(1), *(range(first, min(first + size, count)) for first in range(1, count, size))]
     own = threading.local()
 
     def part(rows: range) -> Done:
@@ -201,29 +221,32 @@ def _all(work: Work, bodies: int, threads: int, progress: Callable[[float], None
             own.worker = Worker(work)
         return own.worker(rows)
 
-    done = [part(chunks[0])]  # compiles before the threads start
-    finished = len(chunks[0])
-    if progress is not None:
-        progress(finished / count)
-    if work.why is not None or len(chunks) == 1 or threads == 1:
-        for rows in chunks[1:]:
-            done.append(part(rows))
-            finished += len(rows)
-            if progress is not None:
-                progress(finished / count)
-        return joined(done)
-    with ThreadPoolExecutor(threads) as pool:
-        futures = [pool.submit(part, rows) for rows in chunks[1:]]
+    finished, ended = 0, SimpleQueue[Future[Done]]()
+    with ThreadPoolExecutor(threads if work.why is None else 1) as pool:
+        futures: dict[Future[Done], int] = {}
         try:
-            left = set(futures)
-            while left:
-                ended, left = wait(left, LOOK, FIRST_COMPLETED)
-                finished += sum(len(chunks[1 + futures.index(future)]) for future in ended) if progress else 0
-                if progress is not None and ended:
-                    progress(finished / count)
+            for some in (chunks[:1], chunks[1:]):  # the first compiles what the others need
+                for rows in some:
+                    future = pool.submit(part, rows)
+                    futures[future] = len(rows)
+                    future.add_done_callback(ended.put)
+                for _ in some:
+                    future = _next(ended)
+                    future.result()
+                    finished += futures[future]
+                    if progress is not None:
+                        progress(finished / count)
         except BaseException:
             work.stop[0] = 1
-            for future in futures:
-                future.cancel()
+            pool.shutdown(wait=False, cancel_futures=True)
             raise
-    return joined([*done, *(future.result() for future in futures)])
+    return joined([future.result() for future in futures])
+
+
+def _next(ended: SimpleQueue[Future[Done]]) -> Future[Done]:
+    """The next that ends; Ctrl-C is heard meanwhile."""
+    while True:
+        try:
+            return ended.get(timeout=LOOK)
+        except Empty:
+            continue

@@ -17,7 +17,6 @@ from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.runs.carried_steps import NEAR, can_carry
 from mbsd.dynamics.runs.embed import embedded_at_start
 from mbsd.dynamics.runs.independent_steps import IndependentSteps
-from mbsd.dynamics.runs.indexing import Genevas
 from mbsd.dynamics.runs.run import REFERENCE, Run
 from mbsd.dynamics.runs.to_end import independent_steps
 from mbsd.dynamics.state import State
@@ -76,7 +75,7 @@ class SingleRun:
 
     @cached_property
     def near(self) -> float:
-        """Part of the largest margin below which a pose is nearly singular, if steps are then carried across; else 0."""
+        """Part of the largest margin below which steps are carried across a nearly singular pose; 0 where none are."""
         carried = self.independent is None and self.run.formulation == REFERENCE and can_carry(self.run)
         return NEAR if carried else 0.0
 

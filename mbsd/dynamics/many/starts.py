@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mbsd.base.users_function import described
+from mbsd.dynamics.many.base import Base
 from mbsd.dynamics.many.designs import Designs
 from mbsd.equations.assembly import tabulate
 from mbsd.kinematics.pose.close import CLOSED
@@ -23,13 +24,12 @@ from mbsd.kinematics.pose.mobility import independent_rows
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
-    from mbsd.dynamics.many.worker import Base
 
 STEPS = 8
 """Steps of Newton-Raphson; a tree of pins takes two."""
 EXACT = 1e-13
 """Residual (sizes, rad) below which no further step is taken."""
-Found = tuple[np.ndarray, np.ndarray, list[str | None]]
+Started = tuple[np.ndarray, np.ndarray, list[str | None]]
 """q and v (R, 3 nb), and why a row has none."""
 
 
@@ -40,7 +40,7 @@ class Starts:
         self.designs, self.ready = designs, base.run.ready
         self.work: Any = designs.copied()
 
-    def __call__(self, rows: range) -> Found:
+    def __call__(self, rows: range) -> Started:
         """Those of some rows."""
         ready = self.ready
         q, v = np.repeat(ready.initial.q[None], len(rows), 0), np.repeat(ready.initial.v[None], len(rows), 0)
@@ -73,16 +73,16 @@ class StartsAtOnce(Starts):
         self.nu = np.zeros(len(jac))
         self.nu[packed.driver_rows :] = self.drive[1:, 1]
 
-    def __call__(self, rows: range) -> Found:
+    def __call__(self, rows: range) -> Started:
         """Those of some rows."""
-        q, v, reasons = np.repeat(self.ready.initial.q[None], len(rows), 0), np.zeros((0, 0)), [None] * len(rows)
+        q = np.repeat(self.ready.initial.q[None], len(rows), 0)
         targets = self._targets(rows)
         q[:, self.wanted] = targets
         q, worst = self._closed(q, targets)
         if not (worst <= CLOSED).all():
             return super().__call__(rows)
         v = self._velocities(rows, q)
-        return super().__call__(rows) if v is None else (q, v, reasons)
+        return super().__call__(rows) if v is None else (q, v, [None for _ in rows])
 
     def _targets(self, rows: range) -> np.ndarray:
         out = np.zeros((len(rows), len(self.wanted)))

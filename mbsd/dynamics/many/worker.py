@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
 from mbsd.base.users_function import described
-from mbsd.dynamics.many.arguments import Layout, content, laid_out
+from mbsd.dynamics.many.arguments import content
+from mbsd.dynamics.many.base import Base, based_on
 from mbsd.dynamics.many.designs import Designs
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.patches import NotPatched, Patches, agrees
@@ -21,6 +23,8 @@ from mbsd.dynamics.many.rows import NEARLY_SINGULAR, STOPPED, run_rows
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, SingleRun, single_run
 from mbsd.dynamics.simulate import simulate
 from mbsd.dynamics.state import CHOOSE, PAUSED, REACHED, UNCLEAR
+from mbsd.model.mechanism import Model
+from mbsd.results.solution import Solution
 
 MOST_STEPS = 200_000
 """Steps after which a simulation is left to ``simulate``, which knows what to say of it."""
@@ -44,6 +48,9 @@ LEFT = {
 STOP, SMALL = "stopped", "its steps became too small"
 
 
+Measures = Mapping[str, Measure] | Callable[[Any], Any]
+
+
 @dataclass
 class Done:
     """Rows that were simulated: columns of numbers, NaN where there is a reason."""
@@ -60,38 +67,21 @@ class Done:
 
 
 @dataclass
-class Base:
-    """A run laid out in a block, which all others of its kind share."""
-
-    run: SingleRun
-    arguments: tuple[Any, ...]
-    block: np.ndarray
-    layout: Layout
-    kind: tuple[Any, ...]
-    fresh: np.ndarray
-    """(1, N) the block before the first step."""
-
-
-def based_on(run: SingleRun) -> Base:
-    """Lay out a run that has not begun."""
-    arguments, block, layout = laid_out(run.arguments)
-    return Base(run, arguments, block, layout, run.kind, block[None].copy())
-
-
-@dataclass
 class Work:
     """What all threads share."""
 
     designs: Designs
     asked: Asked
-    measures: Mapping[str, Measure] | Callable[[Any], Mapping[str, float]]
+    measures: Measures
     quantities: Mapping[str, Quantity]
     why: str | None
     """Why none goes in the compiled loop, if so."""
     stop: np.ndarray
     """(1,) not zero where all is to stop."""
-    patched: bool | None = None
-    """Whether rows go without being prepared; None: not looked at yet."""
+    looked: bool = False
+    """Whether it is known if rows must be prepared."""
+    patches: Patches | None = None
+    """Numbers of rows that need not be."""
     note: str | None = None
     """Why not, if so."""
 
@@ -117,14 +107,14 @@ class Worker:
     # -- in the compiled loop ------------------------------------------------------------------------------------
 
     def _compiled(self, rows: range) -> Done:
-        if self.work.patched is None:
-            self.work.patched = self._can_patch()
-        if not self.work.patched:
+        if not self.work.looked:
+            self.work.patches, self.work.looked = self._patches(), True
+        if self.work.patches is None:
             return self._prepared(rows)
         if self.patches is None:
             self.base = self._first_base()
             assert self.base is not None
-            self.patches = Patches(self.designs, self.base)
+            self.patches = self.work.patches.of_thread(self.base)
         return self._patched(rows)
 
     def _first_base(self) -> Base | None:
@@ -140,16 +130,16 @@ class Worker:
         self.designs.put(self.model, row)
         return single_run(self.model, self.work.asked)
 
-    def _can_patch(self) -> bool:
-        """Whether rows can go without being prepared; some are prepared for comparison."""
+    def _patches(self) -> Patches | None:
+        """Numbers of rows that need not be prepared, if none need; some are prepared for comparison."""
         base, count = self._first_base(), self.designs.count
         if base is None:
-            return False
+            return None
         try:
             patches = Patches(self.designs, base)
         except NotPatched as why:
             self.work.note = f"each is prepared anew: {why}"
-            return False
+            return None
         for row in sorted({0, count - 1, *np.linspace(0, count - 1, COMPARED, dtype=int).tolist()}):
             try:
                 run = self._run_of(row)
@@ -158,8 +148,8 @@ class Worker:
             same = run.kind == base.kind
             if not same or not agrees(patches, row, base.fresh[0], partial(content, run.arguments)):
                 self.work.note = "each is prepared anew: more than what varies depends on it"
-                return False
-        return True
+                return None
+        return patches
 
     def _patched(self, rows: range) -> Done:
         """Rows by their numbers alone."""
@@ -238,14 +228,12 @@ class Worker:
         def motions(out: Outputs, which: np.ndarray) -> Motions:
             parts = out.y[which, :, 0], out.y[which, :, 1], out.a[which]
             q, v, a = (part[..., : 3 * end].reshape(*part.shape[:2], end, 3) for part in parts)
-            own = (some(part, which) for part in (com, masses, inertias))
-            return Motions(names, q, v, a, out.work[which], *own, traces)
+            own = [some(part, which) for part in (com, masses, inertias)]
+            return Motions(names, q, v, a, out.work[which], own[0], own[1], own[2], traces)
 
         return motions
 
-    def _measured(
-        self, rows: Sequence[int], motions: Callable[[Outputs, np.ndarray], Motions], out: Outputs
-    ) -> Done:
+    def _measured(self, rows: Sequence[int], motions: Callable[[Outputs, np.ndarray], Motions], out: Outputs) -> Done:
         """Measure rows that came to their end, and give the others to ``simulate``."""
         count, good = len(rows), np.flatnonzero(out.status == REACHED)
         reasons: list[str | None] = [None] * count
@@ -287,12 +275,9 @@ class Worker:
         return Done(columns, [None], [why])
 
     def _simulated(self, row: int) -> dict[str, np.ndarray]:
-        asked, measures = self.work.asked, self.work.measures
+        measures = self.work.measures
         self.designs.put(self.model, row)
-        sol = simulate(
-            self.model, None, 1, asked.times, asked.integrator.name, asked.tolerance, asked.step, None, asked.options,
-            formulation=asked.formulation,
-        )  # fmt: skip
+        sol = simulated(self.model, self.work.asked)
         if not isinstance(measures, Mapping):
             return {name: np.array([value]) for name, value in numbers_of(measures(sol)).items()}
         along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}
@@ -330,6 +315,14 @@ def room_for(count: int, times: int, coordinates: int, rows: int) -> Outputs:
     )
 
 
+def simulated(m: Model, asked: Asked) -> Solution:
+    """One simulation by itself."""
+    return simulate(
+        m, None, 1, asked.times, asked.integrator.name, asked.tolerance, asked.step, None, asked.options,
+        formulation=asked.formulation,
+    )  # fmt: skip
+
+
 def columns_of(
     measures: Mapping[str, Measure], t: np.ndarray, along: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
@@ -342,8 +335,6 @@ def columns_of(
 
 def numbers_of(given: Any) -> dict[str, float]:
     """What a function that measures gave. Raises ModelError for anything but names and numbers."""
-    from mbsd.base.shown import shown
-
     if not isinstance(given, Mapping):
         raise ModelError(f"measure gives {shown(given)}; it must give names and numbers {{name: number}}")
     out = {}

@@ -40,7 +40,7 @@ class NotPatched(Exception):
 class Patches:
     """Numbers of all rows of ``designs`` by their places in the block of ``base``. Raises NotPatched."""
 
-    def __init__(self, designs: Designs, base: Base) -> None:
+    def __init__(self, designs: Designs, base: Base, starts: bool = True) -> None:
         self.designs, self.base, self.dyn, self.scratch = designs, base, base.arguments[0], base.arguments[1]
         self.ready = base.run.ready
         self.mass: np.ndarray | None = None
@@ -59,7 +59,7 @@ class Patches:
         self.place = np.array([place for place, _ in columns], np.int64)
         self.columns = np.array([values for _, values in columns]).reshape(len(columns), designs.count)
         self.starts: Starts | None = None
-        if designs.starts or designs.velocities:
+        if starts and (designs.starts or designs.velocities):
             self.starts = starts_of(designs, base)
             self.place = np.concatenate([self.place, self._start_places()])
 

@@ -3,8 +3,8 @@
     door.theta   P.vx   A.fx   motor.effort   spring.length   kinetic   work
 
 Where two things have one name, ``joint A.fx``, ``trace A.x``, ``driver A.power`` or ``force A.length`` says which is
-meant. Motions of bodies and traced points, kinetic energy and work are found of many simulations at once; the others
-are those of single solutions.
+meant. Motions of bodies and traced points, reactions of joints, drivers, kinetic energy and work are found of
+many simulations at once; the others are those of single solutions.
 """
 
 from __future__ import annotations
@@ -21,6 +21,21 @@ from mbsd.model.mechanism import Model
 from mbsd.results.columns import FRAME
 from mbsd.results.moved_frame import moved_frame
 from mbsd.results.solution import Solution
+
+WRENCH = ("fx", "fy", "torque")
+"""Components of the reaction of a joint that are found of many at once."""
+
+
+@dataclass
+class Reactive:
+    """Reactions and efforts of R simulations at T outputs."""
+
+    wrench: np.ndarray
+    """(R, T, joints, 3) as ``Solution.wrench``."""
+    lam: np.ndarray
+    """(R, T, drivers) and rows of what comes behind."""
+    drives: np.ndarray
+    """(T, drivers + 1, 3)"""
 
 
 @dataclass
@@ -41,6 +56,8 @@ class Motions:
     inertia: np.ndarray
     traces: dict[str, tuple[int, np.ndarray, float]]
     """Of each traced point its body, its places (R or 1, 2) in the author's frame (m), and its angle (rad)."""
+    reactive: Reactive | None = None
+    """If any measure reads it."""
     kept: dict[Any, Any] = field(default_factory=dict)
 
     def frame(self, body: int, place: np.ndarray, turned: float) -> Any:
@@ -64,6 +81,19 @@ class Motions:
             self.kept[kind, name] = self.frame(body, place, turned)
         return getattr(self.kept[kind, name], component).reshape(shape)
 
+    def of_joint(self, number: int, component: int) -> np.ndarray:
+        """(R, T) N or N m."""
+        assert self.reactive is not None
+        return self.reactive.wrench[:, :, number, component]
+
+    def of_driver(self, number: int, component: str) -> np.ndarray:
+        """(R, T) of one component of a driver."""
+        assert self.reactive is not None
+        effort, drive = -self.reactive.lam[:, :, number], self.reactive.drives[:, number + 1]
+        if component == "value":
+            return np.broadcast_to(drive[:, 0], effort.shape)
+        return effort if component == "effort" else effort * drive[:, 1]
+
     def kinetic(self) -> np.ndarray:
         """(R, T) J."""
         v, mass, inertia = self.v, self.mass[:, None], self.inertia[:, None]
@@ -79,6 +109,8 @@ class Quantity:
     """(T,) of a single solution."""
     of_motions: Callable[[Motions], np.ndarray] | None = None
     """(R, T), if it is found of many at once."""
+    reactive: bool = False
+    """Whether it comes from multipliers."""
 
 
 def quantity_named(m: Model, name: str, columns: list[str]) -> Quantity:
@@ -107,6 +139,17 @@ def quantity_named(m: Model, name: str, columns: list[str]) -> Quantity:
             lambda motions: motions.of_frame(bare, "trace", component),
         )
     column = known[name]
+    joint, driver = whole.removeprefix("joint "), whole.removeprefix("driver ")
+    if joint in m.joints and component in WRENCH:
+        number, c = list(m.joints).index(joint), WRENCH.index(component)
+        return Quantity(
+            name, lambda sol: sol.columns()[column], lambda motions: motions.of_joint(number, c), reactive=True
+        )
+    if driver in m.drivers:
+        number = list(m.drivers).index(driver)
+        return Quantity(
+            name, lambda sol: sol.columns()[column], lambda motions: motions.of_driver(number, component), reactive=True
+        )
     return Quantity(name, lambda sol: sol.columns()[column])
 
 

@@ -19,10 +19,11 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.dynamics.many.designs import Designs, designs_of
+from mbsd.dynamics.many.done import Done, joined, numbers_of
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.quantities import Quantity, quantity_named
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, single_run
-from mbsd.dynamics.many.worker import Done, Measures, Work, Worker, joined, numbers_of, simulated
+from mbsd.dynamics.many.worker import Measures, Work, Worker, simulated
 from mbsd.dynamics.runs.run import FORMULATIONS
 from mbsd.dynamics.simulate import integrator_named, output_times, refuse_bad_steps, simulate
 from mbsd.model.mechanism import Model
@@ -135,7 +136,15 @@ def simulate_many(
     refuse_beyond_memory(f"{m.name}: {designs.count} simulations", 3 * width * designs.count, "Take fewer at once")
     if callable(measures):
         _refuse_no_numbers(designs, asked, measures)
-    work = Work(designs, asked, measures, quantities, why, np.zeros(1, np.int64))
+    work = Work(
+        designs,
+        asked,
+        measures,
+        quantities,
+        why,
+        np.zeros(1, np.int64),
+        any(quantity.reactive for quantity in quantities.values()),
+    )
     done = _all(work, len(m.bodies), min(threads or cores(), designs.count), progress)
     return Simulations(done.columns, done.reasons, done.alone, work.note)
 
@@ -200,11 +209,13 @@ def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mappi
         model = designs.copied()
         try:
             designs.put(model, row)
-            single_run(model, asked)
+            run = single_run(model, asked)
         except NotCompiled as why:
             return str(why)
         except Exception:
             continue  # a row may fail
+        if run.ready.approaches and any(quantity.reactive for quantity in quantities.values()):
+            return "reactions where the damping of a contact remembers how fast it approached"
         return None
     return None
 

@@ -20,6 +20,7 @@ from mbsd.dynamics.runs.independent_steps import IndependentSteps
 from mbsd.dynamics.runs.run import REFERENCE, Run
 from mbsd.dynamics.runs.to_end import independent_steps
 from mbsd.dynamics.state import State
+from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
 
 
@@ -50,6 +51,8 @@ class SingleRun:
     independent: IndependentSteps | None
     coordinates: list[Coordinate]
     """Independent ones, if it has some."""
+    traces: dict[str, Marker]
+    """Traced points as they are now."""
 
     @property
     def steps_at_once(self) -> int:
@@ -107,7 +110,7 @@ def single_run(m: Model, asked: Asked) -> SingleRun:
     if independent is not None and independent.genevas:
         raise NotCompiled("steps end where the pin of a Geneva enters its slot")
     made = None if independent is None else embedded_at_start(ready)
-    return SingleRun(ready, run, state, independent, [] if made is None else made.coordinates)
+    return SingleRun(ready, run, state, independent, [] if made is None else made.coordinates, {**m.traces})
 
 
 def _refuse(m: Model, ready: PreparedDynamics) -> None:

@@ -10,15 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
 from mbsd.base.users_function import described
 from mbsd.dynamics.many.arguments import content
 from mbsd.dynamics.many.base import Base, based_on
 from mbsd.dynamics.many.designs import Designs
+from mbsd.dynamics.many.done import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.many.outputs import Outputs, motions_of, room_for
 from mbsd.dynamics.many.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.many.quantities import Motions, Quantity
+from mbsd.dynamics.many.reactions import Reactions
 from mbsd.dynamics.many.rows import NEARLY_SINGULAR, STOPPED, run_rows
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, SingleRun, single_run
 from mbsd.dynamics.simulate import simulate
@@ -52,21 +53,6 @@ Measures = Mapping[str, Measure] | Callable[[Any], Any]
 
 
 @dataclass
-class Done:
-    """Rows that were simulated: columns of numbers, NaN where there is a reason."""
-
-    columns: dict[str, np.ndarray]
-    reasons: list[str | None]
-    alone: list[str | None]
-    """Why each was simulated by itself; None of those in the compiled loop."""
-
-    def row(self, k: int) -> Done:
-        """One of them."""
-        columns = {name: column[k : k + 1] for name, column in self.columns.items()}
-        return Done(columns, [self.reasons[k]], [self.alone[k]])
-
-
-@dataclass
 class Work:
     """What all threads share."""
 
@@ -78,6 +64,8 @@ class Work:
     """Why none goes in the compiled loop, if so."""
     stop: np.ndarray
     """(1,) not zero where all is to stop."""
+    reactive: bool = False
+    """Whether any measure reads reactions."""
     looked: bool = False
     """Whether it is known if rows must be prepared."""
     patches: Patches | None = None
@@ -95,6 +83,7 @@ class Worker:
         self.base: Base | None = None
         self.patches: Patches | None = None
         self.room: Outputs | None = None
+        self.reactions: Reactions | None = None
 
     def __call__(self, rows: range) -> Done:
         """Simulate some rows."""
@@ -163,7 +152,9 @@ class Worker:
         out.status[odd] = OTHER
         mass = None if self.patches.mass is None else self.patches.mass[rows.start : rows.stop]
         inertia = None if self.patches.inertia is None else self.patches.inertia[rows.start : rows.stop]
-        return self._measured(rows, self._motions([self.base.run], mass, inertia), out)
+        runs, times = [self.base.run], self.work.asked.times
+        reacting = self._reactions(self.patches).of_rows(rows, out, times) if self.work.reactive else None
+        return self._measured(rows, lambda which: motions_of(runs, out, which, mass, inertia, reacting), out)
 
     def _prepared(self, rows: range) -> Done:
         """Rows whose arrays are those that a single simulation prepares."""
@@ -185,9 +176,18 @@ class Worker:
                 done[row] = failed(described(error))
         if runs:
             out = self._run(np.array(blocks), np.zeros(0, np.int64), np.zeros((1, 0)))
-            together = self._measured(list(runs), self._motions(list(runs.values())), out)
+            own = list(runs.values())
+            times = self.work.asked.times
+            reacting = self._reactions(None).of_runs(own, out, times) if self.work.reactive else None
+            together = self._measured(list(runs), lambda which: motions_of(own, out, which, None, None, reacting), out)
             done |= {row: together.row(k) for k, row in enumerate(runs)}
         return joined([done[row] for row in rows])
+
+    def _reactions(self, patches: Patches | None) -> Reactions:
+        if self.reactions is None:
+            assert self.base is not None
+            self.reactions = Reactions(self.base.run, patches)
+        return self.reactions
 
     def _run(self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray) -> Outputs:
         assert self.base is not None
@@ -207,33 +207,7 @@ class Worker:
             run.forget()
         return out
 
-    def _motions(
-        self, runs: Sequence[SingleRun], mass: np.ndarray | None = None, inertia: np.ndarray | None = None
-    ) -> Callable[[Outputs, np.ndarray], Motions]:
-        """Motions of some rows, from the outputs of all; their masses are those of the runs, unless given."""
-        packed = [run.ready.packed for run in runs]
-        end = len(packed[0].body_names) - packed[0].states
-        names = packed[0].body_names[:end]
-        com = np.array([part.com[:end] for part in packed])
-        masses = np.array([part.system.mass[:end] for part in packed]) if mass is None else mass
-        inertias = np.array([part.system.inertia[:end] for part in packed]) if inertia is None else inertia
-        traces = {
-            name: (names.index(marker.body.name), np.array([[marker.x, marker.y]]), marker.angle)
-            for name, marker in self.model.traces.items()
-        }
-
-        def some(part: np.ndarray, which: np.ndarray) -> np.ndarray:
-            return part[which] if len(part) > 1 else part
-
-        def motions(out: Outputs, which: np.ndarray) -> Motions:
-            parts = out.y[which, :, 0], out.y[which, :, 1], out.a[which]
-            q, v, a = (part[..., : 3 * end].reshape(*part.shape[:2], end, 3) for part in parts)
-            own = [some(part, which) for part in (com, masses, inertias)]
-            return Motions(names, q, v, a, out.work[which], own[0], own[1], own[2], traces)
-
-        return motions
-
-    def _measured(self, rows: Sequence[int], motions: Callable[[Outputs, np.ndarray], Motions], out: Outputs) -> Done:
+    def _measured(self, rows: Sequence[int], motions: Callable[[np.ndarray], Motions], out: Outputs) -> Done:
         """Measure rows that came to their end, and give the others to ``simulate``."""
         count, good = len(rows), np.flatnonzero(out.status == REACHED)
         reasons: list[str | None] = [None] * count
@@ -247,7 +221,7 @@ class Worker:
                 columns[name][at] = values
 
         if len(good):
-            put(self._columns(motions(out, good)), good)
+            put(self._columns(motions(good)), good)
         for k in np.flatnonzero(out.status != REACHED).tolist():
             status = int(out.status[k])
             done = failed(STOP) if status == STOPPED else self._single(rows[k], LEFT.get(status, SMALL))
@@ -284,81 +258,9 @@ class Worker:
         return columns_of(measures, sol.t, along)
 
 
-@dataclass
-class Outputs:
-    """Arrays that the compiled loop fills; see there."""
-
-    y: np.ndarray
-    a: np.ndarray
-    lam: np.ndarray
-    work: np.ndarray
-    margin: np.ndarray
-    status: np.ndarray
-    steps: np.ndarray
-
-    @property
-    def arrays(self) -> tuple[np.ndarray, ...]:
-        """In the order of the loop's arguments."""
-        return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps
-
-
-def room_for(count: int, times: int, coordinates: int, rows: int) -> Outputs:
-    """Outputs of ``count`` simulations, used again and again: memory that is touched first costs more than a step."""
-    return Outputs(
-        np.zeros((count, times, 2, coordinates)),
-        np.zeros((count, times, coordinates)),
-        np.zeros((count, times, rows)),
-        np.zeros((count, times)),
-        np.zeros((count, times)),
-        np.zeros(count, np.int64),
-        np.zeros(count, np.int64),
-    )
-
-
 def simulated(m: Model, asked: Asked) -> Solution:
     """One simulation by itself."""
     return simulate(
         m, None, 1, asked.times, asked.integrator.name, asked.tolerance, asked.step, None, asked.options,
         formulation=asked.formulation,
     )  # fmt: skip
-
-
-def columns_of(
-    measures: Mapping[str, Measure], t: np.ndarray, along: Mapping[str, np.ndarray]
-) -> dict[str, np.ndarray]:
-    """All columns, from values (n, T) of the quantities."""
-    out: dict[str, np.ndarray] = {}
-    for name, measure in measures.items():
-        out |= measure.of(name, t, along)
-    return out
-
-
-def numbers_of(given: Any) -> dict[str, float]:
-    """What a function that measures gave. Raises ModelError for anything but names and numbers."""
-    if not isinstance(given, Mapping):
-        raise ModelError(f"measure gives {shown(given)}; it must give names and numbers {{name: number}}")
-    out = {}
-    for name, value in given.items():
-        value = value.item() if getattr(value, "size", 0) == 1 and hasattr(value, "item") else value
-        if not isinstance(name, str) or not isinstance(value, bool | int | float):
-            raise ModelError(f"measure gives {shown(value)} as {shown(name)}; it must be a number under a name")
-        out[name] = float(value)
-    return out
-
-
-def failed(reason: str, why: str | None = None) -> Done:
-    """One row with a reason."""
-    return Done({}, [reason], [why])
-
-
-def joined(parts: Sequence[Done]) -> Done:
-    """Rows one after the other; NaN where a row has no number."""
-    names = list(dict.fromkeys(name for part in parts for name in part.columns))
-    columns = {}
-    for name in names:
-        shape = next(part.columns[name].shape[1:] for part in parts if name in part.columns)
-        columns[name] = np.concatenate(
-            [part.columns.get(name, np.full((len(part.reasons), *shape), np.nan)) for part in parts]
-        )
-    reasons = [reason for part in parts for reason in part.reasons]
-    return Done(columns, reasons, [why for part in parts for why in part.alone])

@@ -1,0 +1,108 @@
+"""Outputs of the compiled loop, and the motions that they are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.reactions import wrenches
+from mbsd.dynamics.many.quantities import Motions, Reactive
+from mbsd.dynamics.many.single_run import SingleRun
+
+
+@dataclass
+class Outputs:
+    """Arrays that the compiled loop fills; see there."""
+
+    y: np.ndarray
+    a: np.ndarray
+    lam: np.ndarray
+    work: np.ndarray
+    margin: np.ndarray
+    status: np.ndarray
+    steps: np.ndarray
+
+    @property
+    def arrays(self) -> tuple[np.ndarray, ...]:
+        """In the order of the loop's arguments."""
+        return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps
+
+
+def room_for(count: int, times: int, coordinates: int, rows: int) -> Outputs:
+    """Outputs of ``count`` simulations, used again and again: memory that is touched first costs more than a step."""
+    return Outputs(
+        np.zeros((count, times, 2, coordinates)),
+        np.zeros((count, times, coordinates)),
+        np.zeros((count, times, rows)),
+        np.zeros((count, times)),
+        np.zeros((count, times)),
+        np.zeros(count, np.int64),
+        np.zeros(count, np.int64),
+    )
+
+
+@dataclass
+class Reacting:
+    """What reactions of R rows at T times are made of."""
+
+    packed: list[Packed]
+    """Of each row, or one for all."""
+    y: np.ndarray
+    """(R, T, 2, 3 nb)"""
+    jacobians: np.ndarray
+    """(R, T, m, 6) compact."""
+    lam: np.ndarray
+    """(R, T, m)"""
+    times: np.ndarray
+
+    def of(self, which: np.ndarray) -> Reactive:
+        """Reactions of some rows."""
+        q, jacobians, lam = self.y[which, :, 0], self.jacobians[which], self.lam[which]
+        count, times = q.shape[:2]
+        if len(self.packed) == 1:
+            flat = (part.reshape(count * times, *part.shape[2:]) for part in (jacobians, q, lam))
+            made = wrenches(self.packed[0], *flat)
+            wrench = made.reshape(count, times, *made.shape[1:])
+        else:
+            rows = [
+                wrenches(self.packed[k], *parts) for k, *parts in zip(which.tolist(), jacobians, q, lam, strict=True)
+            ]
+            wrench = np.array(rows)
+        packed = self.packed[0]
+        return Reactive(wrench, lam[..., packed.driver_rows :], packed.drives(self.times))
+
+
+def motions_of(
+    runs: Sequence[SingleRun],
+    out: Outputs,
+    which: np.ndarray,
+    mass: np.ndarray | None,
+    inertia: np.ndarray | None,
+    reacting: Reacting | None = None,
+) -> Motions:
+    """Motions of the rows ``which`` of outputs, whose runs are these, or all like the only one but for their masses."""
+    packed, end = [run.ready.packed for run in runs], len(runs[0].ready.packed.body_names) - runs[0].ready.packed.states
+    names = packed[0].body_names[:end]
+
+    def some(part: np.ndarray) -> np.ndarray:
+        return part[which] if len(part) > 1 else part
+
+    traces = {
+        name: (
+            names.index(marker.body.name),
+            some(np.array([(run.traces[name].x, run.traces[name].y) for run in runs])),
+            marker.angle,
+        )
+        for name, marker in runs[0].traces.items()
+    }
+    parts = out.y[which, :, 0], out.y[which, :, 1], out.a[which]
+    q, v, a = (part[..., : 3 * end].reshape(*part.shape[:2], end, 3) for part in parts)
+    return Motions(
+        names, q, v, a, out.work[which], some(np.array([part.com[:end] for part in packed])),
+        some(np.array([part.system.mass[:end] for part in packed]) if mass is None else mass),
+        some(np.array([part.system.inertia[:end] for part in packed]) if inertia is None else inertia),
+        traces, None if reacting is None else reacting.of(which),
+    )  # fmt: skip

@@ -1,0 +1,75 @@
+"""Multipliers and Jacobians along simulations that are done, for reactions of joints and efforts of drivers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbsd.compiling.jit import threaded
+from mbsd.dynamics.many.arguments import content, laid_out
+from mbsd.dynamics.many.base import Base
+from mbsd.dynamics.many.outputs import Outputs, Reacting
+from mbsd.dynamics.many.patches import Patches
+from mbsd.dynamics.many.single_run import SingleRun
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.state import REACHED
+from mbsd.equations.assembly import position
+
+
+@threaded
+def tabulate_reactions(dyn, scratch, block, fresh, place, value, t, y, status, jacobians, lam, known):
+    """Fill compact jacobians (R, T, m, 6) and, unless ``known``, lam (R, T, m) along states y (R, T, 2, 3 nb).
+
+    Rows of ``block``, ``fresh``, ``place`` and ``value`` are those of run_rows, for Dynamics and its scratch alone.
+    """
+    for r in range(y.shape[0]):
+        if status[r] != REACHED:
+            continue
+        own = min(r, fresh.shape[0] - 1)
+        for i in range(block.shape[0]):
+            block[i] = fresh[own, i]
+        for i in range(place.shape[0]):
+            block[place[i]] = value[r, i]
+        for k in range(t.shape[0]):
+            if not known:
+                derivative(dyn, scratch, t[k], y[r, k], scratch.stages[0], lam[r, k])
+            position(dyn.system, y[r, k, 0], scratch.drive, scratch.ws)
+            for row in range(lam.shape[2]):
+                for c in range(6):
+                    jacobians[r, k, row, c] = scratch.ws.jac[row, c]
+
+
+class Reactions:
+    """Reactions of rows that are like one run, in one thread."""
+
+    def __init__(self, run: SingleRun, patches: Patches | None) -> None:
+        self.run = run
+        arguments, block, layout = laid_out(self._arguments(run))
+        self.base = Base(run, arguments, block, layout, (), block[None].copy())
+        self.patches = None if patches is None else Patches(patches.designs, self.base, starts=False)
+
+    @staticmethod
+    def _arguments(run: SingleRun) -> tuple:
+        return run.ready.dynamics, run.run.scratch
+
+    def of_rows(self, rows: range, out: Outputs, times: np.ndarray) -> Reacting:
+        """Of rows that differ by numbers alone."""
+        assert self.patches is not None
+        return self._filled(self.base.fresh, self.patches.place, self.patches(rows)[0], [self.run], out, times)
+
+    def of_runs(self, runs: Sequence[SingleRun], out: Outputs, times: np.ndarray) -> Reacting:
+        """Of runs that were prepared."""
+        fresh = np.array([content(self._arguments(run)) for run in runs])
+        return self._filled(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), runs, out, times)
+
+    def _filled(
+        self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, runs: Sequence[SingleRun], out: Outputs,
+        times: np.ndarray,
+    ) -> Reacting:  # fmt: skip
+        jacobians = np.zeros((*out.lam.shape, 6))
+        tabulate_reactions(
+            *self.base.arguments, self.base.block, fresh, place, value, times, out.y, out.status, jacobians, out.lam,
+            self.run.independent is None,
+        )  # fmt: skip
+        return Reacting([run.ready.packed for run in runs], out.y, jacobians, out.lam, times)

@@ -98,10 +98,11 @@ def motions_of(
         )
         for name, marker in runs[0].traces.items()
     }
-    parts = out.y[which, :, 0], out.y[which, :, 1], out.a[which]
+    own = slice(None) if len(which) == len(out.status) else which  # a view, where all are meant
+    parts = out.y[own, :, 0], out.y[own, :, 1], out.a[own]
     q, v, a = (part[..., : 3 * end].reshape(*part.shape[:2], end, 3) for part in parts)
     return Motions(
-        names, q, v, a, out.work[which], some(np.array([part.com[:end] for part in packed])),
+        names, q, v, a, out.work[own], some(np.array([part.com[:end] for part in packed])),
         some(np.array([part.system.mass[:end] for part in packed]) if mass is None else mass),
         some(np.array([part.system.inertia[:end] for part in packed]) if inertia is None else inertia),
         traces, None if reacting is None else reacting.of(which),

@@ -1,0 +1,252 @@
+"""Many simulations in one compiled loop: the numbers of single ones, whatever varies; reasons; what goes by itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numba
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, ModelError, curve
+from mbsd.measures import final, first, integral, largest, samples, smallest
+from tools.models.random_linkages import linkage
+
+STEPS = 20
+
+
+def door(stiffness: float = 5.0, damping: float = 10.0) -> Mechanism:
+    m = Mechanism("door", gravity=None)
+    leaf = m.bar("door", 0.9, mass=30.0)
+    m.revolute("hinge", m.ground.at(0, 0), leaf.start)
+    m.torsion_spring("closer", m.ground, leaf, stiffness, damping, free_angle=-0.3)
+    m.start_near(door=90)
+    return m
+
+
+def pendulum() -> Mechanism:
+    m = Mechanism("double")
+    a, b = m.bar("a", 1.0, mass=1.0), m.bar("b", 0.7, mass=0.5)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.torsion_spring("joint", a, b, 2.0, 0.1)
+    m.trace("P", b.at(0.6, 0.1))
+    m.start_near(a=-80, b=-60)
+    return m
+
+
+def barrier(stops: bool = False) -> Mechanism:
+    m = Mechanism("barrier")
+    a, b, c = m.bar("crank", 0.1, mass=0.3), m.bar("coupler", 0.38, mass=0.5), m.bar("rocker", 0.3, mass=2.0)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    pivot = m.revolute("D", m.ground.at(0.4, 0.02), c.start)
+    m.motor("motor", m.ground, a, curve([-10, 0, 20, 40], [6.0, 5.0, 2.0, 0.0]))
+    m.torsion_spring("spring", m.ground, c, 3.0, 0.4, free_angle=1.8)
+    if stops:
+        m.stop("end", pivot, lower=math.radians(85), upper=math.radians(125), restitution=0.3)
+    m.start_near(crank=0, coupler=45, rocker=90)
+    return m
+
+
+def test_random_machines_have_the_digits_of_single_simulations() -> None:
+    for seed in range(6):
+        formulation = ("auto", "reference")[seed % 2]
+        rng, count = np.random.default_rng(seed), 4
+        m = linkage(seed, 1 + seed % 2, damping=bool(seed % 2)).m
+        body, joint = list(m.bodies)[1], next(iter(m.joints))
+        vary = {body: {"mass": rng.uniform(0.5, 2.0, count)}}
+        for force in m.forces.values():
+            for key in ("stiffness", "damping"):
+                if isinstance(force.given.get(key), float):
+                    vary[force.name] = {key: force.given[key] * rng.uniform(0.7, 1.3, count)}
+        measures = {
+            "x": samples(f"{body}.x", [0.25, 0.5]),
+            "a": final(f"{body}.ax"),
+            "r": largest(f"{joint}.fx"),
+            "w": final("work"),
+            "e": smallest("kinetic"),
+        }
+        many = m.simulate_many(0.5, vary=vary, measure=measures, steps=STEPS, formulation=formulation)
+        for k in range(count):
+            alone = linkage(seed, 1 + seed % 2, damping=bool(seed % 2)).m
+            for name, values in vary.items():
+                alone.change(name, **{key: float(column[k]) for key, column in values.items()})
+            sol = alone.simulate(0.5, steps=STEPS, formulation=formulation)
+            assert many["x"][k].tolist() == [sol.body(body).x[10], sol.body(body).x[20]]
+            assert many["a"][k] == sol.body(body).ax[-1]
+            np.testing.assert_allclose(many["r"][k], sol.joint(joint).fx.max(), rtol=1e-12)
+            assert sol.work is not None
+            assert many["w"][k] == sol.work[-1]
+            np.testing.assert_allclose(many["e"][k], sol.energy.kinetic.min(), rtol=1e-12)
+
+
+def test_starts_and_velocities_are_those_of_single_simulations() -> None:
+    rng, count = np.random.default_rng(2), 12
+    a, b, omega = rng.uniform(-180, 180, count), rng.uniform(-90, 90, count), rng.uniform(-3, 3, count)
+    for moving in ({"b": omega}, {"a": omega, "b": -omega}, None):
+        many = pendulum().simulate_many(
+            0.8, start={"a": a, "b": b}, moving=moving, measure={"x": final("P.x"), "fy": final("A.fy")}, steps=STEPS
+        )
+        assert many.alone == [None] * count
+        for k in range(count):
+            m = pendulum()
+            m.start_near(a=a[k], b=b[k])
+            if moving is not None:
+                m.start_moving(**{name: float(values[k]) for name, values in moving.items()})
+            sol = m.simulate(0.8, steps=STEPS)
+            np.testing.assert_allclose(many["x"][k], sol.point("P").x[-1], atol=1e-9)
+            np.testing.assert_allclose(many["fy"][k], sol.joint("A").fy[-1], atol=1e-7)
+
+
+def test_lengths_are_prepared_row_by_row_and_traces_follow() -> None:
+    lengths = np.array([0.35, 0.38, 0.4])
+    m = barrier()
+    m.trace("P", m.bodies["coupler"].end)
+    many = m.simulate_many(
+        0.3, vary={"coupler": {"length": lengths}}, measure={"x": final("P.x"), "f": largest("D.fy")}, steps=STEPS
+    )
+    assert "prepared" in many.way
+    for k, length in enumerate(lengths):
+        alone = barrier()
+        alone.trace("P", alone.bodies["coupler"].end)
+        alone.change("coupler", length=float(length))
+        sol = alone.simulate(0.3, steps=STEPS)
+        assert many["x"][k] == sol.point("P").x[-1]
+        np.testing.assert_allclose(many["f"][k], sol.joint("D").fy.max(), rtol=1e-12)
+
+
+def test_threads_change_no_digit() -> None:
+    stiffness = np.linspace(1.0, 9.0, 300)
+    one_thread, four = (
+        door().simulate_many(
+            2.0, vary={"closer": {"stiffness": stiffness}}, measure={"x": final("door.theta")}, steps=400, threads=n
+        )
+        for n in (1, 4)
+    )
+    assert one_thread.alone == [None] * 300
+    assert np.array_equal(one_thread["x"], four["x"])
+
+
+def test_what_is_left_to_events_is_simulated_by_itself_and_says_so() -> None:
+    damping = np.array([0.2, 0.5])
+    many = barrier(stops=True).simulate_many(
+        0.5, vary={"spring": {"damping": damping}}, measure={"angle": final("rocker.theta")}, steps=STEPS
+    )
+    assert "one by one ('end" in many.way
+    for k in range(2):
+        m = barrier(stops=True)
+        m.change("spring", damping=float(damping[k]))
+        assert many["angle"][k] == m.simulate(0.5, steps=STEPS).body("rocker").theta[-1]
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_functions_of_the_user_take_part_if_they_are_compiled(compiled: bool) -> None:
+    def wind(t: float, q: np.ndarray, v: np.ndarray) -> tuple[float, float, float]:
+        return 0.2 * math.sin(3.0 * t), 0.0, -0.1 * v[2]
+
+    def with_wind(mass: float) -> Mechanism:
+        m = pendulum()
+        m.user_force("wind", function, m.bodies["b"])
+        m.change("a", mass=mass)
+        return m
+
+    function: Callable = numba.njit(wind) if compiled and not numba.config.DISABLE_JIT else wind
+    masses = np.linspace(0.5, 1.5, 3)
+    many = with_wind(1.0).simulate_many(0.5, vary={"a": {"mass": masses}}, measure={"x": final("P.x")}, steps=STEPS)
+    assert ("compiled loop" in many.way) == (function is not wind)
+    assert ("numba.njit" in many.way) == (function is wind)
+    assert many["x"].tolist() == [with_wind(mass).simulate(0.5, steps=STEPS).point("P").x[-1] for mass in masses]
+
+
+def test_rows_that_fail_carry_a_reason_and_do_not_stop_the_others() -> None:
+    many = door().simulate_many(
+        1.0, vary={"closer": {"damping": [4.0, -1.0, 5.0]}}, measure={"x": final("door.theta")}, steps=STEPS
+    )
+    assert many.good.tolist() == [True, False, True]
+    assert "cannot be negative" in str(many.reason[1])
+    assert np.isnan(many["x"]).tolist() == [False, True, False]
+    assert many["x"][2] == door(5.0, 5.0).simulate(1.0, steps=STEPS).body("door").theta[-1]
+
+
+def test_measures_are_what_they_say() -> None:
+    many = door().simulate_many(
+        4.0,
+        vary={"closer": {"stiffness": [4.0, 8.0]}},
+        measure={
+            "shut": first("door.theta", below=1.0),
+            "speed": first("door.theta", below=1.0, give="door.omega"),
+            "never": first("door.theta", above=7.0),
+            "fast": smallest("door.omega"),
+            "way": integral("door.omega"),
+            "power": integral("closer.power"),
+        },
+        steps=400,
+    )
+    for k, stiffness in enumerate((4.0, 8.0)):
+        sol = door(stiffness).simulate(4.0, steps=400)
+        leaf = sol.body("door")
+        at = sol.at([many["shut"][k]])
+        np.testing.assert_allclose(at.body("door").theta, 1.0, atol=1e-4)
+        np.testing.assert_allclose(at.body("door").omega, many["speed"][k], atol=1e-4)
+        assert np.isnan(many["never"][k])
+        assert many["fast"][k] == leaf.omega.min()
+        assert many["fast_time"][k] == sol.t[np.argmin(leaf.omega)]
+        np.testing.assert_allclose(many["way"][k], leaf.theta[-1] - leaf.theta[0], atol=1e-4)
+        np.testing.assert_allclose(many["power"][k], np.trapezoid(sol.force("closer").power, sol.t), rtol=1e-12)
+    assert "'closer.power'" in many.way
+
+
+def test_a_function_of_solutions_measures_too() -> None:
+    many = door().simulate_many(
+        1.0, vary={"closer": {"stiffness": [4.0, 8.0]}}, measure=lambda sol: {"x": sol.body("door").theta[-1]}, steps=5
+    )
+    assert many["x"][1] == door(8.0).simulate(1.0, steps=5).body("door").theta[-1]
+    assert "function of a solution" in many.way
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ({"vary": {"closr": {"stiffness": [1.0]}}}, "did you mean 'closer'"),
+        ({"vary": {"closer": {"stifness": [1.0]}}}, "did you mean 'stiffness'"),
+        ({"vary": {"closer": {"stiffness": [1.0, 2.0], "damping": [1.0, 2.0, 3.0]}}}, "equally long"),
+        ({"vary": {"closer": {"stiffness": []}}}, "no values"),
+        ({"vary": {"closer": {"stiffness": ["stiff"]}}}, "must be a number"),
+        ({"vary": {"closer": {"stiffness": [math.nan]}}}, "must be finite"),
+        ({"vary": {"closer": [1.0]}}, "give its arguments"),
+        ({"vary": None}, "nothing varies"),
+        ({"start": {"dor": [1.0]}}, "did you mean 'door'"),
+        ({"start": {"door": [[1.0, 2.0]]}}, "give \\(n,\\) or"),
+        ({"measure": {"x": "door.theta"}}, "must be a measure"),
+        ({"measure": {"x": final("door.thta")}}, "did you mean 'door.theta'"),
+        ({"measure": {"x": samples("door.theta", [0.33])}}, "is no output"),
+        ({"measure": {"x": largest("door.x"), "x_time": final("door.x")}}, "two columns"),
+        ({"measure": lambda sol: {"x": "text"}}, "must be a number under a name"),
+        ({"duration": 0.0}, "must be positive"),
+        ({"steps": 0}, "above zero"),
+        ({"threads": 0}, "above zero"),
+        ({"tolerance": 5.0}, "tolerance is 5"),
+        ({"method": "dop835"}, "did you mean"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(asked: dict, words: str) -> None:
+    usual = {"duration": 1.0, "vary": {"closer": {"stiffness": [1.0, 2.0]}}, "measure": {"x": final("door.theta")}}
+    with pytest.raises(ModelError, match=words):
+        door().simulate_many(**{**usual, "steps": 10, **asked})
+
+
+def test_progress_is_the_part_done_and_what_it_raises_ends_all() -> None:
+    parts: list[float] = []
+    vary = {"closer": {"stiffness": np.linspace(1.0, 2.0, 200)}}
+    door().simulate_many(1.0, vary=vary, measure={"x": final("door.theta")}, steps=400, progress=parts.append)
+    assert parts == sorted(parts)
+    assert parts[-1] == 1.0
+
+    def stop(part: float) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        door().simulate_many(1.0, vary=vary, measure={"x": final("door.theta")}, steps=400, progress=stop)

@@ -8,6 +8,7 @@ python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact
 python -m benchmarks film [--help]     what a film costs (make bench-film)
 python -m benchmarks live [--help]     from a slider of the live page to the picture (make bench-live)
 python -m benchmarks cluster          what a cluster costs, a task and a worker, only shown
+python -m benchmarks simulations       many simulations beside study, MuJoCo and Exudyn, only shown
 python -m benchmarks synthesis        lengths for a path alone, only shown
 python -m benchmarks start            the table of start-up (make bench-start)
 python -m benchmarks table            the tables again from the last run
@@ -33,6 +34,7 @@ from benchmarks.film import timing
 from benchmarks.four_bar import STEPS
 from benchmarks.machines import measure as machines
 from benchmarks.rows import Bar, Row
+from benchmarks.simulations import measure as simulations
 from benchmarks.start import measure as start
 from benchmarks.synthesis import measure as synthesis
 from shared.stage.console import run_cli, say
@@ -51,12 +53,13 @@ def main() -> int:
     match sys.argv[1:]:
         case []:
             return _all()
-        case ["calls" | "dynamics" | "engines" | "machines" | "synthesis" as part]:
+        case ["calls" | "dynamics" | "engines" | "machines" | "simulations" | "synthesis" as part]:
             parts = {
                 "calls": calls,
                 "dynamics": dynamics,
                 "engines": engines,
                 "machines": machines,
+                "simulations": simulations,
                 "synthesis": synthesis,
             }
             rows_of_part, bars = parts[part].measured()
@@ -80,8 +83,8 @@ def main() -> int:
             tune_all(names)
         case other:
             raise UserError(
-                f"bench: {' '.join(other)}? There is: calls, cluster, dynamics, engines, film, live, machines, start, "
-                "synthesis, table, tune [names], or nothing for all"
+                f"bench: {' '.join(other)}? There is: calls, cluster, dynamics, engines, film, live, machines, "
+                "simulations, start, synthesis, table, tune [names], or nothing for all"
             )
     return 0
 

@@ -1,0 +1,60 @@
+"""The doors by others: MuJoCo's rollout over models, Exudyn's solver for each, as its ParameterVariation calls it."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import numpy as np
+
+from benchmarks.simulations import DURATION, INERTIA, LENGTH, MASS
+
+
+def mujoco(values: np.ndarray, step: float) -> np.ndarray:
+    """(n,) final angles; RK4 at a fixed ``step`` (s)."""
+    import mujoco as mj  # pyright: ignore[reportMissingImports]
+    from mujoco import rollout  # pyright: ignore[reportMissingImports]
+
+    own = MASS * LENGTH**2 / 12.0
+    base = mj.MjModel.from_xml_string(
+        f"""<mujoco><option timestep="{step}" integrator="RK4" gravity="0 0 0"/><worldbody><body>
+        <joint type="hinge" axis="0 0 1" stiffness="5" damping="10"/>
+        <inertial pos="{LENGTH / 2} 0 0" mass="{MASS}" diaginertia="{own} {own} {own}"/></body></worldbody></mujoco>"""
+    )
+    models = []
+    for stiffness, damping, preload in values:
+        model = copy.copy(base)
+        model.jnt_stiffness[0], model.dof_damping[0], model.qpos_spring[0] = stiffness, damping, -preload / stiffness
+        models.append(model)
+    start = np.zeros((len(values), mj.mj_stateSize(base, mj.mjtState.mjSTATE_FULLPHYSICS)))
+    start[:, 1] = np.pi / 2
+    states, _ = rollout.rollout(models, [mj.MjData(base)], start, nstep=round(DURATION / step))
+    return states[:, -1, 1]
+
+
+def exudyn(values: np.ndarray, step: float) -> np.ndarray:
+    """(n,) final angles; Runge-Kutta of order 4 at a fixed ``step`` (s), one degree of freedom, no links."""
+    return np.array([_exudyn_door(*row, step) for row in values])
+
+
+def _exudyn_door(stiffness: float, damping: float, preload: float, step: float) -> float:
+    import exudyn as exu  # pyright: ignore[reportMissingImports]
+    from exudyn import itemInterface as items  # pyright: ignore[reportMissingImports]
+
+    mbs: Any = exu.SystemContainer().AddSystem()
+    node = mbs.AddNode(items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[np.pi / 2]))
+    mbs.AddObject(items.Mass1D(nodeNumber=node, physicsMass=INERTIA))
+    ground = mbs.AddNode(items.NodePointGround())
+    ends = [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=n, coordinate=0)) for n in (ground, node)]
+    mbs.AddObject(
+        items.CoordinateSpringDamper(
+            markerNumbers=ends, stiffness=stiffness, damping=damping, offset=-preload / stiffness
+        )
+    )
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(DURATION / step), DURATION
+    settings.timeIntegration.verboseMode = 0
+    settings.solutionSettings.writeSolutionToFile = False
+    mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.RK44)
+    return float(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates))

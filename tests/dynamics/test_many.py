@@ -11,6 +11,8 @@ import pytest
 
 from mbsd import Mechanism, ModelError, curve
 from mbsd.measures import final, first, integral, largest, samples, smallest
+from mbsd.model.force import ForceKind
+from mbsd.testing.kinds import force_kinds
 from tools.models.random_linkages import linkage
 
 STEPS = 20
@@ -250,3 +252,44 @@ def test_progress_is_the_part_done_and_what_it_raises_ends_all() -> None:
 
     with pytest.raises(KeyboardInterrupt):
         door().simulate_many(1.0, vary=vary, measure={"x": final("door.theta")}, steps=400, progress=stop)
+
+
+def example(kind: ForceKind) -> Mechanism | None:
+    """Two bodies with a force of a kind between two others; None where it cannot start."""
+    m = Mechanism("example")
+    a, b = m.bar("a", 1.0, mass=1.0), m.bar("b", 0.8, mass=0.7)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.spring("first", m.ground.at(0.5, 1.0), b.at(0.5, 0.1), 20.0, 0.1, free_length=1.0)
+    assert kind.example is not None
+    try:
+        kind.example(m, a.at(0.3, 0.1), b.at(0.2, -0.1))
+    except ModelError:
+        return None
+    m.torsion_spring("last", m.ground, a, 3.0, 0.2)
+    m.start_near(a=-40, b=-80)
+    return m
+
+
+@pytest.mark.parametrize("kind", [kind for kind in force_kinds() if kind.example is not None], ids=lambda k: k.name)
+def test_all_kinds_of_forces_have_the_digits_of_single_simulations(kind: ForceKind) -> None:
+    m = example(kind)
+    if m is None or kind.of_reactions:
+        pytest.skip("its example needs another joint")
+    vary: dict[str, dict[str, list[float]]] = {
+        "a": {"mass": [1.0, 1.3]}, "first": {"stiffness": [25.0, 14.0]}, "last": {"damping": [0.2, 0.1]}
+    }  # fmt: skip
+    for name, force in m.forces.items():
+        numbers = [key for key, value in force.given.items() if isinstance(value, float) and value]
+        if name not in vary and numbers:
+            vary[name] = {numbers[0]: [force.given[numbers[0]], 1.02 * force.given[numbers[0]]]}
+    many = m.simulate_many(0.1, vary=vary, steps=4, measure={"x": final("b.x"), "f": final("A.fx")})
+    for k in range(2):
+        alone = example(kind)
+        assert alone is not None
+        for name, values in vary.items():
+            alone.change(name, **{key: column[k] for key, column in values.items()})
+        sol = alone.simulate(0.1, steps=4)
+        assert many.reason[k] is None
+        assert many["x"][k] == sol.body("b").x[-1]
+        np.testing.assert_allclose(many["f"][k], sol.joint("A").fx[-1], rtol=1e-9)

@@ -136,7 +136,7 @@ class Film:
         return FilmCamera(self.shot.camera, self.parts.mount, self.clock, subject, self.aspect).pose(0)
 
     @property
-    def way(self) -> Array | None:
+    def travel(self) -> Array | None:
         """Where the camera goes (frames, 3) in the world (m); None where it stays."""
         return self._way
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from render.film.camera import angles
 from render.film.film import Film
 from render.film.framing import axes
+from render.film.time_map import TimeMap
 from render.sound.ringing import Modes, modes_of
 from shared.stage.errors import UserError
 
@@ -37,9 +38,12 @@ FADE = 0.012
 class Setting:
     """One showing of a film, as sources hear it."""
 
-    def __init__(self, film: Film) -> None:
-        """Raises UserError where the showing is longer than what there is room for."""
-        self.film, self.motion, self.map = film, film.motion, film.clock.time_map
+    def __init__(self, film: Film, time_map: TimeMap | None = None) -> None:
+        """``time_map`` of another film of the same motion, such as a story; that of the film's clock if not given.
+
+        Raises UserError where the showing is longer than what there is room for.
+        """
+        self.film, self.motion, self.map = film, film.motion, time_map or film.clock.time_map
         self.seconds = self.map.seconds
         if self.seconds > LONGEST:
             raise UserError(
@@ -151,10 +155,10 @@ class Setting:
         right = axes(*angles(film.shot.camera, mount, film.aspect), mount.up)[0]
         along = film.space.machine @ right
         low, high = float(along.min()), float(along.max())
-        if film.way is None:
+        if film.travel is None:
             return right, (low + high) / 2, max((high - low) / 2, 1e-9)
-        times = np.arange(len(film.way)) / film.shot.fps
-        way = np.interp(self.at, times, film.way @ right)
+        moments, _ = film.clock.time_map.at(np.arange(len(film.travel)) / film.shot.fps)
+        way = np.interp(self.model, moments, film.travel @ right)
         return right, way + float(right @ film.space.middle - way.mean()), max(film.size / 2, 1e-9)
 
     @cached_property

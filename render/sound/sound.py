@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.film import Film
+from render.film.time_map import TimeMap
 from render.sound.desk import Desk, Spectrum
 from render.sound.mix import mixed
 from render.sound.setting import RATE, Setting
@@ -16,9 +17,14 @@ SOURCES = (impacts, knocks, mesh, gas, motor, sliding, springs)
 """Springs come after impacts, which they answer."""
 
 
-def sound_of(film: Film) -> Array:
-    """(2, n) the sound of a film at 48 kHz, 1 being full scale: that of a showing, as often as it is shown."""
-    setting = Setting(film)
+def sound_of(film: Film, time_map: TimeMap | None = None) -> Array:
+    """(2, n) the sound of a film at 48 kHz, 1 being full scale: that of a showing, as often as it is shown.
+
+    With a ``time_map`` it is that of another film of the same motion, once.
+    """
+    setting = Setting(film, time_map)
+    if time_map is not None:
+        return mixed(stems_of(setting), setting.samples, 1)
     clock = film.clock
     ring = mixed(stems_of(setting), setting.samples, clock.showings)
     count = round(clock.total / film.shot.fps * RATE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +11,7 @@ import msgspec
 
 from render.film.story.curves import Curve
 from render.film.story.frame import Caption, Over, Picture, Shot
+from render.film.time_map import TimeMap
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,15 @@ class Story:
         placed = self.at(frame)
         return placed.shot.model(s - placed.first / self.fps)
 
+    def time_map(self, start: float, end: float) -> TimeMap:
+        """The same for sound, a piece a frame long, of a motion from ``start`` to ``end`` (s) that begins anew."""
+        seconds, moments = [0.0], [self.model_time(0.0)]
+        for placed in self.placed:
+            for k in range(placed.end - placed.first + 1):
+                seconds.append((placed.first + k) / self.fps)
+                moments.append(placed.shot.model(k / self.fps))
+        return TimeMap.through(*_folded(seconds, moments, start, end), closes=False)
+
     @cached_property
     def pictures(self) -> list[Picture]:
         """All different pictures."""
@@ -107,3 +118,22 @@ class Story:
 
     def _second(self, placed: Placed, frame: int, step: int) -> float:
         return (frame - placed.first) // step * step / self.fps
+
+
+def _folded(seconds: list[float], moments: list[float], start: float, end: float) -> tuple[list[float], list[float]]:
+    """Moments brought back into ``start`` .. ``end``; where a piece passes the end, the film cuts to the start."""
+    whole = end - start
+    out_seconds, out_moments = [], []
+    for k, (second, moment) in enumerate(zip(seconds, moments, strict=True)):
+        turn = math.floor((moment - start) / whole + 1e-12)
+        if k and second > seconds[k - 1]:
+            before = math.floor((moments[k - 1] - start) / whole + 1e-12)
+            if turn > before:
+                edge = start + turn * whole
+                part = (edge - moments[k - 1]) / (moment - moments[k - 1])
+                at = seconds[k - 1] + part * (second - seconds[k - 1])
+                out_seconds += [at, at]
+                out_moments += [end, start]
+        out_seconds.append(second)
+        out_moments.append(moment - turn * whole)
+    return out_seconds, out_moments

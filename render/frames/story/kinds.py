@@ -31,4 +31,4 @@ def run(name: str, preset: Preset, show: str = "", story: str = "loop", loop: fl
         return
     from render.frames.story import stage
 
-    stage.run(name, preset, show, loop)
+    stage.run(name, preset, show, loop, sound)

@@ -3,44 +3,78 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from render.film.inputs import encoder_version, named, stage_key
+from render.frames.film import has_sound, sound_key, wav_of
 from render.presets import Preset
 from shared.stage.console import say
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import Out
-from shared.stage.stages import Stage
+from shared.stage.stages import Stage, key_of
+
+if TYPE_CHECKING:
+    from render.frames.story.telling import Telling
 
 KIND = "explain"
 
 
-def run(name: str, preset: Preset, show: str = "", loop: float = 0.0) -> None:
-    """The stage: out/films/<mechanism>-<preset>-explain.mp4 and .srt; with ``loop`` a film of so many seconds that ends
-    as it begins.
+def run(name: str, preset: Preset, show: str = "", loop: float = 0.0, sound: str = "") -> None:
+    """The stage: out/films/<mechanism>-<preset>-explain.mp4, .srt and .wav, the last unless ``sound`` is "off".
 
-    Raises UserError, before a frame is rendered, for what the shot asks of the story and cannot be.
+    With ``loop`` it is a silent film of so many seconds that ends as it begins. Raises UserError, before a frame is
+    rendered, for what the shot asks of the story and cannot be.
     """
     out = Out(name)
-    stage = _stage(out, preset, show, loop)
+    heard = has_sound(sound) and not loop
+    stage = _stage(out, preset, show, loop, heard)
     if stage.is_fresh():
         say("film", f"{out.name}: {preset}: {KIND}: nothing to do")
         return
     from render.film.story.subtitles import srt
     from render.frames import encode
-    from render.frames.story.composed import encoded, rendered
     from render.frames.story.telling import telling_of
 
     encode.ffmpeg()  # reported now, not after the last frame
     telling = telling_of(out, preset, show, loop)
-    story, (film, subtitles) = telling.story, stage.outputs
+    story, (film, subtitles, *_) = telling.story, stage.outputs
     say("film", f"{out.name}: {KIND}: {telling.said()}")
-    encoded(rendered(out, preset, telling).pages(), story, telling.drawing, preset, film)
+    silent = _silent_film(out, preset, show, loop, telling)
+    if heard:
+        _with_sound(silent, telling, preset, film)
+    else:
+        wav_of(film).unlink(missing_ok=True)
+        write_bytes(film, silent.read_bytes())
     write_bytes(subtitles, srt(story.captions).encode())
     stage.done()
     say(
         "film",
         f"{out.name}: {film}: {story.seconds:.1f} s, {story.fps} frames a second, {_size(film)}, subtitles beside it",
     )
+
+
+def _silent_film(out: Out, preset: Preset, show: str, loop: float, telling: Telling) -> Path:
+    """The film without sound, in the folder of the frames; not made again where what decides it has not changed."""
+    from render.frames.story.composed import encoded, rendered
+
+    film = film_of(out, preset.name, show, loop)
+    target = out.frames(f"{preset.name}-story") / film.name
+    stage = Stage(out, film.stem.replace(out.name, "pictures", 1), _key(out, preset, show, loop), [target])
+    if not stage.is_fresh():
+        encoded(rendered(out, preset, telling).pages(), telling.story, telling.drawing, preset, target)
+        stage.done()
+    return target
+
+
+def _with_sound(silent: Path, telling: Telling, preset: Preset, film: Path) -> None:
+    from render.frames.muxing import mux
+    from render.sound.sound import sound_of
+    from render.sound.wave_file import wav
+
+    story, clock = telling.story, telling.film.clock
+    waves = wav_of(film)
+    write_bytes(waves, wav(sound_of(telling.film, story.time_map(clock.start, clock.end))))
+    mux(silent, waves, story.total, preset, story.fps, film)
 
 
 def film_of(out: Out, preset: str, show: str = "", loop: float = 0.0) -> Path:
@@ -50,16 +84,22 @@ def film_of(out: Out, preset: str, show: str = "", loop: float = 0.0) -> Path:
     return path.with_stem(f"{path.stem}-{word}")
 
 
-def is_fresh(name: str, preset: Preset, show: str = "") -> bool:
+def is_fresh(name: str, preset: Preset, show: str = "", sound: str = "") -> bool:
     """Whether there is nothing to do. Raises UserError where motion, parts or shot are missing."""
-    return _stage(Out(name), preset, show, 0.0).is_fresh()
+    return _stage(Out(name), preset, show, 0.0, has_sound(sound)).is_fresh()
 
 
-def _stage(out: Out, preset: Preset, show: str, loop: float) -> Stage:
+def _stage(out: Out, preset: Preset, show: str, loop: float, heard: bool) -> Stage:
     film = film_of(out, preset.name, show, loop)
+    key = key_of(_key(out, preset, show, loop), sound_key() if heard else "silent")
+    outputs = [film, film.with_suffix(".srt")] + [wav_of(film)] * heard
+    return Stage(out, film.stem.replace(out.name, "film", 1), key, outputs)
+
+
+def _key(out: Out, preset: Preset, show: str, loop: float) -> str:
+    """What decides the pictures and the words."""
     more = [path for path in (out.clearance,) if path.is_file()]
-    key = stage_key(out, preset, encoder_version(), show, KIND, loop, word_sources(), _described(out), *more)
-    return Stage(out, film.stem.replace(out.name, "film", 1), key, [film, film.with_suffix(".srt")])
+    return stage_key(out, preset, encoder_version(), show, KIND, loop, word_sources(), _described(out), *more)
 
 
 def word_sources() -> str:

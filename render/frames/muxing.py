@@ -17,7 +17,18 @@ from shared.stage.signals import terminable
 SETTINGS = (
     *("-map", "0:v:0", "-map", "1:a:0", "-c:v", "copy"),
     *("-c:a", "aac", "-b:a", "192k", "-ar", "48000", "-ac", "2"),
-    *("-movflags", "+faststart", "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:a", "+bitexact"),
+    *(
+        "-movflags",
+        "+faststart",
+        "-map_metadata",
+        "0",
+        "-map_chapters",
+        "0",
+        "-fflags",
+        "+bitexact",
+        "-flags:a",
+        "+bitexact",
+    ),
 )
 
 

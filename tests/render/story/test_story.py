@@ -74,6 +74,25 @@ def test_time_stops_at_the_dead_point_and_says_so(out_root) -> None:
     assert abs(omega) < 1e-3 * np.abs(rocker.omega).max()
 
 
+def test_sound_follows_the_times_of_the_story(out_root) -> None:
+    telling = made()
+    story, clock = telling.story, telling.film.clock
+    heard = story.time_map(clock.start, clock.end)
+    assert heard.seconds == pytest.approx(story.seconds)
+    seconds = (np.arange(story.total - 1) + 0.3) / story.fps
+    moments, rates = heard.at(seconds)
+    exact = np.array([story.model_time(float(s)) for s in seconds])
+    period = clock.end - clock.start
+    off = (moments - exact + period / 2) % period - period / 2
+    assert np.abs(off).max() < 0.02 * period / story.fps, "straight between frames"
+    assert moments.min() >= clock.start - 1e-9
+    assert moments.max() <= clock.end + 1e-9
+    assert np.all(rates >= -1e-9)
+    still = [k for k in range(story.total - 1) if story.over(k).rate == "time stands still"]
+    assert still
+    assert np.abs(rates[still[2:-2]]).max() < 1e-9
+
+
 def rocker_time(telling: Telling) -> float:
     return telling.film.motion.time[0]
 

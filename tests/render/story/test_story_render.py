@@ -56,7 +56,7 @@ def test_a_story_is_killed_and_goes_on(out_root: Path, tmp_path: Path, monkeypat
     assert "nothing to do" in capsys.readouterr().out
     film.unlink()
     stage.run("four_bar", TINY)
-    assert "0 of" in capsys.readouterr().out
+    assert "to render" not in capsys.readouterr().out, "the silent film is still there"
     assert (film.read_bytes(), film.with_suffix(".srt").read_bytes()) == (content, subtitles)
 
     film.rename(film.with_name("four_bar-draft-tiny-explain.mp4"))
@@ -69,6 +69,7 @@ def _check(out: Out, film: Path) -> None:
     story = telling_of(out, TINY).story
     refuse_other_than(film, film.name, ffmpeg(), story.total, TINY, story.fps, 60.0)
     listing = subprocess.run([ffmpeg(), "-i", str(film)], capture_output=True, text=True).stderr
+    assert re.search(r"Stream #0:1.*Audio: aac.*48000 Hz, stereo", listing)
     assert re.findall(r"title\s*: (.*)", listing) == ["Four bar", "Title", "Assembly", "Why"]
     starts = [float(start) for start in re.findall(r"start (\d+\.\d+), end", listing)]
     assert all(abs(a - b[0]) < 2e-3 for a, b in zip(starts, story.chapters, strict=True))

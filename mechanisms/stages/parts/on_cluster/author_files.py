@@ -37,7 +37,7 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
     folder: str = ""
     """What the user's own folder is called, in which the mechanism is."""
     scale: str = ""
-    """Of a model, such as 1:20."""
+    """That of a model, such as 1:20; empty for the machine itself."""
     machine: str = ""
     """Hash of the parts.json of the machine itself, where the motion of its model follows from it."""
 

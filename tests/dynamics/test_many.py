@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, curve
+from mbsd.compiling.jit import COMPILED
 from mbsd.measures import final, first, integral, largest, samples, smallest
 from mbsd.model.force import ForceKind
 from mbsd.testing.kinds import force_kinds
@@ -155,7 +156,7 @@ def test_functions_of_the_user_take_part_if_they_are_compiled(compiled: bool) ->
         m.change("a", mass=mass)
         return m
 
-    function: Callable = numba.njit(wind) if compiled and not numba.config.DISABLE_JIT else wind
+    function: Callable = numba.njit(wind) if compiled and COMPILED else wind
     masses = np.linspace(0.5, 1.5, 3)
     many = with_wind(1.0).simulate_many(0.5, vary={"a": {"mass": masses}}, measure={"x": final("P.x")}, steps=STEPS)
     assert ("compiled loop" in many.way) == (function is not wind)
@@ -293,3 +294,25 @@ def test_all_kinds_of_forces_have_the_digits_of_single_simulations(kind: ForceKi
         assert many.reason[k] is None
         assert many["x"][k] == sol.body("b").x[-1]
         np.testing.assert_allclose(many["f"][k], sol.joint("A").fx[-1], rtol=1e-9)
+
+
+def test_all_rows_may_fail_and_columns_are_there() -> None:
+    many = door().simulate_many(
+        1.0, vary={"closer": {"damping": [-1.0, -2.0]}}, measure={"x": samples("door.theta", [0.5, 1.0])}, steps=4
+    )
+    assert not many.good.any()
+    assert np.isnan(many["x"]).all()
+    assert many["x"].shape == (2, 2)
+    with pytest.raises(ModelError, match="there is no column 'X'"):
+        _ = many["X"]
+
+
+def test_a_mechanism_that_cannot_start_itself_serves_if_its_rows_can() -> None:
+    m = barrier()
+    m.start_near(crank=0, coupler=45, rocker=90)
+    m.change("coupler", length=1.4)
+    many = m.simulate_many(
+        0.2, vary={"coupler": {"length": [1.4, 0.38]}}, measure={"x": final("rocker.theta")}, steps=4
+    )
+    assert "do not close" in str(many.reason[0])
+    assert many["x"][1] == barrier().simulate(0.2, steps=4).body("rocker").theta[-1]

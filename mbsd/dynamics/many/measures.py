@@ -40,6 +40,11 @@ class Measure:
         """Names of what it gives."""
         return (name,)
 
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of what it gives of one simulation."""
+        return ()
+
     def check(self, what: str, t: np.ndarray) -> None:
         """Raise ModelError where it does not suit output times (T,)."""
 
@@ -100,6 +105,10 @@ class _First(Measure):
 @dataclass(frozen=True)
 class _Samples(Measure):
     times: tuple[float, ...] = ()
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return (len(self.times),)
 
     def check(self, what: str, t: np.ndarray) -> None:
         for time in self.times:

@@ -15,7 +15,7 @@ import numpy as np
 
 from mbsd.base.arguments import whole_number
 from mbsd.base.cores import cores
-from mbsd.base.errors import ModelError
+from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.dynamics.many.designs import Designs, designs_of
@@ -23,11 +23,12 @@ from mbsd.dynamics.many.done import Done, joined, numbers_of
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.quantities import Quantity, quantity_named
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, single_run
-from mbsd.dynamics.many.worker import Measures, Work, Worker, simulated
+from mbsd.dynamics.many.worker import TRIED, Measures, Work, Worker, simulated
 from mbsd.dynamics.runs.run import FORMULATIONS
 from mbsd.dynamics.simulate import integrator_named, output_times, refuse_bad_steps, simulate
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
+from mbsd.results.columns import columns
 
 if TYPE_CHECKING:
     import pandas
@@ -132,7 +133,7 @@ def simulate_many(
     measures = _measures(m, measure, grid)
     quantities = {} if callable(measures) else _quantities(designs, measures)
     why = _why_single(designs, asked, measures, quantities)
-    width = 1 if callable(measures) else sum(len(each.columns(name)) for name, each in measures.items())
+    width = 1 if callable(measures) else sum(column[0].size for column in _empty(measures, 1).values())
     refuse_beyond_memory(f"{m.name}: {designs.count} simulations", 3 * width * designs.count, "Take fewer at once")
     if callable(measures):
         _refuse_no_numbers(designs, asked, measures)
@@ -145,8 +146,17 @@ def simulate_many(
         np.zeros(1, np.int64),
         any(quantity.reactive for quantity in quantities.values()),
     )
-    done = _all(work, len(m.bodies), min(threads or cores(), designs.count), progress)
-    return Simulations(done.columns, done.reasons, done.alone, work.note)
+    with warnings.catch_warnings():  # here, as threads share what is shown
+        warnings.simplefilter("ignore")
+        done = _all(work, len(m.bodies), min(threads or cores(), designs.count), progress)
+    table = done.columns if callable(measures) else _empty(measures, designs.count) | done.columns
+    return Simulations(table, done.reasons, done.alone, work.note)
+
+
+def _empty(measures: Mapping[str, Measure], count: int) -> dict[str, np.ndarray]:
+    """All columns, without numbers."""
+    shapes = {column: each.shape for name, each in measures.items() for column in each.columns(name)}
+    return {column: np.full((count, *shape), np.nan) for column, shape in shapes.items()}
 
 
 def _measures(m: Model, measure: Any, grid: np.ndarray) -> Measures:
@@ -176,7 +186,8 @@ def _measures(m: Model, measure: Any, grid: np.ndarray) -> Measures:
 def _quantities(designs: Designs, measures: Mapping[str, Measure]) -> dict[str, Quantity]:
     """By name, all that the measures read. Raises ModelError for one that there is not."""
     names = list(dict.fromkeys(name for each in measures.values() for name in each.quantities))
-    return {name: quantity_named(designs.m, name, column_names(designs.m)) for name in names}
+    known = _column_names(designs)
+    return {name: quantity_named(designs.m, name, known) for name in names}
 
 
 def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], Any]) -> None:
@@ -192,11 +203,18 @@ def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], 
     numbers_of(given)
 
 
-def column_names(m: Model) -> list[str]:
-    """Names of the columns of its solutions, from a solution of an instant."""
-    from mbsd.results.columns import columns
-
-    return list(columns(simulate(m, 1e-9, 1, None, "dop853", 1e-6, None, None, {})))
+def _column_names(designs: Designs) -> list[str]:
+    """Names of the columns of their solutions, from one of an instant: of the mechanism itself, or a row that starts."""
+    model, first = designs.copied(), None
+    for row in range(-1, min(designs.count, TRIED)):
+        try:
+            if row >= 0:
+                designs.put(model, row)
+            return list(columns(simulate(model, 1e-9, 1, None, "dop853", 1e-6, None, None, {})))
+        except MechanismError as error:
+            first = first or error
+    assert first is not None
+    raise first
 
 
 def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mapping[str, Quantity]) -> str | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -87,11 +86,9 @@ class Worker:
 
     def __call__(self, rows: range) -> Done:
         """Simulate some rows."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            if self.work.why is not None:
-                return joined([self._single(row, self.work.why) for row in rows])
-            return self._compiled(rows)
+        if self.work.why is not None:
+            return joined([self._single(row, self.work.why) for row in rows])
+        return self._compiled(rows)
 
     # -- in the compiled loop ------------------------------------------------------------------------------------
 

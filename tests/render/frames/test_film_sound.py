@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import msgspec
+import numpy as np
 import pytest
 
 from render.frames import encode, film, frames, muxing
@@ -39,6 +40,16 @@ def streams(path: Path) -> list[str]:
     return [line.split(": ")[1].split(" ")[0] for line in said.splitlines() if "Stream #" in line]
 
 
+def lag(path: Path, waves: bytes) -> int:
+    """Samples by which the film's sound, as players decode it, comes after that of a WAV file."""
+    command = [encode.ffmpeg(), "-v", "error", "-i", str(path), "-map", "0:a", "-f", "s16le", "-"]
+    heard = np.frombuffer(subprocess.run(command, capture_output=True, check=True).stdout, "<i2")[::2]
+    made = np.frombuffer(waves[44:], "<i2")[::2]
+    n = len(made)
+    alike = np.fft.irfft(np.fft.rfft(heard[:n].astype(float), 2 * n) * np.conj(np.fft.rfft(made.astype(float), 2 * n)))
+    return int((np.argmax(alike) + n) % (2 * n) - n)
+
+
 def test_a_silent_film_gets_its_sound_by_muxing_alone(
     made: Out, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
@@ -55,6 +66,7 @@ def test_a_silent_film_gets_its_sound_by_muxing_alone(
     level, peak = measured(target)
     assert abs(level + 16.0) < 1.0
     assert peak < -1.0
+    assert abs(lag(target, waves)) <= 48  # 1 ms
 
     film.run("four_bar", TINY)
     assert "nothing to do" in capsys.readouterr().out

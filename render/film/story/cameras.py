@@ -40,10 +40,8 @@ class Stand:
 
 def stand(subject: Subject, up: Vector, view: View) -> Stand:
     """The nearest stand from which a camera holds its subject, as films of one shot do."""
-    machine, around, drawn, few = (
-        in_studio(points, up) for points in (subject.machine, subject.around, subject.drawn, subject.few)
-    )
-    position, distance = view.stand(held(view, machine, around, drawn, few))
+    few, around, drawn = (in_studio(points, up) for points in (subject.few, subject.around, subject.drawn))
+    position, distance = view.stand(held(view, few, around, drawn, few))
     target = position + axes(view.azimuth, view.elevation)[2] * distance
     return Stand(point(target), view.azimuth, view.elevation, distance, view.lens)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import msgspec
@@ -47,6 +47,8 @@ class Scenery:
     """Part of the seconds in which pictures move; what is cut is held instead."""
     turning: bool = True
     """Whether the camera moves while the machine is shown; else later turns find their pictures made."""
+    kept: dict[tuple[float, float, bool, bool], Stand] = field(default_factory=dict)
+    """Stands that were looked for; they are the same for every scale."""
 
     @property
     def up(self) -> tuple[float, float, float]:
@@ -105,6 +107,12 @@ class Scenery:
 
     def stand(self, azimuth: float = 0.0, elevation: float = 0.0, strip: bool = True, arrows: bool = False) -> Stand:
         """The stand that holds the machine, turned by so many degrees from that of the shot, with room for words."""
+        asked = azimuth, elevation, strip, arrows
+        if asked not in self.kept:
+            self.kept[asked] = self._stand(*asked)
+        return self.kept[asked]
+
+    def _stand(self, azimuth: float, elevation: float, strip: bool, arrows: bool) -> Stand:
         film = self.forces if arrows and self.forces is not None else self.film
         at = angles(film.shot.camera, film.parts.mount, film.aspect)
         turned = at[0] + np.radians(azimuth), min(at[1] + np.radians(elevation), np.radians(85))

@@ -78,7 +78,7 @@ def rendered(out: Out, preset: Preset, telling: Telling) -> Rendered:
 
 def encoded(pages: Iterable[Page], story: Story, drawing: Drawing, preset: Preset, film: Path) -> None:
     """The film with all that is laid over its pictures and with its chapters, written whole."""
-    with scratch_folder(out_root() / ".story") as scratch:
+    with scratch_folder(out_root() / ".blender") as scratch:
         bare, listing = scratch / film.name, scratch / "chapters.txt"
         encode.encode(_composed(pages, story, drawing), story.total, preset, story.fps, bare)
         listing.write_text(chapters(story.chapters, drawing.name), encoding="utf-8")

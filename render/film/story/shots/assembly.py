@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
-from render.film.camera import Subject
+from render.film.camera import Subject, angles
 from render.film.composing.filling import View
 from render.film.story import cameras, layout
 from render.film.story.cameras import Stand
@@ -18,10 +20,11 @@ WHOLE, LIFTS, APART, SETTLED = 0.5, 1.7, 3.2, 0.5
 """Seconds: as a whole, coming apart (and together), apart, and as a whole again."""
 EACH = 0.45
 """Part of the time of coming apart that each layer takes."""
-LYING, STANDING = (12.0, -14.0), (-17.0, 10.0)
-"""Azimuth and elevation (degrees) beside those of the shot: from lower down what lies is seen to be in layers, from
-the side what stands.
-"""
+LYING, STANDING = (12.0, -14.0), (42.0, 10.0)
+"""Degrees: azimuth and elevation beside those of the shot for what lies, whose layers are seen from lower down; for what
+stands the azimuth, to the side of the shot's, from which its layers are seen beside each other, and more elevation."""
+MOST = 25.0
+"""Degrees by which the azimuth differs from the shot's at most: light and ground are turned with that."""
 
 
 def assembly(scenery: Scenery) -> Shot | None:
@@ -83,6 +86,9 @@ def _stand(scenery: Scenery, points: Array) -> Stand:
     film = scenery.film
     lies = film.parts.mount.kind == "desk"
     azimuth, elevation = LYING if lies else STANDING
+    if not lies:
+        usual = math.degrees(angles(film.shot.camera, film.parts.mount, film.aspect)[0])
+        azimuth = min(max(math.copysign(azimuth, usual) - usual, -MOST), MOST)
     subject = Subject(points, np.zeros((0, 3)), np.zeros((0, 3)), points)
     at = scenery.stand(azimuth, elevation, strip=False)
     empty = layout.above(film.aspect), layout.below(film.aspect, False)

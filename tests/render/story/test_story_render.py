@@ -9,14 +9,21 @@ import sys
 import time
 from pathlib import Path
 
+import msgspec
+import numpy as np
+from PIL import Image
+
+from render.film.story.frame import Picture
+from render.frames import frames
 from render.frames.encode import ffmpeg
 from render.frames.film_file import refuse_other_than
 from render.frames.store import FrameStore
 from render.frames.story import stage
+from render.frames.story.pictures import StoryPictures
 from render.frames.story.telling import telling_of
 from render.presets import Preset
 from render.showreel import showreel
-from shared.contract.shot import Shot, Story
+from shared.contract.shot import Camera, Shot, Story
 from shared.stage.paths import ROOT, Out
 from tools.fixtures import film_fixture
 
@@ -62,6 +69,38 @@ def test_a_story_is_killed_and_goes_on(out_root: Path, tmp_path: Path, monkeypat
     film.rename(film.with_name("four_bar-draft-tiny-explain.mp4"))
     reel = showreel.run(TINY, "four_bar")
     assert b"Four bar" in reel.read_bytes()
+
+
+def test_pieces_are_lifted_trails_hidden_and_lenses_changed(out_root: Path) -> None:
+    """In one job, whose pictures differ just where they should."""
+    out = film_fixture.write(Shot(seconds_per_turn=0.3, camera=Camera(blur=0.0)))
+    telling = telling_of(out, TINY)
+    at = telling.film.clock.frames / 2
+    camera = telling.film.camera(int(at))
+    plain = Picture(at=at, camera=camera)
+    rows = [
+        plain,
+        msgspec.structs.replace(plain, hidden="trails"),
+        msgspec.structs.replace(plain, hidden="all"),
+        msgspec.structs.replace(plain, hidden="all", lifts=(("coupler/coupler", 0.05),)),
+        msgspec.structs.replace(plain, hidden="all", camera=msgspec.structs.replace(camera, lens=2 * camera.lens)),
+    ]
+    pictures = StoryPictures(telling.film, TINY, rows=tuple((row, row, row) for row in rows), what="trials")
+    store = FrameStore(out.frames("trials"), (TINY.width, TINY.height))
+    with store.locked():
+        frames.render(pictures, store, range(len(rows)), "trials", frames.Tally())
+    shown = [_pixels(frames.picture_of(pictures, store, k)) for k in range(len(rows))]
+    assert np.array_equal(shown[1], shown[2])  # this machine has trails alone beside its solids
+    assert np.abs(shown[0] - shown[1]).max() > 30
+    assert np.abs(shown[3] - shown[2]).max() > 60
+    assert (np.abs(shown[3] - shown[2]).max(axis=2) > 12).mean() < 0.5  # the rest stays where it is
+    near = np.asarray(Image.fromarray(shown[2].astype(np.uint8)).crop((24, 13, 72, 40)).resize((96, 54)), float)
+    assert np.abs(near - shown[4]).mean() < 0.5 * np.abs(shown[2] - shown[4]).mean()
+
+
+def _pixels(path: Path) -> np.ndarray:
+    with Image.open(path) as picture:
+        return np.asarray(picture.convert("RGB"), float)
 
 
 def _check(out: Out, film: Path) -> None:

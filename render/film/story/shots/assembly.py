@@ -21,8 +21,8 @@ WHOLE, LIFTS, APART, SETTLED = 0.5, 1.7, 3.2, 0.5
 EACH = 0.45
 """Part of the time of coming apart that each layer takes."""
 LYING, STANDING = (12.0, -14.0), (42.0, 10.0)
-"""Degrees: azimuth and elevation beside those of the shot for what lies, whose layers are seen from lower down; for what
-stands the azimuth, to the side of the shot's, from which its layers are seen beside each other, and more elevation."""
+"""Degrees: azimuth and elevation beside those of the shot for what lies, whose layers are seen from lower down; for
+what stands an azimuth on the side of the shot's, from which layers are seen beside each other, and more elevation."""
 MOST = 25.0
 """Degrees by which the azimuth differs from the shot's at most: light and ground are turned with that."""
 

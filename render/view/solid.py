@@ -5,7 +5,8 @@ solid   looks {dark, light}: see looks.py; reach: away from the camera (m); size
         camera {azimuth, elevation (rad), lens (mm), position, target (m)}: the film's first
         step (m) and meshes: see meshes.py
         surfaces [{colour (linear), finish, roughness, metal, coat, clear: opacity}]
-        pieces [{body, name, mesh, at (m, of its lowest corner in the body), surface, turns}]; turns is null, or
+        pieces [{body, name, mesh, at (m, of its lowest corner in the body), surface, turns, lift (m, of an exploded
+        machine, along the normal of its plane)}]; turns is null, or
         {x, y, angle (T,)} of a roller about a point of its body (m, rad)
         heights {joints, points, bodies: {name: m}}: of what floats over them
         tubes: bytes of a GLB with springs, ropes and belts and their motion, or null
@@ -19,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from render.film.camera import angles
+from render.film.exploded import exploded
 from render.film.film import Film
 from render.film.framing import axes, in_studio, studio
 from render.film.pieces import piece_specs
@@ -55,6 +57,7 @@ def solid(film: Film) -> dict[str, Any]:
     solids = list(shapes([Path(spec.stl) for spec in specs]))
     meshes = Meshes(max(float(np.ptp(positions, axis=0).max()) for positions, _, _ in solids))
     surfaces: dict[SurfaceSpec, int] = {}
+    lifts = {(lift.body, lift.piece): lift.distance for lift in exploded(film.parts, film.size)}
     turned = {(roller.body, roller.piece): roller for roller in film.rollers.found}
     pieces = []
     for spec, shape in zip(specs, solids, strict=True):
@@ -62,7 +65,15 @@ def solid(film: Film) -> dict[str, Any]:
         surface = surfaces.setdefault(spec.surface, len(surfaces))
         turns = _turns(turned.get((spec.body, spec.name)), spec)
         pieces.append(
-            {"body": spec.body, "name": spec.name, "mesh": mesh, "at": at, "surface": surface, "turns": turns}
+            {
+                "body": spec.body,
+                "name": spec.name,
+                "mesh": mesh,
+                "at": at,
+                "surface": surface,
+                "turns": turns,
+                "lift": lifts.get((spec.body, spec.name), 0.0),
+            }
         )
     return {
         "reach": film.studio.reach[1],

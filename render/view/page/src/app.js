@@ -30,7 +30,7 @@ export class App {
     this.ready = this.asked = false;
     this.take(payload);
     this.store = new Store({
-      time: payload.clock.start, playing: !still(), speed: 1, selected: null, view: "3d", theme: "auto",
+      time: payload.clock.start, playing: !still(), speed: 1, selected: null, view: "3d", theme: "auto", apart: 0, cut: 0, cutSide: "front",
       shown: initiallyShown(payload),
     });
     this.parts = layout(root, this);
@@ -41,7 +41,7 @@ export class App {
     this.transport = new Transport(this);
     keys(this);
     this.store.on(["time"], ({ time }) => { this.motion.to(time); this.redraw(); });
-    this.store.on(["selected", "shown", "view", "theme"], () => this.redraw());
+    this.store.on(["selected", "shown", "view", "theme", "apart", "cut", "cutSide"], () => this.redraw());
     this.store.on(["playing"], () => { this.last = 0; this.redraw(); });
     this.ready = true;
     this.redraw();

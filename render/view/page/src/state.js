@@ -9,6 +9,9 @@
  * @property {Thing | null} selected
  * @property {"3d" | "2d"} view
  * @property {"auto" | "dark" | "light"} theme
+ * @property {number} apart         how far the parts are taken apart, 0 .. 1
+ * @property {number} cut           how much of them is cut away, 0 .. 1, from the side cutSide
+ * @property {"front" | "side" | "top"} cutSide
  * @property {Record<string, boolean>} shown   by the words of ui/shown.js
  */
 export class Store {

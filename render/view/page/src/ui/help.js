@@ -23,6 +23,7 @@ const MOUSE = [
   ["Right button, two fingers", "moves the parts"],
   ["Wheel, pinch", "closer, farther"],
   ["Drag on curves", "moves the machine"],
+  ["Exploded, Section", "take the parts apart, cut them open"],
 ];
 
 export function showHelp() {

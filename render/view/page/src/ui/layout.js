@@ -2,6 +2,7 @@
 import { el } from "./dom.js";
 import { showHelp } from "./help.js";
 import { icon } from "./icons.js";
+import { inside } from "./inside.js";
 import { SHOWN } from "./shown.js";
 
 /** @param {HTMLElement} root  @param {import("../app.js").App} app */
@@ -28,7 +29,8 @@ export function layout(root, app) {
   const side = el("aside", { class: "side", "aria-label": "Curves" }, slot);
   const bar = el("footer", { class: "bar" });
   root.classList.add("mbsd");
-  root.replaceChildren(header, el("main", { class: "stage" }, chips, stage), side, bar);
+  const within = inside(app);
+  root.replaceChildren(header, el("main", { class: "stage" }, el("div", { class: "shows" }, chips, within), stage), side, bar);
 
   const words = {};
   let offered = null;
@@ -45,6 +47,7 @@ export function layout(root, app) {
       title.textContent = payload.title;
       about.textContent = said(payload);
       segmented.hidden = !payload.solid;
+      within.update();
       const there = SHOWN.filter((one) => one.there(payload)), key = there.map(({ word }) => word).join();
       if (key === offered) return void pressed();
       offered = key;

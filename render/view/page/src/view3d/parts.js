@@ -1,5 +1,5 @@
 /** The parts: a group for each body, a mesh for each piece, moved by the motion; springs and belts as recorded. */
-import { AnimationMixer, Group, Matrix4, Mesh } from "three";
+import { AnimationMixer, Box3, Group, Matrix4, Mesh, Vector3 } from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { materialOf, setLook } from "./materials.js";
 import { geometryOf } from "./meshes.js";
@@ -15,6 +15,9 @@ export class Parts {
     /** @type {Map<string, Group>} */
     this.bodies = new Map();
     this.rollers = [];
+    /** Meshes, their own height, and how far an exploded machine lifts them (m). */
+    this.lifts = [];
+    this.apart = 0;
     this.meshes = [];
     this.materials = solid.surfaces.map((surface) => materialOf(surface, soft));
     const geometries = solid.meshes.map((mesh) => geometryOf(mesh, solid.step));
@@ -23,6 +26,7 @@ export class Parts {
       mesh.castShadow = mesh.receiveShadow = true;
       mesh.userData = { body: piece.body, piece: piece.name };
       mesh.position.set(...piece.at);
+      this.lifts.push([mesh, piece.at[2], piece.lift ?? 0]);
       this.meshes.push(mesh);
       if (piece.turns) {
         const axis = new Group();
@@ -82,8 +86,34 @@ export class Parts {
       group.matrixWorldNeedsUpdate = true;
     }
     for (const [axis, angle] of this.rollers) if (angle.length === count) axis.rotation.z = motion.linear(angle);
-    if (this.tubes) this.tubes.visible = !other;
+    if (this.tubes) this.tubes.visible = !other && !this.apart;
     this.mixer?.setTime(Math.min(motion.t - motion.start, this.length * (1 - 1e-7)));
+  }
+
+  /** How far the topmost piece is lifted (m). */
+  get tallest() { return Math.max(0, ...this.lifts.map(([, , lift]) => lift)); }
+
+  /** Take the machine apart about its middle: 0 together, 1 wholly. @param {number} apart */
+  explode(apart) {
+    this.apart = apart;
+    const half = this.tallest / 2;
+    for (const [mesh, height, lift] of this.lifts) mesh.position.z = height + apart * (lift - half);
+  }
+
+  /** Least and largest place of all pieces along an axis of the machine, at the moment and as far as they are apart. */
+  reach(axis) {
+    const box = new Box3(), along = new Vector3(...axis), corner = new Vector3(), back = this.group.matrixWorld.clone().invert();
+    let [low, high] = [Infinity, -Infinity];
+    for (const mesh of this.meshes) {
+      mesh.geometry.boundingBox ?? mesh.geometry.computeBoundingBox();
+      box.copy(mesh.geometry.boundingBox).applyMatrix4(mesh.matrixWorld).applyMatrix4(back);
+      for (const k of [0, 1, 2, 3, 4, 5, 6, 7]) {
+        const place = corner.set(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z).dot(along);
+        low = Math.min(low, place);
+        high = Math.max(high, place);
+      }
+    }
+    return [low, high];
   }
 
   /** Others take their place. */

@@ -10,12 +10,15 @@ import { drawn } from "./looks/drawn.js";
 import { Studio } from "./looks/studio.js";
 import { Marks } from "./marks.js";
 import { Parts } from "./parts.js";
+import { Section } from "./section.js";
 import { Trails } from "./trails.js";
 import { wantedLabels, wantedMarks } from "./wanted.js";
 
 const SENSOR = 36, ASPECT = 16 / 9, NEAR = 15, STILL = 5;
 /** Angle of a step by the keyboard (rad). */
 const TURN = Math.PI / 24;
+/** How much farther one stands from a machine that is taken apart by its own size. */
+const ROOM = 0.4;
 /** Pixels of the picture for one of the page while WebGL in software plays. */
 const COARSE = 0.5;
 
@@ -28,6 +31,8 @@ export class Solid {
     if (soft === null) throw new Error("a context of WebGL 2 is refused");
     this.soft = soft;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer.localClippingEnabled = true;
+    this.section = new Section();
     this.renderer.toneMapping = NeutralToneMapping;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
@@ -154,8 +159,10 @@ export class Solid {
     const dress = payload.other ? "dim" : shown.glass ? "glass" : "";
     const neutral = showsArrows(shown);
     if (this.dress !== dress || this.neutral !== neutral) this.parts.dress((this.dress = dress), (this.neutral = neutral));
+    this.stand(store.state.apart);
     this.parts.move(motion);
     this.machine.updateMatrixWorld(true);
+    this.section.draw(this.parts, store.state.cut, store.state.cutSide, this.machine, this.camera.position);
     this.ghosts.group.visible = !!shown.ghosts;
     if (shown.ghosts && this.ghosted !== this.parts) {
       this.ghosts.update(this.parts, motion);
@@ -168,6 +175,14 @@ export class Solid {
     this.marks.show(wantedMarks(this.app), colours, this.size[1], this.tangent * this.radius);
     this.renderer.render(this.scene, this.camera);
     this.labels.show(wantedLabels(this.app), (vector) => this.pixel(vector));
+  }
+
+  /** Take the machine apart, and stand so far away that all of it is seen. */
+  stand(apart) {
+    if (this.parts.apart === apart) return;
+    this.parts.explode(apart);
+    this.camera.zoom = 1 / (1 + ROOM * (this.parts.tallest / this.app.payload.solid.size) * apart);
+    this.camera.updateProjectionMatrix();
   }
 
   listen() {

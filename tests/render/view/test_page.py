@@ -83,6 +83,22 @@ def test_canvases_are_in_memory_where_webgl_is_in_software(page: Any) -> None:
     assert all(seen["memory"]), seen["memory"]
 
 
+def test_a_machine_is_taken_apart_about_its_middle_and_comes_together(page: Any) -> None:
+    _, seen, _ = page
+    lifts, together, apart = (np.array(seen[name]) for name in ("lifts", "together", "apart"))
+    assert lifts.max() > 0
+    assert apart - together == pytest.approx(lifts - lifts.max() / 2, abs=1e-9)
+
+
+def test_a_section_cuts_away_what_is_in_front_and_paints_the_cut_faces(page: Any) -> None:
+    _, seen, folder = page
+    cut = seen["cut"]
+    assert cut["clipped"]
+    assert seen["whole"]
+    assert cut["height"] == pytest.approx(cut["high"] - 0.4 * (cut["high"] - cut["low"]), abs=1e-6)
+    assert (folder / "cut.png").stat().st_size > 0
+
+
 def test_scrubbing_keys_and_playing_move_the_machine(page: Any) -> None:
     out, seen, _ = page
     motion = read_motion(out.motion)

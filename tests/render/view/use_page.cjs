@@ -30,6 +30,27 @@ const box = (page, name) => page.evaluate((one) => {
       seen.pins.push({ view, time, joint, picture });
     }
   }
+  await page.evaluate(() => window.mbsd.app.store.set({ view: "3d", time: 0, apart: 0 }));
+  await frame(page);
+  const heights = () => page.evaluate(() => window.mbsd.app.stage.solid.parts.meshes.map((mesh) => mesh.position.z));
+  seen.together = await heights();
+  await page.evaluate(() => window.mbsd.app.store.set({ apart: 1 }));
+  await frame(page);
+  seen.apart = await heights();
+  seen.lifts = await page.evaluate(() => window.mbsd.app.payload.solid.pieces.map(({ lift }) => lift));
+  await page.evaluate(() => window.mbsd.app.store.set({ apart: 0, cut: 0.4, cutSide: "front" }));
+  await frame(page);
+  await page.screenshot({ path: path.join(folder, "cut.png") });
+  seen.cut = await page.evaluate(() => {
+    const { section, parts } = window.mbsd.app.stage.solid, [low, high] = parts.reach([0, 0, 1]);
+    const place = window.mbsd.app.stage.solid.machine.worldToLocal(section.plane.coplanarPoint(section.place.clone()));
+    return { height: place.z, low, high, clipped: parts.materials.every((material) => material.clippingPlanes?.length === 1) };
+  });
+  await page.evaluate(() => window.mbsd.app.store.set({ cut: 0 }));
+  await frame(page);
+  seen.whole = await page.evaluate(() => window.mbsd.app.stage.solid.parts.materials.every((material) => !material.clippingPlanes?.length));
+  await page.evaluate(() => window.mbsd.app.store.set({ view: "2d" }));
+  await frame(page);
   seen.paper = await page.evaluate(() => {
     const { paper } = window.mbsd.app.stage.plane;
     return { scale: paper.scale, origin: paper.pixel(0, 0) };

@@ -24,7 +24,7 @@ class Layout:
     size: int
 
     def place(self, array: np.ndarray, *index: int) -> int:
-        """Of an entry of an array that is in the block."""
+        """Place of an entry of an array that is in the block."""
         steps = sum(k * step for k, step in zip(index, array.strides, strict=False))
         return self.places[array.ctypes.data] + steps // array.itemsize
 

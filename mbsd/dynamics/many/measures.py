@@ -42,7 +42,7 @@ class Measure:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Of what it gives of one simulation."""
+        """Shape of what it gives for one simulation."""
         return ()
 
     def check(self, what: str, t: np.ndarray) -> None:

@@ -49,7 +49,7 @@ class Reacting:
     """What reactions of R rows at T times are made of."""
 
     packed: list[Packed]
-    """Of each row, or one for all."""
+    """One for each row, or one for all."""
     y: np.ndarray
     """(R, T, 2, 3 nb)"""
     jacobians: np.ndarray

@@ -55,7 +55,7 @@ class Motions:
     """(R or 1, nb), as ``inertia``."""
     inertia: np.ndarray
     traces: dict[str, tuple[int, np.ndarray, float]]
-    """Of each traced point its body, its places (R or 1, 2) in the author's frame (m), and its angle (rad)."""
+    """For each traced point its body, its places (R or 1, 2) in the author's frame (m), and its angle (rad)."""
     reactive: Reactive | None = None
     """If any measure reads it."""
     kept: dict[Any, Any] = field(default_factory=dict)

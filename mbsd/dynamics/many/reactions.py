@@ -54,12 +54,12 @@ class Reactions:
         return run.ready.dynamics, run.run.scratch
 
     def of_rows(self, rows: range, out: Outputs, times: np.ndarray) -> Reacting:
-        """Of rows that differ by numbers alone."""
+        """Those of rows that differ by numbers alone."""
         assert self.patches is not None
         return self._filled(self.base.fresh, self.patches.place, self.patches(rows)[0], [self.run], out, times)
 
     def of_runs(self, runs: Sequence[SingleRun], out: Outputs, times: np.ndarray) -> Reacting:
-        """Of runs that were prepared."""
+        """Those of runs that were prepared."""
         fresh = np.array([content(self._arguments(run)) for run in runs])
         return self._filled(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), runs, out, times)
 

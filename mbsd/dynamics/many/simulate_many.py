@@ -204,7 +204,7 @@ def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], 
 
 
 def _column_names(designs: Designs) -> list[str]:
-    """Names of the columns of their solutions, from one of an instant: of the mechanism itself, or a row that starts."""
+    """Names of the columns of their solutions, from one of an instant: the mechanism itself, or a row that starts."""
     model, first = designs.copied(), None
     for row in range(-1, min(designs.count, TRIED)):
         try:

@@ -316,3 +316,28 @@ def test_a_mechanism_that_cannot_start_itself_serves_if_its_rows_can() -> None:
     )
     assert "do not close" in str(many.reason[0])
     assert many["x"][1] == barrier().simulate(0.2, steps=4).body("rocker").theta[-1]
+
+
+@pytest.mark.parametrize("damping", [{"damping": 10.0}, {"restitution": 0.5}])
+def test_contacts_by_penalty_bounce_as_in_single_simulations(damping: dict[str, float]) -> None:
+    def ball(mass: float = 1.0, height: float = 0.5) -> Mechanism:
+        m = Mechanism("ball")
+        body = m.body("ball", mass=mass, inertia=0.1)
+        m.contact("floor", m.ground.at(0, 0), body.at(0, 0), radius=0.1, stiffness=1e4, **damping)
+        m.start_near(ball=(0.0, height, 0.0))
+        return m
+
+    masses, heights = [1.0, 2.0, 0.5], [0.3, 0.5, 0.9]
+    many = ball().simulate_many(
+        1.0,
+        vary={"ball": {"mass": masses}},
+        start={"ball": np.column_stack([np.zeros(3), heights, np.zeros(3)])},
+        measure={"y": final("ball.y"), "fast": largest("ball.vy")},
+        steps=30,
+    )
+    assert many.alone == [None] * 3
+    assert many.note is None
+    for k in range(3):
+        sol = ball(masses[k], heights[k]).simulate(1.0, steps=30)
+        assert many["y"][k] == sol.body("ball").y[-1]
+        assert many["fast"][k] == sol.body("ball").vy.max()

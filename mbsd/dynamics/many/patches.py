@@ -247,5 +247,16 @@ def agrees(patches: Patches, row: int, fresh: np.ndarray, content_of: Callable[[
         return True
     mine, other = fresh.copy(), content_of()
     mine[patches.place] = value[0]
+    for first, end in _overwritten(patches.base):
+        mine[first:end] = other[first:end]
     close = np.abs(mine - other) <= ROUNDING * np.maximum(np.abs(other), 1.0)
     return bool((close | (np.isnan(mine) & np.isnan(other)) | (mine == other)).all())
+
+
+def _overwritten(base: Base) -> list[tuple[int, int]]:
+    """Where in the block what every evaluation overwrites stands, and what preparing has left of the last one."""
+    ws = getattr(base.arguments[1], "ws", None)
+    if ws is None:
+        return []
+    parts = [part for name, part in zip(ws._fields, ws, strict=True) if name != "relative" and part.size]
+    return [(first, first + part.size) for part in parts for first in [base.layout.place(part)]]

@@ -7,6 +7,9 @@ import itertools
 import numpy as np
 import pytest
 
+from render.film.film import Film
+from render.film.story.planned import planned
+from render.film.story.reason import Reason
 from render.film.story.story import Story
 from render.frames.story import kinds
 from render.frames.story.telling import Telling, telling_of
@@ -168,3 +171,22 @@ def test_a_loop_ends_as_it_begins(out_root, seconds: float) -> None:
     assert turns >= 1
     assert story.shots[0].over(seconds / 2).rate
     assert telling.drawing.wide < telling.drawing.high
+
+
+@pytest.mark.parametrize("part", [0.0, 0.03, 0.5, 0.995, 1.0])
+def test_a_loop_of_a_motion_that_ends_stops_at_its_event(out_root, part: float) -> None:
+    """It shows all of the motion, and comes out of the dark and goes into it."""
+    telling = made()
+    motion = telling.film.motion
+    motion.period = None
+    film = Film(motion, telling.film.parts, telling.film.shot, telling.film.folder, 16 / 9)
+    at = motion.time[0] + part * (motion.time[-1] - motion.time[0])
+    story = planned(film, None, [Reason(at, "event", "bell")], PRESETS["draft"], 12.0)
+    [shot] = story.shots
+    assert shot.model(0.0) == pytest.approx(motion.time[0], abs=1e-9)
+    assert shot.model(12.0) == pytest.approx(motion.time[-1], abs=1e-9)
+    stopped = [k / 30 for k in range(360) if shot.over(k / 30).rate == "time stands still"]
+    assert stopped[-1] - stopped[0] > 3
+    assert shot.model(stopped[len(stopped) // 2]) == pytest.approx(at, abs=1e-9)
+    assert shot.over(0.0).dark == shot.over(12.0).dark == 1.0
+    assert shot.over(6.0).dark == 0.0

@@ -15,6 +15,8 @@ STANDS = 0.26
 """Part of the loop in which time stands still, arrows growing not counted, ..."""
 LONGEST = 3.6
 """... and at most so many seconds."""
+MIDDLE = 0.55
+"""Part of what moves that comes before the stop, of a motion that may begin anywhere."""
 DIP = 0.4
 """Seconds in which a motion that does not repeat goes into the dark at its end, and comes out of it at its start."""
 
@@ -29,11 +31,13 @@ def loop(scenery: Scenery, seconds: float) -> Shot:
         stop = begins = seconds
     else:
         stands = min(STANDS * seconds, LONGEST)
-        slows = min(SLOWS, 0.12 * seconds)
+        slows, part = min(SLOWS, 0.12 * seconds), MIDDLE
+        if not clock.repeats:  # it stops at its event, however near that is to the start or the end
+            part = min(max((what.time - clock.start) / period, 0.0), 1.0)
+            slows = min(slows, 2 * min(part, 1 - part) * (seconds - GROWS - stands - slows))
         moves = seconds - GROWS - stands - slows  # at the whole rate; slowing and speeding up go half as far
         turns = max(1, round(clock.rate * moves / period)) if clock.repeats else 1
         rate = turns * period / moves
-        part = 0.55 if clock.repeats else min(max((what.time - clock.start) / period, 0.0), 1.0)
         before = max(part * moves - slows / 2, 0.0)
         after = max(moves - before - slows, 0.0)
         start = what.time - rate * (before + slows / 2) if clock.repeats else clock.start

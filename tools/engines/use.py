@@ -142,7 +142,7 @@ def _driven(browser: Browser, motion: Motion) -> Iterator[str]:
     """Scrub bar and keys."""
     start, end = motion.time[0], motion.time[-1]
     browser.ask(f"{APP}.store.set({{view: '2d', selected: null, time: {start!r}}})")
-    bar = box(browser, ".scrub")
+    bar = box(browser, ".bar .scrub")
     browser.act(click(bar["left"] + bar["width"] / 2, bar["top"] + bar["height"] / 2))
     if abs(browser.ask(STATE)["time"] - (start + end) / 2) > 0.02 * (end - start):
         yield f"a click on the middle of the scrub bar goes to {browser.ask(STATE)['time']} s"

@@ -56,7 +56,7 @@ const box = (page, name) => page.evaluate((one) => {
     return { scale: paper.scale, origin: paper.pixel(0, 0) };
   });
   await page.evaluate(() => window.mbsd.app.store.set({ view: "2d", selected: null, time: 0 }));
-  const scrub = await box(page, ".scrub");
+  const scrub = await box(page, ".track .scrub");
   await page.mouse.click(scrub.left + 8 + 0.5 * (scrub.width - 16), scrub.top + scrub.height / 2);
   seen.memory = await page.evaluate(() => [window.mbsd.app.parts.canvases.plane, ...document.querySelectorAll(".chart canvas")].map((canvas) => canvas.getContext("2d")?.getContextAttributes().willReadFrequently));
   seen.scrubbed = await state(page);

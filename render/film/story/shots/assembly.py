@@ -33,8 +33,12 @@ def assembly(scenery: Scenery) -> Shot | None:
         return None
     lifts, move = scenery.lifts, scenery.moving(LIFTS)
     layers = lifts[-1].order or 1
-    points, begin = _points(scenery), scenery.film.clock.start
-    camera = cameras.posed(_stand(scenery, points), scenery.up, points, scenery.film.shot.camera.blur)
+    together, begin = _points(scenery, 0.0), scenery.film.clock.start
+    spread = _points(scenery, 1.0)
+    points = np.concatenate([together, spread])
+    top = float(points[:, 2].max())
+    near, wide = (cameras.raised(_stand(scenery, held), scenery.up, top) for held in (together, points))
+    blur = scenery.film.shot.camera.blur
     whole, rests = scenery.whole(WHOLE), scenery.whole(APART)
     out = whole + move
     back = out + rests
@@ -52,9 +56,12 @@ def assembly(scenery: Scenery) -> Shot | None:
             height = lift.distance * eased((part - delay) / EACH)
             if height > 0:
                 placed.append((lift.name, round(height, 9)))
+        way = eased(part)
+        sharp = together + way * (spread - together)
+        camera = cameras.posed(cameras.between(near, wide, way), scenery.up, sharp, blur)
         return Picture(at=0.0, camera=camera, lifts=tuple(sorted(placed)), hidden="all")
 
-    lines, text = leaders(scenery, camera), _caption(scenery)
+    lines, text = leaders(scenery, picture(out + rests / 2).camera), _caption(scenery)
 
     def over(s: float) -> Over:
         return Over(
@@ -76,13 +83,13 @@ def _caption(scenery: Scenery) -> str:
     )
 
 
-def _points(scenery: Scenery) -> Array:
-    """Points (n, 3) around all pieces, as they are and apart."""
-    return np.concatenate([scenery.piece(lift, part) for lift in scenery.lifts for part in (0.0, 1.0)])
+def _points(scenery: Scenery, apart: float) -> Array:
+    """Points (n, 3) around all pieces, lifted by a part of their distances (m)."""
+    return np.concatenate([scenery.piece(lift, apart) for lift in scenery.lifts])
 
 
 def _stand(scenery: Scenery, points: Array) -> Stand:
-    """A stand that holds the machine as it is, and apart."""
+    """A stand that holds points (n, 3) around the machine."""
     film = scenery.film
     lies = film.parts.mount.kind == "desk"
     azimuth, elevation = LYING if lies else STANDING
@@ -93,4 +100,4 @@ def _stand(scenery: Scenery, points: Array) -> Stand:
     at = scenery.stand(azimuth, elevation, strip=False)
     empty = layout.above(film.aspect), layout.below(film.aspect, False)
     view = View(at.azimuth, at.elevation, film.shot.camera.lens, MARGIN, empty, film.aspect)
-    return cameras.raised(cameras.stand(subject, scenery.up, view), scenery.up, float(points[:, 2].max()))
+    return cameras.stand(subject, scenery.up, view)

@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 from render.frames.encode import ffmpeg
+from render.frames.story.stage import film_of as story_of
 from render.presets import PRESETS
 from shared.stage.errors import UserError
 from shared.stage.files import whole_file
@@ -23,6 +24,15 @@ def film_of(out: Out) -> Path | None:
     for path in (*films, out.animation("skeleton", ".mp4"), out.animation("", ".mp4")):
         if path.is_file():
             return path
+    return None
+
+
+def page_film(out: Out) -> Path | None:
+    """The film for a machine's own page: the best story, else the best loop; None where there is no film."""
+    for preset in reversed(list(PRESETS)):
+        for path in (story_of(out, preset), out.film(preset)):
+            if path.is_file():
+                return path
     return None
 
 

@@ -72,7 +72,7 @@ def test_time_stops_at_the_dead_point_and_says_so(out_root) -> None:
     assert story.picture(frame) == story.picture(frame + 10)
     assert story.picture(frame).grown == 1.0
     rocker = telling.film.motion.bodies["rocker"]
-    at = (story.model_time(middle) - rocker_time(telling)) % telling.film.motion.period
+    at = (story.model_time(middle) - rocker_time(telling)) % period_of(telling)
     omega = np.interp(at + rocker_time(telling), telling.film.motion.time, rocker.omega)
     assert abs(omega) < 1e-3 * np.abs(rocker.omega).max()
 
@@ -96,6 +96,12 @@ def test_sound_follows_the_times_of_the_story(out_root) -> None:
     assert np.abs(rates[still[2:-2]]).max() < 1e-9
 
 
+def period_of(telling: Telling) -> float:
+    period = telling.film.motion.period
+    assert period is not None
+    return period
+
+
 def rocker_time(telling: Telling) -> float:
     return telling.film.motion.time[0]
 
@@ -109,7 +115,7 @@ def test_words_and_numbers_of_the_picture_agree_with_its_time(out_root) -> None:
     slope = story.model_time((frame + 2) / story.fps) - story.model_time(frame / story.fps)
     assert slope * story.fps / 2 == pytest.approx(telling.film.clock.rate)
     assert telling.film.clock.moment(story.picture(frame).at).time == pytest.approx(
-        (story.over(frame).now - rocker_time(telling)) % telling.film.motion.period + rocker_time(telling)
+        (story.over(frame).now - rocker_time(telling)) % period_of(telling) + rocker_time(telling)
     )
 
 
@@ -166,7 +172,7 @@ def test_a_loop_ends_as_it_begins(out_root, seconds: float) -> None:
     telling = made(loop=seconds, preset="draft-9x16")
     story = check(telling)
     assert story.total == round(seconds * story.fps)
-    turns = (story.shots[0].model(seconds) - story.shots[0].model(0.0)) / telling.film.motion.period
+    turns = (story.shots[0].model(seconds) - story.shots[0].model(0.0)) / period_of(telling)
     assert turns == pytest.approx(round(turns), abs=1e-9)
     assert turns >= 1
     assert story.shots[0].over(seconds / 2).rate

@@ -62,10 +62,9 @@ def _made(name: str, folder: Path) -> Entry:
     film = loops.film_of(out) or _skeleton(name)
     if film is not None:
         entry.loop = _once(film, folder / "loop.mp4", loops.write_loop)
-        if film.parent == out_root() / "films":
-            entry.film = _once(
-                film, folder / "film.mp4", lambda source, target: write_bytes(target, source.read_bytes())
-            )
+    whole = loops.page_film(out)
+    if whole is not None:
+        entry.film = _once(whole, folder / "film.mp4", _copied)
     entry.picture = _picture(name, film, folder / "picture.jpg")
     entry.downloads = write_downloads(name, folder / "files")
     return entry
@@ -87,10 +86,14 @@ def _picture(name: str, film: Path | None, target: Path) -> str:
     if out.poster.is_file():
         return _once(out.poster, target, lambda source, path: write_bytes(path, small_poster(source)))
     if shipped.is_file() and not in_workshop():
-        return _once(shipped, target, lambda source, path: write_bytes(path, source.read_bytes()))
+        return _once(shipped, target, _copied)
     if film is None:
         raise UserError("it has neither a poster nor a film, so there is no picture of it")
     return _once(film, target, loops.write_still)
+
+
+def _copied(source: Path, target: Path) -> None:
+    write_bytes(target, source.read_bytes())
 
 
 def _once(source: Path, target: Path, write: Callable[[Path, Path], object]) -> str:

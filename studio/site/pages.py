@@ -65,7 +65,7 @@ def machine(entry: Entry, others: Sequence[Entry]) -> str:
     )
     beside = "\n".join(_tile(other, k + 1, "../") for k, other in enumerate(others))
     film = (
-        f'<h2>Film</h2>\n<video class="film" controls loop muted playsinline preload="none" width="1280" height="720" '
+        f'<h2>Film</h2>\n<video class="film" controls playsinline preload="none" width="1280" height="720" '
         f'poster="{escape(entry.picture)}" src="{escape(entry.film)}" aria-label="Film of {escape(entry.title)}">'
         "</video>"
         if entry.film

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from render.frames import encode
 from render.frames.film_file import refuse_other_than
+from render.frames.running_ffmpeg import run_ffmpeg
 from render.presets import Preset
 from render.showreel import card, reel_sound
 from render.showreel.card import Title
@@ -68,8 +69,19 @@ def _encoded_anew(clip: Clip, preset: Preset, fps: int, target: Path) -> Clip:
     settings = list(encode.SETTINGS)
     at = settings.index("-vf") + 1
     settings[at] = f"{fit},{settings[at]}"
-    _ffmpeg(
-        clip.path.name, "-i", str(clip.path), "-map", "0:v:0", "-map", "0:a:0?", *settings, "-c:a", "copy", str(target)
+    run_ffmpeg(
+        clip.path.name,
+        "-i",
+        str(clip.path),
+        "-map",
+        "0:v:0",
+        "-map",
+        "0:a:0?",
+        *settings,
+        "-c:a",
+        "copy",
+        str(target),
+        patience=PATIENCE,
     )
     return read_clip(target)
 
@@ -97,10 +109,11 @@ def _concatenate(row: Sequence[Clip], titles: Sequence[Title], target: Path, scr
     inputs = ["-f", "concat", "-safe", "0", "-auto_convert", "0", "-i", str(scratch / "list.txt")]
     inputs += ["-i", str(scratch / "chapters.txt"), *(["-i", str(sound)] if heard else [])]
     streams = ["-map", "0:v:0", *(["-map", "2:a:0", *reel_sound.AAC] if heard else [])]
-    _ffmpeg(
+    run_ffmpeg(
         target.name,
         *(*inputs, *streams, "-map_metadata", "1", "-map_chapters", "1", "-c:v", "copy"),
         *("-movflags", "+faststart", "-fflags", "+bitexact", str(target)),
+        patience=PATIENCE,
     )
 
 
@@ -134,17 +147,6 @@ def _first_picture(film: Path, whole: bool = False) -> Image:
         said = done.stderr.decode(errors="replace").strip().splitlines()
         reason = said[-1] if said else "it has no picture"
         raise UserError(f"{film}: the film does not decode ({reason}); remove it and make it again") from error
-
-
-def _ffmpeg(name: str, *arguments: str) -> None:
-    command = [encode.ffmpeg(), "-y", "-v", "error", *arguments]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=PATIENCE)
-    except subprocess.TimeoutExpired:
-        raise UserError(f"{name}: ffmpeg took longer than {PATIENCE:.0f} s; run it again") from None
-    if done.returncode:
-        said = (done.stderr.strip().splitlines() or [f"code {done.returncode}"])[-1]
-        raise UserError(f"{name}: ffmpeg failed: {said}")
 
 
 def _quoted(path: Path) -> str:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
 from pathlib import Path
 
-from render.frames.encode import ffmpeg
+from render.frames.running_ffmpeg import run_ffmpeg
 from render.frames.story.stage import film_of as story_of
 from render.presets import PRESETS
-from shared.stage.errors import UserError
 from shared.stage.files import whole_file
 from shared.stage.paths import Out
 
@@ -58,11 +56,4 @@ def write_still(film: Path, target: Path) -> None:
 
 def _run(film: Path, target: Path, options: tuple[str, ...]) -> None:
     with whole_file(target) as part:
-        command = [ffmpeg(), "-y", "-v", "error", "-i", str(film), *options, str(part)]
-        try:
-            done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=PATIENCE)
-        except subprocess.TimeoutExpired:
-            raise UserError(f"{film}: ffmpeg did not end within {PATIENCE:.0f} s; run it again") from None
-        if done.returncode:
-            said = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
-            raise UserError(f"{film}: ffmpeg made no loop of it ({said}); remove the film and make it again")
+        run_ffmpeg(film.name, "-i", str(film), *options, str(part), patience=PATIENCE)

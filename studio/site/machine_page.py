@@ -14,7 +14,7 @@ from render.view.inputs import read_payload
 from render.view.sketch import sketch
 from shared.stage.console import warn
 from shared.stage.files import sources_hash, write_bytes
-from shared.stage.paths import ROOT, Out
+from shared.stage.paths import ROOT, Out, mechanism_file
 from shared.stage.stages import Stage, key_of, versions
 from studio.site.once import once
 
@@ -52,7 +52,8 @@ def _designs(name: str) -> Path:
     """
     out = Out(name)
     path = out.folder / "designs.bin"
-    key = key_of(out.motion, out.skeleton, sources_hash(*SOURCES, ROOT / "render" / "view"), versions("numpy"))
+    read = out.motion, out.skeleton, mechanism_file(name)
+    key = key_of(*read, sources_hash(*SOURCES, ROOT / "render" / "view"), versions("numpy"))
     stage = Stage(out, "designs", key, [path])
     if stage.is_fresh():
         return path

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import subprocess
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from render.blender.scratch import scratch_folder
 from render.film.story.story import Story
 from render.film.story.subtitles import chapters
 from render.frames import encode, frames
+from render.frames.running_ffmpeg import run_ffmpeg
 from render.frames.store import FrameStore
 from render.frames.story.drawing import Drawing, png
 from render.frames.story.telling import Telling
@@ -83,9 +83,9 @@ def encoded(pages: Iterable[Page], story: Story, drawing: Drawing, preset: Prese
         encode.encode(_composed(pages, story, drawing), story.total, preset, story.fps, bare)
         listing.write_text(chapters(story.chapters, drawing.name), encoding="utf-8")
         with whole_file(film) as target:
-            _ffmpeg(film.name, "-i", str(bare), "-i", str(listing), "-map", "0:v:0", "-map_metadata", "1",
-                    "-map_chapters", "1", "-c", "copy", "-movflags", "+faststart", "-fflags", "+bitexact",
-                    str(target))  # fmt: skip
+            run_ffmpeg(film.name, "-i", str(bare), "-i", str(listing), "-map", "0:v:0", "-map_metadata", "1",
+                       "-map_chapters", "1", "-c", "copy", "-movflags", "+faststart", "-fflags", "+bitexact",
+                       str(target), patience=PATIENCE)  # fmt: skip
 
 
 def _composed(pages: Iterable[Page], story: Story, drawing: Drawing) -> Iterator[bytes]:
@@ -96,14 +96,3 @@ def _composed(pages: Iterable[Page], story: Story, drawing: Drawing) -> Iterator
         if kept is None or kept[0] != (name, over):
             kept = (name, over), png(drawing.frame(picture, over))
         yield kept[1]
-
-
-def _ffmpeg(name: str, *arguments: str) -> None:
-    command = [encode.ffmpeg(), "-y", "-v", "error", *arguments]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=PATIENCE)
-    except subprocess.TimeoutExpired:
-        raise UserError(f"{name}: ffmpeg took longer than {PATIENCE:.0f} s; run it again") from None
-    if done.returncode:
-        said = (done.stderr.strip().splitlines() or [f"code {done.returncode}"])[-1]
-        raise UserError(f"{name}: ffmpeg failed: {said}")

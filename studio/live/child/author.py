@@ -15,6 +15,7 @@ from mechanisms.stages.loading.loaded_files import author_files
 from mechanisms.stages.loading.recording import recording
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.masses import bodies_of, give_masses
+from render.view.binary import encode
 from shared import contract
 from shared.contract.shot import Shot
 from shared.stage import console
@@ -73,7 +74,8 @@ class Author:
                 self._told.add(sentence)
                 console.say("solve", f"{self.name}: {sentence}")
         solution, stop = until_it_stops(self.name, self.module, m, lambda: self._motion(m, p))
-        return Answer(self._shown.of(solution, self._fitting(m), sources, self._shot_of(m), quick, arrows), stop)
+        shown = self._shown.payload(solution, self._fitting(m), sources, self._shot_of(m), quick, arrows)
+        return Answer(encode(shown, compress=False), stop)
 
     def payload(self, values: dict[str, float], quick: bool = False) -> dict[str, Any]:
         """What a page shows of the motion with these numbers; raises UserError also where it does not reach its end."""

@@ -29,18 +29,6 @@ class Shown:
         self._last: Moving | None = None
         self._motion: tuple[Motion, Told] | None = None
 
-    def of(
-        self,
-        solution: Solution,
-        parts: Parts | None,
-        sources: Mapping[str, Any],
-        shot: Shot | None,
-        quick: bool,
-        arrows: bool = True,
-    ) -> bytes:
-        """Bytes of the payload without its parts; raises UserError for a shot that names what is not there."""
-        return encode(self.payload(solution, parts, sources, shot, quick, arrows), compress=False)
-
     def payload(
         self,
         solution: Solution,
@@ -50,7 +38,7 @@ class Shown:
         quick: bool,
         arrows: bool = True,
     ) -> dict[str, Any]:
-        """The payload itself."""
+        """The payload without its parts; raises UserError for a shot that names what is not there."""
         skeleton = redrawn(solution, self._last) if quick and self._last is not None else None
         if skeleton is None:
             skeleton = moving(solution)

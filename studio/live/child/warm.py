@@ -19,6 +19,7 @@ import mechanisms.stages.solve.estimated_masses  # noqa: E402
 import mechanisms.stages.solve.refined_times  # noqa: E402, F401
 from mbsd import Mechanism, constant_rate, fit_path  # noqa: E402
 from mechanisms.stages.solve.masses import give_masses  # noqa: E402
+from render.view.binary import encode  # noqa: E402
 from studio.live.child.main import main as serve  # noqa: E402, F401  (runs in each process that is forked)
 from studio.live.child.shown import Shown  # noqa: E402
 
@@ -47,9 +48,9 @@ def _warm() -> None:
     """Load what the first sweep, simulation and fit would load."""
     driven = _driven()
     give_masses(driven, None)
-    Shown().of(driven.sweep(), None, {}, None, False)
+    encode(Shown().payload(driven.sweep(), None, {}, None, False), compress=False)
     fit_path(driven, [(0.1, 0.2), (0.2, 0.2)], {"crank": (0.05, 0.12)}, starts=1, generations=1)
-    Shown().of(_free().simulate(0.2, event_rows=True), None, {}, None, False)
+    encode(Shown().payload(_free().simulate(0.2, event_rows=True), None, {}, None, False), compress=False)
 
 
 _warm()

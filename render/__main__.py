@@ -19,6 +19,7 @@ COMMANDS = {
     "still": "one frame as a picture",
     "contact": "a sheet of twelve frames as contact.png",
     "poster": "the shot's best moment as poster.png",
+    "exploded": "the parts taken apart, with names and masses, as exploded.png",
     "frames": "render every frame that is not there yet",
     "film": "frames, then the MP4",
     "scene": "save the scene as a .blend that plays the motion",
@@ -36,6 +37,7 @@ def main() -> int | None:
         if command not in ("plots", "compare", "report", "glb", "usd", "view"):
             sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
             sub.add_argument("--aspect", default="", help=f"{', '.join(ASPECTS)}; {WIDE} if not given")
+        if command not in ("plots", "compare", "report", "glb", "usd", "view", "exploded"):
             sub.add_argument(
                 "--show", default="", help="what to show: reactions,velocities,title; as shot.py says if not given"
             )
@@ -111,6 +113,11 @@ def main() -> int | None:
 
 
 def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namespace) -> None:
+    if command == "exploded":
+        from render.frames.story import apart
+
+        apart.run(name, preset)
+        return
     show = show_words(arguments.show)
     if command == "film":
         from render.frames.story import kinds

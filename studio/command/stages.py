@@ -62,6 +62,7 @@ VIEW = Stage("render", "view")
 POSTER, CONTACT, FRAMES, SCENE, SCENE_UI = (
     Stage("render", name, _PICTURE, solids=True) for name in ("poster", "contact", "frames", "scene", "scene-ui")
 )
+EXPLODED = Stage("render", "exploded", ("preset", "aspect"), solids=True)
 FILM = Stage("render", "film", (*_PICTURE, "story", "loop", "sound"), solids=True)
 STILL = Stage("render", "still", ("frame", *_PICTURE), solids=True)
 BARE_MOTION = (PARTS_IF_ANY, SOLVE)

@@ -78,10 +78,17 @@ class Telling:
         return f"{duration(self.story.seconds)}: {shots}; {self.count} pictures, the loop film has {loop}"
 
 
-def telling_of(out: Out, preset: Preset, show: str = "", loop: float = 0.0) -> Telling:
-    """The story of a machine. Raises UserError for what its shot asks of it and cannot be, with the remedy."""
+def telling_of(
+    out: Out, preset: Preset, show: str = "", loop: float = 0.0, shots: tuple[str, ...] | None = None
+) -> Telling:
+    """The story of a machine, of these ``shots`` alone if they are given.
+
+    Raises UserError for what its shot asks of it and cannot be, with the remedy.
+    """
     refuse_missing(out)
     shot, parts = read_shot(out.shot), read_parts(out.parts, out.name)
+    if shots is not None:
+        shot = msgspec.structs.replace(shot, story=msgspec.structs.replace(shot.story, shots=shots))
     motion = read_motion(out.motion, out.name)
     why = reasons(motion)
     whole = with_rods(motion, parts)

@@ -6,6 +6,7 @@ import io
 import subprocess
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,27 +28,38 @@ PATIENCE = 3600.0
 """Seconds for ffmpeg to join or encode one film."""
 
 
-def join(films: Sequence[tuple[Path, Title]], preset: Preset, target: Path, scratch: Path) -> list[Clip]:
+@dataclass(frozen=True)
+class Entry:
+    """A film of the showreel; ``has_title`` of one that begins with its own."""
+
+    path: Path
+    title: Title
+    has_title: bool = False
+
+
+def join(films: Sequence[Entry], preset: Preset, target: Path, scratch: Path) -> list[Clip]:
     """Write ``target`` from films under their titles, with a chapter for each; returns its clips in order.
 
     The films' most frequent rate is that of all. Raises UserError naming the film that does not decode.
     """
-    clips = [read_clip(path) for path, _ in films]
+    clips = [read_clip(film.path) for film in films]
     fps = Counter(clip.fps for clip in clips).most_common(1)[0][0]
-    row: list[Clip] = []
-    for number, (clip, (path, title)) in enumerate(zip(clips, films, strict=True)):
+    chapters: list[list[Clip]] = []
+    for number, (clip, film) in enumerate(zip(clips, films, strict=True)):
         place = scratch / f"{number:04d}"
-        first = _first_picture(path).resize((preset.width, preset.height))
-        encode.encode(card.pictures(first, title, fps), card.number(fps), preset, fps, place.with_suffix(".title.mp4"))
+        first = _first_picture(film.path).resize((preset.width, preset.height))
+        title = card.pictures(first, film.title, fps)
+        encode.encode(title, card.number(fps), preset, fps, place.with_suffix(".title.mp4"))
         head = read_clip(place.with_suffix(".title.mp4"))
         if clip.parameters != head.parameters:
-            say("showreel", f"{path.name}: encoded again, {_difference(clip, head)}")
+            say("showreel", f"{film.path.name}: encoded again, {_difference(clip, head)}")
             clip = _encoded_anew(clip, preset, fps, place.with_suffix(".film.mp4"))
-        row += [head, clip]
+        chapters.append([clip] if film.has_title else [head, clip])
+    row = [clip for chapter in chapters for clip in chapter]
     _refuse_unlike(row)
     with whole_file(target) as part:
-        _concatenate(row, [title for _, title in films], part, scratch)
-        _check(row, [path for path, _ in films], part, target.name, preset, fps)
+        _concatenate(chapters, [film.title for film in films], part, scratch)
+        _check(row, [film.path for film in films], part, target.name, preset, fps)
     return row
 
 
@@ -92,14 +104,15 @@ def _refuse_unlike(row: Sequence[Clip]) -> None:
             raise UserError(f"{clip.path.name}: its parameters differ from those of its neighbours, also encoded anew")
 
 
-def _concatenate(row: Sequence[Clip], titles: Sequence[Title], target: Path, scratch: Path) -> None:
+def _concatenate(parts: Sequence[Sequence[Clip]], titles: Sequence[Title], target: Path, scratch: Path) -> None:
     """ffmpeg's concat demuxer, which copies the pictures' packets; players show the chapters. Sound is encoded anew."""
     listing, chapters, at = ["ffconcat version 1.0"], [";FFMETADATA1"], 0
+    row = [clip for clips in parts for clip in clips]
     for clip in row:
         listing.append(f"file '{_quoted(clip.path.resolve())}'")
         listing.append(f"duration {clip.frames / clip.fps:.9f}")
-    for k, title in enumerate(titles):
-        frames = row[2 * k].frames + row[2 * k + 1].frames
+    for clips, title in zip(parts, titles, strict=True):
+        frames = sum(clip.frames for clip in clips)
         chapters += ["[CHAPTER]", f"TIMEBASE=1/{row[0].fps}", f"START={at}", f"END={at + frames}"]
         chapters.append(f"title={_escaped(title.name)}")
         at += frames

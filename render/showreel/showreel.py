@@ -12,7 +12,8 @@ from render.gallery.page import sentences
 from render.presets import Preset
 from render.report import description
 from render.showreel.card import Title
-from render.showreel.join import join
+from render.showreel.join import Entry, join
+from shared.contract.shot import read_shot
 from shared.stage.console import duration, say
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -47,7 +48,11 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
     say("showreel", f"{len(films)} films of {preset}, each under its title")
     try:
         with scratch_folder(home) as scratch:
-            row = join([(film, title_of(name)) for name, film in films.items()], preset, target, scratch)
+            entries = [
+                Entry(film, title_of(name), film != _loop(name, preset, show) and _has_title(name))
+                for name, film in films.items()
+            ]
+            row = join(entries, preset, target, scratch)
     finally:
         with suppress(OSError):
             home.rmdir()
@@ -64,7 +69,17 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
 def _film(name: str, preset: Preset, show: str, story: str) -> Path:
     """The story of a mechanism if it is made and asked for, else its loop."""
     explains = film_of(Out(name), preset.name, show)
-    return explains if story == "explain" and explains.is_file() else named(Out(name).film(preset.name), show)
+    return explains if story == "explain" and explains.is_file() else _loop(name, preset, show)
+
+
+def _has_title(name: str) -> bool:
+    """Whether the story of a mechanism begins with its title."""
+    shots = read_shot(Out(name).shot).story.shots
+    return shots is None or shots[0] == "title"
+
+
+def _loop(name: str, preset: Preset, show: str) -> Path:
+    return named(Out(name).film(preset.name), show)
 
 
 def title_of(name: str) -> Title:

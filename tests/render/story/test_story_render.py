@@ -23,6 +23,7 @@ from render.frames.story.pictures import StoryPictures
 from render.frames.story.telling import telling_of
 from render.presets import Preset
 from render.showreel import showreel
+from render.showreel.clip import read_clip
 from shared.contract.shot import Camera, Shot, Story
 from shared.stage.paths import ROOT, Out
 from tools.fixtures import film_fixture
@@ -69,6 +70,7 @@ def test_a_story_is_killed_and_goes_on(out_root: Path, tmp_path: Path, monkeypat
     film.rename(film.with_name("four_bar-draft-tiny-explain.mp4"))
     reel = showreel.run(TINY, "four_bar")
     assert b"Four bar" in reel.read_bytes()
+    assert read_clip(reel).frames == telling_of(out, TINY).story.total, "a story has its own title"
 
 
 def test_pieces_are_lifted_trails_hidden_and_lenses_changed(out_root: Path) -> None:

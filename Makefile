@@ -203,7 +203,7 @@ verify-%: libraries always ## solids, motion, some frames and the film made agai
 view-all: install ## all pages and a picture of each by Chromium: view.html, view.png; ONLY=four_bar,pendulum
 	@$(MBSD) view-all
 
-site: install ## a wall of all machines in motion and a page for each, for any web host: out/site/; ONLY=four_bar,pendulum
+site: install ## a wall of all machines in motion and a page for each, for any web host: out/site/
 	@$(MBSD) site
 
 view-engines: install ## pages used in Firefox and Safari's engine: a small four-bar, or ONLY=four_bar,pendulum
@@ -212,7 +212,7 @@ view-engines: install ## pages used in Firefox and Safari's engine: a small four
 gallery: libraries ## posters of all mechanisms and the page that shows them: docs/gallery/
 	@$(MBSD) gallery
 
-showreel: install ## the finished films, each under its title, as one, stories where made or STORY=loop; ONLY=four_bar,geneva_drive
+showreel: install ## the finished films, each under its title, as one; stories where made or STORY=loop; ONLY=four_bar
 	@$(MBSD) showreel
 
 fetch: install ## bring the films of another machine home, what changed alone: HOST=user@machine FOLDER=mbsd

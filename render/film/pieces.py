@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from render.film.scene import PieceSpec, SurfaceSpec
+from render.film.section import cut_height
 from shared.contract import Motion, Parts, Piece
 from shared.contract.materials import MATERIALS
 from shared.contract.shot import Shot, Surface
@@ -22,7 +23,11 @@ GREY, DARKEST = 0.9, 0.14
 
 
 def piece_specs(parts: Parts, shot: Shot, folder: Path) -> list[PieceSpec]:
-    """All solids, whose STL files are in ``folder``. Raises UserError for a material that is not known."""
+    """All solids, whose STL files are in ``folder``, as far as the shot's section leaves them.
+
+    Raises UserError for a material that is not known, and for a section that cuts nothing.
+    """
+    height = cut_height(parts, shot.section)
     return [
         PieceSpec(
             body=body,
@@ -31,8 +36,10 @@ def piece_specs(parts: Parts, shot: Shot, folder: Path) -> list[PieceSpec]:
             sha256=piece.stl_sha256,
             surface=_surface(parts.mechanism, shot, body, name, piece),
             turns_about=(piece.rolls.x, piece.rolls.y) if piece.rolls else None,
+            cut_above=height if height is not None and piece.z_range[1] > height else None,
         )
         for body, name, piece in _pieces(parts)
+        if height is None or piece.z_range[0] < height
     ]
 
 

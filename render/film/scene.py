@@ -40,6 +40,8 @@ class PieceSpec(msgspec.Struct, kw_only=True, frozen=True):
     surface: SurfaceSpec
     turns_about: tuple[float, float] | None = None
     """x, y of the axis (m) about which it turns against its body; the States have its pose as ``body/name``."""
+    cut_above: float | None = None
+    """Height (m) in the body's frame above which a section has cut it away."""
 
 
 class TrailSpec(msgspec.Struct, kw_only=True, frozen=True):

@@ -8,6 +8,7 @@ solid   looks {dark, light}: see looks.py; reach: away from the camera (m); size
         pieces [{body, name, mesh, at (m, of its lowest corner in the body), surface, turns, lift (m, of an exploded
         machine, along the normal of its plane)}]; turns is null, or
         {x, y, angle (T,)} of a roller about a point of its body (m, rad)
+        section: part of the depth that the page shows cut away at first
         heights {joints, points, bodies: {name: m}}: of what floats over them
         tubes: bytes of a GLB with springs, ropes and belts and their motion, or null
 """
@@ -17,6 +18,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from render.film.camera import angles
@@ -53,7 +55,7 @@ def with_parts(payload: dict[str, Any], film: Film) -> dict[str, Any]:
 
 def solid(film: Film) -> dict[str, Any]:
     """See the file."""
-    specs = piece_specs(film.parts, film.shot, film.folder)
+    specs = piece_specs(film.parts, msgspec.structs.replace(film.shot, section=0.0), film.folder)
     solids = list(shapes([Path(spec.stl) for spec in specs]))
     meshes = Meshes(max(float(np.ptp(positions, axis=0).max()) for positions, _, _ in solids))
     surfaces: dict[SurfaceSpec, int] = {}
@@ -83,6 +85,7 @@ def solid(film: Film) -> dict[str, Any]:
         "axes": studio(film.parts.mount.up).tolist(),
         "floor": float(in_studio(film.space.all, film.parts.mount.up)[:, 2].min()),
         "camera": _camera(film),
+        "section": film.shot.section,
         "step": meshes.step,
         "meshes": meshes.list,
         "surfaces": [_surface(surface) for surface in surfaces],

@@ -174,6 +174,8 @@ class Shot(_Strict, frozen=True):
     """null writes nothing but the rate of a motion without a period that is not in real time."""
     materials: dict[str, str | Surface] = {}
     """Other surfaces for the film alone, by ``body`` or ``body/piece``: the name of a material or a Surface."""
+    section: Annotated[float, msgspec.Meta(ge=0, lt=1)] = 0.0
+    """Part of the machine's depth that is cut away from the front; cut faces are hatched. 0 cuts nothing."""
     sound: Sound = Sound()
     poster: Unit = 0.3
     """Which moment the poster shows, as a part of the motion."""

@@ -17,6 +17,8 @@ LAYER = 0.0004
 """Height (m) of a printed layer, twice what printers make, so that pixels can show it."""
 
 
+STRIPE = 0.05
+"""Width of a light and a dark stripe of a cut face, as a part of the machine's radius."""
 WORN = ("anodised", "cast")
 """Finishes whose chamfers are rubbed."""
 EDGE = "edge"
@@ -39,6 +41,21 @@ def flat(colour: tuple[float, float, float], name: str) -> Any:
     made, graph = new_material(name)
     graph.add("OutputMaterial", Surface=graph.add("Emission", Color=colour, Strength=1.0).outputs[0])
     made.cycles.emission_sampling = "NONE"
+    return made
+
+
+def hatched(surface: SurfaceSpec, name: str, radius: float, way: int) -> Any:
+    """A cut face: stripes in light and dark of the surface's colour; their slope and width follow ``way``, 0 .. 3."""
+    made, graph = new_material(name)
+    place = graph.add("SeparateXYZ", Vector=graph.add("TexCoord").outputs["Object"])
+    along = graph.math("SUBTRACT" if way % 2 else "ADD", place.outputs["X"], place.outputs["Y"])
+    period = radius * (STRIPE + way // 2 * STRIPE / 3)
+    stripe = graph.math("GREATER_THAN", graph.math("FRACT", graph.math("DIVIDE", along, period)), 0.55)
+    light: Colour = tuple(0.5 * part + 0.32 for part in surface.colour)  # type: ignore[assignment]
+    dark: Colour = tuple(0.3 * part + 0.015 for part in surface.colour)  # type: ignore[assignment]
+    graph.add(
+        "OutputMaterial", Surface=_principled(graph, Base_Color=_mixed(graph, stripe, light, dark), Roughness=0.7)
+    )
     return made
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from render.blender.scene.cut import cut_open, hatch
 from render.blender.scene.materials import WORN, flat, ink, material
 from render.blender.scene.worked import engraved, mark_chamfers
 from render.film.scene import Colour, PieceSpec, SurfaceSpec
@@ -49,6 +50,8 @@ def build(
         solid.parent = bodies[carrier]
         if solids is not None:
             solids[name] = solid
+        if piece.cut_above is not None:
+            cut_open(solid.data, piece.cut_above, SHARP)
         if piece.turns_about is not None:
             x, y = piece.turns_about
             solid.data.transform(Matrix.Translation((-x, -y, 0.0)))
@@ -63,6 +66,8 @@ def build(
         solid.data.materials.append(paint)
         if only_flat is None:
             _fill_engraving(solid.data, piece.surface, inks)
+            if piece.cut_above is not None:
+                hatch(solid.data, piece.surface, name, radius)
     return bodies
 
 

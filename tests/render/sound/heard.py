@@ -48,7 +48,7 @@ def filmed(motion: Motion | Solution, shot: Shot | None = None) -> Any:
         poses=Poses(motion),
         parts=SimpleNamespace(mount=Mount(), bodies={name: bar() for name in ("ground", *motion.bodies)}),
         aspect=16 / 9,
-        way=None,
+        travel=None,
         size=SIZE,
         space=SimpleNamespace(machine=corners, middle=np.zeros(3)),
     )

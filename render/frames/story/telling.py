@@ -103,8 +103,8 @@ def telling_of(
 
 
 def shown_plain(shot: Shot) -> Shot:
-    """The shot without arrows and without words over it: the story has its own."""
-    return msgspec.structs.replace(shot, show=(), title=None)
+    """The whole machine without arrows and without words over it: the story has its own."""
+    return msgspec.structs.replace(shot, show=(), title=None, section=0.0)
 
 
 def _chosen(event: str | None, why: list[Reason]) -> Reason | None:

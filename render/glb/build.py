@@ -19,6 +19,7 @@ from render.film.scene import PieceSpec
 from render.film.solids import read_triangles
 from render.glb.animation import Animation
 from render.glb.belts import add_belt
+from render.glb.cut import cut_open, cut_surface
 from render.glb.document import INDICES, VERTICES, Document
 from render.glb.materials import CLEARCOAT, Paints
 from render.glb.mesh import smooth
@@ -74,7 +75,7 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec]) -> tuple[Document, Animati
         if name in nodes:
             x, y, theta = (np.array(series)[animation.kept] for series in (body.x, body.y, body.theta))
             animation.place(nodes[name], np.stack([x, y, 0 * x], axis=1), theta)
-    for roller in film.rollers.found if pieces else []:
+    for roller in (each for each in film.rollers.found if (each.body, each.piece) in children):
         animation.turn(children[roller.body, roller.piece], roller.turned[animation.kept])
     springs = Springs(document, animation, paints, motion)
     for stretched in film.stretched:
@@ -96,15 +97,24 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec]) -> tuple[Document, Animati
 
 
 def _mesh(document: Document, piece: PieceSpec, paints: Paints) -> int:
-    positions, normals, corners = smooth(read_triangles(Path(piece.stl)))
+    triangles = read_triangles(Path(piece.stl))
+    faces = [(triangles, piece.surface)]
+    if piece.cut_above is not None:
+        rest, cut = cut_open(triangles, piece)
+        faces = [(rest, piece.surface), (cut, cut_surface(piece.surface))]
+    primitives = [_primitive(document, part, piece, paints.of(surface)) for part, surface in faces if len(part)]
+    return document.add("meshes", {"name": f"{piece.body}/{piece.name}", "primitives": primitives})
+
+
+def _primitive(document: Document, triangles: np.ndarray, piece: PieceSpec, paint: int) -> dict[str, Any]:
+    positions, normals, corners = smooth(triangles)
     if piece.turns_about is not None:
         positions = positions - np.array([*piece.turns_about, 0.0], np.float32)
-    primitive = {
+    return {
         "attributes": {
             "POSITION": document.array(positions, VERTICES, bounds=True),
             "NORMAL": document.array(normals, VERTICES),
         },
         "indices": document.array(corners, INDICES),
-        "material": paints.of(piece.surface),
+        "material": paint,
     }
-    return document.add("meshes", {"name": f"{piece.body}/{piece.name}", "primitives": [primitive]})

@@ -9,11 +9,15 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from render.film.film import Film
 from render.film.pieces import piece_specs
 from render.film.section import cut_height
+from render.film.solids import read_triangles
+from render.glb.build import glb
+from render.glb.cut import cut_open
 from render.view.solid import solid
 from shared.contract import read_motion, read_parts
 from shared.contract.shot import Shot
@@ -82,6 +86,33 @@ def test_the_page_has_all_parts_and_begins_with_the_section(out_root: Path) -> N
     shown = solid(Film(read_motion(out.motion), read_parts(out.parts), Shot(section=0.4), out.parts_folder))
     assert shown["section"] == 0.4
     assert len(shown["pieces"]) == len(piece_specs(read_parts(out.parts), Shot(), out.parts_folder))
+
+
+def test_the_glb_is_cut_open_and_closed_again(out_root: Path) -> None:
+    out = film_fixture.write(Shot(section=0.3))
+    parts = read_parts(out.parts)
+    specs = {(spec.body, spec.name): spec for spec in piece_specs(parts, Shot(section=0.3), out.parts_folder)}
+    cut = [spec for spec in specs.values() if spec.cut_above is not None]
+    assert cut
+    for spec in cut:
+        triangles = read_triangles(Path(spec.stl))
+        rest, caps = cut_open(triangles, spec)
+        both = np.concatenate([rest, caps])
+        assert both[..., 2].max() == pytest.approx(spec.cut_above)
+        assert both[..., 2].min() == pytest.approx(triangles[..., 2].min())
+        assert 0 < volume(both) < volume(triangles)
+        area = np.cross(caps[:, 1] - caps[:, 0], caps[:, 2] - caps[:, 0]).sum(axis=0) / 2
+        below = np.cross(rest[:, 1] - rest[:, 0], rest[:, 2] - rest[:, 0]).sum(axis=0) / 2
+        assert area == pytest.approx(-below, abs=1e-9), "closed: all faces together face nowhere"
+        assert area[2] > 0
+    content = glb(Film(read_motion(out.motion), parts, Shot(section=0.3), out.parts_folder))
+    document = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
+    assert sum(len(mesh["primitives"]) == 2 for mesh in document["meshes"]) == len(cut)
+
+
+def volume(triangles: np.ndarray) -> float:
+    """The volume within closed triangles (n, 3, 3)."""
+    return float(np.einsum("ij,ij->i", triangles[:, 0], np.cross(triangles[:, 1], triangles[:, 2])).sum() / 6)
 
 
 def test_a_section_that_cuts_nothing_is_refused_with_where_pieces_are() -> None:

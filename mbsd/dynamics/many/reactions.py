@@ -6,38 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mbsd.compiling.jit import threaded
 from mbsd.dynamics.many.arguments import content, laid_out
 from mbsd.dynamics.many.base import Base
 from mbsd.dynamics.many.outputs import Outputs, Reacting
 from mbsd.dynamics.many.patches import Patches
 from mbsd.dynamics.many.single_run import SingleRun
-from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.state import REACHED
-from mbsd.equations.assembly import position
-
-
-@threaded
-def tabulate_reactions(dyn, scratch, block, fresh, place, value, t, y, status, jacobians, lam, known):
-    """Fill compact jacobians (R, T, m, 6) and, unless ``known``, lam (R, T, m) along states y (R, T, 2, 3 nb).
-
-    Rows of ``block``, ``fresh``, ``place`` and ``value`` are those of run_rows, for Dynamics and its scratch alone.
-    """
-    for r in range(y.shape[0]):
-        if status[r] != REACHED:
-            continue
-        own = min(r, fresh.shape[0] - 1)
-        for i in range(block.shape[0]):
-            block[i] = fresh[own, i]
-        for i in range(place.shape[0]):
-            block[place[i]] = value[r, i]
-        for k in range(t.shape[0]):
-            if not known:
-                derivative(dyn, scratch, t[k], y[r, k], scratch.stages[0], lam[r, k])
-            position(dyn.system, y[r, k, 0], scratch.drive, scratch.ws)
-            for row in range(lam.shape[2]):
-                for c in range(6):
-                    jacobians[r, k, row, c] = scratch.ws.jac[row, c]
+from mbsd.dynamics.many.tabulated_reactions import tabulate_reactions
 
 
 class Reactions:

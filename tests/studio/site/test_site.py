@@ -22,6 +22,7 @@ from studio.pages import making as view_pages
 from studio.site import making
 from tests.running.needs import needed
 
+pytestmark = pytest.mark.slow
 NAMES = ["four_bar", "trammel"]
 OWN = {field.name: getattr(Params(), field.name) for field in dataclasses.fields(Params)}
 

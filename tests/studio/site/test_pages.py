@@ -1,0 +1,99 @@
+"""The HTML of the site and the numbers that its pages carry, without a browser."""
+
+from __future__ import annotations
+
+import math
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+from studio.site.designs.leaves import Unlike, form, leaves, thinned, vector
+from studio.site.downloads import Download
+from studio.site.entries import Entry
+from studio.site.pages import machine, wall
+
+
+class Read(HTMLParser):
+    """Tags of a page with their attributes, and its words."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.words = ""
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        self.words += data
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.tags if name == tag]
+
+
+def entry(name: str, said: str = "", **more) -> Entry:
+    return Entry(name, name.replace("_", " "), said, ["1 degree of freedom"], ["gears"], picture="picture.jpg", **more)
+
+
+def test_what_an_author_writes_is_no_html() -> None:
+    nasty = 'a <script>alert("x")</script> & "quotes"'
+    page = Read(wall("All", [entry("press", nasty), entry("lift")], ["gears", "a & b"]))
+    assert nasty in page.words
+    assert len(page.all("script")) == 3
+    assert [button["data-purpose"] for button in page.all("button") if "data-purpose" in button] == ["gears", "a & b"]
+    tiles = [tile for tile in page.all("li") if "data-words" in tile]
+    assert nasty.lower() in (tiles[0]["data-words"] or "")
+    assert [link["href"] for link in page.all("a")] == ["press/index.html", "lift/index.html"]
+
+
+def test_a_machine_has_its_film_files_and_neighbours() -> None:
+    files = [Download("press_stl.zip", "parts, STL", 1_250_000)]
+    page = Read(machine(entry("press", film="film.mp4", designs=9, downloads=files), [entry("lift")]))
+    (film,) = page.all("video")
+    assert (film["src"], film["poster"]) == ("film.mp4", "picture.jpg")
+    assert "files/press_stl.zip" in {link["href"] for link in page.all("a")}
+    assert "1.2 MB" in page.words
+    assert "Move a number" in page.words
+    assert '<iframe src="press/machine.html"' in page.words
+    still = Read(machine(entry("press"), []))
+    assert not still.all("video")
+    assert "Move a number" not in still.words
+
+
+def payload(length: float = 2.0, count: int = 200, theta: float = 0.1) -> dict:
+    time = np.linspace(0.0, 1.0, count)
+    return {
+        "mechanism": "m",
+        "time": time,
+        "bodies": {"a": {"x": np.float32(length * time), "theta": np.float32(theta + time), "mass": 0.5, "links": 3}},
+        "skeleton": {"strokes": [{"shapes": None, "points": np.zeros(8, np.float32)}]},
+    }
+
+
+def test_designs_between_others_are_sums_of_their_numbers() -> None:
+    base = list(leaves(thinned(payload())))
+    first, second = (vector(thinned(payload(length)), base) for length in (1.0, 3.0))
+    assert vector(thinned(payload())) == pytest.approx((first + second) / 2, abs=1e-6)
+    assert len(thinned(payload())["time"]) == 91
+    assert form(thinned(payload()))["bodies"]["a"] == {
+        "x": {"#": 91},
+        "theta": {"#": 91},
+        "mass": {"#": None},
+        "links": 3,
+    }
+
+
+def test_angles_are_those_near_the_base_and_other_shapes_have_nothing_between() -> None:
+    base = list(leaves(thinned(payload())))
+    turned = vector(thinned(payload(theta=0.1 + 4 * math.tau)), base)
+    assert turned == pytest.approx(vector(thinned(payload())), abs=1e-5)
+    other = thinned(payload())
+    other["bodies"]["b"] = {"x": np.zeros(3)}
+    with pytest.raises(Unlike):
+        vector(other, base)
+    unknown = thinned(payload())
+    unknown["bodies"]["a"]["mass"] = math.nan
+    with pytest.raises(Unlike):
+        vector(unknown, base)

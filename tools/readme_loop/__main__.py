@@ -15,6 +15,7 @@ from PIL import Image
 
 from mechanisms.stages.solve.masses import give_masses
 from render import view
+from render.view.binary import encode
 from render.view.bundle import PAGE, node, node_modules
 from render.view.inputs import read_payload
 from render.view.pictures import chromium
@@ -88,7 +89,7 @@ def _webp(files: list[Path], milliseconds: int) -> bytes:
 def _motion(crank: float) -> bytes:
     m = run(crank)["m"]
     sources, _ = give_masses(m, None)
-    return Shown().of(m.sweep(steps=120), None, sources, None, quick=False)
+    return encode(Shown().payload(m.sweep(steps=120), None, sources, None, quick=False), compress=False)
 
 
 def _extent(skeleton: dict[str, Any]) -> tuple[list[float], list[float]]:

@@ -26,14 +26,20 @@ async function main() {
   await until(() => document.querySelector(".slide .unit").textContent);
   saw.units = await page.locator(".slide .unit").allTextContents();
   saw.sliders = await page.locator(".slide label").allTextContents();
-  const slider = page.locator('input[type=range][aria-label="crank"]'), box = await slider.boundingBox();
-  await page.mouse.move(box.x + box.width * 0.25, box.y + box.height / 2);
+  const slider = page.locator('input[type=range][aria-label="crank"]');
+  /** To a part of the slider as it lies now: curves that arrive late move it. */
+  const moveTo = async (part) => {
+    const box = await slider.boundingBox();
+    await page.mouse.move(box.x + box.width * part, box.y + box.height / 2);
+  };
+  await moveTo(0.25);
   const paper = () => page.evaluate(() => { const { paper } = mbsd.app.stage.plane; return [paper.scale, ...paper.pixel(0, 0)]; });
   const lay = await paper();
   await page.mouse.down();
-  for (let k = 0; k <= 20; k++) await page.mouse.move(box.x + box.width * (0.2 + k / 400), box.y + box.height / 2);
+  for (let k = 0; k <= 20; k++) await moveTo(0.2 + k / 400);
   await until(() => mbsd.live.frames > 1);
   saw.still = [lay, await paper()];
+  await moveTo(0.25);
   await page.mouse.up();
   await until(() => !document.querySelector(".live .push").disabled);
   await until(() => Math.abs(Math.hypot(mbsd.app.payload.joints.B.x[0], mbsd.app.payload.joints.B.y[0]) - mbsd.live.values.crank) < 1e-7);

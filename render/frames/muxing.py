@@ -14,21 +14,11 @@ from shared.stage.errors import UserError
 from shared.stage.files import whole_file
 from shared.stage.signals import terminable
 
+AAC = ("-c:a", "aac", "-b:a", "192k", "-ar", "48000", "-ac", "2", "-flags:a", "+bitexact")
 SETTINGS = (
     *("-map", "0:v:0", "-map", "1:a:0", "-c:v", "copy"),
-    *("-c:a", "aac", "-b:a", "192k", "-ar", "48000", "-ac", "2"),
-    *(
-        "-movflags",
-        "+faststart",
-        "-map_metadata",
-        "0",
-        "-map_chapters",
-        "0",
-        "-fflags",
-        "+bitexact",
-        "-flags:a",
-        "+bitexact",
-    ),
+    *AAC,
+    *("-movflags", "+faststart", "-map_metadata", "0", "-map_chapters", "0", "-fflags", "+bitexact"),
 )
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from render.frames import encode
 from render.frames.film_file import refuse_other_than
+from render.frames.muxing import AAC
 from render.frames.running_ffmpeg import run_ffmpeg
 from render.presets import Preset
 from render.showreel import card, reel_sound
@@ -121,7 +122,7 @@ def _concatenate(parts: Sequence[Sequence[Clip]], titles: Sequence[Title], targe
     sound, heard = scratch / "sound.wav", reel_sound.write_sound(row, row[0].fps, scratch / "sound.wav")
     inputs = ["-f", "concat", "-safe", "0", "-auto_convert", "0", "-i", str(scratch / "list.txt")]
     inputs += ["-i", str(scratch / "chapters.txt"), *(["-i", str(sound)] if heard else [])]
-    streams = ["-map", "0:v:0", *(["-map", "2:a:0", *reel_sound.AAC] if heard else [])]
+    streams = ["-map", "0:v:0", *(["-map", "2:a:0", *AAC] if heard else [])]
     run_ffmpeg(
         target.name,
         *(*inputs, *streams, "-map_metadata", "1", "-map_chapters", "1", "-c:v", "copy"),

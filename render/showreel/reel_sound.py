@@ -12,7 +12,6 @@ from render.showreel.clip import PATIENCE, Clip
 
 RATE, FRAME = 48_000, 4
 """Samples a second; bytes of one, of two channels of 16 bits."""
-AAC = ("-c:a", "aac", "-b:a", "192k", "-flags:a", "+bitexact")
 
 
 def write_sound(row: Sequence[Clip], fps: int, target: Path) -> bool:

@@ -27,7 +27,7 @@ class Entry:
     picture: str = ""
     loop: str = ""
     film: str = ""
-    designs: int = 0
+    has_sliders: bool = False
     downloads: list[Download] = field(default_factory=list)
     neighbours: list[str] = field(default_factory=list)
 

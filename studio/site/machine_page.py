@@ -16,15 +16,14 @@ from shared.stage.console import warn
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out, mechanism_file
 from shared.stage.stages import Stage, key_of, versions
-from studio.site.once import once
 
 SOURCES = [ROOT / "studio" / name for name in ("site/designs", "site/machine_page.py", "live/child", "live/numbers.py")]
 PATIENCE = 900.0
 """Seconds in which the designs of a machine have to be there."""
 
 
-def write_machine_page(name: str, target: Path) -> int:
-    """Write the page unless it stands for the same inputs; the number of designs in it, 0 where it has no sliders.
+def write_machine_page(name: str, target: Path) -> bool:
+    """Write the page unless it stands for the same inputs; whether it has sliders.
 
     Raises UserError.
     """
@@ -32,13 +31,14 @@ def write_machine_page(name: str, target: Path) -> int:
     designs = _designs(name)
     table = designs.read_bytes() if designs.is_file() else b""
     key = key_of(out.view, designs if table else "none", sources_key(), sources_hash(*SOURCES))
-    with once(target, key) as wanted:
-        if wanted:
-            payload = read_payload(out)
-            more = _script(table) if table else ""
-            page = document(payload["title"], encode(payload), bundle(), more, sketch=sketch(payload["skeleton"]))
-            write_bytes(target, page)
-    return len(table)
+    stage = Stage(out, "site-machine", key, [target])
+    if not stage.is_fresh():
+        payload = read_payload(out)
+        more = _script(table) if table else ""
+        page = document(payload["title"], encode(payload), bundle(), more, sketch=sketch(payload["skeleton"]))
+        write_bytes(target, page)
+        stage.done()
+    return bool(table)
 
 
 def _script(table: bytes) -> str:

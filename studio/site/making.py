@@ -13,12 +13,12 @@ from shared.stage.console import progress, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import file_hash, write_bytes
 from shared.stage.paths import ROOT, Out, in_workshop, out_root, refuse_links
+from shared.stage.stages import Stage
 from studio.pages import making as view_pages
 from studio.site import loops
 from studio.site.downloads import write_downloads
 from studio.site.entries import Entry, entry_of
 from studio.site.machine_page import write_machine_page
-from studio.site.once import once
 from studio.site.pages import machine, wall
 from studio.site.purposes import filters, neighbours
 
@@ -58,7 +58,7 @@ def _made(name: str, folder: Path) -> Entry:
         raise UserError("it has no page")
     entry = entry_of(name)
     folder.mkdir(parents=True, exist_ok=True)
-    entry.designs = write_machine_page(name, folder / "machine.html")
+    entry.has_sliders = write_machine_page(name, folder / "machine.html")
     film = loops.film_of(out) or _skeleton(name)
     if film is not None:
         entry.loop = _once(film, folder / "loop.mp4", loops.write_loop)
@@ -98,9 +98,10 @@ def _copied(source: Path, target: Path) -> None:
 
 def _once(source: Path, target: Path, write: Callable[[Path, Path], object]) -> str:
     """Write ``target`` unless it was made from the source as it is; the name of the file."""
-    with once(target, file_hash(source)) as wanted:
-        if wanted:
-            write(source, target)
+    stage = Stage(Out(target.parent.name), f"site-{target.stem}", file_hash(source), [target])
+    if not stage.is_fresh():
+        write(source, target)
+        stage.done()
     return target.name
 
 

@@ -71,7 +71,7 @@ def machine(entry: Entry, others: Sequence[Entry]) -> str:
         if entry.film
         else f'<img class="film" src="{escape(entry.picture)}" width="960" height="540" alt="{escape(entry.title)}">'
     )
-    moved = " Move a number and see what it changes." if entry.designs else ""
+    moved = " Move a number and see what it changes." if entry.has_sliders else ""
     place, sizes = f"{entry.name}/machine.html", 'width="960" height="640" loading="lazy"'
     embedded = f'<iframe src="{place}" title="{entry.title}" {sizes}></iframe>'
     inside = (

@@ -50,7 +50,7 @@ def test_what_an_author_writes_is_no_html() -> None:
 
 def test_a_machine_has_its_film_files_and_neighbours() -> None:
     files = [Download("press_stl.zip", "parts, STL", 1_250_000)]
-    page = Read(machine(entry("press", film="film.mp4", designs=9, downloads=files), [entry("lift")]))
+    page = Read(machine(entry("press", film="film.mp4", has_sliders=True, downloads=files), [entry("lift")]))
     (film,) = page.all("video")
     assert (film["src"], film["poster"]) == ("film.mp4", "picture.jpg")
     assert "files/press_stl.zip" in {link["href"] for link in page.all("a")}

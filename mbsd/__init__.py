@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from mbsd.balancing.balance import Balance, balance
     from mbsd.balancing.flywheel import flywheel
     from mbsd.balancing.means import BalanceShaft, Counterweight
-    from mbsd.drawing.animation.animate import Animation
-    from mbsd.drawing.picture import Picture, Svg
     from mbsd.dynamics.events.moment import Moment
     from mbsd.kinematics.batch import Batch
     from mbsd.mechanism import STANDARD_GRAVITY, Body, Force, Joint, Marker, Mechanism
@@ -46,6 +44,8 @@ if TYPE_CHECKING:
     from mbsd.model.event import Event, Happening, angle_reaches, distance_reaches, speed_reaches
     from mbsd.model.laws import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
     from mbsd.model.laws.curve import Curve, curve
+    from mbsd.pictures.animation import Animation
+    from mbsd.pictures.picture import Picture, Svg
     from mbsd.results.contacts import ContactView
     from mbsd.results.force_view import ForceView
     from mbsd.results.friction import FrictionView
@@ -134,7 +134,7 @@ _LATER = {
     "ActuatedMotion": "mbsd.analyses.efforts",
     "Balance": "mbsd.balancing.balance",
     "BalanceShaft": "mbsd.balancing.means",
-    "Animation": "mbsd.drawing.animation.animate",
+    "Animation": "mbsd.pictures.animation",
     "Batch": "mbsd.kinematics.batch",
     "Body": "mbsd.mechanism",
     "Counterweight": "mbsd.balancing.means",
@@ -163,10 +163,10 @@ _LATER = {
     "Moment": "mbsd.dynamics.events.moment",
     "Motion": "mbsd.model.laws",
     "PathFit": "mbsd.synthesis.fit_path",
-    "Picture": "mbsd.drawing.picture",
+    "Picture": "mbsd.pictures.picture",
     "Solution": "mbsd.results.solution",
     "Stats": "mbsd.results.views",
-    "Svg": "mbsd.drawing.picture",
+    "Svg": "mbsd.pictures.picture",
     "SynthesisError": "mbsd.synthesis.fit_path",
     "balance": "mbsd.balancing.balance",
     "angle_reaches": "mbsd.model.event",

@@ -31,10 +31,11 @@ if TYPE_CHECKING:
     from mbsd.analyses.finding import Finding
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
-    from mbsd.drawing.picture import Picture, Svg
+    from mbsd.drawing.of_solution import SkeletonDrawer
     from mbsd.dynamics.many.measures import Measure
     from mbsd.dynamics.many.simulate_many import Simulations
     from mbsd.kinematics.batch import Batch
+    from mbsd.pictures.picture import Picture, Svg
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
 
@@ -268,6 +269,13 @@ class Mechanism(Building):
         from mbsd.drawing.topology.topology import topology
 
         return topology(self)
+
+    @property
+    def drawer(self) -> SkeletonDrawer:
+        """What draws its solutions, for :meth:`mbsd.results.solution.Solution.draw`, ``animate`` and ``view``."""
+        from mbsd.drawing.of_solution import SkeletonDrawer
+
+        return SkeletonDrawer()
 
     # -- files -------------------------------------------------------------------------------------------------
 

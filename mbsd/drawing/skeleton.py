@@ -16,7 +16,6 @@ from mbsd.drawing.carriers import GROUND, at_place, on_body
 from mbsd.drawing.inks import body_inks
 from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET
 from mbsd.drawing.names import place_names
-from mbsd.drawing.picture import Picture
 from mbsd.drawing.pose import Pose
 from mbsd.drawing.symbols.joints import draw_joint
 from mbsd.drawing.symbols.loads import draw_force, force_reach
@@ -28,6 +27,7 @@ from mbsd.drawing.symbols.wheels import rim_of, ring_gear
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
+from mbsd.pictures.picture import Picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

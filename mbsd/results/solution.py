@@ -33,6 +33,7 @@ from mbsd.model.event import Happening
 from mbsd.results.acting import acting
 from mbsd.results.columns import columns
 from mbsd.results.contacts import ContactView, contact_view
+from mbsd.results.drawer import drawer_of
 from mbsd.results.energy import potential_of
 from mbsd.results.force_view import ForceView
 from mbsd.results.forces import force_view
@@ -51,8 +52,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from mbsd.arrays.packing import Packed
-    from mbsd.drawing.of_solution import Animation, Picture, View
     from mbsd.model.body import Marker
+    from mbsd.pictures.animation import Animation
+    from mbsd.pictures.picture import Picture
+    from mbsd.pictures.view import View
     from mbsd.results.mobility import Mobility
 
 SHOWN = 40
@@ -288,9 +291,7 @@ class Solution(Generic[AnyModel]):
 
         See :meth:`mbsd.mechanism.Mechanism.draw`.
         """
-        from mbsd.drawing.of_solution import draw_at
-
-        return draw_at(self, t, step, ax, frames, names)
+        return drawer_of(self.mechanism).draw(self, t, step, ax, frames, names)
 
     def animate(
         self,
@@ -313,9 +314,7 @@ class Solution(Generic[AnyModel]):
         others play once. ``progress`` is called with the number of pictures drawn, and of all. Needs the extra
         ``animate``; raises ModelError for what cannot be drawn or written.
         """
-        from mbsd.drawing.of_solution import animate
-
-        return animate(self, path, show, rate, fps, size, names, progress)
+        return drawer_of(self.mechanism).animate(self, path, show, rate, fps, size, names, progress)
 
     def view(self, path: str | os.PathLike[str] | None = None, height: float = 380.0) -> View:
         """The skeleton in motion as a small page that plays by itself, ``height`` pixels high in a notebook.
@@ -323,9 +322,7 @@ class Solution(Generic[AnyModel]):
         With ``path`` it is written there as an HTML file, too, which needs no network. A motion that repeats
         (``period``) loops; others begin anew. Raises ModelError for what cannot be shown or written.
         """
-        from mbsd.drawing.of_solution import view
-
-        return view(self, path, height)
+        return drawer_of(self.mechanism).view(self, path, height)
 
     def __repr__(self) -> str:
         return (

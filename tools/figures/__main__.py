@@ -27,7 +27,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 import tools.figures.pages
-from mbsd.drawing.picture import Picture, Svg
+from mbsd.pictures.picture import Picture, Svg
 from tools.figures.dark import dark, name_of
 from tools.figures.dark_gif import dark_gif
 from tools.figures.look import STYLE

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +17,7 @@ from mbsd.drawing.animation.encoders import ffmpeg, held, write_gif, write_mp4
 from mbsd.drawing.animation.picture.page import Page
 from mbsd.drawing.animation.scene import scene_of
 from mbsd.drawing.animation.words import EVERYTHING, QUANTITIES
+from mbsd.pictures.animation import Animation
 from mbsd.results.solution import Solution
 
 SUFFIXES = (".mp4", ".gif")
@@ -25,27 +25,6 @@ SIZE = {".mp4": (1280, 720), ".gif": (800, 450)}
 SMALLEST, LARGEST = 120, 4096
 LONG_ENOUGH = 6.0
 """Seconds that an MP4 of a motion that repeats lasts at least, by whole rounds."""
-
-
-@dataclass(frozen=True)
-class Animation:
-    """A file that was written; a notebook shows it."""
-
-    path: Path
-    pictures: int
-    """Drawn; an MP4 repeats those of a short round."""
-    seconds: float
-    """On the screen, once through."""
-    rate: float
-    """Seconds of the motion in a second on the screen."""
-
-    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, object]:
-        import base64
-
-        code = base64.b64encode(self.path.read_bytes()).decode()
-        if self.path.suffix.lower() == ".gif":
-            return {"text/html": f'<img src="data:image/gif;base64,{code}">'}
-        return {"text/html": f'<video controls loop autoplay muted src="data:video/mp4;base64,{code}"></video>'}
 
 
 def animate(

@@ -9,13 +9,13 @@ import numpy as np
 from mbsd.base.errors import AssemblyError, ModelError
 from mbsd.base.quantity import written
 from mbsd.drawing import look
-from mbsd.drawing.picture import Svg
 from mbsd.drawing.topology.graph_layout import layout
 from mbsd.drawing.topology.icons import icon, sign_of
 from mbsd.drawing.topology.svg_text import d, tag
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
+from mbsd.pictures.picture import Svg
 from mbsd.results.mobility import Mobility
 
 MOST_NODES = 600

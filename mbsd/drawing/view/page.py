@@ -16,6 +16,7 @@ from mbsd.base.files import write_whole
 from mbsd.drawing.carriers import Carrier
 from mbsd.drawing.inks import body_inks, on_dark
 from mbsd.drawing.view.carried import moving
+from mbsd.pictures.view import View
 from mbsd.results.solution import Solution
 
 MOST = 361
@@ -47,23 +48,6 @@ output {{ min-width: 62px; text-align: right; font-variant-numeric: tabular-nums
 {player}(document.body, {data});
 </script></body></html>
 """
-
-
-class View:
-    """A page that a notebook shows where it stands; ``html`` is the page."""
-
-    def __init__(self, page: str, height: int) -> None:
-        self.html, self._height = page, height
-
-    def _repr_html_(self) -> str:
-        inside = html.escape(self.html)
-        return (
-            f'<iframe srcdoc="{inside}" sandbox="allow-scripts" style="width:100%;height:{self._height}px;border:1px '
-            'solid #9aa5b355;border-radius:8px" title="the mechanism in motion"></iframe>'
-        )
-
-    def __repr__(self) -> str:
-        return f"<View, {len(self.html) / 1e3:.0f} kB of HTML>"
 
 
 def view(sol: Solution, path: str | os.PathLike[str] | None, height: float) -> View:

@@ -130,7 +130,7 @@ def _key(parts: Parts | None, inputs: Inputs) -> str:
 
 def _draw(solution: Solution, path: Path, words: str, parts: Parts | None) -> None:
     from mbsd import MechanismError
-    from mbsd.drawing.of_solution import animate
+    from mbsd.drawing.animation.animate import animate
 
     name = solution.mechanism.name
     show = "all" if not words else () if words == "skeleton" else tuple(words.split(","))

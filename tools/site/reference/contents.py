@@ -15,7 +15,7 @@ ROOMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "gas.md": ("Gas of engines", ("mbsd.model.cylinders",)),
     "events.md": ("Events", ("mbsd.model.event", "mbsd.dynamics")),
     "results.md": ("Results", ("mbsd.results", "mbsd.analyses", "mbsd.kinematics")),
-    "pictures.md": ("Pictures", ("mbsd.drawing",)),
+    "pictures.md": ("Pictures", ("mbsd.pictures", "mbsd.drawing")),
     "design.md": ("Balancing, synthesis, studies", ("mbsd.balancing", "mbsd.synthesis", "mbsd.studies")),
     "errors.md": ("Errors and warnings", ("mbsd.base",)),
 }

@@ -10,7 +10,15 @@ from typing import Any
 from tools.site.reference.members import Member, file_of, members
 from tools.site.reference.words import first_sentence, signature, text
 
-GIVEN_BACK = ("mbsd.results", "mbsd.analyses", "mbsd.kinematics", "mbsd.model", "mbsd.dynamics", "mbsd.drawing")
+GIVEN_BACK = (
+    "mbsd.results",
+    "mbsd.analyses",
+    "mbsd.kinematics",
+    "mbsd.model",
+    "mbsd.dynamics",
+    "mbsd.drawing",
+    "mbsd.pictures",
+)
 """Rooms whose classes a call gives back: nobody makes one, so the table of their fields is enough."""
 CALLED = {"Mechanism": "m.", "Solution": "sol."}
 """What the documents call one."""

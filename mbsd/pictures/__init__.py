@@ -1,0 +1,1 @@
+"""What a drawing gives its user: a picture, a page or a film that a notebook shows and a script keeps."""

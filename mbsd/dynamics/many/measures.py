@@ -45,6 +45,15 @@ class Measure:
         """Shape of what it gives for one simulation."""
         return ()
 
+    @property
+    def ends(self) -> bool:
+        """Whether it may be known before the last output."""
+        return False
+
+    def known(self, t: np.ndarray, along: Mapping[str, np.ndarray]) -> np.ndarray:
+        """(n,) whether the outputs so far tell it, of which these are the last; see early.py."""
+        return np.zeros(len(along[self.quantity]), bool)
+
     def check(self, what: str, t: np.ndarray) -> None:
         """Raise ModelError where it does not suit output times (T,)."""
 
@@ -89,9 +98,19 @@ class _First(Measure):
     def quantities(self) -> tuple[str, ...]:
         return (self.quantity,) if self.give is None else (self.quantity, self.give)
 
+    @property
+    def ends(self) -> bool:
+        return True
+
+    def known(self, t: np.ndarray, along: Mapping[str, np.ndarray]) -> np.ndarray:
+        return self._there(along).any(axis=1)
+
+    def _there(self, along: Mapping[str, np.ndarray]) -> np.ndarray:
+        values = along[self.quantity]
+        return values < self.level if self.below else values > self.level
+
     def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        values = along[self.quantity] - self.level
-        there = values < 0.0 if self.below else values > 0.0
+        values, there = along[self.quantity] - self.level, self._there(along)
         k, rows = np.argmax(there, axis=1), np.arange(len(values))
         before = np.maximum(k - 1, 0)
         here, last = values[rows, k], values[rows, before]
@@ -109,6 +128,13 @@ class _Samples(Measure):
     @property
     def shape(self) -> tuple[int, ...]:
         return (len(self.times),)
+
+    @property
+    def ends(self) -> bool:
+        return True
+
+    def known(self, t: np.ndarray, along: Mapping[str, np.ndarray]) -> np.ndarray:
+        return np.full(len(along[self.quantity]), t[-1] >= max(self.times))
 
     def check(self, what: str, t: np.ndarray) -> None:
         for time in self.times:

@@ -9,10 +9,12 @@ from __future__ import annotations
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.integrators.dop853.loop import advance
 from mbsd.dynamics.integrators.formulation import derivative
-from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STARTED, STEP, TIME, Output
+from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, Output
 
 STOPPED, NEARLY_SINGULAR = -1, -3
 """Status of rows that were not computed because all was stopped, and of those that came near a singular pose."""
+WAITING, UNDERWAY = -5, -6
+"""Status of rows that have not begun, and of those that wait to be gone on with."""
 
 
 @internal
@@ -40,10 +42,30 @@ def cross(state, before, after):
         state.count[STARTED] = 0
 
 
+@internal
+def put_away(state, block, widest, kept, counts):
+    """Keep a row that is underway, to be taken up again."""
+    for i in range(block.shape[0]):
+        kept[i] = block[i]
+    kept[block.shape[0]] = widest
+    for i in range(state.count.shape[0]):
+        counts[i] = state.count[i]
+
+
+@internal
+def take_up(state, block, kept, counts):
+    """Go on with a row that was put away; returns its widest margin."""
+    for i in range(block.shape[0]):
+        block[i] = kept[i]
+    for i in range(state.count.shape[0]):
+        state.count[i] = counts[i]
+    return kept[block.shape[0]]
+
+
 @threaded
 def run_rows(
     dyn, scratch, state, settings, block, fresh, place, value, t, before, after, at_once, most, near, stop,
-    y, a, lam, work, margin, status, steps,
+    upto, kept, counts, y, a, lam, work, margin, status, steps,
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 
@@ -51,26 +73,36 @@ def run_rows(
     ``fresh`` (R or 1, N) there, with ``value`` (R, k) at ``place`` (k,). Steps end at ``before`` (s) and go on from
     ``after``. ``at_once`` steps are taken between two looks at ``stop`` (1,), ``most`` altogether. Where ``near`` is
     above 0, a row ends where its margin falls below this part of the largest so far (runs/carried_steps.py).
+    Rows whose status (R,) is WAITING begin, those UNDERWAY go on. With ``upto`` outputs, less than T, they are put
+    away in ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY.
     """
     end = t[t.shape[0] - 1]
+    whole = upto == t.shape[0]
     for r in range(y.shape[0]):
-        status[r] = STOPPED
-        if stop[0] != 0:
+        if status[r] != WAITING and status[r] != UNDERWAY:
             continue
-        own = min(r, fresh.shape[0] - 1)
-        for i in range(block.shape[0]):
-            block[i] = fresh[own, i]
-        for i in range(place.shape[0]):
-            block[place[i]] = value[r, i]
-        for i in range(state.count.shape[0]):
-            state.count[i] = 0
+        if stop[0] != 0:
+            status[r] = STOPPED
+            continue
         out = Output(t, y[r], a[r], lam[r], work[r], margin[r])
         ended = PAUSED
         widest = 0.0
-        if near > 0.0:
-            derivative(dyn, scratch, state.clock[TIME], state.y, scratch.stages[0], scratch.multipliers)
-            widest = scratch.report[0]
+        if status[r] == UNDERWAY:
+            widest = take_up(state, block, kept[r], counts[r])
+        else:
+            own = min(r, fresh.shape[0] - 1)
+            for i in range(block.shape[0]):
+                block[i] = fresh[own, i]
+            for i in range(place.shape[0]):
+                block[place[i]] = value[r, i]
+            for i in range(state.count.shape[0]):
+                state.count[i] = 0
+            if near > 0.0:
+                derivative(dyn, scratch, state.clock[TIME], state.y, scratch.stages[0], scratch.multipliers)
+                widest = scratch.report[0]
         while ended == PAUSED and stop[0] == 0 and state.count[ACCEPTED] < most:
+            if not whole and state.count[NEXT] >= upto:
+                break
             left = at_once
             while True:
                 if state.clock[TIME] < end:
@@ -90,6 +122,8 @@ def run_rows(
                 widest = max(widest, scratch.report[0])
                 if not scratch.report[0] > near * widest:
                     ended = NEARLY_SINGULAR
-        if stop[0] == 0:
-            status[r] = ended
+        status[r] = STOPPED if stop[0] != 0 else ended
+        if not whole and status[r] == PAUSED and state.count[NEXT] >= upto:
+            put_away(state, block, widest, kept[r], counts[r])
+            status[r] = UNDERWAY
         steps[r] = state.count[ACCEPTED]

@@ -20,6 +20,7 @@ from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.dynamics.many.designs import Designs, designs_of
 from mbsd.dynamics.many.done import Done, joined, numbers_of
+from mbsd.dynamics.many.early import windows_of
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.quantities import Quantity, quantity_named
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, single_run
@@ -144,6 +145,7 @@ def simulate_many(
         quantities,
         why,
         np.zeros(1, np.int64),
+        [len(grid)] if callable(measures) else windows_of(len(grid), measures, quantities),
         any(quantity.reactive for quantity in quantities.values()),
     )
     with warnings.catch_warnings():  # here, as threads share what is shown

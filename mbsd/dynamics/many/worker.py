@@ -14,12 +14,13 @@ from mbsd.dynamics.many.arguments import content
 from mbsd.dynamics.many.base import Base, based_on
 from mbsd.dynamics.many.designs import Designs
 from mbsd.dynamics.many.done import Done, columns_of, failed, joined, numbers_of
+from mbsd.dynamics.many.early import STEPS, Known, window
 from mbsd.dynamics.many.measures import Measure
-from mbsd.dynamics.many.outputs import Outputs, motions_of, room_for
+from mbsd.dynamics.many.outputs import Outputs, Reacting, motions_of, room_for
 from mbsd.dynamics.many.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.many.quantities import Motions, Quantity
 from mbsd.dynamics.many.reactions import Reactions
-from mbsd.dynamics.many.rows import NEARLY_SINGULAR, STOPPED, run_rows
+from mbsd.dynamics.many.rows import NEARLY_SINGULAR, STOPPED, UNDERWAY, WAITING, run_rows
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, SingleRun, single_run
 from mbsd.dynamics.simulate import simulate
 from mbsd.dynamics.state import CHOOSE, PAUSED, REACHED, UNCLEAR
@@ -49,6 +50,8 @@ STOP, SMALL = "stopped", "its steps became too small"
 
 
 Measures = Mapping[str, Measure] | Callable[[Any], Any]
+MotionsOf = Callable[[Outputs, np.ndarray], Motions]
+"""Motions of some rows of outputs."""
 
 
 @dataclass
@@ -63,6 +66,8 @@ class Work:
     """Why none goes in the compiled loop, if so."""
     stop: np.ndarray
     """(1,) not zero where all is to stop."""
+    windows: list[int]
+    """Numbers of outputs at which it is looked whether rows may end; see early.py."""
     reactive: bool = False
     """Whether any measure reads reactions."""
     looked: bool = False
@@ -142,16 +147,20 @@ class Worker:
         assert self.base is not None
         assert self.patches is not None
         value, q, reasons = self.patches(rows)
-        out = self._run(self.base.fresh, self.patches.place, value)
+        mass = None if self.patches.mass is None else self.patches.mass[rows.start : rows.stop]
+        inertia = None if self.patches.inertia is None else self.patches.inertia[rows.start : rows.stop]
+        runs, times = [self.base.run], self.work.asked.times
+
+        def motions(out: Outputs, which: np.ndarray, reacting: Reacting | None = None) -> Motions:
+            return motions_of(runs, out, which, mass, inertia, reacting)
+
+        out = self._run(self.base.fresh, self.patches.place, value, motions)
         odd = np.array([reason is not None for reason in reasons])
         if q is not None:  # closed forms may stand on another branch than the start does
             odd |= np.abs(out.y[:, 0, 0] - q).max(axis=1) > NEAR * self.base.run.ready.packed.size
         out.status[odd] = OTHER
-        mass = None if self.patches.mass is None else self.patches.mass[rows.start : rows.stop]
-        inertia = None if self.patches.inertia is None else self.patches.inertia[rows.start : rows.stop]
-        runs, times = [self.base.run], self.work.asked.times
         reacting = self._reactions(self.patches).of_rows(rows, out, times) if self.work.reactive else None
-        return self._measured(rows, lambda which: motions_of(runs, out, which, mass, inertia, reacting), out)
+        return self._measured(rows, lambda which: motions(out, which, reacting), out)
 
     def _prepared(self, rows: range) -> Done:
         """Rows whose arrays are those that a single simulation prepares."""
@@ -172,11 +181,14 @@ class Worker:
             except Exception as error:
                 done[row] = failed(described(error))
         if runs:
-            out = self._run(np.array(blocks), np.zeros(0, np.int64), np.zeros((1, 0)))
-            own = list(runs.values())
-            times = self.work.asked.times
+            own, times = list(runs.values()), self.work.asked.times
+
+            def motions(out: Outputs, which: np.ndarray, reacting: Reacting | None = None) -> Motions:
+                return motions_of(own, out, which, None, None, reacting)
+
+            out = self._run(np.array(blocks), np.zeros(0, np.int64), np.zeros((1, 0)), motions)
             reacting = self._reactions(None).of_runs(own, out, times) if self.work.reactive else None
-            together = self._measured(list(runs), lambda which: motions_of(own, out, which, None, None, reacting), out)
+            together = self._measured(list(runs), lambda which: motions(out, which, reacting), out)
             done |= {row: together.row(k) for k, row in enumerate(runs)}
         return joined([done[row] for row in rows])
 
@@ -186,19 +198,36 @@ class Worker:
             self.reactions = Reactions(self.base.run, patches)
         return self.reactions
 
-    def _run(self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray) -> Outputs:
+    def _run(self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, motions: MotionsOf) -> Outputs:
+        """Rows to their end, or as far as there is something to measure."""
         assert self.base is not None
         run, ready, times = self.base.run, self.base.run.ready, self.work.asked.times
-        count = max(len(fresh), len(value))
+        count, whole = max(len(fresh), len(value)), len(times)
         if self.room is None or len(self.room.status) < count:
-            self.room = room_for(count, len(times), len(ready.initial.q), len(ready.packed.ws.phi))
+            self.room = room_for(count, whole, len(ready.initial.q), len(ready.packed.ws.phi))
         out = Outputs(*(array[:count] for array in self.room.arrays))
+        out.status[:] = WAITING
         run.forget()
-        stops = ready.stops
-        run_rows(
-            *self.base.arguments, self.base.block, fresh, place, value, times, stops.before, stops.after,
-            run.steps_at_once, MOST_STEPS, run.near, self.work.stop, *out.arrays,
-        )  # fmt: skip
+        stops, windows = ready.stops, self.work.windows
+        early = len(windows) > 1
+        kept = np.zeros((count if early else 0, len(self.base.block) + 1))
+        counts = np.zeros((len(kept), len(run.state.count)), np.int64)
+        known = (
+            Known(self.work.measures, self.work.quantities, count) if isinstance(self.work.measures, Mapping) else None
+        )
+        for begin, upto in zip([0, *windows], windows, strict=False):
+            run_rows(
+                *self.base.arguments, self.base.block, fresh, place, value, times, stops.before, stops.after,
+                min(run.steps_at_once, STEPS) if upto < whole else run.steps_at_once, MOST_STEPS, run.near,
+                self.work.stop, upto, kept, counts, *out.arrays,
+            )  # fmt: skip
+            underway = np.flatnonzero(out.status == UNDERWAY)
+            if not len(underway):
+                break
+            assert known is not None
+            seen = slice(max(begin - 1, 0), upto)
+            look = motions(window(out, seen.start, upto), underway)
+            out.status[known.look(underway, times[seen], look)] = REACHED  # outputs behind are not read
         if run.failed:  # in some row, or in a trial step that was not taken: single simulations can tell
             out.status[out.status == REACHED] = FAILED
             run.forget()

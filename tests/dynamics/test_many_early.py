@@ -1,0 +1,117 @@
+"""Simulations that end where everything asked of them is known have the numbers of those that go on to their end."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+import pytest
+
+from mbsd import Mechanism
+from mbsd.compiling.jit import COMPILED
+from mbsd.dynamics.many import worker
+from mbsd.measures import Measure, final, first, samples
+from tests.dynamics.test_many import barrier, door, pendulum
+
+DURATION, STEPS = 4.0, 300
+WHOLE = {"end": final("work")}
+"""A measure that needs the last output."""
+
+MACHINES = {
+    "door": (
+        door(),
+        {"closer": {"stiffness": np.linspace(0.5, 30.0, 9)}},
+        {
+            "shut": first("door.theta", below=0.05),
+            "speed": first("door.theta", below=0.05, give="door.omega"),
+            "never": first("door.theta", below=-0.2),
+        },
+    ),
+    "pendulum": (
+        pendulum(),
+        {"a": {"mass": np.linspace(0.5, 2.0, 7)}},
+        {"up": first("P.y", above=-0.9), "fast": first("b.omega", above=6.0, give="a.theta")},
+    ),
+    "barrier": (
+        barrier(),
+        {"spring": {"stiffness": np.linspace(1.0, 5.0, 5)}},
+        {"open": first("rocker.theta", above=1.7), "early": samples("crank.omega", [0.2, 0.4])},
+    ),
+}
+
+
+@pytest.mark.parametrize("formulation", ["independent", "reference"])
+@pytest.mark.parametrize("name", MACHINES)
+def test_the_numbers_are_those_of_whole_simulations(name: str, formulation: str) -> None:
+    m, vary, measures = MACHINES[name]
+    whole = _many(m, vary, {**measures, **WHOLE}, formulation)
+    short = _many(m, vary, measures, formulation)
+    for column, values in short.columns.items():
+        np.testing.assert_array_equal(values, whole[column], err_msg=column)
+    assert np.isnan(short["never"]).any() if "never" in measures else short.good.all()
+
+
+def test_rows_end_where_all_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps = _steps(monkeypatch)
+    m, vary, measures = MACHINES["door"]
+    known = {name: measures[name] for name in ("shut", "speed")}
+    fast = _many(m, vary, known)
+    ended = steps()
+    _many(m, vary, {**known, **WHOLE})
+    went_on = steps()
+    early = fast["shut"] < 0.5 * DURATION
+    assert early.any()
+    assert (ended[early] < 0.75 * went_on[early]).all()
+    open_still = np.isnan(fast["shut"])
+    assert open_still.any()
+    assert (ended[open_still] == went_on[open_still]).all()
+
+
+@pytest.mark.skipif(not COMPILED, reason="functions of the user are those of Python here")
+def test_what_fails_later_has_its_measure_all_the_same() -> None:
+    m = Mechanism("arm", gravity=None)
+    arm = m.bar("arm", 1.0, mass=1.0)
+    m.revolute("A", m.ground.at(0, 0), arm.start)
+    m.user_force("gale", numba.njit(lambda t, q, v: (0.0, 0.0, 5.0 if q[2] < 20.0 else math.nan)), arm)
+    m.start_near(arm=1)
+    there, masses = {"there": first("arm.theta", above=0.1)}, {"arm": {"mass": [1.0, 2.0]}}
+    short, whole = (_many(m, masses, measures) for measures in (there, {**there, **WHOLE}))
+    assert short.good.all()
+    assert not whole.good.any()
+    assert "gale" in str(whole.reason[0])
+    assert (short["there"] > 0.05).all()
+
+
+def _many(m: Mechanism, vary: dict, measures: dict[str, Measure], formulation: str = "auto", steps: int = STEPS):
+    return m.simulate_many(DURATION, vary=vary, measure=measures, steps=steps, formulation=formulation, threads=1)
+
+
+def _steps(monkeypatch: pytest.MonkeyPatch):
+    """What gives the steps of the rows of the last call."""
+    taken: list[np.ndarray] = []
+    run_rows = worker.run_rows
+
+    def noted(*arguments):
+        run_rows(*arguments)
+        taken.append(arguments[-1].copy())
+
+    monkeypatch.setattr(worker, "run_rows", noted)
+
+    def last() -> np.ndarray:
+        steps = np.concatenate(_of_chunks(taken))
+        taken.clear()
+        return steps
+
+    return last
+
+
+def _of_chunks(taken: list[np.ndarray]) -> list[np.ndarray]:
+    """Steps at the end of each chunk: they only grow while a chunk goes on."""
+    out: list[np.ndarray] = []
+    for steps in taken:
+        if out and len(out[-1]) == len(steps) and (steps >= out[-1]).all():
+            out[-1] = steps
+        else:
+            out.append(steps)
+    return out

@@ -30,10 +30,10 @@ def test_a_wheel_under_a_torque_goes_round_and_round() -> None:
 
 def test_two_masses_fall_into_each_other() -> None:
     m = Mechanism("stars", gravity=None)
-    one, two = m.body("one", 1.0, inertia=0.1), m.body("two", 1.0, inertia=0.1)
-    for name, body in (("a", one), ("b", two)):
+    first, second = m.body("one", 1.0, inertia=0.1), m.body("two", 1.0, inertia=0.1)
+    for name, body in (("a", first), ("b", second)):
         m.prismatic(f"rail {name}", m.ground.origin, body.origin)
-    m.gravitation("pull", one.origin, two.origin, -5.0)
+    m.gravitation("pull", first.origin, second.origin, -5.0)
     m.start_near(one=(0.0, 0.0, 0.0), two=(1.0, 0.0, 0.0))
     with pytest.raises(EquilibriumError, match="no equilibrium was found"):
         m.equilibrium()

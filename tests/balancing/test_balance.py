@@ -35,12 +35,12 @@ def weights(m: Mechanism, *names: str, **given: Any) -> list[Counterweight]:
 def test_a_four_bar_is_force_balanced_as_berkof_and_lowen_say() -> None:
     """m r of the crank's weight = m3 a2 r3' / a3, along phi3'; of the rocker's m3 a4 r3 / a3, against phi3."""
     m = four_bar()
-    found = balance(m.sweep(steps=90), weights(m, "crank", "rocker"))
-    assert found.after["force"] < 1e-12 * found.before["force"]
+    balanced = balance(m.sweep(steps=90), weights(m, "crank", "rocker"))
+    assert balanced.after["force"] < 1e-12 * balanced.before["force"]
     x, y = m.bodies["coupler"].com
     on_crank = -m.bodies["coupler"].mass * (A2 / A3) * complex(A3 - x, -y)
     on_rocker = -m.bodies["coupler"].mass * (A4 / A3) * complex(x, y)
-    for weight, expected in zip(found.weights, (on_crank, on_rocker), strict=True):
+    for weight, expected in zip(balanced.weights, (on_crank, on_rocker), strict=True):
         assert 0.04 * weight.mass * np.exp(1j * weight.angle) == pytest.approx(expected, rel=1e-9)
 
 
@@ -65,16 +65,17 @@ def test_what_is_promised_is_what_the_solver_finds_with_the_weights(norm: Any, o
     ]
     about, z = (0.02, -0.03), 0.013
     sol = m.sweep(steps=60)
-    found = balance(sol, means, of, norm, about, z)
-    found.apply()
+    balanced = balance(sol, means, of, norm, about, z)
+    balanced.apply()
     after = m.sweep(steps=60)
-    for name, series in found.series.items():
+    for name, series in balanced.series.items():
         got = exact(after, name, about, z)
         assert np.abs(series - got).max() < 1e-8 * np.abs(got).max()
-        assert found.before[name] == pytest.approx(measured(exact(sol, name, about, z), norm), rel=1e-9)
-        assert found.after[name] == pytest.approx(measured(exact(after, name, about, z), norm), rel=1e-7)
-    assert sum(found.after.values()) < sum(found.before.values())
-    assert all(w.mass <= one.largest * (1 + 1e-9) for w, one in zip(found.weights, means, strict=True))
+        assert balanced.before[name] == pytest.approx(measured(exact(sol, name, about, z), norm), rel=1e-9)
+        assert balanced.after[name] == pytest.approx(measured(exact(after, name, about, z), norm), rel=1e-7)
+    assert sum(balanced.after.values()) < sum(balanced.before.values())
+    for weight, counterweight in zip(balanced.weights, means, strict=True):
+        assert weight.mass <= counterweight.largest * (1 + 1e-9)
 
 
 def exact(sol: Solution, name: str, about: tuple[float, float], z: float) -> np.ndarray:
@@ -93,23 +94,23 @@ def test_half_the_oscillating_mass_is_least_at_the_peak_of_a_single_cylinder() -
     """With a long rod F = m r w^2 cos phi along the bore; half of it against the throw leaves half, turning back."""
     m = engine("I1", bore=0.08, stroke=0.08, rod=8.0, piston_mass=1.0, rod_mass=0.0, counterweight="none", speed=10.0)
     sol = m.sweep(steps=180)
-    found = balance(sol, [Counterweight(m.bodies["crank"].origin, radius=0.04)], norm="peak")
-    assert found.weights[0].mass == pytest.approx(0.5, abs=5e-3)
-    assert found.weights[0].angle == pytest.approx(-math.pi / 2, abs=1e-6)
-    assert found.after["force"] == pytest.approx(0.5 * found.before["force"], rel=1e-2)
+    balanced = balance(sol, [Counterweight(m.bodies["crank"].origin, radius=0.04)], norm="peak")
+    assert balanced.weights[0].mass == pytest.approx(0.5, abs=5e-3)
+    assert balanced.weights[0].angle == pytest.approx(-math.pi / 2, abs=1e-6)
+    assert balanced.after["force"] == pytest.approx(0.5 * balanced.before["force"], rel=1e-2)
 
 
 def test_lanchesters_shafts_take_the_second_order_of_an_inline_four() -> None:
     m = engine("I4", bore=0.08, stroke=0.08, rod=0.14, piston_mass=0.5, rod_mass=0.4, speed=100.0)
     sol = m.sweep(steps=120)
-    found = balance(sol, [BalanceShaft(2, (0.1, 0)), BalanceShaft(-2, (-0.1, 0))])
+    balanced = balance(sol, [BalanceShaft(2, (0.1, 0)), BalanceShaft(-2, (-0.1, 0))])
     before = sol.orders(sol.shaking().force, crank="crank", turns=1)
-    after = sol.orders(found.series["force"], crank="crank", turns=1)
+    after = sol.orders(balanced.series["force"], crank="crank", turns=1)
     row = before.index(2)
     assert before.largest[row] > 100.0
     assert after.largest[row] < 1e-9 * before.largest[row]
     assert after.largest[before.index(4)] == pytest.approx(before.largest[before.index(4)], rel=1e-9)
-    for shaft in found.shafts:  # each takes one turning half of the second order
+    for shaft in balanced.shafts:  # each takes one turning half of the second order
         assert shaft.moment * (2 * 100.0) ** 2 == pytest.approx(abs(before.forward[row]), rel=1e-9)
 
 
@@ -131,10 +132,10 @@ def test_the_flywheel_of_a_crank_with_an_eccentric_mass() -> None:
     disc = m.body("disc", mass=2.0, com=(0.1, 0.0))
     m.revolute("A", m.ground.origin, disc.origin)
     m.drive_angle("motor", disc, constant_rate(-30.0))
-    found = flywheel(m.sweep(steps=360), "motor", 0.02)
-    assert found.energy == pytest.approx(2 * 2.0 * 9.80665 * 0.1, rel=1e-6)
-    assert found.inertia == pytest.approx(found.energy / (0.02 * 900), rel=1e-12)
-    disc.inertia = found.inertia - 2.0 * 0.1**2
+    sized = flywheel(m.sweep(steps=360), "motor", 0.02)
+    assert sized.energy == pytest.approx(2 * 2.0 * 9.80665 * 0.1, rel=1e-6)
+    assert sized.inertia == pytest.approx(sized.energy / (0.02 * 900), rel=1e-12)
+    disc.inertia = sized.inertia - 2.0 * 0.1**2
     m.change("motor", law=constant_rate(30.0))
     free = Mechanism("free")
     wheel = free.body("disc", mass=2.0, com=(0.1, 0.0), inertia=disc.inertia)

@@ -20,13 +20,13 @@ def files_that_import(folder: Path, line: str, count: int = 5) -> list[tuple[Pat
 
 def test_a_module_that_many_files_import_is_counted_once(tmp_path: Path) -> None:
     met: list[str] = []
-    found = modules_below(
+    inputs = modules_below(
         files_that_import(tmp_path, "import numpy, numpy.linalg"),
         depends.StudyPlaces(tmp_path),
         lambda module, _inputs, _waiting: met.append(module.__name__),
     )
     assert sorted(met) == ["numpy", "numpy.linalg"]
-    assert sorted(found.modules) == [f"part_{number}.py" for number in range(5)]
+    assert sorted(inputs.modules) == [f"part_{number}.py" for number in range(5)]
 
 
 def test_the_version_of_a_package_is_asked_for_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -37,10 +37,10 @@ def test_the_version_of_a_package_is_asked_for_once(tmp_path: Path, monkeypatch:
         return "1.0"
 
     monkeypatch.setattr(depends, "package_state", version)
-    found = modules_below(
+    inputs = modules_below(
         files_that_import(tmp_path, "import numpy, numpy.linalg, numpy.fft, numpy.random"),
         depends.StudyPlaces(tmp_path),
         depends._count,
     )
-    assert found.packages == {"numpy": "1.0"}
+    assert inputs.packages == {"numpy": "1.0"}
     assert asked == {"numpy": 1}

@@ -13,8 +13,10 @@ from mbsd.dependencies import installed
 
 def test_modules_and_distributions_are_those_of_the_standard_library() -> None:
     """Which asks the disk for every file of every package."""
-    found = {top: {one.metadata["Name"] for one in them} for top, them in installed._by_module().items()}
-    assert found == {top: set(names) for top, names in metadata.packages_distributions().items()}
+    by_module = {
+        top: {distribution.metadata["Name"] for distribution in them} for top, them in installed._by_module().items()
+    }
+    assert by_module == {top: set(names) for top, names in metadata.packages_distributions().items()}
 
 
 def test_files_of_packages_are_not_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -85,11 +85,11 @@ def test_too_many_pictures_are_refused_with_the_remedy() -> None:
 def test_a_sweep_between_its_outputs_is_the_sweep_at_those_times() -> None:
     m = four_bar()
     times = np.linspace(0.013, 0.977, 41)
-    found, exact = at_times(m.sweep(), times), m.sweep(times=times)
-    assert np.abs(found.q - exact.q).max() < 1e-9
-    assert np.abs(found.v - exact.v).max() < 1e-7
-    assert np.abs(found.a - exact.a).max() < 1e-3 * np.abs(exact.a).max()
-    assert np.abs(found.wrench - exact.wrench).max() < 2e-3 * np.abs(exact.wrench).max()
+    between, exact = at_times(m.sweep(), times), m.sweep(times=times)
+    assert np.abs(between.q - exact.q).max() < 1e-9
+    assert np.abs(between.v - exact.v).max() < 1e-7
+    assert np.abs(between.a - exact.a).max() < 1e-3 * np.abs(exact.a).max()
+    assert np.abs(between.wrench - exact.wrench).max() < 2e-3 * np.abs(exact.wrench).max()
 
 
 # -- what arrows stand for -------------------------------------------------------------------------------------------
@@ -125,12 +125,12 @@ def test_velocities_are_drawn_once_for_each_place_that_moves() -> None:
 
 def test_a_gear_pushes_where_its_teeth_meet() -> None:
     m = Mechanism("gears", gravity=None)
-    one, two = m.body("one", 1.0, inertia=1e-3), m.body("two", 1.0, inertia=1e-3)
-    m.revolute("A", m.ground.at(0, 0), one.origin)
-    m.revolute("B", m.ground.at(0.05, 0), two.origin)
-    m.gear_pair("teeth", one.origin, two.origin, 0.02, 0.03)
-    m.torque("load", two, -1.0)
-    m.drive_angle("motor", one, constant_rate(3.0))
+    pinion, gear = m.body("one", 1.0, inertia=1e-3), m.body("two", 1.0, inertia=1e-3)
+    m.revolute("A", m.ground.at(0, 0), pinion.origin)
+    m.revolute("B", m.ground.at(0.05, 0), gear.origin)
+    m.gear_pair("teeth", pinion.origin, gear.origin, 0.02, 0.03)
+    m.torque("load", gear, -1.0)
+    m.drive_angle("motor", pinion, constant_rate(3.0))
     drawn = scene(m.sweep(2 * math.pi))
     [mesh] = [k for k, joint in enumerate(drawn.sol.packed.joints) if joint.name == "teeth"]
     marks = [mark for mark in drawn.marks(("reactions",)) if isinstance(mark, Arrow)]
@@ -143,11 +143,11 @@ def test_teeth_turn_with_their_wheels_and_stay_in_mesh() -> None:
     from mbsd.drawing.animation.brush import Brush
 
     m = Mechanism("gears", gravity=None)
-    one, two = m.body("one"), m.body("two")
-    m.revolute("A", m.ground.at(0, 0), one.origin)
-    m.revolute("B", m.ground.at(0.05, 0), two.origin)
-    m.gear_pair("teeth", one.origin, two.origin, 0.02, 0.03)
-    m.drive_angle("motor", one, constant_rate(3.0))
+    pinion, gear = m.body("one"), m.body("two")
+    m.revolute("A", m.ground.at(0, 0), pinion.origin)
+    m.revolute("B", m.ground.at(0.05, 0), gear.origin)
+    m.gear_pair("teeth", pinion.origin, gear.origin, 0.02, 0.03)
+    m.drive_angle("motor", pinion, constant_rate(3.0))
     drawn = scene(m.sweep(2 * math.pi))
     for k in (0, 7, 23):
         brush = Brush(None, drawn.unit)

@@ -56,11 +56,11 @@ def hung() -> Solution:
 
 def geared() -> Solution:
     m = Mechanism("geared")
-    one, two = m.body("one", mass=1.0, inertia=0.01), m.body("two", mass=1.0, inertia=0.01)
-    m.revolute("A", m.ground.at(0, 0), one.at(0, 0))
-    m.revolute("B", m.ground.at(0.15, 0), two.at(0, 0))
-    m.gear_pair("mesh", one.at(0, 0), two.at(0, 0), teeth=(20, 40), module=0.005)
-    m.drive_angle("motor", one, constant_rate(6.0))
+    pinion, gear = m.body("one", mass=1.0, inertia=0.01), m.body("two", mass=1.0, inertia=0.01)
+    m.revolute("A", m.ground.at(0, 0), pinion.at(0, 0))
+    m.revolute("B", m.ground.at(0.15, 0), gear.at(0, 0))
+    m.gear_pair("mesh", pinion.at(0, 0), gear.at(0, 0), teeth=(20, 40), module=0.005)
+    m.drive_angle("motor", pinion, constant_rate(6.0))
     return m.sweep(duration=1.0, steps=300)
 
 
@@ -73,14 +73,14 @@ MADE: dict[str, Callable[[], Solution]] = {
 }
 
 
-def check(solution: Solution, found: Moving) -> None:
+def check(solution: Solution, skeleton: Moving) -> None:
     """At poses that were not looked at, too, each carried stroke lies on the one that is drawn there."""
-    m, tracks, steady = solution.mechanism, tracks_of(solution), found.steady
+    m, tracks, steady = solution.mechanism, tracks_of(solution), skeleton.steady
     first = Frames(tracks, 0)
     for step in range(3, len(solution.t), 29):
         canvas = drawn_at(m, tracks, steady, step)
-        assert len(canvas.strokes) == len(found.strokes)
-        for carried, drawn in zip(found.strokes, canvas.strokes, strict=True):
+        assert len(canvas.strokes) == len(skeleton.strokes)
+        for carried, drawn in zip(skeleton.strokes, canvas.strokes, strict=True):
             if carried.carrier.kind != "shapes":
                 here = carried.carrier.moved(carried.stroke.points, first, Frames(tracks, step))
                 slack = TEETH if drawn.ink.startswith("body:") else SLACK
@@ -91,14 +91,14 @@ def check(solution: Solution, found: Moving) -> None:
 @pytest.mark.parametrize("name", MADE)
 def test_each_stroke_is_carried_to_where_it_is_drawn(name: str) -> None:
     solution = MADE[name]()
-    found = moving(solution)
-    check(solution, found)
-    kinds = Counter(one.carrier.kind for one in found.strokes)
+    skeleton = moving(solution)
+    check(solution, skeleton)
+    kinds = Counter(stroke.carrier.kind for stroke in skeleton.strokes)
     assert kinds["body"] > 0
     assert kinds["ground"] > 0
     assert kinds["shapes"] == 0
     assert (kinds["line"] > 0) == (name == "hung")
-    assert len(found.names) == len({label.text for label, _ in found.names})
+    assert len(skeleton.names) == len({label.text for label, _ in skeleton.names})
 
 
 @settings(max_examples=6, deadline=None)

@@ -57,10 +57,10 @@ def words(ax: Axes) -> dict[str, tuple[float, float, float, float]]:
 @pytest.mark.parametrize("build", [four_bar, parallelogram, slider_crank], ids=lambda build: build.__name__)
 def test_every_name_is_there_and_none_covers_another(build) -> None:
     m = build()
-    found = words(m.draw().ax)
-    shown = {name for text in found for name in text.split(", ")}
+    labels = words(m.draw().ax)
+    shown = {name for text in labels for name in text.split(", ")}
     assert shown == {*m.bodies, *m.joints, *m.drivers, *m.traces} - {"ground"}
-    for a, b in itertools.combinations(found.values(), 2):
+    for a, b in itertools.combinations(labels.values(), 2):
         assert a[2] < b[0] or b[2] < a[0] or a[3] < b[1] or b[3] < a[1]
 
 
@@ -346,7 +346,7 @@ def _marks(svg: str) -> list[str]:
 def test_a_diagram_of_thirty_loops_has_no_boxes_on_each_other() -> None:
     drawn = n_four_bar(30).topology().text
     assert drawn == n_four_bar(30).topology().text
-    found = np.array(boxes(drawn))
-    assert len(found) == 62
-    apart = (found[:, None, 2:] < found[None, :, :2]).any(axis=2)
-    assert (apart | apart.T | np.eye(len(found), dtype=bool)).all()
+    rectangles = np.array(boxes(drawn))
+    assert len(rectangles) == 62
+    apart = (rectangles[:, None, 2:] < rectangles[None, :, :2]).any(axis=2)
+    assert (apart | apart.T | np.eye(len(rectangles), dtype=bool)).all()

@@ -28,9 +28,9 @@ def test_a_file_and_a_notebook_show_the_same_motion(sol: Solution, tmp_path: Pat
     assert html.escape(page) in shown._repr_html_()
     assert len(page) < 400_000
     assert not re.search(r"https?:|src=|<link|import\(|fetch\(", page)
-    found = re.search(r"\)\(document\.body, (.*)\);\n</script>", page)
-    assert found
-    data = json.loads(found[1])
+    call = re.search(r"\)\(document\.body, (.*)\);\n</script>", page)
+    assert call
+    data = json.loads(call[1])
     assert data["loops"]
     assert len(data["t"]) == 361
     kept = np.round(np.array(data["t"]) * 720).astype(int)
@@ -39,7 +39,7 @@ def test_a_file_and_a_notebook_show_the_same_motion(sol: Solution, tmp_path: Pat
         assert x == pytest.approx(view.x[kept], abs=1e-8)
         assert y == pytest.approx(view.y[kept], abs=1e-8)
         assert theta == pytest.approx(view.theta[kept], abs=1e-6)
-    assert {one["text"] for one in data["names"]} >= {"A", "B", "C", "D", "P", "crank"}
+    assert {label["text"] for label in data["names"]} >= {"A", "B", "C", "D", "P", "crank"}
     path = np.reshape(data["paths"][0], (-1, 2))
     assert path[:, 0] == pytest.approx(sol.point("P").x[kept], abs=1e-6)
 
@@ -68,6 +68,6 @@ def test_what_cannot_be_is_refused(sol: Solution, arguments: dict, words: str) -
 
 
 def test_one_time_is_no_motion(sol: Solution) -> None:
-    one = sol.mechanism.sweep(times=[0.5])
+    snapshot = sol.mechanism.sweep(times=[0.5])
     with pytest.raises(ModelError, match="draw\\(\\) a pose"):
-        one.view()
+        snapshot.view()

@@ -62,13 +62,13 @@ def ends(model: Pinned) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     problem = Case("chain", model, DURATION, {}, 0.0, lambda record: {})
     record = mbsd_code.prepare(problem, {"method": "dop853", "tolerance": 1e-11})[1]()
     ours = np.stack([record.poses[-1], record.velocities[-1]])
-    found = []
+    last_states = []
     for steps in (STEPS, 2 * STEPS):
         rule = {"model": "pins", "solver": "TrapezoidalIndex2", "rho": 1.0, "newton": "full"}
         record = exudyn_code.prepare(problem, rule | {"linear": "EXUdense", "tolerance": 1e-10, "steps": steps})[1]()
         assert record.times[-1] == pytest.approx(DURATION)
-        found.append(np.stack([record.poses[-1], record.velocities[-1]]))
-    coarse, fine = found
+        last_states.append(np.stack([record.poses[-1], record.velocities[-1]]))
+    coarse, fine = last_states
     return ours, fine + (fine - coarse) / 3, np.abs(fine - coarse)
 
 

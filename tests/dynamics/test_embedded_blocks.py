@@ -75,13 +75,17 @@ def test_random_machines(seed: int, kinds: list[str], scale: float, freed: bool)
     m = machine_of(seed, kinds, scale, freed)
     if embedded_at_start(prepare_dynamics(m, 0.0, 0.5)) is None:
         return
-    one, other = (m.simulate(0.5, 30, tolerance=1e-10, formulation=name) for name in ("independent", "reference"))
-    assert one.stats.independent
+    independent, reference = (
+        m.simulate(0.5, 30, tolerance=1e-10, formulation=name) for name in ("independent", "reference")
+    )
+    assert independent.stats.independent
     unit = np.array([scale, scale, 1.0])
     for name, close in (("q", 1e-6), ("v", 1e-5)):
-        a, b = (getattr(x, name).reshape(31, -1, 3) / unit for x in (one, other))
-        np.testing.assert_allclose(a, b, atol=close * max(1.0, float(np.abs(other.v.reshape(31, -1, 3) / unit).max())))
-    np.testing.assert_allclose(one.wrench, other.wrench, atol=1e-4 * float(np.abs(other.wrench).max()))
+        a, b = (getattr(x, name).reshape(31, -1, 3) / unit for x in (independent, reference))
+        np.testing.assert_allclose(
+            a, b, atol=close * max(1.0, float(np.abs(reference.v.reshape(31, -1, 3) / unit).max()))
+        )
+    np.testing.assert_allclose(independent.wrench, reference.wrench, atol=1e-4 * float(np.abs(reference.wrench).max()))
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -144,8 +148,10 @@ def test_a_triad_that_swings_back_from_its_ends() -> None:
     """Where the crank cannot turn on, both formulations swing back alike."""
     m = held_plate(driven=False)
     m.start_moving(crank=6.0)
-    one, other = (m.simulate(1.0, 60, tolerance=1e-10, formulation=name) for name in ("independent", "reference"))
-    np.testing.assert_allclose(one.q, other.q, atol=1e-5)
+    independent, reference = (
+        m.simulate(1.0, 60, tolerance=1e-10, formulation=name) for name in ("independent", "reference")
+    )
+    np.testing.assert_allclose(independent.q, reference.q, atol=1e-5)
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-5])

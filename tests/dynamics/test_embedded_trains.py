@@ -95,13 +95,13 @@ def test_trains_beside_groups(name: str) -> None:
 def test_size_and_direction_do_not_matter(size: float, turned: float) -> None:
     m = beside_a_four_bar(size, turned)
     del m.forces["spring"]
-    one = m.simulate(0.5, steps=10, tolerance=1e-10)
+    transformed = m.simulate(0.5, steps=10, tolerance=1e-10)
     straight = beside_a_four_bar()
     del straight.forces["spring"]
-    other = straight.simulate(0.5, steps=10, tolerance=1e-10)
-    assert one.stats.independent
+    original = straight.simulate(0.5, steps=10, tolerance=1e-10)
+    assert transformed.stats.independent
     for name in ("planet", "b"):
-        np.testing.assert_allclose(one.body(name).theta - turned, other.body(name).theta, atol=1e-6)
+        np.testing.assert_allclose(transformed.body(name).theta - turned, original.body(name).theta, atol=1e-6)
 
 
 def test_whole_turns_are_counted_in_long_steps() -> None:

@@ -28,25 +28,25 @@ PAIRS = ("q", "v", "a")
 def both(m: Mechanism, duration: float = 0.5, **options) -> tuple[Solution, Solution]:
     """The same simulation in independent and in reference coordinates."""
     options = {"steps": 40, "tolerance": 1e-10, **options}
-    one = m.simulate(duration, formulation="independent", **options)
-    other = m.simulate(duration, formulation="reference", **options)
-    assert one.stats.independent
-    assert not other.stats.independent
-    return one, other
+    independent = m.simulate(duration, formulation="independent", **options)
+    reference = m.simulate(duration, formulation="reference", **options)
+    assert independent.stats.independent
+    assert not reference.stats.independent
+    return independent, reference
 
 
-def agree(one: Solution, other: Solution, close: float = 1e-6) -> None:
+def agree(computed: Solution, reference: Solution, close: float = 1e-6) -> None:
     """Motion, multipliers, reactions and work are the same, and fulfil all equations."""
     for name in PAIRS:
-        a, b = getattr(one, name), getattr(other, name)
+        a, b = getattr(computed, name), getattr(reference, name)
         np.testing.assert_allclose(a, b, atol=close * max(1.0, np.abs(b).max()), err_msg=name)
-    np.testing.assert_allclose(one.wrench, other.wrench, atol=close * max(1.0, np.abs(other.wrench).max()))
-    assert one.work is not None
-    assert other.work is not None
-    np.testing.assert_allclose(one.work, other.work, atol=close * max(1.0, np.abs(other.work).max()))
-    assert one.stats.position_residual < 1e-11
-    assert one.stats.velocity_residual < 1e-9
-    assert one.stats.acceleration_residual < 1e-6
+    np.testing.assert_allclose(computed.wrench, reference.wrench, atol=close * max(1.0, np.abs(reference.wrench).max()))
+    assert computed.work is not None
+    assert reference.work is not None
+    np.testing.assert_allclose(computed.work, reference.work, atol=close * max(1.0, np.abs(reference.work).max()))
+    assert computed.stats.position_residual < 1e-11
+    assert computed.stats.velocity_residual < 1e-9
+    assert computed.stats.acceleration_residual < 1e-6
 
 
 def freed(name: str) -> Mechanism:
@@ -218,10 +218,10 @@ def test_coordinates_change_where_others_are_better(monkeypatch: pytest.MonkeyPa
         original(self, made, *rest)
 
     monkeypatch.setattr(independent_steps.IndependentSteps, "_take", watched)
-    one, other = both(double_rocker(), 2.0, tolerance=1e-11)
-    agree(one, other, close=1e-5)
+    independent, reference = both(double_rocker(), 2.0, tolerance=1e-11)
+    agree(independent, reference, close=1e-5)
     assert len(set(taken)) > 1, "no other coordinate was taken"
-    assert np.ptp(one.energy.total) < 1e-6
+    assert np.ptp(independent.energy.total) < 1e-6
 
 
 def parallelogram(loops: int = 1) -> Mechanism:

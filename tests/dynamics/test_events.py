@@ -59,7 +59,7 @@ def test_an_elastic_ball_bounces_for_ever() -> None:
 
 def test_a_plastic_ball_stays() -> None:
     sol = ball(0.0).simulate(1.0)
-    assert [one.what for one in sol.events] == ["impact", "closes"]
+    assert [event.what for event in sol.events] == ["impact", "closes"]
     assert sol.events[0].time == pytest.approx(math.sqrt(2 / G), abs=1e-12)
     assert sol.events[0].impulse == pytest.approx(2 * math.sqrt(2 * G), rel=1e-12)
 
@@ -88,7 +88,7 @@ def test_newtons_cradle_hands_the_speed_on() -> None:
     np.testing.assert_allclose([sol.body(f"ball {k}").vx[-1] for k in range(3)], [0, 0, 1], atol=1e-12)
     assert sol.body("ball 0").x[-1] == pytest.approx(0.0, abs=1e-12)
     assert times_of(sol, "touch 0", "impact") == times_of(sol, "touch 1", "impact") == [pytest.approx(0.4, abs=1e-12)]
-    assert [one.impulse for one in sol.events if one.what == "impact"] == [pytest.approx(0.5), pytest.approx(0.5)]
+    assert [event.impulse for event in sol.events if event.what == "impact"] == [pytest.approx(0.5), pytest.approx(0.5)]
 
 
 def test_a_method_that_does_not_know_friction_says_so() -> None:
@@ -137,9 +137,9 @@ def test_a_one_way_clutch_holds_and_overruns() -> None:
     m.one_way("clutch", m.ground, wheel)
     m.torque("load", wheel, lambda t: 3.0 * math.cos(t))
     sol = m.simulate(2.0 * math.pi, tolerance=1e-10)
-    assert [(one.what, one.name) for one in sol.events] == [("closes", "clutch"), ("opens", "clutch")]
+    assert [(event.what, event.name) for event in sol.events] == [("closes", "clutch"), ("opens", "clutch")]
     np.testing.assert_allclose(
-        [one.time for one in sol.events], [math.pi, 1.5 * math.pi], atol=1e-8, err_msg="omega = 1.5 sin t"
+        [event.time for event in sol.events], [math.pi, 1.5 * math.pi], atol=1e-8, err_msg="omega = 1.5 sin t"
     )
     wheel_of = sol.body("wheel")
     expected = np.where(
@@ -187,9 +187,9 @@ def test_events_of_the_user_are_met_exactly_and_may_end_the_run() -> None:
     m.start_near(stone=(0, 10, 0))
     sol = m.simulate(5.0, steps=20)
     expected = [("half way", 5.0), ("near", 6.0), ("down", 10.0)]
-    assert [one.name for one in sol.events] == [name for name, _ in expected]
+    assert [event.name for event in sol.events] == [name for name, _ in expected]
     times = [math.sqrt(2 * way / G) for _, way in expected]
-    np.testing.assert_allclose([one.time for one in sol.events], times, atol=1e-10)
+    np.testing.assert_allclose([event.time for event in sol.events], times, atol=1e-10)
     assert sol.t[-1] == sol.events[-1].time
     assert sol.body("stone").y[-1] == pytest.approx(0.0, abs=1e-11)
     assert sol.events[-1].what == "end"
@@ -244,7 +244,7 @@ def test_the_same_inputs_give_the_same_numbers() -> None:
     assert (first.q == second.q).all()
     assert (first.lam == second.lam).all()
     np.testing.assert_allclose(balance(first), balance(first)[0], atol=1e-5)
-    assert all(one.energy <= 1e-12 for one in first.events), "no impact makes energy"
+    assert all(event.energy <= 1e-12 for event in first.events), "no impact makes energy"
     assert min(first.contact("foot 0").gap.min(), first.contact("foot 1").gap.min()) > -1e-10
 
 

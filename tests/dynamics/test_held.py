@@ -45,7 +45,7 @@ def _constants(met: EventSteps) -> list[bytes]:
         dynamics.loads.number,
         dynamics.loads.term,
     ]
-    return [np.asarray(one).tobytes() for one in arrays]
+    return [np.asarray(array).tobytes() for array in arrays]
 
 
 def test_a_copy_of_what_is_held_and_the_state_lead_to_the_same_end() -> None:
@@ -54,7 +54,7 @@ def test_a_copy_of_what_is_held_and_the_state_lead_to_the_same_end() -> None:
     met.to(0.6)
     state, held = copied(met.state), met.now.copy()
     met.to(2.0)
-    happened = [(one.name, one.what) for one in met.happenings]
+    happened = [(happening.name, happening.what) for happening in met.happenings]
     assert {"impact", "sticks"} <= {what for _, what in happened}
     assert ("half", "event") in happened
     assert _constants(met) == constants

@@ -36,10 +36,10 @@ def test_it_is_refused_with_its_friction_and_a_remedy_that_helps(friction, degre
         rod(friction, degrees, speed).simulate(1.0, 20)
     said = str(error.value)
     assert "at t = 0 s contact 'table' jams" in said
-    found = re.search(r"friction ([\d.]+) is above ([\d.]+)", said)
-    assert found
-    assert float(found[1]) == friction
-    assert float(found[2]) == pytest.approx(critical(degrees), rel=1e-3)
+    numbers = re.search(r"friction ([\d.]+) is above ([\d.]+)", said)
+    assert numbers
+    assert float(numbers[1]) == friction
+    assert float(numbers[2]) == pytest.approx(critical(degrees), rel=1e-3)
     assert "m.contact(...)" in said
     sol = rod(friction, degrees, speed, yields=True).simulate(0.02, 20)
     assert sol.body("rod").theta[-1] != sol.body("rod").theta[0]

@@ -29,11 +29,11 @@ def tree(seed: int, links: int, loops: int) -> Mechanism:
         m.start_near(**{link.name: float(random.uniform(-60.0, 60.0))})
         bodies.append(link)
     for k in range(loops):  # two bars between bodies close a loop and leave all freedoms but two
-        one, two = (bodies[int(n)] for n in random.choice(len(bodies), 2, replace=False))
+        left, right = (bodies[int(n)] for n in random.choice(len(bodies), 2, replace=False))
         first, second = m.bar(f"first{k}", 3.0, mass=0.3), m.bar(f"second{k}", 3.0, mass=0.3)
-        m.revolute(f"a{k}", one.at(0.1, 0.0), first.start)
+        m.revolute(f"a{k}", left.at(0.1, 0.0), first.start)
         m.revolute(f"b{k}", first.end, second.start)
-        m.revolute(f"c{k}", second.end, two.at(0.1, 0.0))
+        m.revolute(f"c{k}", second.end, right.at(0.1, 0.0))
     m.spring("spring", m.ground.at(0.5, 0.5), bodies[-1].at(0.1, 0.0), stiffness=40.0, free_length=0.1, damping=0.3)
     return m
 

@@ -139,10 +139,10 @@ def test_a_driver_follows_a_short_bump(base: float) -> None:
     m.revolute("pivot", m.ground.at(0, 0), arm.start)
     m.drive_angle("motor", arm, lambda t: base * t + _bump(t))
     t = np.sort(np.append(np.linspace(0.0, 1.0, 41), np.linspace(0.41301, 0.41629, 60)))
-    inside = np.array([_bump_bend(one) for one in t])
+    inside = np.array([_bump_bend(time) for time in t])
     for sol in (m.sweep(times=t), m.simulate(None, times=t)):
         np.testing.assert_allclose(sol.body("arm").alpha, inside, atol=1e-6 * 49348)
-        np.testing.assert_allclose(sol.body("arm").theta, base * t + [_bump(one) for one in t], atol=1e-9)
+        np.testing.assert_allclose(sol.body("arm").theta, base * t + [_bump(time) for time in t], atol=1e-9)
 
 
 def test_a_driven_pulse_moves_what_hangs_on_it() -> None:
@@ -185,7 +185,7 @@ def test_smooth_laws_take_few_calls_beside_the_look(f: Callable[[float], float])
 def test_exact_derivatives_without_acceleration_are_few_pieces() -> None:
     calls = [Counted(lambda t: 2 * math.pi * t), Counted(lambda t: 2 * math.pi), Counted(lambda t: 0.0)]
     law = function(*calls).compiled(0.0, 10.0)
-    assert sum(one.calls for one in calls) <= 3 * LOOKS + 99
+    assert sum(call.calls for call in calls) <= 3 * LOOKS + 99
     assert law[1][0] <= 16
     out, t = np.zeros((1000, 3)), np.linspace(0.0, 10.0, 1000)
     tabulate_law(pack_laws([law]), 1, t, out)
@@ -274,7 +274,7 @@ def test_derivatives_that_are_none_are_refused(laws: tuple, says: str) -> None:
     calls = [Counted(law) for law in laws]
     with pytest.raises(ModelError, match=says):
         function(*calls).compiled(0.0, 1.0)
-    assert sum(one.calls for one in calls) < 3 * LOOKS + 1000
+    assert sum(call.calls for call in calls) < 3 * LOOKS + 1000
 
 
 def test_a_jump_of_acceleration_is_found() -> None:

@@ -282,8 +282,8 @@ def test_the_same_run_over_and_over_gives_the_same_bytes() -> None:
         ready = prepare.prepare_dynamics(m, 0.0, 1.0)
         runs = [integrate(ready, method, times, 1e-8, 1.0, formulation=formulation)[1] for _ in range(OFTEN + 5)]
         for out in runs[1:]:
-            for one, first in zip(out, runs[0], strict=True):
-                np.testing.assert_array_equal(one, first)
+            for repeated, first in zip(out, runs[0], strict=True):
+                np.testing.assert_array_equal(repeated, first)
         [loop] = ready.advancing.values()
         assert not isinstance(loop._function, Dispatcher)
 
@@ -327,7 +327,8 @@ def test_what_is_kept_between_runs_is_what_a_fresh_run_finds(change) -> None:
         sol = m.simulate(0.3, steps=6)
         return sol.q.tobytes() + sol.wrench.tobytes() + repr(sol.mobility).encode()
 
-    kept = [one for one in gc.get_objects() if type(one) is Kept]  # isinstance would ask weak references
+    # isinstance would ask weak references
+    kept = [candidate for candidate in gc.get_objects() if type(candidate) is Kept]
     assert len(kept) > 3
     m = _swinging()
     before = run(m)
@@ -335,8 +336,8 @@ def test_what_is_kept_between_runs_is_what_a_fresh_run_finds(change) -> None:
     change(m)
     after = run(m)
     assert after != before
-    for one in kept:
-        one._results.clear()
+    for cache in kept:
+        cache._results.clear()
     anew = _swinging()
     change(anew)
     assert run(anew) == after == run(m)

@@ -126,7 +126,7 @@ def test_a_block_on_a_belt_sticks_and_slips_as_its_own_equation_does() -> None:
     expected, at = [], static * weight / k / belt_speed
     while at < 5.0:
         expected.append((at, "slides"))
-        found = solve_ivp(
+        sliding = solve_ivp(
             slip,
             (0, 5),
             [static * weight / k, belt_speed * (1 - 1e-12)],
@@ -135,7 +135,7 @@ def test_a_block_on_a_belt_sticks_and_slips_as_its_own_equation_does() -> None:
             rtol=1e-12,
             atol=1e-14,
         )
-        stuck_at, at = found.y_events[0][0][0], at + found.t_events[0][0]
+        stuck_at, at = sliding.y_events[0][0][0], at + sliding.t_events[0][0]
         if at < 5.0:
             expected.append((at, "sticks"))
         at += (static * weight / k - stuck_at) / belt_speed
@@ -163,8 +163,8 @@ def limits(sol: Solution, mu_pin: float, mu_rail: float) -> np.ndarray:
 
 def test_coasting_agrees_with_the_smooth_form_and_then_rests() -> None:
     m, smooth = rough_slider_crank(sticks=True), rough_slider_crank(slip_speed=1e-6)
-    for one in (m, smooth):
-        one.start_moving(crank=6.0)
+    for mechanism in (m, smooth):
+        mechanism.start_moving(crank=6.0)
     sol, near = m.simulate(0.6, steps=60, tolerance=1e-10), smooth.simulate(0.6, steps=60, tolerance=1e-10)
     np.testing.assert_allclose(sol.body("crank").theta, near.body("crank").theta, atol=2e-6)
     assert sorted(told(sol)) == sorted((name, "sticks") for name in RUBS)
@@ -195,8 +195,8 @@ def test_joints_at_rest_share_the_load_and_give_way_together() -> None:
 
 def test_full_turns_pass_the_turning_points_of_the_rod_and_the_dead_points_of_the_slider() -> None:
     m, smooth = rough_slider_crank(sticks=True), rough_slider_crank(slip_speed=1e-6)
-    for one in (m, smooth):
-        one.start_moving(crank=60.0)
+    for mechanism in (m, smooth):
+        mechanism.start_moving(crank=60.0)
     sol, near = m.simulate(0.25, steps=50, tolerance=1e-10), smooth.simulate(0.25, steps=50, tolerance=1e-10)
     assert sol.body("crank").theta[-1] > 9.5
     np.testing.assert_allclose(sol.body("crank").theta, near.body("crank").theta, atol=1e-6)
@@ -269,8 +269,8 @@ def test_a_driven_joint_tells_its_friction_with_the_sign_of_its_motion() -> None
     np.testing.assert_allclose(sol.driver("shake").force, swept.driver("shake").force, atol=1e-8)
     moving = np.abs(sol.friction("rub").rate) > 1e-6
     expected = -0.3 * 2.0 * G * np.sign(sol.friction("rub").rate)
-    for one in (sol, swept):
-        np.testing.assert_allclose(one.friction("rub").force[moving], expected[moving], rtol=1e-9)
+    for solution in (sol, swept):
+        np.testing.assert_allclose(solution.friction("rub").force[moving], expected[moving], rtol=1e-9)
 
 
 @pytest.mark.parametrize("sticks", [True, False])
@@ -309,9 +309,9 @@ def test_the_form_is_kept_in_a_file(tmp_path) -> None:
     m.start_moving(crank=6.0)
     m.save(tmp_path / "m.json")
     again = Mechanism.load(tmp_path / "m.json")
-    one, other = m.simulate(0.4, steps=4), again.simulate(0.4, steps=4)
-    np.testing.assert_array_equal(one.q, other.q)
-    assert one.events == other.events
+    original, loaded = m.simulate(0.4, steps=4), again.simulate(0.4, steps=4)
+    np.testing.assert_array_equal(original.q, loaded.q)
+    assert original.events == loaded.events
 
 
 def test_what_cannot_be_is_refused() -> None:

@@ -126,7 +126,7 @@ def test_a_ball_lies_still_and_is_lifted_when_pulled() -> None:
 @pytest.mark.parametrize("tilt", [0.0, 1e-9, 1e-6, 1e-3, 5.0])
 def test_corners_that_touch_together_and_one_after_the_other(tilt: float) -> None:
     """A box on four corners, damped: the same at two tolerances, and the evaluations are few."""
-    found = []
+    last_states = []
     for tolerance in (1e-6, 1e-9):
         m = Mechanism("box", gravity=(0.0, -GRAVITY))
         box = m.body("box", 2.0, inertia=0.05)
@@ -136,17 +136,17 @@ def test_corners_that_touch_together_and_one_after_the_other(tilt: float) -> Non
             )
         m.start_near(box=(0.0, 0.2, tilt))
         y, evaluations = moved(m, np.linspace(0.0, 0.25, 6), tolerance, "auto")
-        found.append(y[-1])
+        last_states.append(y[-1])
         assert evaluations < 4000
-    np.testing.assert_allclose(found[0], found[1], atol=1e-3)
+    np.testing.assert_allclose(last_states[0], last_states[1], atol=1e-3)
 
 
 def test_runs_repeated_are_the_same_to_the_last_digit() -> None:
     m = falling(0.3, 1e6, exponent=1.5)
     ready = prepare_dynamics(m, 0.0, 1.0)
-    found = []
+    outputs = []
     for _ in range(2):
         state, out = ready.begun(np.linspace(0.0, 1.0, 5))
         to_end(Run(ready, integrator_named("ball", "dop853"), 1e-7, 1.0, 1.0, {}), state, out)
-        found.append(out.y)
-    assert np.array_equal(*found)
+        outputs.append(out.y)
+    assert np.array_equal(*outputs)

@@ -49,9 +49,9 @@ def welded(contact: bool = False) -> Mechanism:
 
 def bead() -> Mechanism:
     m = Mechanism("bead")
-    one = m.body("one", 1.0, inertia=1e-3)
+    body = m.body("one", 1.0, inertia=1e-3)
     track = np.stack([np.sin(ROUND), 0.5 * np.sin(2 * ROUND)], axis=1)
-    m.point_on_curve("track", m.ground.origin, one.origin, track.tolist(), closed=True)
+    m.point_on_curve("track", m.ground.origin, body.origin, track.tolist(), closed=True)
     m.start_near(one=(*track[10], 0.0))
     return m
 
@@ -131,6 +131,6 @@ def test_a_run_along_a_curve_that_crosses_itself_changes_its_record_alone() -> N
 def test_whole_turns_at_the_start_are_kept_with_contacts() -> None:
     """The bars swing down to the floor as one, wherever the turns of their angles begin."""
     sol, plain = welded(contact=True).simulate(1.0, steps=50), welded().simulate(0.3, steps=15)
-    assert {one.what for one in sol.events} >= {"impact"}
+    assert {event.what for event in sol.events} >= {"impact"}
     np.testing.assert_allclose(sol.q[..., 2][:, 2] - sol.q[..., 2][:, 1], 2 * math.pi, atol=1e-9)
     np.testing.assert_allclose(sol.q[:16], plain.q, atol=1e-6)

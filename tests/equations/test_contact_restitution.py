@@ -142,8 +142,8 @@ def test_saved_changed_and_loaded_it_is_the_same(tmp_path) -> None:
     m.save(tmp_path / "m.json")
     again = Mechanism.load(tmp_path / "m.json")
     assert again.forces["ground"].params == m.forces["ground"].params
-    one, two = (each.simulate(0.05, steps=20) for each in (m, again))
-    np.testing.assert_array_equal(one.body("ball").vy, two.body("ball").vy)
+    original, loaded = (each.simulate(0.05, steps=20) for each in (m, again))
+    np.testing.assert_array_equal(original.body("ball").vy, loaded.body("ball").vy)
     m.change("ground", restitution=0.8, damping_model="flores")
     changed, fresh = (
         m.simulate(0.05, steps=20),
@@ -209,8 +209,10 @@ def test_within_a_linkage_the_coordinates_do_not_matter() -> None:
     m.revolute("A", m.ground.origin, rod.start)
     m.contact("wall", m.ground.at(0.2, 0, math.pi / 2), rod.end, 1e5, restitution=0.7)
     m.start_near(rod=0.0)
-    one, two = (m.simulate(1.2, steps=60, tolerance=1e-10, formulation=f) for f in ("reference", "independent"))
-    assert two.stats.independent
-    np.testing.assert_allclose(one.body("rod").theta, two.body("rod").theta, atol=1e-7)
-    effort = effort_of(one, "wall")
-    np.testing.assert_allclose(effort, effort_of(two, "wall"), atol=1e-4 * effort.max())
+    reference, independent = (
+        m.simulate(1.2, steps=60, tolerance=1e-10, formulation=f) for f in ("reference", "independent")
+    )
+    assert independent.stats.independent
+    np.testing.assert_allclose(reference.body("rod").theta, independent.body("rod").theta, atol=1e-7)
+    effort = effort_of(reference, "wall")
+    np.testing.assert_allclose(effort, effort_of(independent, "wall"), atol=1e-4 * effort.max())

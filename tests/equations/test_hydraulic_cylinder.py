@@ -175,11 +175,11 @@ def test_both_formulations_and_both_kinds_of_integrators_give_one_motion() -> No
     ways: list[dict[str, Any]] = [
         {"formulation": "reference"}, {"formulation": "independent"}, {"method": "radau"}, {"method": "scipy-lsoda"},
     ]  # fmt: skip
-    found = [moving().simulate(0.5, steps=20, tolerance=1e-9, **way) for way in ways]
-    assert [sol.stats.independent for sol in found] == [False, True, False, False]
-    for sol in found[1:]:
-        assert sol.q == pytest.approx(found[0].q, abs=1e-6)
-        assert sol.states == pytest.approx(found[0].states, rel=1e-5, abs=2e3)
+    solutions = [moving().simulate(0.5, steps=20, tolerance=1e-9, **way) for way in ways]
+    assert [sol.stats.independent for sol in solutions] == [False, True, False, False]
+    for sol in solutions[1:]:
+        assert sol.q == pytest.approx(solutions[0].q, abs=1e-6)
+        assert sol.states == pytest.approx(solutions[0].states, rel=1e-5, abs=2e3)
 
 
 def test_a_stiff_cylinder_is_a_matter_for_radau_and_no_trap_for_the_others() -> None:
@@ -205,12 +205,13 @@ def test_a_driven_cylinder_has_the_pressures_of_the_simulated_one_and_asks_its_d
         m.drive_coordinate("push", m.ground.origin, m.bodies["carriage"].origin, constant_rate(0.05, 1.0))
         return m
 
-    known, found = driven().simulate(0.5, steps=250, method="radau", tolerance=1e-10), driven().sweep(0.5, steps=250)
-    assert found.states == pytest.approx(known.states, rel=1e-5, abs=10.0)
-    assert found.driver("push").force == pytest.approx(known.driver("push").force, rel=1e-5, abs=1.0)
-    assert found.driver("push").force == pytest.approx(-np.array(view_of(found).effort), abs=1e-6)
+    simulated = driven().simulate(0.5, steps=250, method="radau", tolerance=1e-10)
+    swept = driven().sweep(0.5, steps=250)
+    assert swept.states == pytest.approx(simulated.states, rel=1e-5, abs=10.0)
+    assert swept.driver("push").force == pytest.approx(simulated.driver("push").force, rel=1e-5, abs=1.0)
+    assert swept.driver("push").force == pytest.approx(-np.array(view_of(swept).effort), abs=1e-6)
     efforts = (m := driven()).inverse_dynamics(m.sweep(0.5, steps=250), ["push"]).efforts["push"]
-    assert efforts == pytest.approx(found.driver("push").force, rel=1e-9, abs=1e-6)
+    assert efforts == pytest.approx(swept.driver("push").force, rel=1e-9, abs=1e-6)
 
 
 def test_a_valve_that_jumps_is_on_one_side_or_the_other() -> None:
@@ -302,9 +303,9 @@ def test_the_compiled_law_is_that_of_the_arrays(
     tabulate_loads(packed.system, loads, laws, np.zeros(1), wide_q, wide_v, packed.ws, out, power)
     oil = oil_of(m)
     known = oil.rates(np.array([opening]), np.array([place]), np.array([rate]), states[:, 0], states[:, 1])
-    found = out[0, columns_of(packed)] * ones_of(packed)
+    tabulated = out[0, columns_of(packed)] * ones_of(packed)
     scale = BULK / 1e-4 * (FLOW + A * abs(rate))
-    assert found == pytest.approx(np.concatenate(known), rel=1e-9, abs=1e-9 * scale)
+    assert tabulated == pytest.approx(np.concatenate(known), rel=1e-9, abs=1e-9 * scale)
     push = pressure_a * A - pressure_b * B - AIR * (A - B)
     assert out[0, 3] == pytest.approx(push, rel=1e-12, abs=1e-6)
     assert power[0] == pytest.approx(push * rate, rel=1e-9, abs=1e-6)

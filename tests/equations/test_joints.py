@@ -57,23 +57,23 @@ def test_a_wrong_equation_is_found(table: str, says: str, monkeypatch: pytest.Mo
 
 def test_without_slots_and_distances_the_rows_are_the_same() -> None:
     m = Mechanism("gears")
-    one, other, plate = (m.body(name) for name in ("one", "other", "plate"))
-    m.revolute("A", m.ground.at(0, 0), one.origin)
-    m.revolute("B", m.ground.at(0.3, 0), other.origin)
-    m.gear_pair("teeth", one.origin, other.origin, 20, 40)
-    m.weld("plate", other.at(0.1, 0.2), plate.origin)
-    m.drive_angle("motor", one, harmonic(0.3, 1.7, 0.2, 0.9))
+    pinion, gear, plate = (m.body(name) for name in ("one", "other", "plate"))
+    m.revolute("A", m.ground.at(0, 0), pinion.origin)
+    m.revolute("B", m.ground.at(0.3, 0), gear.origin)
+    m.gear_pair("teeth", pinion.origin, gear.origin, 20, 40)
+    m.weld("plate", gear.at(0.1, 0.2), plate.origin)
+    m.drive_angle("motor", pinion, harmonic(0.3, 1.7, 0.2, 0.9))
     m.start_near(one=10, other=20, plate=(0.3, 0.1, 20))
     packed, times = pack(m), np.linspace(0.0, 1.0, 5)
     packed.settle_laws(0.0, 1.0)
     q, v = np.random.default_rng(1).standard_normal((2, len(times), len(packed.system.mass) * 3))
-    found = []
+    tables = []
     for each in (tabulate_some, tabulate_all, tabulate):
         phi, gamma = np.zeros((2, len(times), len(packed.ws.phi)))
         jacobians = np.zeros((*phi.shape, 6))
         each(packed.system, packed.drives(times), q, v, packed.ws, phi, jacobians, gamma)
-        found.append((phi, jacobians, gamma))
-    for some, general, chosen in zip(*found, strict=True):
+        tables.append((phi, jacobians, gamma))
+    for some, general, chosen in zip(*tables, strict=True):
         assert (some == general).all()
         assert (some == chosen).all()
         assert some.any()

@@ -153,7 +153,7 @@ def test_old_versions_go(tmp_path: Path) -> None:
         kernel_cache._forget_old(folder)
     (tmp_path / "mbsd.loads_more-0000000000000000").mkdir()
     kernel_cache._forget_old(folder)
-    left = sorted(one.name for one in tmp_path.iterdir())
+    left = sorted(path.name for path in tmp_path.iterdir())
     assert left == [
         *(f"mbsd.equations.loads-{k:016x}" for k in range(3, kernel_cache.KEPT + 3)),
         "mbsd.loads_more-0000000000000000",

@@ -76,8 +76,8 @@ def test_a_linkage_near_its_change_point_stays_on_its_side(more: float, start: f
         times = np.linspace(0.0, 2 * math.pi, steps + 1)
         motion = march(m, times, closed)
         assert motion.closed == closed
-        found = end_of(m, motion, "coupler", COUPLER)
-        assert np.abs(found - joint_c(start + times, more)).max() < 1e-11, steps
+        path = end_of(m, motion, "coupler", COUPLER)
+        assert np.abs(path - joint_c(start + times, more)).max() < 1e-11, steps
 
 
 @ROUTES
@@ -185,10 +185,10 @@ def test_random_linkages_move_alike_at_any_number_of_outputs(seed: int) -> None:
         np.testing.assert_allclose(newton, fine, atol=1e-8)
     for steps in (1, 3, 5, 12, 90):
         for closed in (True, False):
-            found = solved(steps, closed)
-            assert isinstance(found, str) == isinstance(fine, str)
-            if not isinstance(found, str) and not isinstance(fine, str):
-                np.testing.assert_allclose(found, fine[:: 720 // steps], atol=1e-8)
+            coarse = solved(steps, closed)
+            assert isinstance(coarse, str) == isinstance(fine, str)
+            if not isinstance(coarse, str) and not isinstance(fine, str):
+                np.testing.assert_allclose(coarse, fine[:: 720 // steps], atol=1e-8)
 
 
 def test_one_time_alone() -> None:

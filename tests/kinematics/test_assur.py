@@ -40,8 +40,8 @@ def test_closed_forms_are_what_newton_finds(name: str) -> None:
     ready, closed, newton = both_routes(MODELS[name]())
     assert name.split()[0].removeprefix("welded") in ready.route
     assert np.abs(closed[0] - newton[0]).max() < 1e-12
-    for one, other in zip(closed[1:], newton[1:], strict=True):
-        assert np.abs(one - other).max() < 1e-11 * max(1.0, np.abs(other).max())
+    for direct, iterated in zip(closed[1:], newton[1:], strict=True):
+        assert np.abs(direct - iterated).max() < 1e-11 * max(1.0, np.abs(iterated).max())
 
 
 def test_every_group_is_tried() -> None:
@@ -139,19 +139,19 @@ def test_random_chains_of_all_groups(seed: int, kinds: list[str]) -> None:
     assert ready.groups is not None
     for kind in kinds:
         assert kind in ready.route
-    found = []
+    outcomes = []
     for route in (ready, dataclasses.replace(ready, groups=None)):
         try:
-            found.append(motion_of(route, times))
+            outcomes.append(motion_of(route, times))
         except MechanismError as error:
-            found.append(str(error))
-    if isinstance(found[1], str):
-        assert found[0] == found[1]
+            outcomes.append(str(error))
+    if isinstance(outcomes[1], str):
+        assert outcomes[0] == outcomes[1]
         return
-    scale = max(1.0, float(np.abs(found[1][1]).max()))
-    assert np.abs(found[0][0] - found[1][0]).max() < 1e-12 * scale
-    for one, other in zip(found[0][1:], found[1][1:], strict=True):
-        assert np.abs(one - other).max() < 1e-10 * max(1.0, np.abs(other).max()) * scale
+    scale = max(1.0, float(np.abs(outcomes[1][1]).max()))
+    assert np.abs(outcomes[0][0] - outcomes[1][0]).max() < 1e-12 * scale
+    for direct, iterated in zip(outcomes[0][1:], outcomes[1][1:], strict=True):
+        assert np.abs(direct - iterated).max() < 1e-10 * max(1.0, np.abs(iterated).max()) * scale
 
 
 def test_coarse_steps_give_the_same_motion() -> None:

@@ -34,11 +34,11 @@ def test_each_design_is_its_own_sweep() -> None:
     )
     assert result.closes.all()
     for k, design in enumerate(designs):
-        one = four_bar(*design).sweep(steps=90)
+        swept = four_bar(*design).sweep(steps=90)
         for name in ("P", "Q"):
-            path = np.column_stack([one.point(name).x, one.point(name).y])
+            path = np.column_stack([swept.point(name).x, swept.point(name).y])
             np.testing.assert_allclose(result.points[name][k], path, atol=1e-12)
-        np.testing.assert_allclose(result.angles["rocker"][k], one.body("rocker").theta, atol=1e-12)
+        np.testing.assert_allclose(result.angles["rocker"][k], swept.body("rocker").theta, atol=1e-12)
 
 
 def test_sliders_slots_and_traced_points_are_parameters_too() -> None:
@@ -61,8 +61,8 @@ def test_sliders_slots_and_traced_points_are_parameters_too() -> None:
         steps=60,
     )
     for k in range(3):
-        one = slider_crank(rods[k], heights[k], at[k]).sweep(steps=60).point("P")
-        np.testing.assert_allclose(result.points["P"][k], np.column_stack([one.x, one.y]), atol=1e-12)
+        point = slider_crank(rods[k], heights[k], at[k]).sweep(steps=60).point("P")
+        np.testing.assert_allclose(result.points["P"][k], np.column_stack([point.x, point.y]), atol=1e-12)
 
 
 def test_designs_that_do_not_close_are_marked() -> None:
@@ -87,18 +87,18 @@ def test_designs_near_a_change_point_are_right_or_doubted() -> None:
     lengths = {"coupler": np.full(len(more), 0.25), "rocker": 0.15 + more}
     pivots = {"D": np.tile([0.3, 0.0], (len(more), 1))}
     for steps in (1, 12, 360):
-        found = four_bar().batch(lengths=lengths, places=pivots, angles=["rocker"], steps=steps)
-        assert not found.closes[more < 0].any()
-        assert found.closes[-1]
-        for k in np.flatnonzero(found.closes):
+        batch = four_bar().batch(lengths=lengths, places=pivots, angles=["rocker"], steps=steps)
+        assert not batch.closes[more < 0].any()
+        assert batch.closes[-1]
+        for k in np.flatnonzero(batch.closes):
             m = four_bar(coupler=0.25, rocker=0.15 + more[k], x=0.3, y=0.0)
-            np.testing.assert_allclose(found.angles["rocker"][k], m.sweep(steps=steps).body("rocker").theta, atol=1e-9)
+            np.testing.assert_allclose(batch.angles["rocker"][k], m.sweep(steps=steps).body("rocker").theta, atol=1e-9)
 
 
 def test_threads_change_nothing() -> None:
     coupler = np.linspace(0.35, 0.42, 200)
-    one, two = (four_bar().batch(lengths={"coupler": coupler}, threads=n, steps=40) for n in (1, 2))
-    assert one.points["P"].tobytes() == two.points["P"].tobytes()
+    serial, threaded = (four_bar().batch(lengths={"coupler": coupler}, threads=n, steps=40) for n in (1, 2))
+    assert serial.points["P"].tobytes() == threaded.points["P"].tobytes()
 
 
 @pytest.mark.parametrize(
@@ -139,10 +139,10 @@ def test_rods_and_their_lengths() -> None:
     result = jack().batch(lengths={"rod": rods}, places={"D": places}, angles=["arm"], steps=120)
     assert result.closes.all()
     for k in range(3):
-        one = jack(rods[k], x[k]).sweep(steps=120)
-        path = np.column_stack([one.point("P").x, one.point("P").y])
+        swept = jack(rods[k], x[k]).sweep(steps=120)
+        path = np.column_stack([swept.point("P").x, swept.point("P").y])
         np.testing.assert_allclose(result.points["P"][k], path, atol=1e-12)
-        np.testing.assert_allclose(result.angles["arm"][k], one.body("arm").theta, atol=1e-12)
+        np.testing.assert_allclose(result.angles["arm"][k], swept.body("arm").theta, atol=1e-12)
 
 
 @pytest.mark.parametrize("slot", [False, True])
@@ -172,12 +172,12 @@ def test_driven_and_crossing_slides(slot: bool) -> None:
     result = slides().batch(places=moved, angles=["lever"], steps=120)
     assert result.closes.all()
     for k in range(2):
-        one = slides(x[k] if slot else 0.3, height[k]).sweep(steps=120)
-        assert "PRP" in one.route
-        assert "driven slide" in one.route
-        path = np.column_stack([one.point("P").x, one.point("P").y])
+        swept = slides(x[k] if slot else 0.3, height[k]).sweep(steps=120)
+        assert "PRP" in swept.route
+        assert "driven slide" in swept.route
+        path = np.column_stack([swept.point("P").x, swept.point("P").y])
         np.testing.assert_allclose(result.points["P"][k], path, atol=1e-12)
-        np.testing.assert_allclose(result.angles["lever"][k], one.body("lever").theta, atol=1e-12)
+        np.testing.assert_allclose(result.angles["lever"][k], swept.body("lever").theta, atol=1e-12)
 
 
 def test_a_mechanism_that_does_not_fall_apart_is_refused() -> None:

@@ -83,8 +83,8 @@ def test_a_terrain_whose_continuation_runs_through_it_has_no_side() -> None:
 def test_crossings_are_looked_for_once() -> None:
     pieces = curve_pieces(np.random.default_rng(0).normal(size=(200, 2)).cumsum(axis=0), False)
     began = time.perf_counter()
-    found = farthest_step(*pieces, False, 0.0)
+    step = farthest_step(*pieces, False, 0.0)
     looked = time.perf_counter() - began
     began = time.perf_counter()
-    assert farthest_step(*pieces, False, 0.0) == found > 0.0
+    assert farthest_step(*pieces, False, 0.0) == step > 0.0
     assert time.perf_counter() - began < 0.2 * looked

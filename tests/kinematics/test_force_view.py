@@ -280,7 +280,7 @@ def test_a_driven_sweep_with_friction_balances() -> None:
     np.testing.assert_allclose(view.effort, sol.friction("rub").force)
     np.testing.assert_allclose(view.coordinate, sol.body("slider").x, atol=1e-12)
     np.testing.assert_allclose(view.power, sol.friction("rub").power)
-    total = sum(one.power for one in sol.forces.values()) + sol.driver("motor").power
+    total = sum(force.power for force in sol.forces.values()) + sol.driver("motor").power
     slope = np.gradient(
         sol.energy.kinetic - sol.packed.system.mass @ sol.q[..., 1].T * sol.packed.system.gravity[1], sol.t
     )

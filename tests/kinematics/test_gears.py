@@ -239,8 +239,8 @@ def test_a_rack_and_a_toothed_belt_by_teeth(tmp_path: Path) -> None:
     m = steering(0.030)
     m.save(tmp_path / "steering.json")
     m.draw().save(tmp_path / "steering.svg")
-    for one in (m, Mechanism.load(tmp_path / "steering.json")):
-        way = one.sweep(2.0).body("rack").x
+    for mechanism in (m, Mechanism.load(tmp_path / "steering.json")):
+        way = mechanism.sweep(2.0).body("rack").x
         assert way[-1] - way[0] == pytest.approx(0.030 * 2.0, abs=1e-12)
     says = (
         r"steering: rack_and_pinion 'teeth': the pinion's centre is 0\.031 m above .* need 0\.003 \* 20 / 2 = 0\.03 m"

@@ -96,11 +96,11 @@ def both(build: Callable[[], Mechanism], monkeypatch: pytest.MonkeyPatch) -> tup
     ids=["gears", "belts", "curves", "redundant"],
 )
 def test_both_routes_move_alike(build: Callable[[], Mechanism], monkeypatch: pytest.MonkeyPatch) -> None:
-    one, other = both(build, monkeypatch)
-    assert (one.mobility.dof, one.mobility.redundant_rows) == (other.mobility.dof, other.mobility.redundant_rows)
-    np.testing.assert_allclose(other.q, one.q, atol=1e-8)
-    np.testing.assert_allclose(other.v, one.v, atol=1e-7)
-    assert [(e.name, e.what) for e in one.events] == [(e.name, e.what) for e in other.events]
+    dense, sparse = both(build, monkeypatch)
+    assert (dense.mobility.dof, dense.mobility.redundant_rows) == (sparse.mobility.dof, sparse.mobility.redundant_rows)
+    np.testing.assert_allclose(sparse.q, dense.q, atol=1e-8)
+    np.testing.assert_allclose(sparse.v, dense.v, atol=1e-7)
+    assert [(e.name, e.what) for e in dense.events] == [(e.name, e.what) for e in sparse.events]
 
 
 def test_seven_hundred_coordinates_on_gears() -> None:
@@ -150,8 +150,8 @@ def test_mobility_of_large_mechanisms_is_that_of_small_ones(monkeypatch: pytest.
     small = [m.mobility() for m in models]
     monkeypatch.setattr(large, "MANY_COORDINATES", 0)
     for m, expected in zip(models, small, strict=True):
-        found = m.mobility()
-        assert (found.dof, found.nominal, found.redundant_rows, found.singular) == (
+        mobility = m.mobility()
+        assert (mobility.dof, mobility.nominal, mobility.redundant_rows, mobility.singular) == (
             expected.dof,
             expected.nominal,
             expected.redundant_rows,

@@ -47,14 +47,14 @@ def parallelogram(extra: bool = True) -> Mechanism:
 
 
 def test_four_bar_has_one_freedom() -> None:
-    found = four_bar(drive=False).mobility()
-    assert (found.nominal, found.dof, found.redundant, found.singular) == (1, 1, (), False)
-    assert found.free_bodies == ("crank", "coupler", "rocker")
+    mobility = four_bar(drive=False).mobility()
+    assert (mobility.nominal, mobility.dof, mobility.redundant, mobility.singular) == (1, 1, (), False)
+    assert mobility.free_bodies == ("crank", "coupler", "rocker")
 
 
 def test_a_third_parallel_crank_is_redundant_and_named() -> None:
-    found = parallelogram().mobility()
-    assert (found.nominal, found.dof, found.redundant_rows, found.redundant) == (0, 1, 1, ("F",))
+    mobility = parallelogram().mobility()
+    assert (mobility.nominal, mobility.dof, mobility.redundant_rows, mobility.redundant) == (0, 1, 1, ("F",))
 
 
 def test_redundant_joints_move_and_share_the_load() -> None:
@@ -174,5 +174,5 @@ def test_three_loops_on_one_line_have_the_freedom_they_have_elsewhere() -> None:
     """From there each loop may go on alone while the others stay singular; most poses near it show less rank."""
     m = n_four_bar(3)
     m.start_near(**{name: 0.0 for name in m.bodies if name.startswith("rod")})
-    found = m.mobility()
-    assert (found.dof, found.redundant_rows, found.singular) == (1, 0, True)
+    mobility = m.mobility()
+    assert (mobility.dof, mobility.redundant_rows, mobility.singular) == (1, 0, True)

@@ -30,9 +30,9 @@ def both(ready: Prepared, times: np.ndarray) -> tuple[list[np.ndarray], list[np.
 
 def assert_same(ready: Prepared, times: np.ndarray, scale: float = 1.0) -> None:
     """Both routes agree to 1e-10, rates to the same part of the largest or, where poses are sensitive, of more."""
-    one, other = both(ready, times)
+    parts, whole = both(ready, times)
     unit = np.array([scale, scale, 1.0])
-    for order, (a, b) in enumerate(zip(one, other, strict=True)):
+    for order, (a, b) in enumerate(zip(parts, whole, strict=True)):
         a, b = (x.reshape(len(times), -1, 3) / unit for x in (a, b))
         assert np.abs(a - b).max() < 1e-10 * 10**order * max(1.0, np.abs(b).max())
 

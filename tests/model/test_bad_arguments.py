@@ -91,14 +91,14 @@ def _extras(m: Any, i: Marker, j: Marker) -> None:
 @cache
 def _methods() -> dict[str, int]:
     """Methods of the registries and others, with the place of the example that calls each."""
-    found: dict[str, int] = {}
+    places: dict[str, int] = {}
     for k, example in enumerate(_examples()):
         m, i, j = _pair()
         recorder = _Recorder(m)
         example(recorder, i, j)
         for name, _, _ in recorder.calls:
-            found.setdefault(name, k)
-    return found
+            places.setdefault(name, k)
+    return places
 
 
 def _examples() -> list[Callable]:

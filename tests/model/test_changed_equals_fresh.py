@@ -145,10 +145,10 @@ def example(kind: Any, changes: dict[str, Any] | None = None) -> Mechanism | str
     for table in (m.joints, m.drivers, m.forces, m.contacts):
         table.pop("example", None)
     known = arguments(kind.add)
-    several = [k for k, one in enumerate(known) if one.several]
+    several = [k for k, argument in enumerate(known) if argument.several]
     head, tail = (given[1 : 1 + several[0]], given[1 + several[0] :]) if several else (given[1:], ())
-    positional = dict(zip([one.name for one in known], head, strict=False)) | named | changes
-    first_ones = [positional.pop(one.name) for one in known[: len(head)]]
+    positional = dict(zip([argument.name for argument in known], head, strict=False)) | named | changes
+    first_ones = [positional.pop(argument.name) for argument in known[: len(head)]]
     given, named = (given[0], *first_ones, *tail), positional
     try:
         getattr(m, method)(*given, **named)
@@ -196,7 +196,7 @@ def values_of(kind: Any, name: str) -> list[Any]:
     """Other values of an argument."""
     if name in OTHERS:
         return OTHERS[name]
-    [argument] = [one for one in arguments(kind.add) if one.name == name]
+    [argument] = [known for known in arguments(kind.add) if known.name == name]
     if bool in argument.types:
         return [True, False]
     return [0.37, 1.4]
@@ -205,9 +205,9 @@ def values_of(kind: Any, name: str) -> list[Any]:
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
 def test_every_argument_alone_and_in_pairs(kind: Any) -> None:
     own = [
-        one.name
-        for one in arguments(kind.add)
-        if one.role not in (Role.MARKER, Role.BODY, Role.OPTIONAL_BODY) and not one.several
+        argument.name
+        for argument in arguments(kind.add)
+        if argument.role not in (Role.MARKER, Role.BODY, Role.OPTIONAL_BODY) and not argument.several
     ]
     single = [{name: value} for name in own for value in values_of(kind, name)]
     pairs = [a | b for a, b in itertools.combinations(single, 2) if not a.keys() & b.keys()]
@@ -255,7 +255,11 @@ def test_a_hydraulic_cylinder_takes_an_orifice_in_place_of_its_rated_flow() -> N
 
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind.saved], ids=lambda kind: kind.name)
 def test_a_model_from_a_file_changes_as_the_one_it_was_made_of(kind: Any) -> None:
-    for name in (one.name for one in arguments(kind.add) if one.role in (Role.VALUE, Role.AMOUNT) and not one.several):
+    for name in (
+        argument.name
+        for argument in arguments(kind.add)
+        if argument.role in (Role.VALUE, Role.AMOUNT) and not argument.several
+    ):
         for value in values_of(kind, name):
             m = example(kind)
             assert isinstance(m, Mechanism)

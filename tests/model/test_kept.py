@@ -49,7 +49,7 @@ def test_another_mechanism_is_not_taken_for_the_one_before(what: str) -> None:
     for remembered in (mbsd.kinematics.pose.mobility._kept_independent, mbsd.kinematics.pose.mobility._kept_motion):
         remembered.cache_clear()
     anew = poses(CHANGED[what]())
-    assert all(np.array_equal(one, other) for one, other in zip(after, anew, strict=True))
+    assert all(np.array_equal(reused, fresh) for reused, fresh in zip(after, anew, strict=True))
 
 
 def test_again_and_after_changes_back_and_forth_the_numbers_are_the_same() -> None:
@@ -58,7 +58,7 @@ def test_again_and_after_changes_back_and_forth_the_numbers_are_the_same() -> No
     m.change("motor", law=constant_rate(7.0, 0.2))
     assert not np.array_equal(poses(m)[0], first[0])
     m.change("motor", law=constant_rate(6.0))
-    assert all(np.array_equal(one, other) for one, other in zip(poses(m), first, strict=True))
+    assert all(np.array_equal(again, before) for again, before in zip(poses(m), first, strict=True))
 
 
 def test_a_result_that_is_written_into_spoils_no_other() -> None:

@@ -31,14 +31,14 @@ def other_words(
 
 
 def test_arguments_are_told_by_their_types() -> None:
-    found = {one.name: one.role for one in arguments(other_words)}
-    assert found == {
+    roles = {argument.name: argument.role for argument in arguments(other_words)}
+    assert roles == {
         "i": Role.MARKER, "j": Role.MARKER, "size": Role.VALUE, "against": Role.OPTIONAL_BODY, "law": Role.LAW,
         "amount": Role.AMOUNT, "profile": Role.CURVE, "unknown": Role.VALUE,
     }  # fmt: skip
     assert types_of(other_words)["size"] == (float, type(None))
     assert types_of(other_words)["unknown"] == ("Nowhere",)
-    assert [one.name for one in arguments(other_words) if one.needed] == ["i", "j", "size"]
+    assert [argument.name for argument in arguments(other_words) if argument.needed] == ["i", "j", "size"]
 
 
 def test_a_kind_under_other_names_is_changed_saved_and_read(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -121,16 +121,16 @@ def _started(**poses: float) -> Mechanism:
     ],
 )
 def test_told_with_its_name_and_remedy(m: Mechanism, names: list[str], says: str) -> None:
-    found = _of_units(m)
-    assert [finding.name for finding in found] == names
-    assert re.search(says, str(found[0])), str(found[0])
+    findings = _of_units(m)
+    assert [finding.name for finding in findings] == names
+    assert re.search(says, str(findings[0])), str(findings[0])
 
 
 @pytest.mark.parametrize(("value", "unit"), [(9810.0, "mm/s"), (981.0, "cm/s")])
 def test_gravity_in_millimetres_is_told(value: float, unit: str) -> None:
-    (found,) = Mechanism("x", gravity=(0.0, -value)).check()
-    assert unit in found.problem
-    assert found.remedy == "Gravity is in m/s^2: 9.81"
+    (finding,) = Mechanism("x", gravity=(0.0, -value)).check()
+    assert unit in finding.problem
+    assert finding.remedy == "Gravity is in m/s^2: 9.81"
 
 
 @pytest.mark.parametrize(
@@ -175,14 +175,14 @@ def test_a_model_in_millimetres_is_told_in_one_sentence(seed: int) -> None:
             marker["x"], marker["y"] = 1000 * marker["x"], 1000 * marker["y"]
         if "length" in joint["params"]:
             joint["params"]["length"] *= 1000
-    (found,) = build(written, Mechanism).check()
-    assert "they look like millimetres" in found.problem
+    (finding,) = build(written, Mechanism).check()
+    assert "they look like millimetres" in finding.problem
 
 
 def test_gravity_in_millimetres_joins_that_sentence() -> None:
-    (found,) = _in_millimetres(9810.0).check()
-    assert "gravity looks like mm/s^2" in found.problem
-    assert found.remedy == "Lengths are in metres: divide all of them by 1000, and gravity"
+    (finding,) = _in_millimetres(9810.0).check()
+    assert "gravity looks like mm/s^2" in finding.problem
+    assert finding.remedy == "Lengths are in metres: divide all of them by 1000, and gravity"
 
 
 def test_a_long_chain_is_no_mixture_of_units() -> None:
@@ -203,8 +203,8 @@ def test_a_long_chain_is_no_mixture_of_units() -> None:
 )
 def test_one_length_in_another_unit_is_always_found(lengths: dict[str, float], wrong: str, factor: float) -> None:
     assert _of_units(_four_bar(**lengths)) == []
-    found = _four_bar(**lengths | {wrong: factor * lengths[wrong]}).check()
-    assert [finding.name for finding in found if "long beside" in finding.problem] == [wrong]
+    findings = _four_bar(**lengths | {wrong: factor * lengths[wrong]}).check()
+    assert [finding.name for finding in findings if "long beside" in finding.problem] == [wrong]
 
 
 @pytest.mark.parametrize("name", mechanism_names())
@@ -246,8 +246,8 @@ def test_a_pressure_in_bar_is_named(pressure: float, odd: bool) -> None:
     m.prismatic("guide", m.ground.at(0, 0), piston.origin)
     m.start_near(piston=(0.05, 0, 0))
     m.gas("gas", m.ground.at(0.15, 0), piston.origin, area=2e-3, pressure=pressure, at=0.1)
-    found = [str(finding) for finding in m.check()]
-    assert any("multiply bar by 1e5" in words and "force 'gas'" in words for words in found) == odd
+    sentences = [str(finding) for finding in m.check()]
+    assert any("multiply bar by 1e5" in words and "force 'gas'" in words for words in sentences) == odd
 
 
 def test_a_weld_beside_a_pin_is_named() -> None:

@@ -174,5 +174,5 @@ def test_the_solver_compares_no_name_of_a_kind() -> None:
     """Names are for registries, files and messages; drawing has its signs by name (``drawn_as``)."""
     compared = re.compile(r"""kind\.name\s*(==|!=|in|not in)\s*[("'\[{]""")
     files = [*(ROOT / "mbsd").rglob("*.py"), *(ROOT / "mechanisms" / "stages" / "solve").glob("*.py")]
-    found = {file.name for file in files if compared.search(file.read_text())}
-    assert not found
+    offenders = {file.name for file in files if compared.search(file.read_text())}
+    assert not offenders

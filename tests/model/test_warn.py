@@ -25,4 +25,4 @@ def test_a_warning_names_the_file_outside_the_package(
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         names["asked"](mbsd.base.warn.warn)
-    assert [(one.filename, str(one.message)) for one in told] == [(__file__, "off")]
+    assert [(warning.filename, str(warning.message)) for warning in told] == [(__file__, "off")]

@@ -54,8 +54,8 @@ def test_the_error_tells_what_belongs_there(m: Mechanism, call: Callable[..., ob
 
 @pytest.mark.parametrize("kind", [*joint_kinds(), *force_kinds(), *CONTACT_KINDS.values()], ids=lambda kind: kind.name)
 def test_every_kind_tells_a_body_from_a_marker(m: Mechanism, kind: Any) -> None:
-    for place, one in enumerate(arguments(kind.add)):
-        if one.role not in (Role.MARKER, Role.BODY) or one.several:
+    for place, argument in enumerate(arguments(kind.add)):
+        if argument.role not in (Role.MARKER, Role.BODY) or argument.several:
             continue
         bar, other = m.bodies["bar"], m.bodies["other"]
         given: list[Any] = []
@@ -64,5 +64,5 @@ def test_every_kind_tells_a_body_from_a_marker(m: Mechanism, kind: Any) -> None:
             wrong = {Role.MARKER: bar, Role.BODY: bar.end}
             given.append((wrong if k == place else right).get(before.role, 1.0))
         rest = {later.name: 1.0 for later in arguments(kind.add)[place + 1 :] if later.needed}
-        with pytest.raises(ModelError, match=f"'x': {one.name} is .*it must be a (marker|body)"):
+        with pytest.raises(ModelError, match=f"'x': {argument.name} is .*it must be a (marker|body)"):
             kind.add(m, "x", *given, **rest)

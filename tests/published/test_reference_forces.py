@@ -182,15 +182,15 @@ def test_dlr_kinematic_loop_of_massless_links() -> None:
     start = math.degrees(math.asin(0.4))
     m.start_near(slider=(0.4, 0.0, 0.0), link1=start, link2=-start, body=math.degrees(rows[0, 1]))
     sol = simulate_at(m, rows[:, 0])
-    one, two, b = sol.body("link1"), sol.body("link2"), sol.body("body")
+    link1, link2, b = sol.body("link1"), sol.body("link2"), sol.body("body")
     computed = np.stack(
         [
             b.theta,
             b.omega,
-            two.theta - one.theta,
-            two.omega - one.omega,
-            b.theta - one.theta,
-            b.omega - one.omega,
+            link2.theta - link1.theta,
+            link2.omega - link1.omega,
+            b.theta - link1.theta,
+            b.omega - link1.omega,
             sol.body("slider").x,
             sol.body("slider").vx,
         ],
@@ -215,9 +215,9 @@ def test_car_axis() -> None:
     m.start_near(left=(0.0, 0.5, 0.0), right=(1.0, 0.5, 0.0), road=0.0)
     m.start_moving(left=(-0.5, 0.0, 0.0), right=(-0.5, 0.0, 0.0))
     sol = simulate_at(m, np.array([0.0, 3.0]), tolerance=1e-10)
-    one, two = sol.body("left"), sol.body("right")
+    left_end, right_end = sol.body("left"), sol.body("right")
     computed = np.array(
-        [getattr(v, f)[-1] for fields in (("x", "y"), ("vx", "vy")) for v in (one, two) for f in fields]
+        [getattr(v, f)[-1] for fields in (("x", "y"), ("vx", "vy")) for v in (left_end, right_end) for f in fields]
     )
     np.testing.assert_allclose(computed, expected[:8], atol=1e-6)
     # multipliers of (xb xl + yb yl = 0) and (|l - r|^2 = L^2), whose gradients at the ends are 1 and 2 long

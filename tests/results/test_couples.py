@@ -93,10 +93,10 @@ def test_places_come_back_from_a_file(tmp_path: Path) -> None:
 
 def test_what_acts_in_one_plane_is_warned_of_in_two() -> None:
     m = Mechanism("gears")
-    one, two = m.body("one", z=0.01), m.body("two", z=0.03)
-    for k, body in enumerate((one, two)):
+    first, second = m.body("one", z=0.01), m.body("two", z=0.03)
+    for k, body in enumerate((first, second)):
         m.revolute(f"axle_{k}", m.ground.at(0.03 * k, 0), body.origin)
-    m.gear_pair("mesh", one.origin, two.origin, radius_i=0.01, radius_j=0.02)
+    m.gear_pair("mesh", first.origin, second.origin, radius_i=0.01, radius_j=0.02)
     [finding] = m.check()
     assert "planes z = 0.01 m and z = 0.03 m, and a gear pair acts in one" in str(finding)
     m.change("two", z=0.01)

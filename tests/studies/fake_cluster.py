@@ -25,9 +25,9 @@ class Held(Future[Any]):
     """Called when it is fetched; may raise what happens to it on the way."""
 
     def result(self, timeout: float | None = None) -> Any:
-        found = super().result(timeout)
+        value = super().result(timeout)
         self.fetched()
-        return found
+        return value
 
     def release(self) -> None:
         self.cancel()

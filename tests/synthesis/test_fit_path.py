@@ -115,15 +115,15 @@ def test_numbers_of_the_authors_function_are_varied() -> None:
 def test_what_is_no_chain_of_dyads_is_swept_one_by_one() -> None:
     def geared(far: float = 0.30, arm: float = 0.12) -> Mechanism:
         m = Mechanism("geared")
-        one, two = m.body("one"), m.body("two")
+        first, second = m.body("one"), m.body("two")
         left, right = m.bar("left", 0.25), m.bar("right", 0.25)
-        m.revolute("O", m.ground.at(0, 0), one.origin)
-        m.revolute("Q", m.ground.at(far, 0), two.origin)
-        m.gear_pair("mesh", one.origin, two.origin, far / 2, far / 2)
-        m.revolute("A", one.at(0.05, 0), left.start)
-        m.revolute("B", two.at(-0.05, 0), right.start)
+        m.revolute("O", m.ground.at(0, 0), first.origin)
+        m.revolute("Q", m.ground.at(far, 0), second.origin)
+        m.gear_pair("mesh", first.origin, second.origin, far / 2, far / 2)
+        m.revolute("A", first.at(0.05, 0), left.start)
+        m.revolute("B", second.at(-0.05, 0), right.start)
         m.revolute("C", left.end, right.end)
-        m.drive_angle("motor", one, constant_rate(2 * np.pi))
+        m.drive_angle("motor", first, constant_rate(2 * np.pi))
         m.trace("P", left.at(arm, 0.03))
         m.start_near(left=60, right=120, two=0)
         return m
@@ -150,9 +150,9 @@ def test_a_straighter_line_than_hoekens_is_found() -> None:
 
 def test_equal_arguments_give_equal_designs_and_the_model_is_left_alone() -> None:
     m, points = four_bar(), traced(four_bar(**KNOWN), 6)
-    one, two = (fit_path(m, points, BOUNDS, seed=5, starts=1, generations=10) for _ in range(2))
-    assert one.values == two.values
-    np.testing.assert_array_equal(one.history, two.history)
+    first, second = (fit_path(m, points, BOUNDS, seed=5, starts=1, generations=10) for _ in range(2))
+    assert first.values == second.values
+    np.testing.assert_array_equal(first.history, second.history)
     assert m.bodies["crank"].length == 0.1
     assert (m.traces["P"].x, m.traces["P"].y) == (0.2, 0.1)
 

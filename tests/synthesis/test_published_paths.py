@@ -16,7 +16,7 @@ from mbsd.synthesis.matching import feet_in_order, in_order
 
 PUBLISHED = Path(__file__).parents[1] / "published" / "reference" / "path_generation_four_bars.json"
 CASES = json.loads(PUBLISHED.read_text())
-DESIGNS = [(case, by) for case, one in CASES["cases"].items() for by in one["designs"]]
+DESIGNS = [(case, by) for case, problem in CASES["cases"].items() for by in problem["designs"]]
 
 
 def four_bar(
@@ -135,7 +135,7 @@ def test_the_order_is_the_best_there_is(seed: int, points: int, chords: int, clo
     part = ((wanted[:, None] - a) * (b - a)).sum(-1) / ((b - a) ** 2).sum(-1)
     square = ((a + np.clip(part, 0, 1)[..., None] * (b - a) - wanted[:, None]) ** 2).sum(-1)
     cuts = range(chords) if closed else [0]
-    choices = np.array([one for one in np.ndindex(*[chords] * points) if list(one) == sorted(one)])
+    choices = np.array([choice for choice in np.ndindex(*[chords] * points) if list(choice) == sorted(choice)])
     every = [square[np.arange(points), (choices + cut) % chords].sum(-1).min() for cut in cuts]
     least, cut = in_order(path[None], wanted, closed)
     assert float(least[0]) == pytest.approx(min(every), rel=1e-12)

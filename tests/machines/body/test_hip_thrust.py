@@ -73,7 +73,9 @@ def by_hand(m, time: float, pressure: float, grip: float) -> np.ndarray:
     around = [kinematics(m, math.pi / 2 * (1 - tempo.part(time + k * step)[0])) for k in (-2, -1, 0, 1, 2)]
     weights = np.array([-1, 16, -30, 16, -1]) / (12 * step**2)
     now = around[2]
-    acceleration = {key: sum(w * np.asarray(one[key]) for w, one in zip(weights, around, strict=True)) for key in now}
+    acceleration = {
+        key: sum(w * np.asarray(instant[key]) for w, instant in zip(weights, around, strict=True)) for key in now
+    }
     mass = {name: body.mass for name, body in m.bodies.items()}
     inertia = {name: body.inertia for name, body in m.bodies.items()}
     x = np.array([math.cos(now["trunk"]), math.sin(now["trunk"])])

@@ -35,8 +35,8 @@ def test_a_row_of_several_segments_is_what_these_make() -> None:
 @pytest.mark.parametrize("table", [DE_LEVA_MEN, DE_LEVA_WOMEN], ids=lambda table: table.name)
 def test_tables_agree_about_where_the_centre_of_a_standing_body_is(table: SegmentTable) -> None:
     """55 to 58 % of the height above the sole, whichever table."""
-    for one in (WINTER, table):
-        assert 0.54 < _standing_height(Figure(1.0, 1.0, one)) < 0.585
+    for segments in (WINTER, table):
+        assert 0.54 < _standing_height(Figure(1.0, 1.0, segments)) < 0.585
 
 
 def _standing_height(who: Figure) -> float:

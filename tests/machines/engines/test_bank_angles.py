@@ -21,14 +21,14 @@ CYCLE = four_stroke(10.0, heat_density=2e6)
 @pytest.mark.parametrize("name", ["V2, one pin", "V8, cross crank"])
 def test_counterweights_leave_the_backward_first_order(name: str) -> None:
     """|cos b| of one pin's two rods, times what the throws add."""
-    found = bank_angles(OF[name], angles=range(0, 181, 10))
+    compared = bank_angles(OF[name], angles=range(0, 181, 10))
     throws = {"V2, one pin": 1.0, "V8, cross crank": math.sqrt(10)}[name]
-    left = found.left(counterweights=True).rank(0)
-    assert left == pytest.approx(throws * np.abs(np.cos(np.radians(found.angle))), abs=1e-12)
-    assert found.best == 90
-    assert "alone no first order turns against the shaft" in found.reasons()[0]
-    plain = found.left().rank(0)
-    assert plain == pytest.approx(throws * (1 + np.abs(np.cos(np.radians(found.angle)))), abs=1e-12)
+    left = compared.left(counterweights=True).rank(0)
+    assert left == pytest.approx(throws * np.abs(np.cos(np.radians(compared.angle))), abs=1e-12)
+    assert compared.best == 90
+    assert "alone no first order turns against the shaft" in compared.reasons()[0]
+    plain = compared.left().rank(0)
+    assert plain == pytest.approx(throws * (1 + np.abs(np.cos(np.radians(compared.angle)))), abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -41,29 +41,29 @@ def test_counterweights_leave_the_backward_first_order(name: str) -> None:
     ],
 )
 def test_the_best_angle_and_its_reason(name: str, best: float, words: str) -> None:
-    found = bank_angles(OF[name], angles=(36, 45, 60, 72, 90, 108, 120, 144))
-    assert found.best == best
-    assert words in found.reasons()
+    compared = bank_angles(OF[name], angles=(36, 45, 60, 72, 90, 108, 120, 144))
+    assert compared.best == best
+    assert words in compared.reasons()
 
 
 def test_shafts_take_their_order() -> None:
-    found = bank_angles(OF["V8, flat crank"], angles=(90,))
-    assert found.left().force[0, 1] > 1.0
-    assert found.left(shafts=(2,)).force[0, 1] == 0.0
+    compared = bank_angles(OF["V8, flat crank"], angles=(90,))
+    assert compared.left().force[0, 1] > 1.0
+    assert compared.left(shafts=(2,)).force[0, 1] == 0.0
     with pytest.raises(ModelError, match="shafts of order 3"):
-        found.left(shafts=(3,))
+        compared.left(shafts=(3,))
 
 
 def test_the_torque_of_the_gas_is_the_sum_over_the_cylinders() -> None:
     """As the solver finds it for the whole engine."""
-    found = bank_angles(OF["V4, two pins"], cycle=CYCLE, angles=(90,))
+    compared = bank_angles(OF["V4, two pins"], cycle=CYCLE, angles=(90,))
     size = {"bore": 0.08, "stroke": 0.08, "rod": 0.04 / 0.28, "speed": 1.0}
-    whole = engine("V4", angle=90, gas=CYCLE, order=found.order[0], **size).sweep(duration=4 * math.pi, steps=1440)
+    whole = engine("V4", angle=90, gas=CYCLE, order=compared.order[0], **size).sweep(duration=4 * math.pi, steps=1440)
     torque = -whole.driver("motor").effort
-    assert found.ripple is not None
-    assert found.ripple[0] == pytest.approx(np.ptp(torque) / torque[:-1].mean(), rel=2e-3)
-    one = gas_torque(CYCLE, 0.28)
-    assert torque[:-1].mean() == pytest.approx(4 * one.mean(), rel=1e-3)
+    assert compared.ripple is not None
+    assert compared.ripple[0] == pytest.approx(np.ptp(torque) / torque[:-1].mean(), rel=2e-3)
+    single = gas_torque(CYCLE, 0.28)
+    assert torque[:-1].mean() == pytest.approx(4 * single.mean(), rel=1e-3)
 
 
 def test_the_page_shows_the_table_of_layouts_and_all_families() -> None:

@@ -26,9 +26,9 @@ def test_the_natural_frequencies_of_the_block() -> None:
     m.gravity = None
     stiffness = MASS * (2 * math.pi * FREQUENCY) ** 2 / 2
     turning = math.sqrt(2 * stiffness * 0.3**2 / INERTIA) / (2 * math.pi)
-    found = sorted({round(mode.frequency, 3) for mode in m.modes()})
-    assert found[0] == pytest.approx(FREQUENCY, rel=1e-4)
-    assert found[-1] == pytest.approx(turning, rel=1e-3)
+    frequencies = sorted({round(mode.frequency, 3) for mode in m.modes()})
+    assert frequencies[0] == pytest.approx(FREQUENCY, rel=1e-4)
+    assert frequencies[-1] == pytest.approx(turning, rel=1e-3)
 
 
 def test_a_running_engine_shakes_its_block_as_linear_theory_says() -> None:
@@ -39,11 +39,11 @@ def test_a_running_engine_shakes_its_block_as_linear_theory_says() -> None:
     sol = m.simulate(0.6, steps=12 * 72)
     oscillating = 2 * (0.45 + 0.3 * 0.5)
     total = MASS + sum(body.mass for name, body in m.bodies.items() if name not in ("ground", "block"))
-    found = sol.orders(sol.body("block").y, crank="crank", turns=1)
+    orders = sol.orders(sol.body("block").y, crank="crank", turns=1)
     first = 0.5 * oscillating * 0.04 * omega**2  # half of the first order is balanced
     stiffness, damping = MASS * (2 * math.pi * FREQUENCY) ** 2, 2 * ZETA * MASS * 2 * math.pi * FREQUENCY
     expected = first / abs(stiffness - total * omega**2 + 1j * damping * omega)
-    assert found.amplitude[found.index(1)] == pytest.approx(expected, rel=0.02)
+    assert orders.amplitude[orders.index(1)] == pytest.approx(expected, rel=0.02)
 
 
 def test_bad_blocks_are_refused() -> None:

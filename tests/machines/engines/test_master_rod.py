@@ -153,7 +153,7 @@ def test_a_ring_turns_with_the_pin_and_is_balanced() -> None:
     ringed = engine("radial-5", **SIZE, **MASS, rods=MasterRod(ring_mass=0.8))
     rod, heavy = plain.bodies["rod_1"], ringed.bodies["rod_1"]
     assert heavy.mass == pytest.approx(rod.mass + 0.8)
-    about = [one.inertia + one.mass * one.com[0] ** 2 for one in (rod, heavy)]  # about the crank pin
+    about = [body.inertia + body.mass * body.com[0] ** 2 for body in (rod, heavy)]  # about the crank pin
     assert about[1] == pytest.approx(about[0] + 0.8 * AROUND**2)
     shaken = [np.abs(m.sweep(steps=90).shaking().force) for m in (plain, ringed)]
     assert shaken[1] == pytest.approx(shaken[0], rel=1e-6, abs=1e-6 * shaken[0].max())

@@ -38,14 +38,14 @@ def test_a_single_shakes_along_its_bore_as_one_mass_does() -> None:
     """|Y| = (1 - f) m r w^2 / |k - M w^2 + i c w|, f what counterweights take, and far above, (1 - f) m r / M."""
     m = engine("I1", **SIZE, speed=1.0, block=block())
     speeds = np.array([20.0, 50.0, 1e5])
-    found = mount_response(m, speeds, orders=[1])
+    response = mount_response(m, speeds, orders=[1])
     total = MASS + sum(body.mass or 0.0 for name, body in m.bodies.items() if name not in ("ground", "block"))
     omega = 2 * math.pi * FREQUENCY
     force = 0.5 * (0.5 + 0.3 * 0.6) * 0.04 * speeds**2
     expected = force / np.abs(MASS * omega**2 - total * speeds**2 + 2j * ZETA * MASS * omega * speeds)
-    assert np.abs(found.displacement[:, 0, 1]) == pytest.approx(expected, rel=1e-6)
+    assert np.abs(response.displacement[:, 0, 1]) == pytest.approx(expected, rel=1e-6)
     on_ground = expected * np.abs(MASS * omega**2 + 2j * ZETA * MASS * omega * speeds)
-    assert np.abs(found.force[:, 0, 1]) == pytest.approx(on_ground, rel=1e-6)
+    assert np.abs(response.force[:, 0, 1]) == pytest.approx(on_ground, rel=1e-6)
 
 
 @pytest.mark.parametrize("layout", ["I1", "I4", "V2"])
@@ -55,17 +55,17 @@ def test_simulated_engines_settle_to_the_response(layout: str, burns: bool) -> N
     gas = four_stroke(10.0, heat_density=1e5) if burns else None
     omega = 480 * math.pi / 30
     m = engine(layout, **SIZE, block=block((0.02, 0.05), "ground"), speed=omega, gas=gas)
-    found = mount_response(m, [omega])
-    assert found.turns == (2 if burns else 1)
+    response = mount_response(m, [omega])
+    assert response.turns == (2 if burns else 1)
     sol = m.simulate(28 * 2 * math.pi / omega, steps=28 * 180)
     last = slice(-360, None)
     body = sol.body("block")
     mounts = sum(sol.force(f"mount_{k}").on("block").force[last] for k in (1, 2, 3))
     moved = np.stack([body.x, body.y], axis=1)[last]
     angle = body.theta[last]
-    assert found.largest_displacement()[0] == pytest.approx(_largest(moved), rel=0.01)
-    assert found.largest_angle()[0] == pytest.approx(_largest(angle[:, None]), rel=0.01)
-    assert found.largest_force()[0] == pytest.approx(_largest(np.asarray(mounts)), rel=0.01)
+    assert response.largest_displacement()[0] == pytest.approx(_largest(moved), rel=0.01)
+    assert response.largest_angle()[0] == pytest.approx(_largest(angle[:, None]), rel=0.01)
+    assert response.largest_force()[0] == pytest.approx(_largest(np.asarray(mounts)), rel=0.01)
 
 
 def _largest(values: np.ndarray) -> float:

@@ -80,9 +80,9 @@ def test_the_slider_crank_that_counts_for_the_heat_moves_as_both_pistons_do() ->
     for phase, most in ((0.0, 1e-12), (12.0, 2e-4), (20.0, 6e-4)):
         lead = math.radians(phase)
         throw, rod = 2 * THROW * math.cos(lead / 2), 2 * ROD * math.cos(lead / 2) ** 2 / math.cos(lead)
-        one = -throw * np.cos(phi) - np.sqrt(rod**2 - (throw * np.sin(phi)) ** 2)
+        equivalent = -throw * np.cos(phi) - np.sqrt(rod**2 - (throw * np.sin(phi)) ** 2)
         both = between(phi - lead / 2, lead)
-        assert np.abs((one - one[0]) - (both - both[0])).max() < most * STROKE
+        assert np.abs((equivalent - equivalent[0]) - (both - both[0])).max() < most * STROKE
 
 
 def test_a_table_of_pressures_needs_the_gap() -> None:

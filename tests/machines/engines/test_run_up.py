@@ -32,7 +32,7 @@ def test_the_closed_form_is_the_integral(
     damping_ratio: float, acceleration: float, order: float, excitation: str
 ) -> None:
     w, b = 2 * math.pi * 8.0, order * acceleration
-    found = run_up(8.0, damping_ratio, acceleration, order, excitation)
+    response = run_up(8.0, damping_ratio, acceleration, order, excitation)
 
     def rates(t: float, x: np.ndarray) -> list[float]:
         theta = 0.5 * b * t**2
@@ -40,10 +40,10 @@ def test_the_closed_form_is_the_integral(
         force = w**2 * math.cos(theta) if excitation == "constant" else inertia
         return [x[1], force - 2 * damping_ratio * w * x[1] - w**2 * x[0]]
 
-    rows = slice(None, None, max(1, len(found.t) // 200))
-    span = (0.0, found.t[-1])
-    exact = solve_ivp(rates, span, [0.0, 0.0], t_eval=found.t[rows], method="DOP853", rtol=1e-10, atol=1e-11)
-    assert found.displacement[rows] == pytest.approx(exact.y[0], abs=2e-6)
+    rows = slice(None, None, max(1, len(response.t) // 200))
+    span = (0.0, response.t[-1])
+    exact = solve_ivp(rates, span, [0.0, 0.0], t_eval=response.t[rows], method="DOP853", rtol=1e-10, atol=1e-11)
+    assert response.displacement[rows] == pytest.approx(exact.y[0], abs=2e-6)
 
 
 def test_the_published_peak_without_damping() -> None:
@@ -54,10 +54,10 @@ def test_the_published_peak_without_damping() -> None:
     assert intensity.max() == pytest.approx(1.370, abs=5e-4)
     q = 10_000.0
     w = 2 * math.pi
-    found = run_up(1.0, 0.0, w**2 / (2 * math.pi * q), excitation="constant")
-    assert found.peak / math.sqrt(q) == pytest.approx(math.pi * math.sqrt(intensity.max()), rel=4e-3)
+    response = run_up(1.0, 0.0, w**2 / (2 * math.pi * q), excitation="constant")
+    assert response.peak / math.sqrt(q) == pytest.approx(math.pi * math.sqrt(intensity.max()), rel=4e-3)
     shift = u[intensity.argmax()] / math.sqrt(2)
-    assert (found.peak_speed / w - 1) * math.sqrt(q) == pytest.approx(shift, rel=0.02)
+    assert (response.peak_speed / w - 1) * math.sqrt(q) == pytest.approx(shift, rel=0.02)
 
 
 @pytest.mark.parametrize("excitation", ["inertia", "constant"])

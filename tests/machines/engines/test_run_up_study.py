@@ -47,7 +47,7 @@ def test_the_page_shows_what_the_study_finds(runs: pd.DataFrame) -> None:
 
 def test_the_picture_is_small(runs: pd.DataFrame) -> None:
     others = [runs.assign(layout=layout, frequency=hertz) for layout in GRID["layout"] for hertz in GRID["frequency"]]
-    many = pd.concat([one.assign(damping_ratio=zeta) for one in others for zeta in GRID["damping_ratio"]])
+    many = pd.concat([frame.assign(damping_ratio=zeta) for frame in others for zeta in GRID["damping_ratio"]])
     assert np.prod([len(values) for values in GRID.values()]) == 120
     file = io.BytesIO()
     picture(many).savefig(file, format="svg")

@@ -164,8 +164,8 @@ def test_rods_on_a_master_rod_are_known_by_their_joints(sense: float) -> None:
     m = radial(sense=sense)
     sol = m.sweep(2 * TURN / 200.0, steps=360)
     strokes = []
-    for one in chambers(sol.packed):
-        view, cycle = sol.force(one.name), one.chamber.cycle
+    for gas in chambers(sol.packed):
+        view, cycle = sol.force(gas.name), gas.chamber.cycle
         assert isinstance(view, GasView)
         assert cycle is not None
         assert cycle.height is not None

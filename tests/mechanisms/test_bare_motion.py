@@ -129,23 +129,23 @@ def test_estimates_are_plates_through_the_markers() -> None:
     m.weld("W", m.ground.at(0, 0), plate.at(0.0, 0.0))
     m.trace("P", plate.at(0.1, 0.0))
     m.trace("Q", plate.at(0.0, 0.1))
-    found = estimated_masses(m)
+    masses = estimated_masses(m)
     surface = 2700.0 * THICKNESS * 0.2
     r = HALF_WIDTH * 0.2
     a_bar = 0.2 * 2 * r + math.pi * r * r
-    assert found["bar"].mass == pytest.approx(surface * a_bar, rel=1e-3)
-    assert found["bar"].com == pytest.approx((0.1, 0.0), abs=1e-9)
+    assert masses["bar"].mass == pytest.approx(surface * a_bar, rel=1e-3)
+    assert masses["bar"].com == pytest.approx((0.1, 0.0), abs=1e-9)
     box = surface * 0.2 * 2 * r
     ends = surface * math.pi * r * r / 2  # each; centroid of a half disc at 4 r / (3 pi)
     c = 4 * r / (3 * math.pi)
     inertia = box * (0.2**2 + 4 * r * r) / 12 + 2 * (ends * (r * r / 2 - c * c) + ends * (0.1 + c) ** 2)
-    assert found["bar"].inertia == pytest.approx(inertia, rel=2e-3)
-    assert found["block"].mass == pytest.approx(surface * math.pi * (2 * r) ** 2, rel=1e-3)
-    assert found["wheel"].mass == pytest.approx(surface * math.pi * 0.05**2, rel=1e-3)
-    assert found["wheel"].inertia == pytest.approx(found["wheel"].mass * 0.05**2 / 2, rel=2e-3)
+    assert masses["bar"].inertia == pytest.approx(inertia, rel=2e-3)
+    assert masses["block"].mass == pytest.approx(surface * math.pi * (2 * r) ** 2, rel=1e-3)
+    assert masses["wheel"].mass == pytest.approx(surface * math.pi * 0.05**2, rel=1e-3)
+    assert masses["wheel"].inertia == pytest.approx(masses["wheel"].mass * 0.05**2 / 2, rel=2e-3)
     corners = 0.1**2 / 2 + r * (0.2 + math.sqrt(0.02)) + math.pi * r * r
-    assert found["plate"].mass == pytest.approx(surface * corners, rel=1e-3)
-    assert found["plate"].com[0] == pytest.approx(found["plate"].com[1])
+    assert masses["plate"].mass == pytest.approx(surface * corners, rel=1e-3)
+    assert masses["plate"].com[0] == pytest.approx(masses["plate"].com[1])
 
 
 def test_a_folder_without_parts_is_solved_and_says_how_heavy_it_took_its_bodies(
@@ -186,9 +186,9 @@ def test_rows_lie_so_close_that_the_film_shows_the_motion_itself(monkeypatch: py
     fine = np.linspace(0.0, 1.0, 20001)
     exact = _bouncing().simulate(times=fine).body("ball").y
     off = []
-    for found in (solution, plain):
-        ball = found.body("ball")
-        off.append(np.abs(hermite(found.t, ball.y, ball.vy, ball.ay, fine) - exact).max())
+    for sol in (solution, plain):
+        ball = sol.body("ball")
+        off.append(np.abs(hermite(sol.t, ball.y, ball.vy, ball.ay, fine) - exact).max())
     assert off[0] < 5e-5  # m
     assert off[1] > 5e-4  # what equal steps would have shown
     assert 361 < len(solution.t) < 1000

@@ -23,7 +23,7 @@ def load() -> Solid:
 def test_a_load_is_a_piece_of_no_mass() -> None:
     plain, made = Bodies(arm=[bar()]), Bodies(arm=[bar()])
     made.dress("arm", load())
-    alone, dressed = (described_body("m", "arm", one["arm"], {}, None) for one in (plain, made))
+    alone, dressed = (described_body("m", "arm", bodies["arm"], {}, None) for bodies in (plain, made))
     assert dressed.mass == alone.mass
     assert dressed.pieces["load"].dressing
     assert not dressed.pieces["bar"].dressing

@@ -253,9 +253,9 @@ def test_recording_ends_and_leaves_everything_as_it_was(tmp_path: Path) -> None:
 
 
 def test_names_that_are_none_are_not_taken() -> None:
-    found = Inputs(files={"README.md": "x"})
-    assert observed(found.names()) == Inputs(files={"README.md": inputs.file_state("README.md")})
-    for damaged in (None, [], {"files": ["a"]}, {**found.names(), "files": [1]}, {**found.names(), "more": []}):
+    recorded = Inputs(files={"README.md": "x"})
+    assert observed(recorded.names()) == Inputs(files={"README.md": inputs.file_state("README.md")})
+    for damaged in (None, [], {"files": ["a"]}, {**recorded.names(), "files": [1]}, {**recorded.names(), "more": []}):
         assert observed(damaged) is None
 
 
@@ -279,7 +279,7 @@ def test_the_solver_is_hashed_once_however_many_of_its_modules_are_loaded(monkey
 
     asked: list[str] = []
     monkeypatch.setattr(loaded_files, "sources_state", lambda name: asked.append(name) or "hash")
-    found = loaded_files.loaded_inputs(Path(face.__file__), "mechanisms", set(sys.modules))
-    assert "mbsd" in found.sources
-    assert len(found.modules) > 20
-    assert sorted(asked) == sorted(found.sources)
+    imported = loaded_files.loaded_inputs(Path(face.__file__), "mechanisms", set(sys.modules))
+    assert "mbsd" in imported.sources
+    assert len(imported.modules) > 20
+    assert sorted(asked) == sorted(imported.sources)

@@ -95,14 +95,14 @@ def test_hand_made_parts_say_what_touches_and_what_has_no_solid(
     assert "bodies without solids are estimated as aluminium bars and plates through the markers: rod" in said
     assert "not compared, as they may touch: crank and ground, crank and slider" in said
     out = Out("arm")
-    parts, motion, found = read_parts(out.parts), read_motion(out.motion), read_clearance(out.clearance)
+    parts, motion, clearance = read_parts(out.parts), read_motion(out.motion), read_clearance(out.clearance)
     assert parts.without_solids == ["rod"]
     assert (motion.bodies["rod"].mass_from, motion.bodies["rod"].z) == ("estimate", None)
     assert motion.bodies["rod"].mass > 0
-    assert found.may_touch == [("crank", "ground"), ("crank", "slider")]
-    assert {frozenset(pair.bodies) for pair in found.pairs} <= {frozenset(("slider", "ground"))}
+    assert clearance.may_touch == [("crank", "ground"), ("crank", "slider")]
+    assert {frozenset(pair.bodies) for pair in clearance.pairs} <= {frozenset(("slider", "ground"))}
 
-    text = report.report(motion, parts, found)
+    text = report.report(motion, parts, clearance)
     assert "Bodies that touch by design were not compared with each other: crank and ground; crank and slider." in text
     assert "Without solids: rod." in text
 
@@ -139,9 +139,9 @@ def test_pieces_may_touch_and_all_else_of_their_bodies_is_compared(
     solve_stage.run("arm")
     clearance_stage.run("arm")
     assert "not compared, as they may touch: base and crank, crank and slider" in capsys.readouterr().out
-    found = read_clearance(Out("arm").clearance)
-    assert (found.may_touch, found.pieces_may_touch) == ([], [("base", "crank"), ("crank", "slider")])
-    text = report.report(read_motion(Out("arm").motion), read_parts(Out("arm").parts), found)
+    clearance = read_clearance(Out("arm").clearance)
+    assert (clearance.may_touch, clearance.pieces_may_touch) == ([], [("base", "crank"), ("crank", "slider")])
+    text = report.report(read_motion(Out("arm").motion), read_parts(Out("arm").parts), clearance)
     assert "Pieces that touch by design were not compared with each other: base and crank; crank and slider." in text
 
 

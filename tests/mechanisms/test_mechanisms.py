@@ -69,12 +69,12 @@ def test_it_closes_and_its_drivers_fix_every_freedom(out: Out) -> None:
 
 def _taken_by_impacts(motion: contract.Motion) -> np.ndarray:
     """(T,) energy (J) that the impacts up to each row have changed; of two rows at an impact the second is after it."""
-    time, found = np.array(motion.time), np.zeros(len(motion.time))
+    time, energy = np.array(motion.time), np.zeros(len(motion.time))
     for event in motion.events:
         before = int(np.searchsorted(time, event.time))
-        found[before + 1 if before < len(time) and time[before] == event.time else before :] += event.energy
+        energy[before + 1 if before < len(time) and time[before] == event.time else before :] += event.energy
         assert event.what != "impact" or event.energy <= 1e-12 * max(motion.energy.kinetic)
-    return found
+    return energy
 
 
 def test_pins_of_two_bodies_stay_together(out: Out) -> None:
@@ -146,13 +146,13 @@ def test_the_glb_moves_as_data_json_has_it(out: Out) -> None:
     """Corners of the box round all pieces of a body, at samples all over the motion, to 0.01 mm."""
     glb.run(out.name)
     motion, parts = contract.read_motion(out.motion), contract.read_parts(out.parts)
-    found = GlbFile(out.glb.read_bytes())
-    boxes = {body: found.box_of(body) for body in parts.bodies}
-    assert set(boxes) == {name for name in found.nodes if name in {"ground", *motion.bodies}}
+    glb_file = GlbFile(out.glb.read_bytes())
+    boxes = {body: glb_file.box_of(body) for body in parts.bodies}
+    assert set(boxes) == {name for name in glb_file.nodes if name in {"ground", *motion.bodies}}
     start, time, turned = motion.time[0], np.array(motion.time), _with_y_up(parts.mount.up)
-    for t in found.clock[:: max(1, len(found.clock) // 12)]:
+    for t in glb_file.clock[:: max(1, len(glb_file.clock) // 12)]:
         k = int(np.abs(time - start - t).argmin())
-        matrices = found.matrices(float(t))
+        matrices = glb_file.matrices(float(t))
         for body, corners in boxes.items():
             pose = motion.bodies.get(body)
             x, y, angle = (pose.x[k], pose.y[k], pose.theta[k]) if pose else (0.0, 0.0, 0.0)

@@ -266,7 +266,7 @@ def _examples() -> dict[str, Mechanism]:
     from mbsd.model.contact import CONTACT_KINDS
     from mbsd.model.force import FORCE_KINDS
 
-    found = {}
+    examples = {}
     for kind in (*FORCE_KINDS.values(), *CONTACT_KINDS.values()):
         if kind.name in ("friction", "rigid_contact"):
             continue  # their examples do not fit here; both are in the tests above
@@ -278,8 +278,8 @@ def _examples() -> dict[str, Mechanism]:
         assert kind.example is not None
         kind.example(m, i.at(0.3, 0.05, 0.2), j.at(0.1, -0.02, 0.4))
         m.start_near(a=20, b=70)
-        found[kind.name] = m
-    return found
+        examples[kind.name] = m
+    return examples
 
 
 EXAMPLES = _examples()
@@ -292,5 +292,5 @@ def test_every_kind_of_force_and_contact_reaches_the_file(kind: str, tmp_path: P
     contract.write_motion(tmp_path / "data.json", motion)
     again = contract.read_motion(tmp_path / "data.json")
     assert again == motion
-    found = {name: one.kind for name, one in (again.forces | again.contacts).items()}
-    assert kind in found.values()
+    kinds = {name: element.kind for name, element in (again.forces | again.contacts).items()}
+    assert kind in kinds.values()

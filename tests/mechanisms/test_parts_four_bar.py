@@ -49,8 +49,8 @@ def test_two_processes_write_the_same_bytes(roots: tuple[Path, Path]) -> None:
     first, second = (sorted(path for path in root.rglob("*") if path.is_file()) for root in roots)
     assert [path.name for path in first] == [path.name for path in second]
     assert len([path for path in first if path.suffix in (".stl", ".step")]) > 40
-    for one, other in zip(first, second, strict=True):
-        assert one.read_bytes() == other.read_bytes(), one.name
+    for file, counterpart in zip(first, second, strict=True):
+        assert file.read_bytes() == counterpart.read_bytes(), file.name
 
 
 def test_a_second_run_has_nothing_to_do(roots: tuple[Path, Path]) -> None:
@@ -133,8 +133,8 @@ def test_pins_stand_where_the_joints_are(pieces: dict[str, MeshPiece]) -> None:
 
 
 def test_no_two_parts_touch_over_the_motion(pieces: dict[str, MeshPiece], parts: Parts) -> None:
-    found = check(parts, four_bar_motion(), list(pieces.values()), "key")
-    gaps = {frozenset(pair.pieces): pair for pair in found.pairs}
+    clearance = check(parts, four_bar_motion(), list(pieces.values()), "key")
+    gaps = {frozenset(pair.pieces): pair for pair in clearance.pairs}
     for joint, pin in (("A", "pin_A"), ("B", "pin_B"), ("C", "pin_C"), ("D", "pin_D")):
         for side in ("low", "high"):
             assert gaps[frozenset((pin, f"bushing_{joint}_{side}"))].gap == pytest.approx(0.1e-3, abs=0.02e-3)

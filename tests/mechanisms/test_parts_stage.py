@@ -192,11 +192,11 @@ def test_masses_of_solids_with_splines_are_exact(scale: float) -> None:
         extruded(loop(circle, 40.0 * scale - scale), 8.0 * scale).cut(extruded(loop(circle, 9.0 * scale), 8.0 * scale)),
         "disc",
     )
-    volume, found = math.pi * (39.0**2 + 2 * 39.0 + 1 - 100.0) * 8.0 * scale**3, mass_of(solid, 1000.0)
+    volume, mass = math.pi * (39.0**2 + 2 * 39.0 + 1 - 100.0) * 8.0 * scale**3, mass_of(solid, 1000.0)
     assert volume_of(solid) == pytest.approx(volume, rel=1e-6)
-    assert found.mass == pytest.approx(1e-6 * volume, rel=1e-6)
-    assert found.inertia == pytest.approx(1e-12 * volume * (40.0**2 + 10.0**2) * scale**2 / 2, rel=1e-6)
-    assert found.com == pytest.approx((0.0, 0.0), abs=1e-9 * scale)
+    assert mass.mass == pytest.approx(1e-6 * volume, rel=1e-6)
+    assert mass.inertia == pytest.approx(1e-12 * volume * (40.0**2 + 10.0**2) * scale**2 / 2, rel=1e-6)
+    assert mass.com == pytest.approx((0.0, 0.0), abs=1e-9 * scale)
 
 
 def test_reads_of_parameters_are_seen_through_properties_and_asdict() -> None:

@@ -72,7 +72,7 @@ def test_plates_hold_closed_meshes_that_stand_on_the_bed_and_keep_apart(press: P
     made = rows(files, "make")
     plates = sorted(name for name in files if name.endswith(".stl"))
     assert plates == ["plate_1.stl", "plate_2.stl", "plate_3.stl"]
-    found = Counter()
+    counts = Counter()
     for name in plates:
         mesh = read_mesh(files[name])
         assert mesh.is_watertight
@@ -81,14 +81,14 @@ def test_plates_hold_closed_meshes_that_stand_on_the_bed_and_keep_apart(press: P
         pieces = mesh.split()
         assert all(piece.is_watertight and piece.volume > 0 and abs(piece.bounds[0][2]) < 1e-4 for piece in pieces)
         boxes = [piece.bounds[:, :2] for piece in pieces]
-        for k, one in enumerate(boxes):
+        for k, box in enumerate(boxes):
             for other in boxes[:k]:
-                assert np.maximum(one[0] - other[1], other[0] - one[1]).max() > 4.0 - 1e-4
+                assert np.maximum(box[0] - other[1], other[0] - box[1]).max() > 4.0 - 1e-4
         number = int(name[6])
         expected = sum(row["plates"].split().count(str(number)) for row in made.values())
         assert len(pieces) == expected
-        found[number] = expected
-    assert sum(found.values()) == sum(int(row["count"]) for row in made.values())
+        counts[number] = expected
+    assert sum(counts.values()) == sum(int(row["count"]) for row in made.values())
 
 
 def test_a_3mf_is_valid_and_names_every_piece(press: Press, tmp_path: Path) -> None:
@@ -135,7 +135,7 @@ def test_the_3mf_and_the_stl_are_the_same_plate(press: Press) -> None:
 @pytest.mark.slow
 def test_two_processes_write_the_same_bytes(press: Press, tmp_path: Path) -> None:
     """From the same parts, in folders of other names, without and with a seed for hashes."""
-    found = []
+    outputs = []
     for seed in ("0", "17"):
         out = tmp_path / f"run_{seed}" / "four_bar" / "parts"
         out.mkdir(parents=True)
@@ -145,9 +145,9 @@ def test_two_processes_write_the_same_bytes(press: Press, tmp_path: Path) -> Non
         command = [sys.executable, "-m", "mechanisms", "print", "four-bar", "--bed", "150x150"]
         done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
-        found.append({p.name: p.read_bytes() for p in sorted((out.parent / "print").iterdir())})
-    assert found[0] == found[1]
-    assert {Path(name).suffix for name in found[0]} == {".3mf", ".stl", ".dxf", ".md", ".csv"}
+        outputs.append({p.name: p.read_bytes() for p in sorted((out.parent / "print").iterdir())})
+    assert outputs[0] == outputs[1]
+    assert {Path(name).suffix for name in outputs[0]} == {".3mf", ".stl", ".dxf", ".md", ".csv"}
 
 
 def test_it_is_done_again_only_for_another_bed_gap_or_piece(press: Press, capsys: pytest.CaptureFixture[str]) -> None:

@@ -200,7 +200,7 @@ def loops_of(content: bytes) -> list[float]:
     while lines:
         chain = lines.pop()
         while np.linalg.norm(chain[0] - chain[-1]) > 1e-4:
-            ends = [k for k, one in enumerate(lines) if min(_apart(chain, one)) < 1e-4]
+            ends = [k for k, line in enumerate(lines) if min(_apart(chain, line)) < 1e-4]
             assert len(ends) == 1, "an outline is open, or branches"
             following = lines.pop(ends[0])
             first, last = _apart(chain, following)

@@ -29,19 +29,19 @@ def test_an_arm_that_flies_back_gets_more_times_and_keeps_its_period() -> None:
     Half way between two times the quintic is the motion itself, known here: the arm points at the crank's pin.
     """
     p = replace(shaper.Params(), crank=0.0992, arm=0.3, ram=0.25, link=0.35)
-    found = _swept(p)
-    assert found.period == 2 * np.pi / p.speed
-    rate = np.abs(found.body("arm").omega)
-    assert np.diff(found.t)[rate[1:] > 0.5 * rate.max()].max() < 0.3 * np.median(np.diff(found.t))
-    assert _off(p, found) < 2 * CLOSE < 1e-3 < _off(p, shaper.build(p).sweep())
+    swept = _swept(p)
+    assert swept.period == 2 * np.pi / p.speed
+    rate = np.abs(swept.body("arm").omega)
+    assert np.diff(swept.t)[rate[1:] > 0.5 * rate.max()].max() < 0.3 * np.median(np.diff(swept.t))
+    assert _off(p, swept) < 2 * CLOSE < 1e-3 < _off(p, shaper.build(p).sweep())
 
 
-def _off(p: shaper.Params, found: Solution) -> float:
+def _off(p: shaper.Params, swept: Solution) -> float:
     """The largest difference of the quintic and the motion half way between two times (rad)."""
-    h, arm = np.diff(found.t), found.body("arm")
+    h, arm = np.diff(swept.t), swept.body("arm")
     q, v, a = arm.theta, arm.omega, arm.alpha
     middle = (q[:-1] + q[1:]) / 2 + 5 * h / 32 * (v[:-1] - v[1:]) + h**2 / 64 * (a[:-1] + a[1:])
-    crank = found.body("crank").theta[0] + p.speed * (found.t[:-1] + h / 2)
+    crank = swept.body("crank").theta[0] + p.speed * (swept.t[:-1] + h / 2)
     exact = np.arctan2(p.height + p.crank * np.sin(crank), p.crank * np.cos(crank))
     return float(np.abs(np.exp(1j * middle) - np.exp(1j * exact)).max())
 

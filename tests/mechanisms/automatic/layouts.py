@@ -13,7 +13,7 @@ def meets(made: Automatic) -> list[str]:
     """Pairs of items at one height that come nearer than none: seen anew at some poses, without circles or coarse
     looks.
     """
-    layout, found = made.layout, []
+    layout, meetings = made.layout, []
     at = np.linspace(0, len(layout.times) - 1, 60).astype(int)
     spans = [item.reach.span(made.decided) for item in layout.items]
     seen = [placed(item.shape.core_at(at), layout.poses[item.body][at]) for item in layout.items]
@@ -26,5 +26,5 @@ def meets(made: Automatic) -> list[str]:
             if by_design or first.only or second.only or not spans_meet(spans[i], spans[j]):
                 continue
             if (core_gaps(seen[i], seen[j]) < first.shape.radius + second.shape.radius).any():
-                found.append(f"{first.what} meets {second.what}")
-    return found
+                meetings.append(f"{first.what} meets {second.what}")
+    return meetings

@@ -131,7 +131,7 @@ MACHINES: tuple[Machine, ...] = (camshaft, geneva, cardan, toy_car, press, two_v
 
 def made_of(m: Mechanism) -> tuple[Automatic, dict[str, Wheel]]:
     made = Automatic(m, m.sweep(2 * pi, steps=240))
-    return made, {one.body: one for one in made.layout.features if isinstance(one, Wheel)}
+    return made, {wheel.body: wheel for wheel in made.layout.features if isinstance(wheel, Wheel)}
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.7, 2.6])
@@ -185,7 +185,7 @@ def test_arm_that_stays_away_from_the_mate_lies_in_the_gears_layer() -> None:
     m.gear_pair("mesh", gear.start, pinion.origin, 0.05, 0.03)
     m.drive_angle("drive", gear, constant_rate(1.0, -1.0))
     made = Automatic(m, m.sweep(2.0, steps=60))
-    assert all(one.shares for one in made.layout.features if isinstance(one, Wheel))
+    assert all(wheel.shares for wheel in made.layout.features if isinstance(wheel, Wheel))
     assert set(made.decided.values()) == {0}
     whole = Automatic(m, m.sweep(2 * pi, steps=240))
-    assert [one.body for one in whole.layout.features if isinstance(one, Wheel) and not one.shares] == ["gear"]
+    assert [wheel.body for wheel in whole.layout.features if isinstance(wheel, Wheel) and not wheel.shares] == ["gear"]

@@ -62,10 +62,10 @@ def slides(made: Automatic) -> list[Slide]:
 
 def rails(made: Automatic) -> list[str]:
     """Names of the rails that are built, which are sound."""
-    found = [solid for solids in made.plan().solids.values() for solid in solids if solid.name.startswith("rail_")]
-    for solid in found:
+    built = [solid for solids in made.plan().solids.values() for solid in solids if solid.name.startswith("rail_")]
+    for solid in built:
         checked(solid.shape, solid.through_holes)
-    return [solid.name for solid in found]
+    return [solid.name for solid in built]
 
 
 @settings(max_examples=10, deadline=None)
@@ -131,9 +131,9 @@ def test_carts_that_never_meet_are_never_one_above_the_other(second: float) -> N
     m = carts(second, 0.0)
     made = Automatic(m, m.sweep(1.0, steps=20))
     assert made.levels["first"] == made.levels["second"]
-    one, other = slides(made)
-    if not other.host:
-        (_, b), (c, _) = (sorted(x for x, _ in slide.rail_ends()) for slide in (one, other))
+    left, right = slides(made)
+    if not right.host:
+        (_, b), (c, _) = (sorted(x for x, _ in slide.rail_ends()) for slide in (left, right))
         assert b + RAIL < c
 
 

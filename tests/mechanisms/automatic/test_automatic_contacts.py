@@ -146,8 +146,8 @@ def test_planks_of_a_bowl_end_where_they_meet() -> None:
     made, (part,), planks = _made(m, 1.0)
     assert part.look == "wheel"
     for k in (1, 2, 3):
-        found = planks[k].path / made.sizes.of_metres(1.0)
-        np.testing.assert_allclose(found, places[k : k + 2], atol=1e-9)
+        corners = planks[k].path / made.sizes.of_metres(1.0)
+        np.testing.assert_allclose(corners, places[k : k + 2], atol=1e-9)
         np.testing.assert_allclose(planks[k].feet[0], planks[k + 1].feet[1], atol=1e-6)
 
 
@@ -163,10 +163,10 @@ def test_a_closed_curve_that_pushes_is_a_cam_with_a_roller() -> None:
     m.drive_angle("motor", disc, constant_rate(20.0))
     m.start_near(valve=(0, 0.048, 0))
     made, _, _ = _made(m, 0.4)
-    (found,) = [f for f in made.layout.features if isinstance(f, Cam)]
+    (cam,) = [f for f in made.layout.features if isinstance(f, Cam)]
     scale = made.sizes.of_metres(1.0)
-    assert found.roller == pytest.approx(0.012 * scale - found.clear)
-    assert found.base == pytest.approx(0.024 * scale, rel=1e-3)
+    assert cam.roller == pytest.approx(0.012 * scale - cam.clear)
+    assert cam.base == pytest.approx(0.024 * scale, rel=1e-3)
     assert made.levels["disc"] != made.levels["valve"]
     names = {solid.name for solid in made.plan().solids["valve"]}
     assert {"roller_push", "pin_push"} <= names

@@ -73,9 +73,9 @@ def test_turned_and_scaled_the_layout_stays(scale: float, turn: float, angle: fl
 
 def test_no_part_of_the_trammel_touches_another() -> None:
     m = trammel.build(trammel.Params())
-    found = parts_of(m, m.sweep(times=np.linspace(0.0, 4.0, 121)))
-    assert found.state == "built", found
-    assert found.detail.startswith("2 layers")
+    outcome = parts_of(m, m.sweep(times=np.linspace(0.0, 4.0, 121)))
+    assert outcome.state == "built", outcome
+    assert outcome.detail.startswith("2 layers")
 
 
 def test_a_tongue_is_longer_than_the_groove_that_it_passes() -> None:

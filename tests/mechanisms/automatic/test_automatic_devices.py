@@ -31,49 +31,51 @@ def made(number: int) -> Automatic:
 
 
 def test_a_block_passes_over_a_pivot_that_is_sunk_into_its_guide() -> None:
-    found = made(SUNK)
+    automatic = made(SUNK)
     (pivot,) = (
-        pin for pin in found.layout.features if isinstance(pin, Pin) and pin.is_flush(found.decided, found.layout)
+        pin
+        for pin in automatic.layout.features
+        if isinstance(pin, Pin) and pin.is_flush(automatic.decided, automatic.layout)
     )
     (guide,) = pivot.movers
-    assert not meets(found)
-    solids = found.plan().solids
-    top = found.heights.top(guide)
+    assert not meets(automatic)
+    solids = automatic.plan().solids
+    top = automatic.heights.top(guide)
     (shaft,) = (solid for solid in solids["ground"] if solid.name == f"pin_{pivot.name}".replace(" ", "_"))
     assert top - 0.5 < shaft.shape.val().BoundingBox().zmax < top
     assert not any(solid.name.startswith(f"circlip_{pivot.name}") for solid in solids["ground"])
 
 
 def test_a_crank_of_two_webs_carries_a_rod_on_either_side() -> None:
-    found = made(WEBS)
-    assert not meets(found)
-    ((web, body),) = found.layout.webs.items()
-    (joining,) = (pin for pin in found.layout.features if isinstance(pin, Pin) and pin.webs)
-    between = [found.levels[b] for b in joining.movers if b not in (web, body)]
-    low, high = sorted((found.levels[web], found.levels[body]))
+    automatic = made(WEBS)
+    assert not meets(automatic)
+    ((web, body),) = automatic.layout.webs.items()
+    (joining,) = (pin for pin in automatic.layout.features if isinstance(pin, Pin) and pin.webs)
+    between = [automatic.levels[b] for b in joining.movers if b not in (web, body)]
+    low, high = sorted((automatic.levels[web], automatic.levels[body]))
     assert low < min(between) <= max(between) < high
-    for other in (pin for pin in found.layout.features if isinstance(pin, Pin) and pin is not joining):
+    for other in (pin for pin in automatic.layout.features if isinstance(pin, Pin) and pin is not joining):
         assert not {web, body} <= set(other.places), "no other pin is on both"
     (pin,) = (
         solid
-        for solids in found.plan().solids.values()
+        for solids in automatic.plan().solids.values()
         for solid in solids
         if solid.name == f"pin_{joining.name}".replace(" ", "_")
     )
-    box, ends = pin.shape.val().BoundingBox(), sorted((web, body), key=found.levels.__getitem__)
-    assert found.heights.bottom(ends[0]) < box.zmin
-    assert box.zmax < found.heights.top(ends[1])
+    box, ends = pin.shape.val().BoundingBox(), sorted((web, body), key=automatic.levels.__getitem__)
+    assert automatic.heights.bottom(ends[0]) < box.zmin
+    assert box.zmax < automatic.heights.top(ends[1])
 
 
 def test_a_sunk_pivot_is_built_and_proven() -> None:
-    found = case.run(SEED + SUNK, KINDS[SUNK % len(KINDS)]).outcomes[-1]
-    assert found.state == BUILT, found
+    outcome = case.run(SEED + SUNK, KINDS[SUNK % len(KINDS)]).outcomes[-1]
+    assert outcome.state == BUILT, outcome
 
 
 def test_a_crank_of_two_webs_is_sound() -> None:
-    found = made(WEBS)
-    (body,) = found.layout.webs.values()
-    crank = {body: found.solids(engraved_too=False)[body]}
+    automatic = made(WEBS)
+    (body,) = automatic.layout.webs.values()
+    crank = {body: automatic.solids(engraved_too=False)[body]}
     assert [solid.name for solid in crank[body]].count(body) == 1
     assert f"{body}_2" in [solid.name for solid in crank[body]]
     assert not case.overlapping(case.meshed(crank))  # pyright: ignore[reportArgumentType]
@@ -84,9 +86,9 @@ def test_a_body_between_two_others() -> None:
     items = [Item(name, name, disc(0.0, 0.0, 1.0), Reach((name,))) for name in names]
     pairs = [(i, j) for j in range(3) for i in range(j)]
     for low, high, middle in (("a", "b", "c"), ("b", "c", "a"), ("a", "c", "b")):
-        found = find_layers(Problem(names, items, pairs, between=[(low, high, (middle,))]))
-        assert found is not None
-        assert found[middle] == 1
+        layers = find_layers(Problem(names, items, pairs, between=[(low, high, (middle,))]))
+        assert layers is not None
+        assert layers[middle] == 1
     assert find_layers(Problem(names, items, pairs, {"a": 0}, between=[("b", "c", ("a",))])) is None
 
 

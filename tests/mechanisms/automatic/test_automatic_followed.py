@@ -134,11 +134,11 @@ def test_a_path_is_continued_on_both_sides() -> None:
 
 def test_a_band_that_comes_back_to_its_begin_has_a_hole() -> None:
     path = 100.0 * _arc(math.pi + 0.02, 200)
-    found = band(path)
-    assert found is not None
-    [hole] = found.holes
+    ring = band(path)
+    assert ring is not None
+    [hole] = ring.holes
     assert np.hypot(*hole.T) == pytest.approx(100.0, abs=0.1)
-    assert np.hypot(*found.border.T) == pytest.approx(110.0, abs=0.1)
+    assert np.hypot(*ring.border.T) == pytest.approx(110.0, abs=0.1)
 
 
 def test_roads_on_one_surface_are_one_band_if_one_of_them_is() -> None:

@@ -31,9 +31,9 @@ def thrown(masses: dict[str, float], apart: float = 0.3, scale: float = 1.0) -> 
 
 @pytest.mark.parametrize("scale", [0.1, 1.0, 30.0])
 def test_sizes_tell_masses_apart(scale: float) -> None:
-    found = free(thrown({"light": 0.3, "heavy": 2.4}, scale=scale))
-    assert all(body.is_ball for body in found.values())
-    assert found["heavy"].radius == pytest.approx(2 * found["light"].radius)
+    bodies = free(thrown({"light": 0.3, "heavy": 2.4}, scale=scale))
+    assert all(body.is_ball for body in bodies.values())
+    assert bodies["heavy"].radius == pytest.approx(2 * bodies["light"].radius)
 
 
 def test_a_ball_that_may_weighs_what_is_given() -> None:
@@ -48,9 +48,9 @@ def test_a_ball_that_may_weighs_what_is_given() -> None:
 
 def test_balls_that_pass_close_are_smaller() -> None:
     made = thrown({"a": 1.0, "b": 1.0, "c": 1.0, "d": 1.0}, apart=0.02)
-    found = free(made)
-    for a, b in combinations(found.values(), 2):
-        ways = [made.layout.seen(one.body, (one.x, one.y), "ground") for one in (a, b)]
+    bodies = free(made)
+    for a, b in combinations(bodies.values(), 2):
+        ways = [made.layout.seen(body.body, (body.x, body.y), "ground") for body in (a, b)]
         assert a.radius + b.radius < np.linalg.norm(ways[0] - ways[1], axis=1).min()
     assert set(made.levels.values()) == {0}
 

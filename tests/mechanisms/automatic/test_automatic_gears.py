@@ -196,7 +196,7 @@ def test_a_pivot_on_the_axis_of_a_wheel_of_ground_stands_on_that_wheel() -> None
     m.drive_angle("motor", carrier, constant_rate(2.0))
     m.start_near(carrier=0, planet=(0.1, 0, 0))
     made = Automatic(m, m.sweep(steps=90))
-    boxes = {one.name: one.shape.val().BoundingBox() for one in made.solids(engraved_too=False)["ground"]}
+    boxes = {solid.name: solid.shape.val().BoundingBox() for solid in made.solids(engraved_too=False)["ground"]}
     assert boxes["pedestal_O"].zmin > boxes["gear_g"].zmax
     assert boxes["pedestal_O"].zmax < made.span("carrier")[0]
     assert boxes["pedestal_O"].zlen > made.sizes.scale

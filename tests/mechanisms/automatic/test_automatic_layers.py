@@ -38,11 +38,11 @@ def test_gaps_of_polygons_agree_with_many_points_on_their_sides() -> None:
     for _ in range(200):
         a = convex_hull(rng.normal(size=(rng.integers(1, 7), 2)))
         b = convex_hull(rng.normal(size=(rng.integers(1, 7), 2))) + rng.uniform(-4, 4, 2)
-        found = float(core_gaps(a[None], b[None])[0])
+        gap = float(core_gaps(a[None], b[None])[0])
         sampled = np.linalg.norm(_samples(a)[:, None] - _samples(b)[None], axis=2).min()
-        if found > 0:
-            assert found <= sampled + 1e-9
-            assert sampled < found + 0.15
+        if gap > 0:
+            assert gap <= sampled + 1e-9
+            assert sampled < gap + 0.15
         else:  # they overlap: sides cross, or one holds a corner of the other
             inside = [p for p in _samples(b) if len(a) > 2 and len(convex_hull(np.vstack([a, p]))) == len(a)]
             inside += [p for p in _samples(a) if len(b) > 2 and len(convex_hull(np.vstack([b, p]))) == len(b)]
@@ -54,10 +54,10 @@ def test_bars_one_behind_the_other_on_a_line_do_not_meet(apart: float, first: fl
     """The world turned, rounding puts their ends on either side of the line."""
     turns = np.linspace(-np.pi, np.pi, 300)
     still = np.zeros_like(turns)
-    one, other = (np.column_stack([still, still, turns + turn]) for turn in (0.0, np.pi if away else 0.0))
+    poses_a, poses_b = (np.column_stack([still, still, turns + turn]) for turn in (0.0, np.pi if away else 0.0))
     ends = (-apart, -apart - second) if away else (2 * apart + first, 2 * apart + first + second)
-    a = placed(np.array([[apart, 0.0], [apart + first, 0.0]]), one)
-    b = placed(np.array([[-end if away else end, 0.0] for end in ends]), other)
+    a = placed(np.array([[apart, 0.0], [apart + first, 0.0]]), poses_a)
+    b = placed(np.array([[-end if away else end, 0.0] for end in ends]), poses_b)
     assert np.allclose(core_gaps(a, b), 2 * apart if away else apart, rtol=1e-9)
 
 

@@ -72,6 +72,6 @@ def test_a_plainer_hull_keeps_all_points(count: int, waves: int, height: float, 
     ],
 )
 def test_what_hunts_found(seed: int, family: str, state: str, words: str) -> None:
-    found = case.outcome_of(drawn(seed, family, skipped=2)[1])
-    assert found.state == state, found
-    assert words in found.detail
+    outcome = case.outcome_of(drawn(seed, family, skipped=2)[1])
+    assert outcome.state == state, outcome
+    assert words in outcome.detail

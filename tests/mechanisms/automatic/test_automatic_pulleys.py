@@ -21,8 +21,8 @@ def test_both_pulleys_show_that_they_turn(scale: float) -> None:
     made = Automatic(m, m.sweep(steps=12))
     for body, holes in (("small", 4), ("large", 7)):
         (pulley,) = made.layout.wheels[body]
-        shape, found = shape_of(pulley, 7.0, [(0.0, 0.0, Eye(13.0, 11.0))])
-        assert found == holes
+        shape, through_holes = shape_of(pulley, 7.0, [(0.0, 0.0, Eye(13.0, 11.0))])
+        assert through_holes == holes
         solid = only_solid(shape, body)
         check_mesh(read_mesh(stl_bytes(solid)), solid.Volume(), holes, body)
 

@@ -99,5 +99,5 @@ def test_a_wheel_too_small_for_a_mark_gets_none() -> None:
 
 def test_the_pointer_of_a_cycloid_is_built_and_clear_of_the_road() -> None:
     m = _wheel(1.0)
-    found = parts_of(m, m.sweep(times=np.linspace(0, 1, 61)), engraved=False)
-    assert found.state == BUILT, found.detail
+    outcome = parts_of(m, m.sweep(times=np.linspace(0, 1, 61)), engraved=False)
+    assert outcome.state == BUILT, outcome.detail

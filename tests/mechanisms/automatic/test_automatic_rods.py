@@ -66,8 +66,8 @@ def test_a_rod_may_join_a_revolute_joint_and_ground() -> None:
     m.distance("rod", swing.at(0.14, 0.0), m.ground.at(0.12, -0.12), 0.14)
     m.drive_angle("motor", crank, constant_rate(6.0))
     m.start_near(crank=90, swing=-10)
-    found = parts_of(m, m.sweep(times=np.linspace(0.0, 2 * math.pi / 6.0, 121)))
-    assert found.state == "built", found
+    outcome = parts_of(m, m.sweep(times=np.linspace(0.0, 2 * math.pi / 6.0, 121)))
+    assert outcome.state == "built", outcome
 
 
 def test_wishes_reach_a_rod() -> None:
@@ -91,7 +91,7 @@ def test_a_joint_that_is_called_like_a_body_has_a_rod_of_another_name() -> None:
 
 
 def stretched(made: Automatic) -> dict[str, Stretching]:
-    return {one.force: one for one in made.layout.features if isinstance(one, Stretching)}
+    return {feature.force: feature for feature in made.layout.features if isinstance(feature, Stretching)}
 
 
 def test_a_linear_driver_is_a_cylinder_between_studs() -> None:
@@ -101,8 +101,8 @@ def test_a_linear_driver_is_a_cylinder_between_studs() -> None:
     m.drive_distance("ram", m.ground.at(0.2, -0.1), arm.at(0.2, 0), harmonic(0.22, 0.05, 1.0))
     m.start_near(arm=60)
     made = Automatic(m, m.sweep(6.0))
-    one = stretched(made)["ram"]
-    assert one.outer == pytest.approx(0.6 * one.radius)
+    ram = stretched(made)["ram"]
+    assert ram.outer == pytest.approx(0.6 * ram.radius)
     held = [
         hold.force for solids in made.solids(engraved_too=False).values() for solid in solids for hold in solid.holds
     ]
@@ -122,13 +122,13 @@ def test_a_rope_has_studs_and_room_to_hang(gravity: tuple[float, float] | None) 
     m.start_moving(arm=(0.0, 0.0, -3.0))
     solution = m.simulate(0.5, 60, event_rows=True)
     made = Automatic(m, solution)
-    one = stretched(made)["rope"]
-    assert one.sags is not None
-    slack = np.linalg.norm(one.path[:, 1] - one.path[:, 0], axis=1) < made.sizes.of_metres(0.3499)
+    feature = stretched(made)["rope"]
+    assert feature.sags is not None
+    slack = np.linalg.norm(feature.path[:, 1] - feature.path[:, 0], axis=1) < made.sizes.of_metres(0.3499)
     assert slack.any()
-    assert one.sags.any() == (gravity is not None)
+    assert feature.sags.any() == (gravity is not None)
     down = np.array([0.0, -1.0 if gravity else 0.0, 0.0])
-    for (a, b), sag in zip(one.path[::50], one.sags[::50], strict=True):
+    for (a, b), sag in zip(feature.path[::50], feature.sags[::50], strict=True):
         rope = sagging(np.array([*a, 0.0]), np.array([*b, 0.0]), made.sizes.of_metres(0.35), down)[:, :2]
         lowest = (rope - (a + np.linspace(0, 1, len(rope))[:, None] * (b - a)))[:, 1].min()
         assert 2 * lowest >= sag[1] - 1e-6

@@ -70,7 +70,7 @@ def test_two_wheels_run_on_one_road(surface: str, turn: float) -> None:
         away = distances(made.layout.seen(part.body, part.at, "ground"), road.path) - part.made
         assert away.min() > (-1.0 if surface == "tyre" else 0.0)
     plan = made.plan()
-    [solid] = [one for one in plan.solids["ground"] if one.name == "road_rear_road"]
+    [solid] = [piece for piece in plan.solids["ground"] if piece.name == "road_rear_road"]
     checked(solid.shape, solid.through_holes)
 
 

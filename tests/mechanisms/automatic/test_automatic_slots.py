@@ -122,8 +122,8 @@ def test_a_curve_that_bends_too_sharply_is_refused() -> None:
 @pytest.mark.parametrize("build", [six_bar_with_welds])
 def test_solids_are_sound_and_touch_nothing(build: object) -> None:
     m = build()
-    found = parts_of(m, m.sweep(times=np.linspace(0.0, 1.0, 241)))
-    assert found.state == BUILT, found
+    outcome = parts_of(m, m.sweep(times=np.linspace(0.0, 1.0, 241)))
+    assert outcome.state == BUILT, outcome
 
 
 def test_bands_follow_arcs() -> None:

@@ -46,39 +46,43 @@ def planned(scale: float = 1.0, turn: float = 0.0) -> Automatic:
 
 
 def springs(made: Automatic) -> dict[str, Stretching]:
-    return {one.force: one for one in made.layout.features if isinstance(one, Stretching)}
+    return {feature.force: feature for feature in made.layout.features if isinstance(feature, Stretching)}
 
 
 @pytest.mark.parametrize(("scale", "turn"), [(1.0, 0.0), (0.1, 1.0), (30.0, -2.0)])
 def test_what_the_film_draws_of_a_spring_meets_no_plate_and_no_other_spring(scale: float, turn: float) -> None:
     made = planned(scale, turn)
     heights, poses = made.heights, made.layout.poses
-    found = springs(made)
-    assert set(found) == {"on_pins", "return", "damper", "push"}
-    for one in found.values():
-        along = Rounded(one.path[:, :, :], one.outer)
+    drawn = springs(made)
+    assert set(drawn) == {"on_pins", "return", "damper", "push"}
+    for spring in drawn.values():
+        along = Rounded(spring.path[:, :, :], spring.outer)
         for body in made.layout.moving:
             low, high = heights.bottom(body), heights.top(body)
-            if low > one.z(heights) + one.outer or high < one.z(heights) - one.outer:
+            if low > spring.z(heights) + spring.outer or high < spring.z(heights) - spring.outer:
                 continue
-            gap, _ = least_gap(along, made.layout.outline(body), (poses[one.layer], poses[body]), 0.0)
-            assert gap > 0, f"{one.force} cuts {body}"
-        for other in found.values():
-            if other is not one and abs(other.z(heights) - one.z(heights)) < one.outer + other.outer:
-                gap, _ = least_gap(along, Rounded(other.path, other.outer), (poses[one.layer], poses[other.layer]), 0.0)
-                assert gap > 0, f"{one.force} cuts {other.force}"
+            gap, _ = least_gap(along, made.layout.outline(body), (poses[spring.layer], poses[body]), 0.0)
+            assert gap > 0, f"{spring.force} cuts {body}"
+        for other in drawn.values():
+            if other is not spring and abs(other.z(heights) - spring.z(heights)) < spring.outer + other.outer:
+                gap, _ = least_gap(
+                    along, Rounded(other.path, other.outer), (poses[spring.layer], poses[other.layer]), 0.0
+                )
+                assert gap > 0, f"{spring.force} cuts {other.force}"
 
 
 def test_springs_lie_over_their_bodies_and_over_the_pins_that_hold_them() -> None:
     made = planned()
     for stud in (feature for feature in made.layout.features if isinstance(feature, Stud)):
         bodies = [b for b in (stud.pin.movers if stud.pin else [stud.body]) if b != "ground"]
-        assert all(made.decided[one.layer] > made.levels[body] for one, _ in stud.ends for body in bodies)
+        assert all(made.decided[spring.layer] > made.levels[body] for spring, _ in stud.ends for body in bodies)
 
 
 def test_ends_on_one_place_share_a_stud() -> None:
     made = planned()
-    studs = {frozenset((one.force, end) for one, end in f.ends) for f in made.layout.features if isinstance(f, Stud)}
+    studs = {
+        frozenset((spring.force, end) for spring, end in f.ends) for f in made.layout.features if isinstance(f, Stud)
+    }
     assert frozenset({("return", 0), ("damper", 0)}) in studs
     assert frozenset({("return", 1), ("push", 1)}) in studs
     assert len(studs) == 6
@@ -94,13 +98,13 @@ def test_every_end_is_held_where_it_is() -> None:
             for hold in solid.holds:
                 low, high = solid.shape.val().BoundingBox().zmin, solid.shape.val().BoundingBox().zmax
                 assert low < hold.z < high
-                one = springs(made)[hold.force]
-                assert (hold.z, hold.radius) == pytest.approx((one.z(made.heights) * scale, one.radius * scale))
+                spring = springs(made)[hold.force]
+                assert (hold.z, hold.radius) == pytest.approx((spring.z(made.heights) * scale, spring.radius * scale))
                 ball = solid.shape.val().BoundingBox().center
                 pose = made.layout.poses[body][0]
                 c, s = math.cos(pose[2]), math.sin(pose[2])
                 place = [pose[0] + (c * ball.x - s * ball.y) / scale, pose[1] + (s * ball.x + c * ball.y) / scale]
-                assert np.linalg.norm(one.path[0] - place, axis=1).min() < 1e-6
+                assert np.linalg.norm(spring.path[0] - place, axis=1).min() < 1e-6
                 held.setdefault(hold.force, []).append((place[0], place[1]))
     assert {force: len(set(places)) for force, places in held.items()} == dict.fromkeys(springs(made), 2)
 
@@ -155,8 +159,8 @@ def test_gas_has_a_cylinder_where_its_piston_is_on_its_axis(gas: str, aside: flo
     made = Automatic(m, m.simulate(0.2, 60))
     assert set(springs(made)) == ({"gas"} if held else set())
     if held:
-        one = springs(made)["gas"]
-        assert one.outer == pytest.approx(0.6 * one.radius)
+        cylinder = springs(made)["gas"]
+        assert cylinder.outer == pytest.approx(0.6 * cylinder.radius)
 
 
 def test_a_moving_core_is_looked_at_pose_by_pose() -> None:

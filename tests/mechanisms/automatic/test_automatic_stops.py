@@ -58,8 +58,8 @@ def test_stop_pins_meet_at_both_ends_of_the_way(scale: float, turned: bool) -> N
 
 def test_no_stop_pin_touches_the_other() -> None:
     m = pendulum()
-    found = parts_of(m, m.sweep(times=np.linspace(0.0, 2 * math.pi, 121)))
-    assert found.state == "built", found
+    outcome = parts_of(m, m.sweep(times=np.linspace(0.0, 2 * math.pi, 121)))
+    assert outcome.state == "built", outcome
 
 
 def elbow(lower: float | None, upper: float | None, reverse: bool = False) -> Mechanism:
@@ -88,7 +88,7 @@ def test_stops_between_moving_bodies(reverse: bool) -> None:
     meet = 2 * RADIUS + CLEAR * made.sizes.pivot.fit.running
     assert gaps(made, stop) == {"lower": pytest.approx(meet, abs=1e-3), "upper": pytest.approx(meet, abs=1e-3)}
     names = {
-        body: [one.name for one in solids if one.name.startswith("stop")]
+        body: [solid.name for solid in solids if solid.name.startswith("stop")]
         for body, solids in made.solids(engraved_too=False).items()
     }
     assert names == {"ground": [], "a": ["stop_B_lower", "stop_B_upper"], "b": ["stop_B_b"]}
@@ -131,14 +131,17 @@ def test_gibs_meet_the_blocks_at_the_end_of_the_rail(on_ground: bool) -> None:
     made = Automatic(m, m.sweep())
     assert not meets(made)
     solids, rail = made.solids(engraved_too=False), "ground" if on_ground else "carrier"
-    held = {word: [one for one in solids[rail] if one.name.startswith(f"stop_X_{word}")] for word in ("lower", "upper")}
+    held = {
+        word: [solid for solid in solids[rail] if solid.name.startswith(f"stop_X_{word}")]
+        for word in ("lower", "upper")
+    }
     turn, at = (math.degrees(0.3), 0.0) if on_ground else (0.0, 350.0)
     clear = CLEAR * made.sizes.pivot.fit.running * made.sizes.scale
     for word, way in (("lower", -50.0), ("upper", 50.0)):
         moved = [
-            Solid(one.name, one.shape.translate((way + at, 0, 0)).rotate((0, 0, 0), (0, 0, 1), turn), "steel", 0)
-            for one in solids["block"]
-            if one.name.startswith("gib")
+            Solid(solid.name, solid.shape.translate((way + at, 0, 0)).rotate((0, 0, 0), (0, 0, 1), turn), "steel", 0)
+            for solid in solids["block"]
+            if solid.name.startswith("gib")
         ]
         assert nearest(moved, held[word]) == pytest.approx(clear, rel=1e-6)
 
@@ -146,12 +149,14 @@ def test_gibs_meet_the_blocks_at_the_end_of_the_rail(on_ground: bool) -> None:
 def test_a_rail_reaches_its_stops_and_one_far_away_is_left_out() -> None:
     m = block((-0.08, 2.0))
     [stop] = [
-        one
-        for one in Automatic(m, m.sweep()).solids(engraved_too=False)["ground"]
-        if one.name.startswith("stop_X_lower_1")
+        solid
+        for solid in Automatic(m, m.sweep()).solids(engraved_too=False)["ground"]
+        if solid.name.startswith("stop_X_lower_1")
     ]
     assert stop.shape.val().isValid()
-    assert not [one for one in Automatic(m, m.sweep()).solids(engraved_too=False)["ground"] if "upper" in one.name]
+    assert not [
+        solid for solid in Automatic(m, m.sweep()).solids(engraved_too=False)["ground"] if "upper" in solid.name
+    ]
 
 
 def test_a_slot_ends_at_its_limits() -> None:

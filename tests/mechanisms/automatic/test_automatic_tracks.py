@@ -116,8 +116,8 @@ def test_what_runs_on_a_track_is_clear_of_it_by_the_clearance(name: str) -> None
 @pytest.mark.parametrize("name", ["cup", "tray"])
 def test_none_of_its_parts_touch(name: str) -> None:
     solution = ALL[name][0]()
-    found = parts_of(solution.mechanism, solution)
-    assert found.state == "built", found
+    outcome = parts_of(solution.mechanism, solution)
+    assert outcome.state == "built", outcome
 
 
 @pytest.mark.parametrize("name", ["bowl", "round", "peg", "table"])

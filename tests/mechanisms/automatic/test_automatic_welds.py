@@ -48,11 +48,14 @@ def test_bolts_of_a_load_at_or_beside_a_joint_clear_its_hardware(body: str, plac
     pins = [feature for feature in made.layout.features if isinstance(feature, Pin)]
     assert len(welds) == len(places)
     for weld in welds:
-        ends = [np.array([made.layout.seen(one, bolt, "ground")[7] for bolt in weld.bolts(one)]) for one in weld.movers]
+        ends = [
+            np.array([made.layout.seen(mover, bolt, "ground")[7] for bolt in weld.bolts(mover)])
+            for mover in weld.movers
+        ]
         np.testing.assert_allclose(ends[0], ends[1], atol=1e-4)
-        for one in weld.movers:
-            places_of_pins = [pin.places[one] for pin in pins if one in pin.places]
-            assert all(_gap(weld, one, place) > BLOCK + made.sizes.hardware for place in places_of_pins)
+        for mover in weld.movers:
+            places_of_pins = [pin.places[mover] for pin in pins if mover in pin.places]
+            assert all(_gap(weld, mover, place) > BLOCK + made.sizes.hardware for place in places_of_pins)
     for first, second in pairwise(welds):
         assert min(_gap(first, body, bolt) for bolt in second.bolts(body)) > 2 * BLOCK
 

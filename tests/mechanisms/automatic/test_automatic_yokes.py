@@ -43,7 +43,7 @@ def test_it_is_one_lighter_piece_within_the_plate_round_all_its_eyes(
     assert solid.isValid()
     corners = [(x, y, eye.radius) for x, y, eye in eyes[:3]]
     middle = np.mean([corner[:2] for corner in corners], axis=0)
-    corners.sort(key=lambda one: math.atan2(one[1] - middle[1], one[0] - middle[0]))
+    corners.sort(key=lambda corner: math.atan2(corner[1] - middle[1], corner[0] - middle[0]))
     hull = extruded(outline.hull(corners), 12.0, -1.0)
     if len(others) == 2:
         hull = hull.union(extruded(outline.hull([(x, y, eye.radius) for x, y, eye in eyes[2:]]), 12.0, -1.0))

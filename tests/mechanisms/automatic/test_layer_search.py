@@ -74,10 +74,10 @@ def test_the_order_is_the_best_of_all(problem: Problem) -> None:
                     best = rank
         if best is not None and best[0] == 0:
             break
-    found = find_layers(problem)
-    assert (found is None) == (best is None)
-    if found is not None:
-        assert _rank(problem, found) == best
+    layers = find_layers(problem)
+    assert (layers is None) == (best is None)
+    if layers is not None:
+        assert _rank(problem, layers) == best
 
 
 def _rank(problem: Problem, levels: dict[str, int]) -> tuple[int, ...] | None:
@@ -111,11 +111,11 @@ def test_what_blocks_is_needed(problem: Problem) -> None:
     named = blocking(problem, list(problem.conflicts))
     assert named
     assert find_layers(replace(problem, conflicts=named)) is None
-    for one in named:
-        assert find_layers(replace(problem, conflicts=[other for other in named if other != one])) is not None
+    for conflict in named:
+        assert find_layers(replace(problem, conflicts=[other for other in named if other != conflict])) is not None
 
 
 def test_a_layer_that_is_asked_for_is_given_however_high() -> None:
     plates = [Item(body, body, disc(0, 0, 1), Reach((body,))) for body in ("a", "b")]
-    found = find_layers(Problem(["a", "b"], plates, [(0, 1)], fixed={"a": 7}))
-    assert found == {"a": 7, "b": 0}
+    layers = find_layers(Problem(["a", "b"], plates, [(0, 1)], fixed={"a": 7}))
+    assert layers == {"a": 7, "b": 0}

@@ -101,7 +101,7 @@ def test_a_hunt_goes_on_where_it_was_stopped(out_root: Path) -> None:
     assert kept.others == 1
     hunt(3, **asked)
     told = [json.loads(line) for line in lines.read_bytes().splitlines()]
-    assert [one["seed"] for one in told] == list(seeds(4, 3))
+    assert [record["seed"] for record in told] == list(seeds(4, 3))
     assert told[0]["sources"].startswith("x"), "it is not looked at again"
     assert json.loads((out_root / "hunt_parts.json").read_text())["cases"][BUILT] == 3
     hunt(1, **asked, anew=True)
@@ -111,9 +111,9 @@ def test_a_hunt_goes_on_where_it_was_stopped(out_root: Path) -> None:
 
 @pytest.mark.slow
 def test_one_is_built_and_proven() -> None:
-    found = case.run(SEED, "slider-crank").outcomes[-1]
-    assert found.state == BUILT, found
-    assert "pieces, nearest" in found.detail
+    outcome = case.run(SEED, "slider-crank").outcomes[-1]
+    assert outcome.state == BUILT, outcome
+    assert "pieces, nearest" in outcome.detail
 
 
 def test_what_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,14 +22,14 @@ from tools.models.motions import four_bar_motion
 
 
 def test_free_layers_pass_and_the_nearest_pairs_are_told() -> None:
-    found = checked(four_bar_pieces())
-    gaps = {frozenset(pair.pieces): pair for pair in found.pairs}
+    clearance = checked(four_bar_pieces())
+    gaps = {frozenset(pair.pieces): pair for pair in clearance.pairs}
     assert gaps[frozenset(("pin_B", "coupler"))].gap == pytest.approx(0.5e-3)
     assert gaps[frozenset(("pin_B", "coupler"))].proof == "layers"
     assert gaps[frozenset(("post_D", "rocker"))].gap == pytest.approx(0.5e-3)
-    assert [pair.gap for pair in found.pairs] == sorted(pair.gap for pair in found.pairs)
-    assert all(found.limit <= pair.proven <= pair.gap for pair in found.pairs)
-    assert found.interpolation_error < 1e-9
+    assert [pair.gap for pair in clearance.pairs] == sorted(pair.gap for pair in clearance.pairs)
+    assert all(clearance.limit <= pair.proven <= pair.gap for pair in clearance.pairs)
+    assert clearance.interpolation_error < 1e-9
 
 
 @pytest.mark.parametrize(("body", "by", "other"), [("coupler", -10.0, "crank"), ("coupler", 10.5, "rocker")])

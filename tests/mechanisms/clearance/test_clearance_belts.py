@@ -73,12 +73,12 @@ def test_the_band_is_all_round_the_path(first: float, second: float, apart: floa
 @pytest.mark.parametrize(("crossed", "teeth"), [(False, None), (True, None), (False, (16, 32))])
 def test_all_that_the_film_draws_is_in_the_band(crossed: bool, teeth: tuple[int, int] | None) -> None:
     motion = solved(drive(crossed, teeth), "a", "b")
-    [found] = bands(with_rims([], "a", "b"), motion, paths(motion))
+    [belt_band] = bands(with_rims([], "a", "b"), motion, paths(motion))
     [belt] = belts(motion, {"belt": HELD})
-    solid, poses = found.piece.manifold, Poses(motion)
-    low, high = found.piece.z_range
+    solid, poses = belt_band.piece.manifold, Poses(motion)
+    low, high = belt_band.piece.z_range
     for time in (0.0, 0.31):
-        x, y, turn = found.path.at(np.array([time]))[0]
+        x, y, turn = belt_band.path.at(np.array([time]))[0]
         for spec, path in zip(belt.specs, belt.paths(poses, Moment(time, 0)), strict=True):
             points = 1000 * np.array(path)
             upright = len(path) == 2 and path[0][:2] == path[1][:2]
@@ -100,8 +100,8 @@ def test_what_keeps_out_of_the_way_passes() -> None:
         box("ground", "post", 60.0, 20.0, 0.0, (6, 6, 20)),
         box("ground", "bar", 60.0, 50.0, 12.0, (20, 60, 4)),
     )
-    found = checked(motion, inside, over)
-    near = {pair.pieces: pair for pair in found.pairs if "belt belt" in pair.bodies}
+    clearance = checked(motion, inside, over)
+    near = {pair.pieces: pair for pair in clearance.pairs if "belt belt" in pair.bodies}
     assert near["bar", "belt"].proof == "layers"
     assert near["bar", "belt"].gap == pytest.approx(12e-3 - 10e-3 - 1.06e-3)
 
@@ -133,9 +133,9 @@ def test_the_band_goes_round_with_a_carrier() -> None:
     m.start_near(arm=17, b=40)
     motion = solved(m, "arm", "b", end=1.0)
     where = paths(motion)
-    [found] = bands(with_rims([], "b"), motion, where)
+    [belt_band] = bands(with_rims([], "b"), motion, where)
     times = np.linspace(0.0, 1.0, 331)
-    place = found.path.at(times)
+    place = belt_band.path.at(times)
     assert place[:, :2] == pytest.approx(np.broadcast_to([10.0, 20.0], (331, 2)))
     assert place[:, 2] == pytest.approx(where["arm"].at(times)[:, 2], abs=1e-7)
     rim = disc("b", "rim", 0, 0, 40.5, 7.0, 13.0)

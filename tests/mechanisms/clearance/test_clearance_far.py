@@ -32,18 +32,18 @@ def test_bodies_that_are_far_have_pieces_that_are_apart() -> None:
     motion = snake(6)
     pieces = [box(f"b{k}", f"p{k}", 12.0, 5.0, 0.0, (20.0, 8.0, 4.0)) for k in range(6)]
     where = paths(motion)
-    found = far.far_bodies(pieces, where, REACH)
-    assert 0 < len(found) < 15
+    far_pairs = far.far_bodies(pieces, where, REACH)
+    assert 0 < len(far_pairs) < 15
     for a in pieces:
         for b in pieces:
-            if frozenset((a.body, b.body)) in found:
+            if frozenset((a.body, b.body)) in far_pairs:
                 assert Sweep(a, b, where[a.body], where[b.body]).is_apart(REACH)
 
 
 def test_the_check_is_the_same_with_and_without(monkeypatch: pytest.MonkeyPatch) -> None:
     motion = snake(5)
     pieces = [box(f"b{k}", f"p{k}", 0.0, 0.0, 6.0 * k, (20.0, 8.0, 4.0)) for k in range(5)]
-    found = clearance_stage.check(parts_of(pieces), motion, pieces, "0" * 64)
+    clearance = clearance_stage.check(parts_of(pieces), motion, pieces, "0" * 64)
     monkeypatch.setattr(far, "far_bodies", lambda *_: set())
-    assert clearance_stage.check(parts_of(pieces), motion, pieces, "0" * 64) == found
-    assert found.apart > 0
+    assert clearance_stage.check(parts_of(pieces), motion, pieces, "0" * 64) == clearance
+    assert clearance.apart > 0

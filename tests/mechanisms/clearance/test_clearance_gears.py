@@ -35,11 +35,11 @@ def wheel(body: str, outline: np.ndarray, rim: float = 0.0) -> MeshPiece:
 def turning(rate: float, turns: float, phase: float = 0.0, x: float = 0.0, per_turn: int = 120) -> BodyPath:
     """About (x, 0), at a rate (rad/s), for so many seconds of which each is a turn of the fastest."""
     time = np.linspace(0.0, turns, round(per_turn * turns) + 1)
-    one, zero = np.ones_like(time), np.zeros_like(time)
+    ones, zeros = np.ones_like(time), np.zeros_like(time)
     return BodyPath(
         time,
-        np.column_stack([x * one, zero, phase + rate * time]),
-        np.column_stack([zero, zero, rate * one]),
+        np.column_stack([x * ones, zeros, phase + rate * time]),
+        np.column_stack([zeros, zeros, rate * ones]),
         np.zeros((len(time), 3)),
     )
 
@@ -49,17 +49,18 @@ class Pair:
 
     def __init__(self, teeth: tuple[int, int], ring: bool = False, turns: float = 1.0, late: float = 0.0) -> None:
         """``late``: by how much of a pitch the second is turned from where it meshes."""
-        one, two = (n / 2 for n in teeth)
-        self.teeth, self.ring, self.apart = teeth, ring, one - two if ring else one + two
+        radius_a, radius_b = (n / 2 for n in teeth)
+        self.teeth, self.ring, self.apart = teeth, ring, radius_a - radius_b if ring else radius_a + radius_b
         pitch = 2 * math.pi / teeth[1]
         if ring:
-            hole = toothed(teeth[0], 1.0, one + 1.25, one - 0.75, -PLAY, math.pi / teeth[0])
-            first, second = wheel("a", hole, one + 4.0), toothed(teeth[1], 1.0, two + 0.9, two - 1.25, PLAY)
+            hole = toothed(teeth[0], 1.0, radius_a + 1.25, radius_a - 0.75, -PLAY, math.pi / teeth[0])
+            first = wheel("a", hole, radius_a + 4.0)
+            second = toothed(teeth[1], 1.0, radius_b + 0.9, radius_b - 1.25, PLAY)
             phase = pitch / 2
         else:
-            tips = [min(r + 1.0, longest_tip(r, other)) for r, other in ((one, two), (two, one))]
-            first = wheel("a", toothed(teeth[0], 1.0, tips[0], one - 1.25, PLAY))
-            second = toothed(teeth[1], 1.0, tips[1], two - 1.25, PLAY)
+            tips = [min(r + 1.0, longest_tip(r, other)) for r, other in ((radius_a, radius_b), (radius_b, radius_a))]
+            first = wheel("a", toothed(teeth[0], 1.0, tips[0], radius_a - 1.25, PLAY))
+            second = toothed(teeth[1], 1.0, tips[1], radius_b - 1.25, PLAY)
             phase = math.pi + pitch / 2
         self.pieces = (first, wheel("b", second))
         sense = 1.0 if ring else -1.0
@@ -84,11 +85,11 @@ class Pair:
 @given(st.integers(12, 28), st.integers(12, 20), st.booleans(), st.booleans())
 def test_one_pitch_tells_what_the_whole_motion_does(first: int, second: int, ring: bool, turned: bool) -> None:
     pair = Pair((first + 24, second) if ring else (first, second), ring, turns=0.5)
-    found, whole = pair.by_pitch(turned), least_gap(pair.sweep(turned), 5.0)
-    assert found is not None
-    assert found.gap == pytest.approx(whole.gap, abs=RESOLUTION)
-    assert 0.05 < whole.gap - 2 * RESOLUTION < found.proven <= found.gap
-    assert pair.sweep().gap_at(found.time, 5.0) == pytest.approx(found.gap, abs=1e-6)
+    by_pitch, whole = pair.by_pitch(turned), least_gap(pair.sweep(turned), 5.0)
+    assert by_pitch is not None
+    assert by_pitch.gap == pytest.approx(whole.gap, abs=RESOLUTION)
+    assert 0.05 < whole.gap - 2 * RESOLUTION < by_pitch.proven <= by_pitch.gap
+    assert pair.sweep().gap_at(by_pitch.time, 5.0) == pytest.approx(by_pitch.gap, abs=1e-6)
 
 
 def test_more_turns_cost_no_more() -> None:
@@ -127,10 +128,10 @@ def test_unions_of_equal_teeth_are_the_wheel_itself() -> None:
     outline = toothed(18, 1.0, 10.0, 7.75, PLAY)
     piece = wheel("a", outline + np.array([3.0, -2.0]))
     sides = piece.triangles[~piece.level]
-    found = turned_union(sides, np.array([3.0, -2.0]), 18, (0.0, 99.0))
-    assert found is not None
-    assert len(sides) <= len(found.triangles) <= 2 * len(sides)
-    assert found.spread < 1e-5
+    union = turned_union(sides, np.array([3.0, -2.0]), 18, (0.0, 99.0))
+    assert union is not None
+    assert len(sides) <= len(union.triangles) <= 2 * len(sides)
+    assert union.spread < 1e-5
     assert turned_union(sides, np.array([3.0, -2.0]), 17, (0.0, 99.0)) is None
     assert order([piece], "a", np.array([3.0, -2.0]), 9.0) == 18
     assert order([piece], "b", np.zeros(2), 9.0) == 1

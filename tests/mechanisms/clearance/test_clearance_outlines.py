@@ -44,9 +44,9 @@ def _of(piece: MeshPiece, solid: object) -> MeshPiece:
     return MeshPiece(piece.body, piece.name, np.asarray(mesh.vert_properties)[np.asarray(mesh.tri_verts)])
 
 
-def _area(found: Outline) -> float:
-    (ax, ay), (bx, by) = found.edges[:, 0].T, found.edges[:, 1].T
-    return float((found.times * (ax * by - bx * ay)).sum() / 2)
+def _area(shadow: Outline) -> float:
+    (ax, ay), (bx, by) = shadow.edges[:, 0].T, shadow.edges[:, 1].T
+    return float((shadow.times * (ax * by - bx * ay)).sum() / 2)
 
 
 def test_the_outline_is_the_edge_of_the_shadow() -> None:
@@ -58,10 +58,10 @@ def test_the_outline_is_the_edge_of_the_shadow() -> None:
         return 32 * radius**2 * math.sin(2 * math.pi / 64)
 
     for low, high, radius in ((5.0, 40.0, 8.0), (0.5, 3.0, 20.0), (1.0, 10.0, 20.0), (-5.0, 50.0, 20.0)):
-        found = outline(stand, low, high)
-        assert found is not None
-        assert len(found.edges) == 128, "an outer and an inner circle"
-        assert _area(found) == pytest.approx(disc_area(radius) - disc_area(5.0))
+        shadow = outline(stand, low, high)
+        assert shadow is not None
+        assert len(shadow.edges) == 128, "an outer and an inner circle"
+        assert _area(shadow) == pytest.approx(disc_area(radius) - disc_area(5.0))
     assert outline(stand, 31.0, 32.0) is None
 
 
@@ -78,8 +78,8 @@ def test_points_inside_are_found_and_points_in_bores_are_not() -> None:
         (0, 0, False, True), (15, 1, True, True), (0, -15, True, False), (19.9, 0.1, True, True), (25, 0, False, False),
         (-18, 1, True, True), (-9.9, 4.9, True, True), (3, 4, False, True),
     ):  # fmt: skip
-        for found, inside in ((ring, in_ring), (clamp, in_clamp)):
-            assert covers(found, np.array([[x, y]])) == inside
+        for shadow, inside in ((ring, in_ring), (clamp, in_clamp)):
+            assert covers(shadow, np.array([[x, y]])) == inside
 
 
 @given(
@@ -120,9 +120,9 @@ def test_what_outlines_tell_is_what_the_meshes_tell(seed: int, monkeypatch: pyte
     monkeypatch.setattr(least, "least_by_outlines", lambda *_: None)
     slow = least.least_gap(pair, 5.0)
     assert told.gap == pytest.approx(slow.gap, abs=RESOLUTION)
-    for found in (told, slow):
-        assert found.gap - RESOLUTION <= found.proven <= found.gap
-        assert pair.gap_at(found.time, 5.0) == pytest.approx(found.gap, abs=1e-9)
+    for measured in (told, slow):
+        assert measured.gap - RESOLUTION <= measured.proven <= measured.gap
+        assert pair.gap_at(measured.time, 5.0) == pytest.approx(measured.gap, abs=1e-9)
 
 
 def test_outlines_that_cover_others_prove_nothing() -> None:

@@ -55,13 +55,13 @@ def checked(pieces: list[MeshPiece], motion: Motion) -> Clearance:
 
 @pytest.mark.parametrize(("angle", "aside"), [(0.0, 0.0), (0.7, 0.004), (math.pi / 2, -0.006)])
 def test_a_block_between_walls_is_proven_along_its_line(angle: float, aside: float) -> None:
-    found = checked(walls(0.12, angle, 1e3 * aside), slider(angle, aside))
-    for pair in found.pairs:
+    clearance = checked(walls(0.12, angle, 1e3 * aside), slider(angle, aside))
+    for pair in clearance.pairs:
         assert pair.proof == "slide"
         assert pair.gap == pytest.approx(0.12e-3, abs=2e-6)
-        assert found.limit <= pair.proven <= pair.gap
+        assert clearance.limit <= pair.proven <= pair.gap
         assert pair.time is None
-    assert len(found.pairs) == 2
+    assert len(clearance.pairs) == 2
 
 
 def test_a_block_that_is_too_wide_is_caught() -> None:
@@ -104,10 +104,10 @@ def test_a_stem_is_proven_along_its_line_and_its_disc_by_the_motion(angle: float
     guide = turned(box("ground", "left", 116.1, 12.62, -5.0, (47.8, 5.0, 20.0)), angle)
     motion = slider(angle)
     assert slide_gap(piece, guide, slides_of(motion, paths(motion)), 5.0) is None
-    found = sliced(piece, guide, slides_of(motion, paths(motion)), 5.0)
-    assert found is not None
-    assert found.gap == pytest.approx(0.12, abs=2e-3)
-    assert found.rest
+    slices = sliced(piece, guide, slides_of(motion, paths(motion)), 5.0)
+    assert slices is not None
+    assert slices.gap == pytest.approx(0.12, abs=2e-3)
+    assert slices.rest
     (pair,) = checked([piece, guide], motion).pairs
     whole = least_gap(Sweep(piece, guide, paths(motion)["block"], paths(motion)["ground"]), 5.0)
     assert pair.gap == pytest.approx(whole.gap * 1e-3, abs=2e-6)

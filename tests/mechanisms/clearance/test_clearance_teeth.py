@@ -54,9 +54,9 @@ def test_a_disc_on_a_wheel_of_many_teeth_is_proven_with_little_work(monkeypatch:
     plain = Search.run
 
     def counted(search: Search, *asked: float) -> object:
-        found = plain(search, *asked)
+        nearest = plain(search, *asked)
         looked.append(search.looked)
-        return found
+        return nearest
 
     monkeypatch.setattr(Search, "run", counted)
     masses = dict.fromkeys(("wheel", "lever"), "mechanism")

@@ -93,7 +93,7 @@ def test_freedoms_of_the_tree_less_its_loops_are_those_of_the_mechanism(name: st
     loops = root.find("equality")
     held = sum({"connect": 2, "joint": 1}[loop.tag] for loop in loops) if loops is not None else 0
     freedoms = len(list(root.iter("joint"))) - sum(
-        1 for one in (loops if loops is not None else []) if one.tag == "joint"
+        1 for loop in (loops if loops is not None else []) if loop.tag == "joint"
     )
     assert freedoms - held == sol.mobility.dof
     assert left_out == []

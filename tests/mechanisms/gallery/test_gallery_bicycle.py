@@ -85,8 +85,8 @@ def test_the_torque_at_the_crank_is_that_of_virtual_work(sol: Solution) -> None:
     for body, (mass, inertia) in masses.items():
         angle = around[0][body][2]
         np.testing.assert_allclose(angle, sol.body(body).theta, atol=1e-12)
-        one, two = ((around[k][body] - around[-k][body]) / (2 * k * step) for k in (1, 2))
-        slopes[body] = (4 * one - two) / 3
+        narrow, wide = ((around[k][body] - around[-k][body]) / (2 * k * step) for k in (1, 2))
+        slopes[body] = (4 * narrow - wide) / 3
         bends = (around[1][body] - 2 * around[0][body] + around[-1][body]) / step**2
         weights = np.array([mass, mass, inertia])[:, None]
         wanted += (weights * slopes[body] * bends).sum(axis=0) * crank.omega**2 + 9.81 * mass * slopes[body][1]

@@ -64,10 +64,10 @@ def test_chain_of_six_ends_as_published() -> None:
     """mubosym's test 12, whose integrator has moved it by 0.1."""
     p = chain.Params(length=1.0, mass=1.0, damping=0.4, rate=4.0)
     sol = chain.build(p).simulate(20.0, 40, tolerance=1e-11)
-    found = [sol.body(f"link{k + 1}").theta[-1] + pi / 2 for k in range(6)]
-    np.testing.assert_allclose(found, published("12")[:6], atol=0.1)
+    angles = [sol.body(f"link{k + 1}").theta[-1] + pi / 2 for k in range(6)]
+    np.testing.assert_allclose(angles, published("12")[:6], atol=0.1)
     answer = exact(rods((1.0,) * 6, 0.4), np.concatenate([np.zeros(6), np.full(6, 4.0)]), 20.0)
-    np.testing.assert_allclose(found, answer[:6], atol=1e-5)
+    np.testing.assert_allclose(angles, answer[:6], atol=1e-5)
 
 
 @pytest.mark.parametrize("links", [3, 10, 24])

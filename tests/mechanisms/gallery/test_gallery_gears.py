@@ -31,7 +31,7 @@ def test_planetary_gear_obeys_willis(sun: int, planet: int, planets: int, fixed:
     driven = "ring" if fixed == "sun" else "sun"
     np.testing.assert_allclose(rate[fixed], 0.0, atol=1e-10)
     np.testing.assert_allclose(rate[driven], p.speed)
-    from_carrier = {name: one - rate["carrier"] for name, one in rate.items()}
+    from_carrier = {name: speed - rate["carrier"] for name, speed in rate.items()}
     np.testing.assert_allclose(from_carrier["sun"] * p.sun, -from_carrier["ring"] * p.ring, atol=1e-9)
     for k in range(1, planets + 1):
         own = sol.body(f"planet{k}").omega - rate["carrier"]

@@ -27,10 +27,10 @@ def shaken(p: vibration.Params) -> Motion:
 
 def orders(motion: Motion, what: str) -> np.ndarray:
     """(K, k) amplitudes from order 1 on."""
-    found = spectrum(motion, quantity(motion, what).rows)
-    assert found.harmonic
-    np.testing.assert_array_equal(found.at[:3], [0, 1, 2])
-    return found.amplitudes[1:]
+    spectral = spectrum(motion, quantity(motion, what).rows)
+    assert spectral.harmonic
+    np.testing.assert_array_equal(spectral.at[:3], [0, 1, 2])
+    return spectral.amplitudes[1:]
 
 
 def harmonics(p: vibration.Params) -> np.ndarray:
@@ -48,24 +48,26 @@ def harmonics(p: vibration.Params) -> np.ndarray:
 def test_the_shaking_force_has_the_harmonics_of_the_books() -> None:
     p = vibration.Params()
     motion = shaken(p)
-    found = orders(motion, "shaking force")
+    amplitudes = orders(motion, "shaking force")
     wanted = p.oscillating * p.crank * p.speed**2 * harmonics(p)
     turning = p.rotating * p.speed**2
     wanted[0] += turning
-    np.testing.assert_allclose(found[:6, 0], wanted, atol=2e-5 * wanted[0])
-    np.testing.assert_allclose(found[:6, 1], [turning, 0, 0, 0, 0, 0], atol=1e-9 * turning)
+    np.testing.assert_allclose(amplitudes[:6, 0], wanted, atol=2e-5 * wanted[0])
+    np.testing.assert_allclose(amplitudes[:6, 1], [turning, 0, 0, 0, 0, 0], atol=1e-9 * turning)
     # To the second order alone, as one remembers it: m r w^2 (cos a + r/l cos 2a)
-    assert found[1, 0] == pytest.approx(wanted[0] / (1 + turning / (wanted[0] - turning)) * p.crank / p.rod, rel=0.03)
+    assert amplitudes[1, 0] == pytest.approx(
+        wanted[0] / (1 + turning / (wanted[0] - turning)) * p.crank / p.rod, rel=0.03
+    )
 
 
 def test_a_counterweight_halves_and_a_balancer_removes_the_first_harmonic() -> None:
     for name, first in (("counterweight", 0.5), ("balanced", 0.0)):
         p = vibration.Params(**vibration.VARIANTS[name])
         force = p.oscillating * p.crank * p.speed**2
-        found = orders(shaken(p), "shaking force")
-        assert found[0, 0] == pytest.approx(first * force, abs=1e-9 * force)
-        assert (found[0, 1] if first else 0.0) == pytest.approx(first * force, abs=1e-9 * force)
-        np.testing.assert_allclose(found[1:6, 0], force * harmonics(p)[1:], atol=2e-5 * force)
+        amplitudes = orders(shaken(p), "shaking force")
+        assert amplitudes[0, 0] == pytest.approx(first * force, abs=1e-9 * force)
+        assert (amplitudes[0, 1] if first else 0.0) == pytest.approx(first * force, abs=1e-9 * force)
+        np.testing.assert_allclose(amplitudes[1:6, 0], force * harmonics(p)[1:], atol=2e-5 * force)
 
 
 @pytest.mark.parametrize("variant", [{}, *vibration.VARIANTS.values()])
@@ -146,11 +148,11 @@ def test_four_bar_runs_up_as_eksergians_equation_of_one_freedom_says() -> None:
     np.testing.assert_allclose(crank.theta, other.y[0], atol=1e-5)
     np.testing.assert_allclose(crank.omega, other.y[1], atol=1e-5 * np.abs(crank.omega).max())
     motion = to_motion(sol, None, "", {}, dict.fromkeys(("crank", "coupler", "rocker", "rotor"), "mechanism"))
-    found = crank_of(motion)
-    assert found is not None
-    assert (found.body, found.turns) == ("crank", 7)
+    main_crank = crank_of(motion)
+    assert main_crank is not None
+    assert (main_crank.body, main_crank.turns) == ("crank", 7)
     # The last two turns are alike: it has run up.
-    at = found.angle[-1] - np.linspace(0, 2 * np.pi, 100)
-    last, before = (np.interp(at - back, found.angle, crank.omega) for back in (0.0, 2 * np.pi))
+    at = main_crank.angle[-1] - np.linspace(0, 2 * np.pi, 100)
+    last, before = (np.interp(at - back, main_crank.angle, crank.omega) for back in (0.0, 2 * np.pi))
     np.testing.assert_allclose(last, before, rtol=2e-3)
     assert 0.05 < np.ptp(last) / last.mean() < 0.12

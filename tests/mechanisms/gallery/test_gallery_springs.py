@@ -76,6 +76,6 @@ def test_bending_stiffness_is_that_of_a_beam() -> None:
 def test_bending_stiffness_rings_as_a_cantilever() -> None:
     """The lowest rate of a clamped beam is 1.8751^2 sqrt(E I L / m) / L^2 (Euler, Bernoulli)."""
     p = beam.Params(links=20, force=0.0, damping=0.0)
-    found = beam.build(p).linearise().frequencies.min() * 2 * pi
+    lowest_rate = beam.build(p).linearise().frequencies.min() * 2 * pi
     beam_rate = 1.875104**2 * sqrt(p.stiffness * p.length / p.mass) / p.length**2
-    assert found == pytest.approx(beam_rate, rel=2e-3)
+    assert lowest_rate == pytest.approx(beam_rate, rel=2e-3)

@@ -53,10 +53,10 @@ def test_a_shaft_and_what_it_carries_turn_without_force_and_couple(layout: str, 
     assert shaft.products is not None
     z = mm(shaft.z)
     moment = shaft.mass * np.array([mm(x) for x in shaft.com]) + sum(
-        one.mass * np.array([one.x, one.y]) for one in carried
+        load.mass * np.array([load.x, load.y]) for load in carried
     )
     couple = mm(1.0) ** 2 * np.array(shaft.products) + shaft.mass * z * np.array([mm(x) for x in shaft.com])
-    couple += sum(one.mass * one.z * np.array([one.x, one.y]) for one in carried)
+    couple += sum(load.mass * load.z * np.array([load.x, load.y]) for load in carried)
     scale = 0.45 * 40.0
     assert np.abs(moment).max() < 1e-3 * scale
     assert np.abs(couple).max() < 1e-3 * scale * 100.0
@@ -70,7 +70,7 @@ def test_counterweights_grow_with_what_they_carry_as_far_as_there_is_room() -> N
     def left(mass: float) -> float:
         carried = [Load(mass, throw.x, throw.y, throw.z) for throw in throws]
         shaft = mass_of(shaft_solid(plan, balanced_webs(plan, carried, STEEL)).val(), STEEL)
-        return shaft.mass * mm(shaft.com[1]) + sum(one.mass * one.y for one in carried)
+        return shaft.mass * mm(shaft.com[1]) + sum(load.mass * load.y for load in carried)
 
     assert left(0.1) == pytest.approx(0.0, abs=0.02)
     assert left(0.45) == pytest.approx(0.0, abs=0.02)
@@ -84,10 +84,10 @@ def test_what_a_pin_carries_is_the_rods_foot_and_half_of_what_slides() -> None:
     made = Automatic(m, m.sweep(steps=90))
     assert made.along is not None
     (shaft,) = made.along.machine.shafts.values()
-    found = loads(made.along.machine, shaft, {})
-    assert [load.mass for load in found] == pytest.approx(2 * [0.6 * 0.7 + 0.5 * (0.5 + 0.6 * 0.3)])
-    assert [load.z for load in found] == pytest.approx([-11.5, 11.5])
-    assert [math.hypot(load.x, load.y) for load in found] == pytest.approx([40.0, 40.0])
+    carried = loads(made.along.machine, shaft, {})
+    assert [load.mass for load in carried] == pytest.approx(2 * [0.6 * 0.7 + 0.5 * (0.5 + 0.6 * 0.3)])
+    assert [load.z for load in carried] == pytest.approx([-11.5, 11.5])
+    assert [math.hypot(load.x, load.y) for load in carried] == pytest.approx([40.0, 40.0])
 
 
 def test_a_v_twin_of_parts_has_no_first_order_left() -> None:
@@ -107,7 +107,7 @@ def test_a_v_twin_of_parts_has_no_first_order_left() -> None:
 
 
 def _mass(solids) -> Mass:
-    return combined(mass_of(one.shape.val(), MATERIALS[one.material].density, along=True) for one in solids)
+    return combined(mass_of(solid.shape.val(), MATERIALS[solid.material].density, along=True) for solid in solids)
 
 
 def _parts(masses: dict[str, Mass]) -> Parts:

@@ -33,9 +33,9 @@ def test_an_inline_four_is_built() -> None:
     )
     for k, z in ((1, -150.0), (3, 50.0)):
         for body in (f"rod_{k}", f"piston_{k}"):
-            found = box(bodies[body][0])
-            assert (found.zmin + found.zmax) / 2 == pytest.approx(z, abs=1e-6)
-            assert made.span(body) == pytest.approx((found.zmin, found.zmax), abs=0.1)
+            bounds = box(bodies[body][0])
+            assert (bounds.zmin + bounds.zmax) / 2 == pytest.approx(z, abs=1e-6)
+            assert made.span(body) == pytest.approx((bounds.zmin, bounds.zmax), abs=0.1)
     shaft = box(bodies["crank"][0])
     assert made.span("crank") == pytest.approx((shaft.zmin, shaft.zmax), abs=0.1)
     assert shaft.ymax > 1000 * THROW
@@ -57,7 +57,7 @@ def test_a_v_two_is_built_and_nothing_touches(monkeypatch: pytest.MonkeyPatch) -
     (shaft,) = own.shafts
     assert [pin.links for pin in shaft.pins] == [("rod_1", "rod_2")], "side by side on one pin"
     assert len(shaft.journals) == 2
-    assert len([one for one in seen if one and one[0] < 0.25]) == 2 * 4, "four pieces of each piston in its liner"
+    assert len([gap for gap in seen if gap and gap[0] < 0.25]) == 2 * 4, "four pieces of each piston in its liner"
     assert len(bodies["crank"]) == 1
 
 

@@ -25,8 +25,8 @@ def test_three_legs_on_a_shaft_are_built_and_nothing_touches() -> None:
     assert not [name for name in on_ground if name.startswith("liner")]
     for k, z in ((1, -60.0), (2, 0.0), (3, 60.0)):
         for body, place in ((f"leg_{k}", z), (f"rocker_{k}", z + 14.0)):
-            found = bodies[body][0].shape.val().BoundingBox()
-            assert (found.zmin + found.zmax) / 2 == pytest.approx(place, abs=1e-6)
+            bounds = bodies[body][0].shape.val().BoundingBox()
+            assert (bounds.zmin + bounds.zmax) / 2 == pytest.approx(place, abs=1e-6)
     assert "pin_knee_1" in [solid.name for solid in bodies["leg_1"]]
 
 

@@ -27,7 +27,7 @@ def test_places_and_products_of_two_discs_are_those_of_particles() -> None:
     each = [mass_of(shape.val(), 1000.0, along=True) for shape in discs]
     together = combined(each)
     mass = math.pi * 25e-6 * 4e-3 * 1000.0
-    assert [one.z for one in each] == pytest.approx([0.002, 0.012])
+    assert [disc.z for disc in each] == pytest.approx([0.002, 0.012])
     assert together.z == pytest.approx(0.007)
     assert together.products == pytest.approx((2 * mass * -0.005 * 0.015, 2 * mass * 0.005 * 0.010))
     whole = mass_of(
@@ -90,7 +90,7 @@ def mass_of_moving(mass: Mass, body: str) -> Mass:
 
 
 def _mass(solids: list[Solid]) -> Mass:
-    return combined(mass_of(one.shape.val(), MATERIALS[one.material].density, along=True) for one in solids)
+    return combined(mass_of(solid.shape.val(), MATERIALS[solid.material].density, along=True) for solid in solids)
 
 
 def _parts(masses: dict[str, Mass]) -> Parts:

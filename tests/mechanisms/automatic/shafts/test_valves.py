@@ -38,9 +38,9 @@ def test_a_single_with_valves_is_built_and_nothing_touches() -> None:
         plan = made.along.valves[kind]
         assert plan.valve.lift == pytest.approx(6.4, abs=1e-3)  # mm
         assert 2 * plan.radius == pytest.approx(0.4 * 80.0)
-        held = [hold.force for solids in bodies.values() for one in solids for hold in one.holds]
+        held = [hold.force for solids in bodies.values() for solid in solids for hold in solid.holds]
         assert held.count(f"spring_{kind}") == 2  # on the head and on the valve, so that the film draws it between
-    head = next(one for one in bodies["ground"] if one.name == "head_piston_1")
+    head = next(solid for solid in bodies["ground"] if solid.name == "head_piston_1")
     assert head.through_holes == 2  # its ports
 
 
@@ -48,7 +48,7 @@ def test_a_single_with_valves_is_built_and_nothing_touches() -> None:
 def test_engines_with_several_valves_pass(layout: str, shafts: int) -> None:
     plan = along(motor(layout))
     plan.refuse()
-    cams = [one for one in plan.shafts if one.shaft.body.startswith("camshaft")]
+    cams = [shaft for shaft in plan.shafts if shaft.shaft.body.startswith("camshaft")]
     assert len(cams) == shafts
     for shaft in cams:
         assert len(shaft.mounted) == 1 + 2 * len(plan.cylinders) / shafts

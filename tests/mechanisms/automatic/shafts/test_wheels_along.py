@@ -24,7 +24,9 @@ def along(m: Mechanism, pin: float | None = None) -> Along:
 def test_gears_in_a_train_and_a_belt_are_built_and_nothing_touches() -> None:
     made, bodies = checked(models.geared_shafts())
     assert made.along is not None
-    gears = {body: [one.name for one in solids if one.name.startswith("gear_")] for body, solids in bodies.items()}
+    gears = {
+        body: [solid.name for solid in solids if solid.name.startswith("gear_")] for body, solids in bodies.items()
+    }
     assert [len(gears[f"shaft_{k}"]) for k in (1, 2, 3, 4)] == [1, 1, 1, 0]
     rims = [solid for solids in bodies.values() for solid in solids if solid.holds]
     assert {hold.force for solid in rims for hold in solid.holds} == {"belt"}
@@ -36,7 +38,7 @@ def test_gears_of_a_train_stand_tooth_in_space() -> None:
     first, second, third = (plan.wheels.of(f"shaft_{k}")[0].wheel for k in (1, 2, 3))
     assert (first.teeth, second.teeth, third.teeth) == (20, 30, 25)
     for left, right in ((first, second), (second, third)):
-        turned = [plan.machine.poses[one.body][0, 2] + (one.phase or 0.0) for one in (left, right)]
+        turned = [plan.machine.poses[wheel.body][0, 2] + (wheel.phase or 0.0) for wheel in (left, right)]
         tooth = turned[0] % left.pitch / left.pitch  # of the way to the next tooth, on the line of centres
         space = (3.141592653589793 - turned[1]) % right.pitch / right.pitch
         assert (tooth + space) % 1.0 == pytest.approx(0.5, abs=1e-6)

@@ -18,12 +18,12 @@ def places(film: Film) -> np.ndarray:
     height, over the film.
     """
     frames = np.unique(np.linspace(0, film.clock.frames - 1, LOOKED).astype(int))
-    found = []
+    seen = []
     for frame in frames:
         solids = film.space.places(np.array([film.clock.moment(int(frame)).time]))[0]
         points = np.concatenate([solids, *(np.asarray(path) for path in film.state(int(frame)).tubes)])
-        found.append(project(film.camera(int(frame)), points, film.aspect, 1.0) / [film.aspect, 1.0])
-    return np.concatenate(found)
+        seen.append(project(film.camera(int(frame)), points, film.aspect, 1.0) / [film.aspect, 1.0])
+    return np.concatenate(seen)
 
 
 def filled(film: Film) -> float:
@@ -37,17 +37,17 @@ def filled(film: Film) -> float:
 def boxes(film: Film) -> list[Box]:
     """Of each line and of the legend, as parts of the picture's width and height."""
     writing = film.scene.writing
-    found = [(line.x, line.y, line.x + line.width, line.y + line.size) for line in writing.lines]
+    rectangles = [(line.x, line.y, line.x + line.width, line.y + line.size) for line in writing.lines]
     if writing.card is not None:
         card = writing.card
-        found.append((card.left, card.top, card.left + card.wide, card.top + card.high))
-    return [layout.in_picture(box, film.aspect) for box in found]
+        rectangles.append((card.left, card.top, card.left + card.wide, card.top + card.high))
+    return [layout.in_picture(box, film.aspect) for box in rectangles]
 
 
-def refuse_overlaps(found: list[Box]) -> None:
+def refuse_overlaps(rectangles: list[Box]) -> None:
     """Asserts that all are in the picture, and apart from each other."""
-    for k, (left, upper, right, lower) in enumerate(found):
+    for k, (left, upper, right, lower) in enumerate(rectangles):
         assert 0.0 < left < right < 1.0
         assert 0.0 < upper < lower < 1.0
-        for other in found[:k]:
-            assert right < other[0] or other[2] < left or lower < other[1] or other[3] < upper, (found[k], other)
+        for other in rectangles[:k]:
+            assert right < other[0] or other[2] < left or lower < other[1] or other[3] < upper, (rectangles[k], other)

@@ -68,11 +68,11 @@ def test_another_program_reads_the_same_solids(out: Out) -> None:
     for body, pieces in meshes.items():
         for piece, (mesh, _) in pieces.items():
             _, key = scene.graph[f"{body}/{piece}"]
-            found = trimesh.Trimesh(scene.geometry[key].vertices, scene.geometry[key].faces)
-            found.merge_vertices(merge_norm=True)
-            assert found.volume * 1e9 == pytest.approx(mesh.volume, rel=1e-5)
-            assert found.bounds * 1000 == pytest.approx(mesh.bounds, abs=1e-3)
-            assert found.is_watertight
+            solid = trimesh.Trimesh(scene.geometry[key].vertices, scene.geometry[key].faces)
+            solid.merge_vertices(merge_norm=True)
+            assert solid.volume * 1e9 == pytest.approx(mesh.volume, rel=1e-5)
+            assert solid.bounds * 1000 == pytest.approx(mesh.bounds, abs=1e-3)
+            assert solid.is_watertight
 
 
 def test_surfaces_are_those_of_the_materials(out: Out) -> None:

@@ -70,11 +70,11 @@ def test_links_of_a_chain_reach_from_roller_to_roller(teeth: tuple[int, int], me
         rollers = np.array(belt.paths(poses, Moment(time, 0))[: belt.count])
         middles = rollers.mean(axis=1)
         matrices = read.matrices(time - poses.time[0])
-        found = np.array([matrices[f"belt link {number}"] for number in range(1, belt.count + 1)])
-        assert np.abs(found[:, :3, 3] - middles).max() < NEAR
+        links = np.array([matrices[f"belt link {number}"] for number in range(1, belt.count + 1)])
+        assert np.abs(links[:, :3, 3] - middles).max() < NEAR
         ahead = np.roll(middles, -1, axis=0) - middles
         length = np.linalg.norm(ahead, axis=1)
-        assert np.abs(found[:, :3, 0] - ahead / length[:, None]).max() < 1e-5
+        assert np.abs(links[:, :3, 0] - ahead / length[:, None]).max() < 1e-5
         assert np.ptp(length) < 0.02 * length.mean()  # one mesh serves on strands and on pulleys
 
 

@@ -36,8 +36,8 @@ def middles(read: GlbFile, node: str, matrices: dict[str, np.ndarray]) -> np.nda
 def film_paths(film: Film, time: float) -> list[tuple[TubeSpec, np.ndarray]]:
     at = Moment(time, 0)
     drawn = (*film.stretched, *film.spirals)
-    paths = [np.array(path) for one in drawn for path in one.paths(film.poses, at)]
-    return list(zip([spec for one in drawn for spec in one.specs], paths, strict=True))
+    paths = [np.array(path) for spring in drawn for path in spring.paths(film.poses, at)]
+    return list(zip([spec for spring in drawn for spec in spring.specs], paths, strict=True))
 
 
 @pytest.mark.parametrize("stiff", [True, False])
@@ -96,7 +96,7 @@ def test_a_spring_that_nothing_moves_and_a_long_simulation(out_root: Path):
     )
     seen = Film(still, film.parts, Shot(trails=()), film.folder)
     read = GlbFile(glb(seen))
-    clocks = {read.array(one["input"]).size for one in read.json["animations"][0]["samplers"]}
+    clocks = {read.array(sampler["input"]).size for sampler in read.json["animations"][0]["samplers"]}
     assert clocks == {count, 1440}
     matrices = read.matrices(5.0)
     assert middles(read, "spring", matrices)[0, :2] == pytest.approx(test_stretched.MARKERS[0][:2], abs=1e-6)

@@ -36,27 +36,27 @@ def motion() -> Motion:
 
 def test_hydraulics_come_back_from_data_json(tmp_path: Path) -> None:
     write_motion(tmp_path / "data.json", motion())
-    found = read_motion(tmp_path / "data.json").forces["ram"].hydraulics
+    hydraulics = read_motion(tmp_path / "data.json").forces["ram"].hydraulics
     view = press().simulate(2.0, steps=100).force("ram")
-    assert found is not None
+    assert hydraulics is not None
     assert isinstance(view, HydraulicView)
-    assert found.pressure_a == pytest.approx(view.pressure_a)
-    assert found.supply_power == pytest.approx(view.supply_power)
+    assert hydraulics.pressure_a == pytest.approx(view.pressure_a)
+    assert hydraulics.supply_power == pytest.approx(view.supply_power)
 
 
 def test_the_report_has_pressures_and_energy() -> None:
-    one = motion().forces["ram"].hydraulics
-    assert one is not None
+    hydraulics = motion().forces["ram"].hydraulics
+    assert hydraulics is not None
     [row] = [line for line in report(motion(), None, None).splitlines() if line.startswith("| ram |")]
-    assert f"to {max(one.pressure_a) / 1e6:.3g} MPa" in row
-    assert f"{np.trapezoid(one.supply_power, motion().time) / 1e3:.3g} kJ" in row
+    assert f"to {max(hydraulics.pressure_a) / 1e6:.3g} MPa" in row
+    assert f"{np.trapezoid(hydraulics.supply_power, motion().time) / 1e3:.3g} kJ" in row
 
 
 def test_a_page_has_pressure_flow_and_power() -> None:
     assert "hydraulics" in plots_of(motion())
     pressures, flows, powers = WHOLE["hydraulics"](motion()).axes
-    one = motion().forces["ram"].hydraulics
-    assert one is not None
-    assert pressures.lines[0].get_ydata() == pytest.approx(np.array(one.pressure_a) / 1e5)
-    assert flows.lines[0].get_ydata() == pytest.approx(np.array(one.flow_a) * 6e4)
-    assert powers.lines[0].get_ydata() == pytest.approx(np.array(one.supply_power))
+    hydraulics = motion().forces["ram"].hydraulics
+    assert hydraulics is not None
+    assert pressures.lines[0].get_ydata() == pytest.approx(np.array(hydraulics.pressure_a) / 1e5)
+    assert flows.lines[0].get_ydata() == pytest.approx(np.array(hydraulics.flow_a) * 6e4)
+    assert powers.lines[0].get_ydata() == pytest.approx(np.array(hydraulics.supply_power))

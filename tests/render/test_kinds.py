@@ -83,10 +83,10 @@ def test_a_kind_that_nobody_knows_is_drawn_and_reported_as_what_it_says_it_is() 
     was, new = motions
     assert {joint.kind for joint in new.joints.values()} == {"hinge"}
     for made in (vectors, torques):
-        for one, other in zip(made(was, SHOWN), made(new, SHOWN), strict=True):
-            assert one.name == other.name
-            assert np.array_equal(one.place, other.place)
-            assert np.array_equal(one.value, other.value)
+        for before, after in zip(made(was, SHOWN), made(new, SHOWN), strict=True):
+            assert before.name == after.name
+            assert np.array_equal(before.place, after.place)
+            assert np.array_equal(before.value, after.value)
     assert crank_of(new) is not None
     assert [loop.follower for loop in loops(new)] == [loop.follower for loop in loops(was)] == ["c"]
     for page in pages:

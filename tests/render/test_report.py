@@ -34,12 +34,12 @@ def slider_crank(
     rate: float = 100.0,
 ) -> Motion:
     m = Mechanism("slider_crank")
-    one, two, three = m.bar("crank", crank), m.bar("rod", rod), m.body("slider", mass)
-    m.revolute("O", m.ground.at(0, 0), one.start)
-    m.revolute("A", one.end, two.start)
-    m.revolute("B", two.end, three.origin)
-    m.prismatic("guide", m.ground.at(0, 0), three.origin)
-    m.drive_angle("motor", one, constant_rate(rate, start))
+    shaft, link, block = m.bar("crank", crank), m.bar("rod", rod), m.body("slider", mass)
+    m.revolute("O", m.ground.at(0, 0), shaft.start)
+    m.revolute("A", shaft.end, link.start)
+    m.revolute("B", link.end, block.origin)
+    m.prismatic("guide", m.ground.at(0, 0), block.origin)
+    m.drive_angle("motor", shaft, constant_rate(rate, start))
     m.start_near(crank=math.degrees(start), rod=-math.degrees(math.asin(crank / rod * math.sin(start))))
     return to_motion(m.sweep(steps=steps), None, "0" * 64, {}, dict.fromkeys(("crank", "rod", "slider"), "mechanism"))
 
@@ -54,11 +54,11 @@ def test_a_four_bars_transmission_angle_and_dead_points_are_those_of_its_triangl
     assert loop.lengths == pytest.approx((a, b, c, d))
     ends = [math.acos((b * b + c * c - (d + s * a) ** 2) / (2 * b * c)) for s in (-1, 1)]
     assert loop.transmission.min() == pytest.approx(min(*ends, math.pi - ends[1]), abs=1e-6)
-    found = [angle for _, angle in loop.dead_points(np.array(MOTION.time))]
+    angles = [angle for _, angle in loop.dead_points(np.array(MOTION.time))]
     # crank and coupler in line: a triangle of b + a or b - a, c and d
     stretched = math.acos(((b + a) ** 2 + d * d - c * c) / (2 * (b + a) * d))
     folded = math.pi + math.acos(((b - a) ** 2 + d * d - c * c) / (2 * (b - a) * d))
-    assert found == pytest.approx([stretched, folded], abs=1e-4)
+    assert angles == pytest.approx([stretched, folded], abs=1e-4)
     rocker = [math.acos(((b + s * a) ** 2 - c * c - d * d) / (-2 * c * d)) for s in (-1, 1)]
     assert loop.travel == pytest.approx(rocker[1] - rocker[0], abs=1e-3)
 
@@ -78,9 +78,9 @@ def test_a_slider_cranks_dead_points_are_its_dead_centres() -> None:
 def test_dead_centres_on_the_seam_of_a_period_count_once(start: float, steps: int) -> None:
     motion = slider_crank(start=start, steps=steps)
     [loop] = loops(motion)
-    found = sorted(angle for _, angle in loop.dead_points(np.array(motion.time)))
-    assert len(found) == 2
-    away = [min(abs(math.remainder(angle - dead, 2 * math.pi)) for dead in (0.0, math.pi)) for angle in found]
+    angles = sorted(angle for _, angle in loop.dead_points(np.array(motion.time)))
+    assert len(angles) == 2
+    away = [min(abs(math.remainder(angle - dead, 2 * math.pi)) for dead in (0.0, math.pi)) for angle in angles]
     assert max(away) < 1e-6 + 0.6 / steps**2
     if steps > 30:
         assert "Both ways take equally long." in report.report(motion, None, None)
@@ -152,9 +152,9 @@ def test_the_balance_of_a_simulation_counts_what_impacts_take() -> None:
     m.start_near(ball=(0, 1.05, 0))
     motion = to_motion(m.simulate(2.0, event_rows=True), None, "0" * 64, {}, {"ball": "mechanism"})
     text = report.report(motion, None, None)
-    found = re.search(r"drifts by .*: ([\d.e-]+) of the largest exchange", text)
-    assert found
-    assert float(found[1]) < 1e-9
+    drift = re.search(r"drifts by .*: ([\d.e-]+) of the largest exchange", text)
+    assert drift
+    assert float(drift[1]) < 1e-9
     assert re.search(r"\| floor \(rigid contact\) \| 1\.96 N \|", text)
 
 
@@ -168,11 +168,11 @@ def test_the_nearest_parts_are_named() -> None:
         bodies=("crank", "coupler"), pieces=("pin_B", "coupler"), gap=0.0004, proven=0.00039, time=0.25, proof="motion",
         poses=90,
     )  # fmt: skip
-    found = Clearance(
+    clearance = Clearance(
         mechanism="four_bar", provenance=Provenance(inputs="0" * 64, versions={}), limit=1e-5, resolution=1e-5,
         interpolation_error=0.0, pairs=[pair], apart=12,
     )  # fmt: skip
-    text = report.report(MOTION, None, found)
+    text = report.report(MOTION, None, clearance)
     assert "pin_B (crank) and coupler (coupler) come nearest, to 400 µm at t = 0.25 s" in text
 
 

@@ -52,33 +52,33 @@ def test_orders_are_in_the_file_the_report_and_the_page_as_the_solution_has_them
     m = two_cylinders()
     m.bodies["piston_1"].mass = 0.7
     motion, sol = motion_of(m), m.sweep(steps=360)
-    found, exact = motion.vibration, sol.orders(sol.shaking().force)
-    assert found is not None
-    assert (found.crank, found.turns) == ("crank", 1)
-    one, k = found.harmonics["shaking force"], found.order.index(1.0)
+    vibration, exact = motion.vibration, sol.orders(sol.shaking().force)
+    assert vibration is not None
+    assert (vibration.crank, vibration.turns) == ("crank", 1)
+    force_orders, k = vibration.harmonics["shaking force"], vibration.order.index(1.0)
     row = exact.index(1)
-    assert one.amplitude[1][k] == pytest.approx(exact.amplitude[row, 1])
-    assert one.phase[1][k] == pytest.approx(exact.phase[row, 1])
-    assert one.forward[k] + one.backward[k] == pytest.approx(exact.largest[row])
+    assert force_orders.amplitude[1][k] == pytest.approx(exact.amplitude[row, 1])
+    assert force_orders.phase[1][k] == pytest.approx(exact.phase[row, 1])
+    assert force_orders.forward[k] + force_orders.backward[k] == pytest.approx(exact.largest[row])
     torque = sol.orders(sol.driver("motor").effort)
-    assert found.harmonics["motor"].amplitude[0][1] == pytest.approx(torque.amplitude[torque.index(2)])
+    assert vibration.harmonics["motor"].amplitude[0][1] == pytest.approx(torque.amplitude[torque.index(2)])
     main = sol.orders(sol.joint("main").reaction)
-    assert found.harmonics["main"].amplitude[0][1] == pytest.approx(main.amplitude[main.index(2), 0])
+    assert vibration.harmonics["main"].amplitude[0][1] == pytest.approx(main.amplitude[main.index(2), 0])
     centre = sol.centre_of_mass()
-    assert found.y == pytest.approx(centre.y)
+    assert vibration.y == pytest.approx(centre.y)
     text = report(motion, None, None)
     assert "## Orders" in text
     assert "goes 0 m along x" in text
     page = frame_of(motion)
     assert page is not None
     assert page["crank"] == "crank"
-    assert all(one["size"].any() for one in page["harmonics"].values())  # what is rounding is no bar
+    assert all(bars["size"].any() for bars in page["harmonics"].values())  # what is rounding is no bar
     assert page["harmonics"]["motor"]["size"][1] == pytest.approx(torque.largest[torque.index(2)], rel=1e-6)
     assert "frame" in plots_of(motion)
     with house_style():
         assert len(frame(motion).axes) == 3
     write_motion(tmp_path / "data.json", motion)
-    assert read_motion(tmp_path / "data.json").vibration == found
+    assert read_motion(tmp_path / "data.json").vibration == vibration
 
 
 def test_a_motion_without_a_crank_or_without_mass_has_no_orders() -> None:

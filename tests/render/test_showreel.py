@@ -50,8 +50,8 @@ def test_films_are_joined(out_root: Path, capsys: pytest.CaptureFixture[str]) ->
     assert reel.frames == 4 * title + 11 + 20 + 30 + 33
     at = title
     for path, frames in ((variant, 11), (first, 20), (other, 30), (second, 33)):
-        found = reel.packets[at : at + frames]
-        assert (found == read_clip(path).packets) is (path != other)  # as they are, in alphabetical order
+        packets = reel.packets[at : at + frames]
+        assert (packets == read_clip(path).packets) is (path != other)  # as they are, in alphabetical order
         at += frames + title
     listing = subprocess.run([encode.ffmpeg(), "-i", str(target)], capture_output=True, text=True).stderr
     assert re.findall(r"title\s*: (.*)", listing) == ["Chain: three", "Four bar", "Jansen leg", "Pendulum"]
@@ -105,7 +105,7 @@ def test_what_is_missing_or_damaged_is_named(out_root: Path) -> None:
     path.write_bytes(b"no film")
     with pytest.raises(UserError, match=r"four_bar-tiny\.mp4 is not a film .*; remove it and make it again"):
         showreel.run(TINY)
-    assert [one.name for one in path.parent.iterdir()] == [path.name]
+    assert [file.name for file in path.parent.iterdir()] == [path.name]
 
 
 def test_a_title_leads_to_the_film() -> None:

@@ -64,11 +64,11 @@ def test_amplitudes_of_a_period_are_exact(parts: list[float], period: float) -> 
     orders = np.arange(1, 5)
     values = mean + np.cos(np.outer(angle, orders)) @ cosines + np.sin(np.outer(angle, orders)) @ sines
     motion = msgspec.structs.replace(MOTION, time=list(np.linspace(0, period, 73)), period=period)
-    found = spectrum(motion, values)
-    assert (found.harmonic, found.order_of, found.base) == (True, "crank", pytest.approx(1 / period))
-    np.testing.assert_allclose(found.amplitudes[0], abs(mean), atol=1e-9)
-    np.testing.assert_allclose(found.amplitudes[1:5], np.hypot(cosines, sines), atol=1e-9)
-    np.testing.assert_allclose(found.amplitudes[5:], 0.0, atol=1e-9)
+    computed = spectrum(motion, values)
+    assert (computed.harmonic, computed.order_of, computed.base) == (True, "crank", pytest.approx(1 / period))
+    np.testing.assert_allclose(computed.amplitudes[0], abs(mean), atol=1e-9)
+    np.testing.assert_allclose(computed.amplitudes[1:5], np.hypot(cosines, sines), atol=1e-9)
+    np.testing.assert_allclose(computed.amplitudes[5:], 0.0, atol=1e-9)
 
 
 def test_orders_are_those_of_the_crank_also_over_several_turns() -> None:
@@ -76,9 +76,9 @@ def test_orders_are_those_of_the_crank_also_over_several_turns() -> None:
     motion = four_bar_motion(steps=72, turns=2)
     angle = np.linspace(0, 4 * np.pi, 145)
     motion = msgspec.structs.replace(motion, period=2.0, time=list(np.linspace(0, 2, 145)))
-    found = spectrum(motion, 3 * np.cos(angle / 2) + np.cos(angle))
-    np.testing.assert_allclose(found.at[:3], [0, 0.5, 1])
-    np.testing.assert_allclose(found.amplitudes[:4], [0, 3, 1, 0], atol=1e-12)
+    computed = spectrum(motion, 3 * np.cos(angle / 2) + np.cos(angle))
+    np.testing.assert_allclose(computed.at[:3], [0, 0.5, 1])
+    np.testing.assert_allclose(computed.amplitudes[:4], [0, 3, 1, 0], atol=1e-12)
 
 
 def test_a_wheel_that_slows_down_is_looked_at_over_its_last_turn() -> None:
@@ -86,9 +86,9 @@ def test_a_wheel_that_slows_down_is_looked_at_over_its_last_turn() -> None:
     crank = crank_of(motion)
     assert crank is not None
     assert crank.turns == int((motion.bodies["disc"].theta[0] - motion.bodies["disc"].theta[-1]) / (2 * np.pi))
-    found = spectrum(motion, 2 * np.cos(3 * crank.angle) + np.sin(crank.angle))
-    np.testing.assert_allclose(found.amplitudes[:5], [0, 1, 0, 2, 0], atol=1e-4)
-    assert found.base == pytest.approx(1 / (2.0 - np.interp(crank.angle[-1] - 2 * np.pi, crank.angle, motion.time)))
+    computed = spectrum(motion, 2 * np.cos(3 * crank.angle) + np.sin(crank.angle))
+    np.testing.assert_allclose(computed.amplitudes[:5], [0, 1, 0, 2, 0], atol=1e-4)
+    assert computed.base == pytest.approx(1 / (2.0 - np.interp(crank.angle[-1] - 2 * np.pi, crank.angle, motion.time)))
 
 
 def test_what_turns_back_counts_from_there_and_what_never_turns_round_is_no_crank() -> None:
@@ -106,12 +106,12 @@ def test_without_a_period_amplitudes_stand_over_frequencies(frequency: float) ->
     ball = bouncing_ball()
     time = np.linspace(0, 2.0, 401)
     motion = msgspec.structs.replace(ball, time=list(time), joints={}, events=[])
-    found = spectrum(motion, 7.0 + 3 * np.sin(2 * np.pi * frequency * time))
-    assert not found.harmonic
-    assert found.amplitudes[0] == pytest.approx(7.0, abs=0.05)
-    peak = 1 + int(found.amplitudes[1:].argmax())
-    assert found.at[peak] == pytest.approx(frequency, abs=1e-9)
-    assert found.amplitudes[peak] == pytest.approx(3.0, rel=1e-3)
+    computed = spectrum(motion, 7.0 + 3 * np.sin(2 * np.pi * frequency * time))
+    assert not computed.harmonic
+    assert computed.amplitudes[0] == pytest.approx(7.0, abs=0.05)
+    peak = 1 + int(computed.amplitudes[1:].argmax())
+    assert computed.at[peak] == pytest.approx(frequency, abs=1e-9)
+    assert computed.amplitudes[peak] == pytest.approx(3.0, rel=1e-3)
 
 
 def test_rows_that_share_a_time_are_a_jump() -> None:
@@ -120,8 +120,8 @@ def test_rows_that_share_a_time_are_a_jump() -> None:
     time = np.concatenate([half, 0.5 + half])
     values = np.repeat([1.0, -1.0], len(half))
     motion = msgspec.structs.replace(bouncing_ball(), time=list(time), joints={}, period=1.0)
-    found = spectrum(motion, values)
-    np.testing.assert_allclose(found.amplitudes[1:4], [4 / np.pi, 0, 4 / (3 * np.pi)], atol=2e-3)
+    computed = spectrum(motion, values)
+    np.testing.assert_allclose(computed.amplitudes[1:4], [4 / np.pi, 0, 4 / (3 * np.pi)], atol=2e-3)
 
 
 # -- pages -----------------------------------------------------------------------------------------------------------
@@ -129,9 +129,9 @@ def test_rows_that_share_a_time_are_a_jump() -> None:
 
 def test_stems_of_an_order_stand_with_their_middle_on_it() -> None:
     """One that is alone at its order stands on it; two stand beside each other, as far left as right."""
-    found = Spectrum(np.arange(4.0), np.array([[0, 0], [3, 0], [2, 1], [0, 1.0]]), True, 1.0, "a turn", "crank")
+    drawn = Spectrum(np.arange(4.0), np.array([[0, 0], [3, 0], [2, 1], [0, 1.0]]), True, 1.0, "a turn", "crank")
     axes = Figure().subplots()
-    stems(axes, found, found.amplitudes, ["black", "red"], ["x", "y"])
+    stems(axes, drawn, drawn.amplitudes, ["black", "red"], ["x", "y"])
     bars = [segment[0, 0] for lines in axes.collections for segment in lines.get_segments()]
     assert len(bars) == 4
     assert bars[0] == 1.0

@@ -172,15 +172,15 @@ def test_frames_with_arrows_have_keys_of_their_own(out_root: Path):
     from render.presets import PRESETS
 
     out = film_fixture.write(Shot(seconds_per_turn=0.2))
-    found = [
+    key_sets = [
         {made.key(frame) for frame in range(made.film.clock.frames)}
         for made in (
             Pictures(read_film(out, show), PRESETS["draft"])
             for show in ("", "reactions", "velocities", "reactions,title", "title")
         )
     ]
-    assert all(len(keys) == 6 for keys in found)
-    assert len(set().union(*found)) == 30
+    assert all(len(keys) == 6 for keys in key_sets)
+    assert len(set().union(*key_sets)) == 30
 
 
 def test_tips_of_arrows_stay_in_the_picture(out_root: Path):

@@ -122,7 +122,7 @@ def test_rollers_of_a_chain_lie_in_the_seats_of_both_sprockets() -> None:
         low, high = (middle, high) if BeltPath(*radii, middle).length < 56 * pitch else (low, middle)
     m = drive(teeth=teeth, distance=low)
     made = Automatic(m, m.sweep(steps=48))
-    pulleys = [one for one in made.layout.features if isinstance(one, Pulley)]
+    pulleys = [feature for feature in made.layout.features if isinstance(feature, Pulley)]
     belt, poses = filmed(m)
     assert belt.count == 56
     assert belt.pace == pytest.approx(1.0, abs=1e-9)
@@ -166,7 +166,7 @@ def test_strands_keep_their_layer_free() -> None:
     m.angle_lock("level", m.ground.origin, m.bodies["pendulum"].origin)
     m.drive_angle("other", crank, constant_rate(2 * math.pi))
     made = Automatic(m, m.sweep(steps=48))
-    (strands,) = (one for one in made.layout.features if isinstance(one, Strands))
+    (strands,) = (feature for feature in made.layout.features if isinstance(feature, Strands))
     assert len(list(strands.items(made.layout))) == 2
     assert made.levels["a"] not in (made.levels["crank"], made.levels["pendulum"])
 
@@ -186,7 +186,7 @@ def test_a_crank_beside_its_pulley_is_out_of_the_belts_way() -> None:
     m.revolute("P", m.bodies["a"].at(0.05, 0), m.body("pendulum").origin)
     m.angle_lock("level", m.ground.origin, m.bodies["pendulum"].origin)
     made = Automatic(m, m.sweep(steps=48))
-    pulley = next(one for one in made.layout.features if isinstance(one, Pulley) and one.body == "a")
+    pulley = next(feature for feature in made.layout.features if isinstance(feature, Pulley) and feature.body == "a")
     assert made.decided[pulley.layer] == made.levels["b"] != made.levels["a"]
 
 

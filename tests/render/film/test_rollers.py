@@ -135,8 +135,8 @@ def test_on_a_bent_slot_it_rolls_on_the_side_that_pushes_it(speed: float, side: 
 
 def test_a_geneva_pin_rolls_on_the_flank_it_pushes_and_rests_while_the_wheel_is_locked():
     m = build(Params())
-    for one in (m.bodies["crank"], m.bodies["wheel"]):
-        one.mass, one.inertia = 1.0, 1e-3
+    for part in (m.bodies["crank"], m.bodies["wheel"]):
+        part.mass, part.inertia = 1.0, 1e-3
     seen = to_motion(m.sweep(steps=1440), None, "", {}, {})
     told, crank, wheel = seen.joints["index"], seen.bodies["crank"], seen.bodies["wheel"]
     assert told.shape is not None

@@ -22,16 +22,16 @@ FINE = four_bar_motion(steps=360 * 7)
 def test_a_quintic_is_reproduced_exactly(coefficients: list[float], t: float):
     f = np.polynomial.Polynomial(coefficients)
     time = np.array([0.0, 0.3, 0.4, 1.0])
-    found = hermite(time, f(time), f.deriv(1)(time), f.deriv(2)(time), t)
-    assert found[0] == pytest.approx(f(t), abs=1e-12)
+    interpolated = hermite(time, f(time), f.deriv(1)(time), f.deriv(2)(time), t)
+    assert interpolated[0] == pytest.approx(f(t), abs=1e-12)
 
 
 def test_between_samples_the_four_bar_is_met_to_a_picometre():
     poses = Poses(MOTION)
     for name, body in FINE.bodies.items():
-        found = np.array([poses.body(name, Moment(t, 0)) for t in FINE.time])
+        interpolated = np.array([poses.body(name, Moment(t, 0)) for t in FINE.time])
         exact = np.stack([body.x, body.y, body.theta], axis=1)
-        assert np.abs(found - exact).max() < 1e-10
+        assert np.abs(interpolated - exact).max() < 1e-10
     path = poses.point("P", np.asarray(FINE.time))
     assert np.abs(path - np.stack([FINE.points["P"].x, FINE.points["P"].y], axis=1)).max() < 1e-12
 

@@ -118,7 +118,7 @@ def test_without_stiffness_a_rod_slides_in_a_cylinder_and_stays_in_it(out_root: 
     lengths = []
     for frame in range(seen.clock.frames):
         cylinder, rod, eye = (np.array(path) for path in seen.state(frame).tubes[:3])
-        lengths += [np.linalg.norm(np.diff(one, axis=0)) for one in (cylinder, rod)]
+        lengths += [np.linalg.norm(np.diff(tube, axis=0)) for tube in (cylinder, rod)]
         axis = (rod[0] - eye[0]) / np.linalg.norm(rod[0] - eye[0])
         assert 0 < (rod[1] - eye[0]) @ axis < (cylinder[1] - eye[0]) @ axis
         assert (rod[0] - cylinder[1]) @ axis > 0
@@ -146,13 +146,13 @@ def test_rods_reach_into_their_cylinder_however_far_it_goes_out(part: float):
 def test_coil_and_rope_count_in_the_key_and_are_in_the_picture(out_root: Path):
     from render.film.framing import project
 
-    keys = {scene_key(one.scene, PRESETS["draft"], "5.2") for one in (film(), film(False), film(rope=0.4))}
+    keys = {scene_key(filmed.scene, PRESETS["draft"], "5.2") for filmed in (film(), film(False), film(rope=0.4))}
     assert len(keys) == 3
     seen = film(rope=0.6)
     state = seen.state(3)
     assert "rope" in {spec.name for spec in seen.scene.tubes}
     at: Moment = seen.clock.moment(3)
-    rope = next(one for one in seen.stretched if one.name == "rope")
+    rope = next(stretched for stretched in seen.stretched if stretched.name == "rope")
     assert np.linalg.norm(np.diff(rope.paths(seen.poses, at)[0], axis=0), axis=1).sum() == pytest.approx(0.6)
     for path in state.tubes:
         pixels = project(state.camera, np.array(path), 1280, 720)

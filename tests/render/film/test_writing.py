@@ -149,7 +149,7 @@ def test_words_and_legend_neither_overlap_nor_leave_a_picture_of_any_shape(
         assert card.row >= 1.2 * card.size
 
 
-def contrast(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+def contrast(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Of WCAG 2.2, between sRGB colours (..., 3), 0..255."""
 
     def luminance(colour: np.ndarray) -> np.ndarray:
@@ -157,7 +157,7 @@ def contrast(one: np.ndarray, other: np.ndarray) -> np.ndarray:
         linear = np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
         return linear @ [0.2126, 0.7152, 0.0722]
 
-    pair = np.broadcast_arrays(luminance(one), luminance(other))
+    pair = np.broadcast_arrays(luminance(first), luminance(second))
     low, high = np.sort(pair, axis=0)
     return (high + 0.05) / (low + 0.05)
 
@@ -186,9 +186,9 @@ def test_words_have_a_contrast_of_four_and_a_half_to_whatever_is_behind_them(
         mine[min(top, 4) : min(top, 4) + bottom - top] = True
         letters = Image.fromarray((255 * ((np.abs(rows - ink).max(axis=2) < 2) & mine)).astype(np.uint8))
         near, farther = (np.asarray(letters.filter(ImageFilter.MaxFilter(size))) > 0 for size in (5, 7))
-        found = contrast(rows[farther & ~near], ink)
-        assert len(found) > 500
-        assert np.quantile(found, 0.01) >= 4.5, line
+        ratios = contrast(rows[farther & ~near], ink)
+        assert len(ratios) > 500
+        assert np.quantile(ratios, 0.01) >= 4.5, line
 
 
 @pytest.mark.parametrize("behind", BEHIND)

@@ -100,15 +100,15 @@ def test_two_processes_give_the_same_pixels_and_the_floor_does_not_flicker(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     shot = Shot(turns=1, seconds_per_turn=0.1, fps=30)
-    found = []
+    pictures = []
     for place in ("here", "there"):
         monkeypatch.setenv("MBSD_OUT", str(tmp_path / place))
         out = film_fixture.write(shot)
         frames.run("four_bar", TINY)
         index = jsonfile.read(FrameStore(out.frames("tiny")).index, FrameIndex)
-        found.append([pixels(out.frames("tiny") / name) for name in index.frames])
-    assert all(np.array_equal(a, b) for a, b in zip(*found, strict=True))
-    first, second = found[0][:2]
+        pictures.append([pixels(out.frames("tiny") / name) for name in index.frames])
+    assert all(np.array_equal(a, b) for a, b in zip(*pictures, strict=True))
+    first, second = pictures[0][:2]
     assert not np.array_equal(first, second)
     corners = [(slice(0, 8), slice(0, 12)), (slice(0, 8), slice(84, 96)), (slice(46, 54), slice(84, 96))]
     for corner in corners:
@@ -170,10 +170,10 @@ def test_pins_are_within_a_pixel_of_where_the_solver_has_them(out_root: Path, na
             sample = frame * 3  # 361 samples, 120 frames a turn
             z = film_fixture.LAYERS[body] + film_fixture.BALL_HEIGHT
             expected = project(seen.camera(frame), np.array([[series.x[sample], series.y[sample], z]]), width, height)
-            found, amount = centroid(picture, colour)
+            centre, amount = centroid(picture, colour)
             assert amount > 10
-            assert np.abs(found - expected[0]).max() < 1.0, (joint, frame, found, expected)
-            moved.append((joint, *found))
+            assert np.abs(centre - expected[0]).max() < 1.0, (joint, frame, centre, expected)
+            moved.append((joint, *centre))
     assert len({round(x) for joint, x, _ in moved if joint == "B"}) > 2
 
 
@@ -227,15 +227,15 @@ def test_the_saved_scene_plays_the_motion(out_root: Path, tmp_path: Path):
         check=True,
         timeout=120,
     )
-    found = json.loads(answer.read_text())
+    played = json.loads(answer.read_text())
     seen: Film = read_film(Out("four_bar"))
     for frame in at:
         state = seen.state(frame)
         for body in film_fixture.LENGTHS:
             x, y, theta = state.bodies[body]
-            assert found[f"{body} {frame}"] == pytest.approx([x, y, np.cos(theta), np.sin(theta)], abs=2e-6)
-        assert found[f"trail {frame}"] == pytest.approx(state.trails[0][0][:2], abs=2e-6)
-    assert found["range"] == [0, 11, 30]
+            assert played[f"{body} {frame}"] == pytest.approx([x, y, np.cos(theta), np.sin(theta)], abs=2e-6)
+        assert played[f"trail {frame}"] == pytest.approx(state.trails[0][0][:2], abs=2e-6)
+    assert played["range"] == [0, 11, 30]
     assert not list(out_root.rglob("*.part.*"))
 
 

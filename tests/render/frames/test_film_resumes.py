@@ -89,7 +89,7 @@ def wait_for(condition, seconds: float = 60.0) -> None:
 
 
 def children(of: int) -> list[int]:
-    return [one.pid for one in psutil.Process(of).children()]
+    return [child.pid for child in psutil.Process(of).children()]
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda s: s.name)

@@ -56,11 +56,11 @@ def test_the_second_turn_shows_the_pictures_of_the_first(out_root: Path):
 
 
 def test_the_key_does_not_depend_on_where_the_files_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    found = []
+    by_place = []
     for place in ("here", "there"):
         monkeypatch.setenv("MBSD_OUT", str(tmp_path / place))
-        found.append(keys(pictures()))
-    assert found[0] == found[1]
+        by_place.append(keys(pictures()))
+    assert by_place[0] == by_place[1]
 
 
 @pytest.mark.parametrize(

@@ -52,9 +52,9 @@ def fill(out: Out, free: int) -> Path:
 
 
 def whole(out: Out) -> list[Path]:
-    found = sorted(out.frames("tiny").glob("*.png"))
-    assert not [path for path in found if fault(path, 96, 54)]
-    return found
+    pictures = sorted(out.frames("tiny").glob("*.png"))
+    assert not [path for path in pictures if fault(path, 96, 54)]
+    return pictures
 
 
 def test_pictures(small_disk: Out):

@@ -30,8 +30,8 @@ def test_notes_go_and_the_picture_stays() -> None:
     assert not [word for word in (b"2026", b"Date", b"pHYs", b"eXIf") if word in plain]
     assert b"gAMA" in plain
     assert plain.endswith(b"IEND\xaeB`\x82")
-    with Image.open(io.BytesIO(content)) as one, Image.open(io.BytesIO(plain)) as other:
-        assert np.array_equal(np.asarray(one), np.asarray(other))
+    with Image.open(io.BytesIO(content)) as before, Image.open(io.BytesIO(plain)) as after:
+        assert np.array_equal(np.asarray(before), np.asarray(after))
     assert without_notes(picture("10:00")) == plain
     assert without_notes(picture("10:00", seed=1)) != plain
     assert without_notes(plain) == plain

@@ -43,11 +43,11 @@ def test_bars_name_the_largest_orders_of_what_is_chosen(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr[-3000:]
     seen = json.loads(done.stdout)
     assert not seen["errors"]
-    shown = {one["title"]: one for one in seen["whole"]}
+    shown = {chart["title"]: chart for chart in seen["whole"]}
     force, torque = sol.orders(sol.shaking().force), sol.orders(sol.driver("motor").effort)
     assert shown["Orders of the shaking force"]["named"][:2] == [largest(force, "N", order) for order in (2, 1)]
     assert shown["Orders of motor"]["named"][0] == largest(torque, "N m", 2)
-    assert all(one["inked"] for one in seen["whole"])
+    assert all(chart["inked"] for chart in seen["whole"])
     (driver,) = seen["driver"]
     assert driver["title"] == "Orders of the effort"
     assert driver["named"] == shown["Orders of motor"]["named"]

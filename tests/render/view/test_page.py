@@ -73,8 +73,8 @@ def test_pins_are_within_two_pixels_of_where_data_json_projects(page: Any) -> No
             wanted = ox + scale * place[0], oy - scale * place[1]
         else:
             wanted = projected(out, pin["joint"], place, seen["stage"])
-        found = dot(folder / pin["picture"])
-        assert np.hypot(found[0] - wanted[0], found[1] - wanted[1]) < 2.0, (pin, found, wanted)
+        centre = dot(folder / pin["picture"])
+        assert np.hypot(centre[0] - wanted[0], centre[1] - wanted[1]) < 2.0, (pin, centre, wanted)
 
 
 def test_canvases_are_in_memory_where_webgl_is_in_software(page: Any) -> None:
@@ -184,7 +184,7 @@ def test_the_file_is_small_and_names_nothing_outside(page: Any) -> None:
 
 def test_the_lock_has_no_addresses() -> None:
     lock = json.loads((PAGE / "package-lock.json").read_text())
-    packages = [one for name, one in lock["packages"].items() if name]
+    packages = [package for name, package in lock["packages"].items() if name]
     assert len(packages) >= 4
-    assert all("integrity" in one and "resolved" not in one for one in packages)
-    assert "://" not in "".join(str(one.get("resolved")) for one in packages)
+    assert all("integrity" in package and "resolved" not in package for package in packages)
+    assert "://" not in "".join(str(package.get("resolved")) for package in packages)

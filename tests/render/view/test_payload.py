@@ -64,7 +64,7 @@ def test_the_payload_holds_what_the_files_say_and_is_the_same_each_time(out: Out
         u, v, c, s = at["x"], at["y"], math.cos(theta), math.sin(theta)
         assert (x + c * u - s * v, y + s * u + c * v) == pytest.approx((joint.x[k], joint.y[k]), abs=1e-9)
     pieces = back["solid"]["pieces"]
-    assert {(one["body"], one["name"]) for one in pieces} >= {("crank", "crank"), ("ground", "base")}
+    assert {(piece["body"], piece["name"]) for piece in pieces} >= {("crank", "crank"), ("ground", "base")}
     assert len(back["solid"]["meshes"]) < len(pieces), "balls of one size are one mesh"
 
 
@@ -106,10 +106,10 @@ def test_a_skeleton_from_before_is_refused_with_the_remedy(out: Out) -> None:
 
 def test_without_parts_there_is_the_skeleton_alone(out: Out) -> None:
     out.parts.unlink()
-    found = read_payload(out)
-    assert found["solid"] is None
-    assert len(found["skeleton"]["strokes"]) == 3
-    assert all(one["z"] == 0 for one in found["arrows"]["list"])
+    payload = read_payload(out)
+    assert payload["solid"] is None
+    assert len(payload["skeleton"]["strokes"]) == 3
+    assert all(arrow["z"] == 0 for arrow in payload["arrows"]["list"])
 
 
 def _volume(triangles: np.ndarray) -> float:

@@ -64,47 +64,47 @@ def _with_a_centre_of_mass(out: Out) -> None:
 
 
 def test_fingers_reach_everything_and_no_words_overlap(seen: tuple[Out, dict[str, Any]]) -> None:
-    _, found = seen
-    assert [(one["name"], one["state"]) for one in found["phones"]] == [
+    _, observed = seen
+    assert [(phone["name"], phone["state"]) for phone in observed["phones"]] == [
         (name, state) for name in ("phone", "narrow") for state in ("2d", "curves", "help")
     ]
-    for one in found["phones"]:
-        where = one["name"], one["state"]
-        assert one["small"] == [], where
-        assert one["overlaps"] == [], where
-        assert one["cut"] == [], where
-        assert one["wide"] <= one["room"], where
-        assert one["errors"] == [], where
+    for phone in observed["phones"]:
+        where = phone["name"], phone["state"]
+        assert phone["small"] == [], where
+        assert phone["overlaps"] == [], where
+        assert phone["cut"] == [], where
+        assert phone["wide"] <= phone["room"], where
+        assert phone["errors"] == [], where
 
 
 def test_the_scrubber_has_a_row_of_its_own_and_the_speed_one_honest_word(seen: tuple[Out, dict[str, Any]]) -> None:
-    _, found = seen
-    for one in found["phones"]:
-        assert one["scrub"] > 0.9 * one["room"]
-        assert one["speed"] == "1/4 speed", "the film shows 1 s in 4 s"
+    _, observed = seen
+    for phone in observed["phones"]:
+        assert phone["scrub"] > 0.9 * phone["room"]
+        assert phone["speed"] == "1/4 speed", "the film shows 1 s in 4 s"
 
 
 def test_the_skeleton_is_painted_before_webgl_is_asked_for(seen: tuple[Out, dict[str, Any]]) -> None:
-    _, found = seen
-    assert found["before"]["painted"] == 1
-    assert found["before"]["width"] > 200, "the sketch is still there"
-    assert found["before"]["strokes"] >= 2
-    assert found["after"] == {"view": "3d", "notice": True}
+    _, observed = seen
+    assert observed["before"]["painted"] == 1
+    assert observed["before"]["width"] > 200, "the sketch is still there"
+    assert observed["before"]["strokes"] >= 2
+    assert observed["after"] == {"view": "3d", "notice": True}
 
 
 def test_the_file_itself_shows_the_skeleton_without_a_script(seen: tuple[Out, dict[str, Any]]) -> None:
-    out, found = seen
+    out, observed = seen
     payload = read_payload(out)
     svg = sketch(payload["skeleton"])
     assert svg in out.view.read_text("utf-8")
     strokes = payload["skeleton"]["strokes"]
-    assert found["sketch"]["paths"] == sum(not one["sign"] for one in strokes) < len(strokes)
-    assert min(found["sketch"]["box"]["width"], found["sketch"]["box"]["height"]) > 300
+    assert observed["sketch"]["paths"] == sum(not stroke["sign"] for stroke in strokes) < len(strokes)
+    assert min(observed["sketch"]["box"]["width"], observed["sketch"]["box"]["height"]) > 300
 
 
 def test_marks_of_centres_of_mass_obey_their_switch(seen: tuple[Out, dict[str, Any]]) -> None:
-    _, found = seen
-    on, off = ([int(pixel) for pixel in marks.split(",")] for marks in found["marked"])
+    _, observed = seen
+    on, off = ([int(pixel) for pixel in marks.split(",")] for marks in observed["marked"])
     ink = 0xFF2B2520  # of the light theme, as bytes lie in a canvas
     assert on.count(ink) > 60
     assert off.count(ink) == 0

@@ -26,7 +26,7 @@ def test_our_calls_solve_what_the_peers_calls_solve() -> None:
     from benchmarks.calls import BARS
     from benchmarks.calls.mbsd_code import calls
 
-    errors = {one.problem: one.error(one.call()) for one in calls()}
+    errors = {call.problem: call.error(call.call()) for call in calls()}
     assert set(errors) == set(BARS)
     sweep, changed, simulation = errors.values()
     assert max(sweep, changed) < 1e-12
@@ -62,10 +62,10 @@ def test_the_start_is_consistent(name: str) -> None:
 def test_the_squeezer_starts_with_the_published_accelerations() -> None:
     model = squeezer.model()
     q, v = (part.ravel() for part in model.start)
-    found = Equations(model).acceleration(q, v)[2::3]
+    accelerations = Equations(model).acceleration(q, v)[2::3]
     # beta'' and Theta'' at rest, of the Test Set for IVP Solvers.
-    assert found[0] == pytest.approx(14222.4439199541138705911625887, rel=1e-9)
-    assert found[1] - found[0] == pytest.approx(-10666.8329399655854029433719415, rel=1e-9)
+    assert accelerations[0] == pytest.approx(14222.4439199541138705911625887, rel=1e-9)
+    assert accelerations[1] - accelerations[0] == pytest.approx(-10666.8329399655854029433719415, rel=1e-9)
 
 
 def test_the_four_bars_turn_as_published() -> None:
@@ -161,9 +161,9 @@ def test_the_chains_equations_are_those_of_its_bars(links: int) -> None:
         m.revolute(f"pin{k}", above, link.start)
         m.start_near(**{link.name: np.degrees(chain.SLANT)})
         above = link.end
-    found = m.simulate(0.3, steps=2, tolerance=1e-10)
+    sol = m.simulate(0.3, steps=2, tolerance=1e-10)
     wanted = chain.angles(links, 0.3)
-    assert [found.body(f"link{k}").theta[-1] for k in range(links)] == pytest.approx(wanted, abs=1e-7)
+    assert [sol.body(f"link{k}").theta[-1] for k in range(links)] == pytest.approx(wanted, abs=1e-7)
 
 
 @pytest.mark.parametrize("problem", machines.PROBLEMS)

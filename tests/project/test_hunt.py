@@ -79,14 +79,14 @@ def odd_one(seed: int) -> CaseResult:
 
 
 def test_what_hangs_or_dies_is_counted_and_the_rest_goes_on() -> None:
-    found = {result.seed: result.outcomes[-1] for result in results(range(6), odd_one, jobs=1, limit=1.0)}
-    assert sorted(found) == list(range(6))
-    assert found[1].state == HUNG
-    assert found[2].state == WRONG
-    assert "exit code 7" in found[2].reason
-    assert found[3].state == WRONG
-    assert "broken" in found[3].reason
-    assert all(found[k].state == AGREED for k in (0, 4, 5))
+    outcomes = {result.seed: result.outcomes[-1] for result in results(range(6), odd_one, jobs=1, limit=1.0)}
+    assert sorted(outcomes) == list(range(6))
+    assert outcomes[1].state == HUNG
+    assert outcomes[2].state == WRONG
+    assert "exit code 7" in outcomes[2].reason
+    assert outcomes[3].state == WRONG
+    assert "broken" in outcomes[3].reason
+    assert all(outcomes[k].state == AGREED for k in (0, 4, 5))
 
 
 def slow_kernels(seed: int) -> CaseResult:
@@ -104,8 +104,8 @@ def test_who_waits_for_kernels_is_told_once(patience: float, words: int, monkeyp
     monkeypatch.setattr(pool, "KERNEL", 0.25)
     monkeypatch.setattr(pool, "PATIENCE", patience)
     said: list[bool] = []
-    found = list(results(range(2), slow_kernels, jobs=1, notice=lambda: said.append(True)))
-    assert [result.outcomes[-1].state for result in found] == [AGREED, AGREED]
+    finished = list(results(range(2), slow_kernels, jobs=1, notice=lambda: said.append(True)))
+    assert [result.outcomes[-1].state for result in finished] == [AGREED, AGREED]
     assert len(said) == words
 
 
@@ -207,7 +207,7 @@ def test_contradicting_velocities_start_alike_in_all_words_of_a_refused_motion()
     result = CaseResult(1, "loose")
     case._free(Subject(m, 1.0, False), np.random.default_rng(1), result, True)
     assert "the centres of gear_pair 'mesh' meet" in result.outcomes[0].detail
-    assert not [one for one in result.outcomes if one.state == WRONG]
+    assert not [outcome for outcome in result.outcomes if outcome.state == WRONG]
 
 
 def test_accelerations_that_jump_up_and_down_within_a_step_are_no_left_branch() -> None:
@@ -257,7 +257,7 @@ def test_a_left_branch_is_seen_by_its_sign_and_by_its_steps() -> None:
 @pytest.mark.parametrize("kind", ["four-bar, crank turns", "slider-crank", "six-bar and more", "Geneva wheel", "yoke"])
 def test_closed_forms_tell_a_small_error(kind: str) -> None:
     drawn = (case.drawn(seed, kind)[1] for seed in range(50))
-    subject = next(one for one in drawn if one.possible and one.distance > 0.1)
+    subject = next(candidate for candidate in drawn if candidate.possible and candidate.distance > 0.1)
     assert subject.truth is not None
     sol = subject.m.sweep(times=np.linspace(0.0, subject.duration, 721))
     assert not subject.truth(sol)

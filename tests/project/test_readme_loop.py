@@ -37,18 +37,18 @@ def test_the_story_ends_where_it_begins_and_shows_reactions_once() -> None:
     told = frames()
     assert 5.0 <= len(told) / RATE <= 8.0
     step = TURNS / len(told)
-    turned = [one.part for one in told] + [told[0].part]
+    turned = [frame.part for frame in told] + [told[0].part]
     assert np.diff(np.unwrap(turned, period=1.0)) == pytest.approx(step, abs=1e-9)
     assert (told[0].crank, told[0].solid, told[0].tilt) == (CRANK, 0.0, 0.0)
     assert told[-1].crank == CRANK
     assert max(abs(a.solid - b.solid) for a, b in zip(told, told[1:] + told[:1], strict=True)) < 0.3
-    assert len({one.crank for one in told}) > 20, "the number glides"
-    for one in told:
-        assert one.crank == CRANK or one.solid == 0, "parts are shown with the numbers that they were made for"
-        assert not one.reactions or one.solid == 1
-    on = np.array([one.reactions > 0 for one in told])
+    assert len({frame.crank for frame in told}) > 20, "the number glides"
+    for frame in told:
+        assert frame.crank == CRANK or frame.solid == 0, "parts are shown with the numbers that they were made for"
+        assert not frame.reactions or frame.solid == 1
+    on = np.array([frame.reactions > 0 for frame in told])
     assert np.count_nonzero(np.diff(on.astype(int)) == 1) == 1
-    assert max(one.tilt for one in told) == 1
+    assert max(frame.tilt for frame in told) == 1
 
 
 def test_the_file_is_small_and_what_the_story_says() -> None:

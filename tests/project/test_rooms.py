@@ -22,14 +22,14 @@ TEMPLATES = sorted((MECHANISMS / "stages" / "new" / "templates").glob("*/*.py.tx
 
 def imports(file: Path) -> set[str]:
     """Modules that a file imports, dotted."""
-    found = set()
+    modules = set()
     for node in ast.walk(ast.parse(file.read_text().replace("@NAME@", "new_templates"))):
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            modules |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{file} imports relatively"
-            found.add(node.module or "")
-    return found
+            modules.add(node.module or "")
+    return modules
 
 
 @pytest.mark.parametrize("file", FILES + TEMPLATES, ids=lambda file: f"{file.parent.name}/{file.name}")

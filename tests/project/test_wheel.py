@@ -68,10 +68,10 @@ def empty(tmp_path_factory: pytest.TempPathFactory) -> Path:
     subprocess.run([sys.executable, "-m", "venv", folder], check=True)
     (site,) = folder.glob("lib/python*/site-packages")
     for name in NEEDED:
-        found = distribution(name)
-        tops = {file.parts[0] for file in found.files or () if not file.parts[0].startswith(("..", "__pycache__"))}
+        package = distribution(name)
+        tops = {file.parts[0] for file in package.files or () if not file.parts[0].startswith(("..", "__pycache__"))}
         for top in tops:
-            (site / top).symlink_to(Path(str(found.locate_file(top))))
+            (site / top).symlink_to(Path(str(package.locate_file(top))))
     return folder
 
 
@@ -132,8 +132,8 @@ def _compiled_before(folder: Path, sources: Path) -> None:
     """The kernels that the runs below need, from where this clone keeps them."""
     code = README_BLOCK + SIMULATED + COUNTED + FOLDERS
     (told,) = (line for line in _run(sys.executable, code, ROOT) if line.startswith("folders "))
-    for one in told.split()[1:]:
-        shutil.copytree(one, folder / Path(one).name, ignore=shutil.ignore_patterns(".lock", "*.tmp.*"))
+    for kernels in told.split()[1:]:
+        shutil.copytree(kernels, folder / Path(kernels).name, ignore=shutil.ignore_patterns(".lock", "*.tmp.*"))
 
 
 @pytest.mark.slow

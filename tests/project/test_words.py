@@ -15,6 +15,8 @@ from shared.stage.paths import ROOT
 ROOMS = ("mbsd", "mechanisms", "shared")
 MORE = ("render", "studio", "tools", "benchmarks")
 """Rooms in which only docstrings and some of the words are looked at."""
+TESTS = "tests"
+"""Where only names of variables are looked at: sentences of tests tell what they try in their own words."""
 EVERYWHERE = ("told", "in vain", r"hush\w*", "it were")
 INSTEAD = {
     r"rubs?|rubbing|begin_rubbing|rub_\w+": "friction",
@@ -38,6 +40,7 @@ LITERAL = {
 """Folders in which a word means what it says."""
 FILES = sorted(file for room in ROOMS for file in (ROOT / room).rglob("*.py"))
 ALL = FILES + sorted(file for room in MORE for file in (ROOT / room).rglob("*.py") if "node_modules" not in file.parts)
+NAMING = ALL + sorted((ROOT / TESTS).rglob("*.py"))
 
 
 @pytest.mark.parametrize("word", INSTEAD)
@@ -53,11 +56,11 @@ def test_the_sources_use_textbook_words(word: str) -> None:
     assert not lines, f"say {INSTEAD[word]}: " + "; ".join(lines)
 
 
-@pytest.mark.parametrize("room", [*ROOMS, *MORE])
+@pytest.mark.parametrize("room", [*ROOMS, *MORE, TESTS])
 def test_variables_are_called_what_they_are(room: str) -> None:
     nameless = [
         f"{_place(file)}:{node.lineno} {name}"
-        for file in ALL
+        for file in NAMING
         if _place(file).startswith(f"{room}/")
         for node in _bindings(ast.parse(file.read_text()))
         if (name := node.id if isinstance(node, ast.Name) else node.arg) in NAMELESS

@@ -51,12 +51,12 @@ class Needs:
     @property
     def lines(self) -> list[str]:
         """What is missing, what becomes of the tests, and the command that installs it."""
-        found = []
+        lines = []
         if self.libraries:
-            found.append(f"{sentence(self.libraries)}; only tests of the solver run")
+            lines.append(f"{sentence(self.libraries)}; only tests of the solver run")
         if self.programs:
-            found.append(f"{sentence(programs=self.programs)}; tests that use them are skipped")
-        return found
+            lines.append(f"{sentence(programs=self.programs)}; tests that use them are skipped")
+        return lines
 
     def pytest_report_header(self) -> list[str]:
         """At the start."""

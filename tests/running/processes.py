@@ -18,7 +18,7 @@ ENDS = 60.0
 
 def command_lines() -> dict[int, str]:
     """Command line of every process, by its number; those that have ended and were not yet collected do not count."""
-    running = (one.info for one in psutil.process_iter(["pid", "status", "cmdline"]))
+    running = (process.info for process in psutil.process_iter(["pid", "status", "cmdline"]))
     return {info["pid"]: " ".join(info["cmdline"] or ()) for info in running if info["status"] != psutil.STATUS_ZOMBIE}
 
 

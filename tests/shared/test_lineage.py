@@ -82,11 +82,11 @@ def test_a_process_that_starts_another_is_not_ending(blocked: str, ending: bool)
     """posix_spawn and vfork block all signals until the other one runs; make blocks the fatal one alone."""
     plain = "signal(SIGQUIT, SIG_DFL)"  # a shell's background jobs ignore it
     code = f"from signal import *; {plain}; pthread_sigmask(SIG_BLOCK, {blocked}); print(flush=True); input()"
-    with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as one:
-        assert one.stdout is not None
-        one.stdout.readline()
-        assert is_ending(one.pid) == ending
-        one.kill()
+    with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
+        assert child.stdout is not None
+        child.stdout.readline()
+        assert is_ending(child.pid) == ending
+        child.kill()
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:

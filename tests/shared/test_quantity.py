@@ -54,7 +54,7 @@ def test_the_page_writes_what_the_table_says() -> None:
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True, encoding="utf-8")
     made = json.loads(done.stdout)
     for name, cases in CASES.items():
-        assert [one[-1] for one in made[name]] == [one[-1] for one in cases], name
+        assert [case[-1] for case in made[name]] == [case[-1] for case in cases], name
 
 
 @MODULES

@@ -189,7 +189,7 @@ def test_mass_of_a_link_by_hand(length: float, radius: float, thickness: float) 
     """A stadium with two bores of 8 mm, chamfered by 0.4 mm at both mouths."""
     eye = Eye(radius, 8.0)
     solid, _ = checked(plate_link([(0, 0, eye), (length, 0, eye)], thickness, edge=0.0), 2)
-    found = mass_of(solid, 2700.0)
+    mass = mass_of(solid, 2700.0)
     web, ends = 2 * radius * length, math.pi * radius**2
     hole = math.pi * 16.0 * thickness + 2 * math.pi * 0.4**2 * (4.0 + 0.4 / 3)
     volume = (web + ends) * thickness - 2 * hole
@@ -198,9 +198,9 @@ def test_mass_of_a_link_by_hand(length: float, radius: float, thickness: float) 
     about_ends = ends * (radius**2 / 2 - offset**2 + (length / 2 + offset) ** 2)
     about_web = web * (length**2 + 4 * radius**2) / 12
     inertia = (about_web + about_ends) * thickness - 2 * hole * (length**2 / 4 + 8.0)
-    assert found.mass == pytest.approx(2.7e-6 * volume, rel=1e-6)
-    assert found.com == pytest.approx((length / 2e3, 0.0), abs=1e-9)
-    assert found.inertia == pytest.approx(2.7e-12 * inertia, rel=2e-4)
+    assert mass.mass == pytest.approx(2.7e-6 * volume, rel=1e-6)
+    assert mass.com == pytest.approx((length / 2e3, 0.0), abs=1e-9)
+    assert mass.inertia == pytest.approx(2.7e-12 * inertia, rel=2e-4)
 
 
 def test_bodies_combine_by_the_parallel_axis_theorem() -> None:

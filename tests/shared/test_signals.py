@@ -47,9 +47,9 @@ def seen(colour: str, eye: np.ndarray) -> np.ndarray:
     return LAB @ np.cbrt(LMS @ np.clip(eye @ np.array(linear(colour)), 0.0, 1.0))
 
 
-def contrast(one: str, other: str) -> float:
+def contrast(ink: str, paper: str) -> float:
     """After WCAG 2."""
-    high, low = sorted((float(np.array([0.2126, 0.7152, 0.0722]) @ linear(c)) for c in (one, other)), reverse=True)
+    high, low = sorted((float(np.array([0.2126, 0.7152, 0.0722]) @ linear(c)) for c in (ink, paper)), reverse=True)
     return (high + 0.05) / (low + 0.05)
 
 
@@ -57,8 +57,8 @@ def contrast(one: str, other: str) -> float:
 @pytest.mark.parametrize(("paper", "apart_by"), [("light", 0.08), ("dark", 0.13)])
 def test_any_two_signals_differ_for_every_eye(eye: str, paper: str, apart_by: float) -> None:
     places = {name: seen(getattr(signal, paper), EYES[eye]) for name, signal in SIGNALS.items()}
-    for one, other in itertools.combinations(places, 2):
-        assert np.linalg.norm(places[one] - places[other]) > apart_by, (one, other)
+    for left, right in itertools.combinations(places, 2):
+        assert np.linalg.norm(places[left] - places[right]) > apart_by, (left, right)
 
 
 def test_arrows_that_are_shown_together_differ_in_their_heads_too() -> None:
@@ -105,8 +105,8 @@ def test_bodies_of_one_material_have_shades_that_differ() -> None:
         assert len(set(shades.values())) == 12
         assert shades["body 0"] == ink
         first = [seen(shade, EYES["trichromat"]) for shade in list(shades.values())[:4]]
-        for one, other in itertools.combinations(first, 2):
-            assert np.linalg.norm(one - other) > 0.03
+        for left, right in itertools.combinations(first, 2):
+            assert np.linalg.norm(left - right) > 0.03
         assert all(contrast(shade, "#ffffff") > 4.0 for shade in shades.values())
 
 

@@ -93,7 +93,7 @@ def test_film_and_glb_show_a_rod_where_its_ends_are(out_root: Path) -> None:
     out = film_fixture.write(Shot(seconds_per_turn=0.4))
     motion, parts = read_motion(out.motion), read_parts(out.parts)
     rod = msgspec.structs.replace(parts.bodies["coupler"], spans=(B, C))
-    bodies = {name: one for name, one in parts.bodies.items() if name != "coupler"} | {"rod": rod}
+    bodies = {name: body for name, body in parts.bodies.items() if name != "coupler"} | {"rod": rod}
     before = GlbFile(glb(Film(motion, parts, Shot(), out.parts_folder)))
     parts = msgspec.structs.replace(parts, bodies=bodies)
     write_parts(out.parts, parts)

@@ -29,8 +29,8 @@ LARGE = 6_000_000
 @pytest.fixture(scope="module")
 def other(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
     needs("rsync", "ssh", "ssh-keygen", "sshd")
-    with machine(tmp_path_factory.mktemp("ssh") / "machine") as found:
-        yield found
+    with machine(tmp_path_factory.mktemp("ssh") / "machine") as host:
+        yield host
 
 
 @pytest.fixture

@@ -103,7 +103,7 @@ def _damage(out: Out) -> None:
     (store.folder / name).unlink()
     other = name_of(name.partition("-")[0], buffer.getvalue())
     (store.folder / other).write_bytes(buffer.getvalue())
-    index.frames = [other if one == name else one for one in index.frames]
+    index.frames = [other if frame == name else frame for frame in index.frames]
     jsonfile.write(store.index, index)
 
 
@@ -131,9 +131,9 @@ def test_what_is_not_there_is_told(out_root: Path) -> None:
     assert not out_root.exists()
 
 
-@pytest.mark.parametrize(("words", "found"), [("", [0, 40, 80]), ("5", [5]), ("7, 3,7", [3, 7]), ("119 0", [0, 119])])
-def test_chosen_frames(words: str, found: list[int]) -> None:
-    assert pictures.chosen(words, 120, "arm") == found
+@pytest.mark.parametrize(("words", "numbers"), [("", [0, 40, 80]), ("5", [5]), ("7, 3,7", [3, 7]), ("119 0", [0, 119])])
+def test_chosen_frames(words: str, numbers: list[int]) -> None:
+    assert pictures.chosen(words, 120, "arm") == numbers
 
 
 def test_few_frames_are_chosen_once() -> None:
@@ -177,16 +177,16 @@ def test_a_damaged_film_is_a_finding(tmp_path: Path) -> None:
     path = tmp_path / "arm-tiny.mp4"
     (scratch := tmp_path / "scratch").mkdir()
 
-    def found() -> str:
+    def finding() -> str:
         return str(compared_film.compared(path, scratch, store, index, TINY))
 
-    assert found() == "film: not compared, arm-tiny.mp4 is not there"
+    assert finding() == "film: not compared, arm-tiny.mp4 is not there"
     encode.encode(((store.folder / name).read_bytes() for name in names), 4, TINY, 30, path)
-    assert found() == "film: same, 4 decoded frames, the same file"
+    assert finding() == "film: same, 4 decoded frames, the same file"
     whole = path.read_bytes()
     path.write_bytes(whole[:-20])
-    assert "film: differs" in found()
+    assert "film: differs" in finding()
     encode.encode(((store.folder / name).read_bytes() for name in names[:3]), 3, TINY, 30, path)
-    assert found() == "film: differs, 3 frames decode, made again 4"
+    assert finding() == "film: differs, 3 frames decode, made again 4"
     (store.folder / names[2]).write_bytes(b"")
-    assert found() == f"film: differs, 1 of its pictures are gone or damaged, such as {names[2]}"
+    assert finding() == f"film: differs, 1 of its pictures are gone or damaged, such as {names[2]}"

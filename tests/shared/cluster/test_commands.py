@@ -44,9 +44,9 @@ def started(*words: str, log: Path) -> Iterator[subprocess.Popen[bytes]]:
 
 
 def free_port() -> int:
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
 
 
 def wait_until(ready: Callable[[], bool], seconds: float = 60.0) -> None:
@@ -66,8 +66,12 @@ def answers_at(port: int) -> bool:
 def listening(process: subprocess.Popen[bytes]) -> list[tuple[str, int]]:
     """Addresses on which the process and all that it has started listen."""
     family = [psutil.Process(process.pid), *psutil.Process(process.pid).children(recursive=True)]
-    connections = [one for member in family for one in member.net_connections("inet")]
-    return [(str(one.laddr[0]), int(one.laddr[1])) for one in connections if one.status == psutil.CONN_LISTEN]
+    connections = [connection for member in family for connection in member.net_connections("inet")]
+    return [
+        (str(connection.laddr[0]), int(connection.laddr[1]))
+        for connection in connections
+        if connection.status == psutil.CONN_LISTEN
+    ]
 
 
 def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(

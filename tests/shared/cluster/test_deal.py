@@ -66,10 +66,10 @@ def first_worker(client: distributed.Client) -> str:
 
 def test_all_orders_are_done_once_with_their_inputs(client: distributed.Client) -> None:
     orders = {f"k{n}": n for n in range(200)}
-    found = list(dealt(client, acting.doubled, orders).results())
-    assert {key: value for key, value, _ in found} == {f"k{n}": f"in common{n}{n}" for n in range(200)}
-    assert len(found) == 200
-    assert len({worker for _, _, worker in found}) == 3
+    answers = list(dealt(client, acting.doubled, orders).results())
+    assert {key: value for key, value, _ in answers} == {f"k{n}": f"in common{n}{n}" for n in range(200)}
+    assert len(answers) == 200
+    assert len({worker for _, _, worker in answers}) == 3
 
 
 def test_inputs_are_sent_only_where_they_lack(client: distributed.Client) -> None:
@@ -90,9 +90,9 @@ def test_inputs_are_sent_only_where_they_lack(client: distributed.Client) -> Non
 def test_a_worker_that_fails_gives_its_orders_to_others(client: distributed.Client) -> None:
     sick = first_worker(client)
     work = dealt(client, acting.refusing, {f"k{n}": sick for n in range(20)})
-    found = list(work.results())
-    assert len(found) == 20
-    assert sick not in {value for _, value, _ in found}
+    answers = list(work.results())
+    assert len(answers) == 20
+    assert sick not in {value for _, value, _ in answers}
 
 
 def test_an_order_that_fails_everywhere_is_told(client: distributed.Client) -> None:
@@ -105,27 +105,27 @@ def test_a_worker_that_stalls_keeps_nothing_back(client: distributed.Client) -> 
     started = time.monotonic()
     stalling = first_worker(client)
     work = dealt(client, acting.hanging, {f"k{n}": stalling for n in range(12)}, patience=0.7)
-    found = list(work.results())
-    assert Counter(key for key, _, _ in found) == Counter([f"k{n}" for n in range(12)])
-    assert time.monotonic() - started < acting.HANGS or stalling in {value for _, value, _ in found}
+    answers = list(work.results())
+    assert Counter(key for key, _, _ in answers) == Counter([f"k{n}" for n in range(12)])
+    assert time.monotonic() - started < acting.HANGS or stalling in {value for _, value, _ in answers}
     time.sleep(acting.HANGS)  # the sleeper wakes up before the next test
 
 
 def test_a_worker_that_answers_after_all_gets_orders_again() -> None:
-    one = hand.Hand("w", Manner(patience=0.0), fit=True, groups=[hand.Group(["a"])])
-    assert one.is_overdue()
-    one.stalled = True
-    assert not one.is_ready()
-    one.drop(one.groups[0])
-    assert one.is_ready()
+    worker = hand.Hand("w", Manner(patience=0.0), fit=True, groups=[hand.Group(["a"])])
+    assert worker.is_overdue()
+    worker.stalled = True
+    assert not worker.is_ready()
+    worker.drop(worker.groups[0])
+    assert worker.is_ready()
 
 
 def test_workers_that_have_nothing_to_do_take_over_from_slow_ones(client: distributed.Client) -> None:
     """The last order is with a worker that should take long; another does it as well, and one answer is kept."""
     orders = {f"k{n}": 0.05 for n in range(12)}
     work = dealt(client, acting.slow, orders)
-    found = [key for key, _, _ in work.results()]
-    assert Counter(found) == Counter(orders.keys())
+    keys = [key for key, _, _ in work.results()]
+    assert Counter(keys) == Counter(orders.keys())
 
 
 def test_workers_with_other_sources_are_refused_by_name(client: distributed.Client) -> None:
@@ -156,8 +156,8 @@ def test_killed_workers_lose_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyP
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
         distributed.Client(cluster, set_as_default=False) as client,
     ):
-        found = list(dealt(client, acting.deadly, orders).results())
-    assert Counter(key for key, _, _ in found) == Counter(orders.keys())
+        answers = list(dealt(client, acting.deadly, orders).results())
+    assert Counter(key for key, _, _ in answers) == Counter(orders.keys())
     assert (tmp_path / "dies").exists()
 
 

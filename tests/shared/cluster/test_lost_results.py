@@ -59,10 +59,10 @@ def dealt(client: FakeClient) -> list[tuple[str, str, str]]:
     content = b"in common"
     name = content_hash(content)
     deal_ = Deal(client, acting.work(acting.doubled), name, {name: lambda: content}, ORDERS, ("shared/cluster",))  # pyright: ignore[reportArgumentType]
-    found = list(deal_.results())
-    assert Counter(key for key, _, _ in found) == Counter(ORDERS.keys()), "each once"
-    assert all(value == key for key, value, _ in found)
-    return found
+    answers = list(deal_.results())
+    assert Counter(key for key, _, _ in answers) == Counter(ORDERS.keys()), "each once"
+    assert all(value == key for key, value, _ in answers)
+    return answers
 
 
 LOST: dict[str, Callable[[], BaseException]] = {
@@ -103,8 +103,8 @@ def test_a_worker_whose_results_never_arrive_is_left_out(capsys: pytest.CaptureF
 
     client = Losing(fails, times=100)
     del client.workers["keeping"]  # it comes later
-    found = dealt(client)
-    assert {worker for _, _, worker in found} == {"keeping"}
+    answers = dealt(client)
+    assert {worker for _, _, worker in answers} == {"keeping"}
     assert "worker losing: OSError: Stream is closed; it is left out" in capsys.readouterr().err
 
 
@@ -127,10 +127,10 @@ def test_a_worker_that_goes_while_its_result_is_fetched_holds_up_nobody(
 
     client = Losing(goes)
     began = time.monotonic()
-    found = dealt(client)
+    answers = dealt(client)
     over.set()
     assert again.is_set()
-    assert {worker for _, _, worker in found} == {"keeping"}
+    assert {worker for _, _, worker in answers} == {"keeping"}
     assert time.monotonic() - began < WAIT / 2
     said = capsys.readouterr()
     assert "worker losing has gone; what it had to do goes to others" in said.out

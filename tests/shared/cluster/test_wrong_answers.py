@@ -69,9 +69,9 @@ def test_a_worker_that_lies_is_left_out_and_the_other_does_all(
 ) -> None:
     liar, honest = workers(client)
     monkeypatch.setattr("shared.cluster.deal.perform", functools.partial(lying.lie, kind, liar))
-    found = list(dealt(client).results())
-    assert Counter(key for key, _, _ in found) == Counter(ORDERS.keys())
-    assert {(value, worker) for _, value, worker in found} == {("done", honest)}
+    answers = list(dealt(client).results())
+    assert Counter(key for key, _, _ in answers) == Counter(ORDERS.keys())
+    assert {(value, worker) for _, value, worker in answers} == {("done", honest)}
     said = capsys.readouterr().err
     assert said.count(f"worker {liar} sent a wrong answer: ") == 1
     assert "it is left out" in said
@@ -97,8 +97,8 @@ def test_an_error_of_one_worker_is_no_reason_to_end(
     """It fails each order that it gets, the same one three times, too; the other one does them all."""
     monkeypatch.setattr(deal, "ATTEMPTS", 1)
     failing, honest = workers(client)
-    found = list(dealt(client, {"a": failing, "b": failing}, failing_on).results())
-    assert {worker for _, _, worker in found} == {honest}
+    answers = list(dealt(client, {"a": failing, "b": failing}, failing_on).results())
+    assert {worker for _, _, worker in answers} == {honest}
 
 
 def failing_on(files: Any, common: str, order: str) -> bytes:
@@ -122,7 +122,7 @@ def test_a_worker_that_others_keep_busy_is_asked_at_once(
     monkeypatch.setattr(deal, "WAIT", 0.5)
     busy = [client.submit(time.sleep, 1.5, workers=[name], pure=False) for name in workers(client)]
     assert len(list(dealt(client).results())) == len(ORDERS)
-    assert all(one.done() for one in busy)
+    assert all(future.done() for future in busy)
 
 
 def test_what_is_waited_for_is_told_soon(
@@ -157,6 +157,6 @@ def test_a_result_that_never_comes_holds_up_nobody(client: distributed.Client, m
 
     monkeypatch.setattr(Dask, "submit", stuck)
     began = time.monotonic()
-    found = list(dealt(client).results())
-    assert {worker for _, _, worker in found} == {honest}
+    answers = list(dealt(client).results())
+    assert {worker for _, _, worker in answers} == {honest}
     assert time.monotonic() - began < 10.0

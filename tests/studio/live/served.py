@@ -184,11 +184,11 @@ def served(
 
 def processes_of(mark: str) -> list[psutil.Process]:
     """Those that run on and have this mark of a server in their environment."""
-    found = []
+    marked = []
     for process in psutil.process_iter():
         try:
             if process.status() != psutil.STATUS_ZOMBIE and process.environ().get(MARK) == mark:
-                found.append(process)
+                marked.append(process)
         except (psutil.Error, OSError):
             continue
-    return found
+    return marked

@@ -72,9 +72,9 @@ def tip(values: dict[str, float]) -> np.ndarray:
 def test_numbers_put_a_thing_there_at_the_start(swing: tuple) -> None:
     author, size = swing
     to = size * np.array([0.4, -0.2])
-    found = dragged(author, {}, {"kind": "point", "name": "tip"}, 0.0, list(to))
-    assert set(found) == {"upper", "lower", "angle", "turn"}, "a stiffness moves nothing at the start"
-    np.testing.assert_allclose(size * tip(found), to, atol=1e-3 * size)  # numbers have four digits
+    numbers = dragged(author, {}, {"kind": "point", "name": "tip"}, 0.0, list(to))
+    assert set(numbers) == {"upper", "lower", "angle", "turn"}, "a stiffness moves nothing at the start"
+    np.testing.assert_allclose(size * tip(numbers), to, atol=1e-3 * size)  # numbers have four digits
     joint = dragged(author, {}, {"kind": "joint", "name": "B"}, 0.0, [0.1 * size, -0.3 * size])
     assert set(joint) == {"upper", "angle"}
     assert joint["upper"] == pytest.approx(np.hypot(0.1, 0.3), rel=1e-4)

@@ -24,10 +24,10 @@ def good(length: float) -> str:
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("faulty") / "mechanisms", "arm", ARM, 60.0) as one:
-        with one.page() as page:
+    with served(tmp_path_factory.mktemp("faulty") / "mechanisms", "arm", ARM, 60.0) as server:
+        with server.page() as page:
             page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
-        yield one
+        yield server
 
 
 def followed(live: Served, page: Page, length: float) -> None:
@@ -149,4 +149,4 @@ def test_a_stage_that_prints_without_end_or_cannot_begin_is_done(live: Served, m
             heard = [page.hear("line")["text"] for _ in said]
             assert all(text.startswith(begin) for text, begin in zip(heard, said, strict=True))
             assert all(len(text) < LONGEST + 60 for text in heard)
-            assert page.hear("parts", wanted=lambda one: one["state"] != "making")["state"] == "failed"
+            assert page.hear("parts", wanted=lambda header: header["state"] != "making")["state"] == "failed"

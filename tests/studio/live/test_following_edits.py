@@ -38,8 +38,8 @@ BROKEN = {
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("edited") / "mechanisms", "arm", ARM, LIMIT) as one:
-        yield one
+    with served(tmp_path_factory.mktemp("edited") / "mechanisms", "arm", ARM, LIMIT) as server:
+        yield server
 
 
 def good(length: float) -> str:
@@ -52,7 +52,7 @@ def test_two_hundred_edits_half_of_them_broken(live: Served) -> None:
     used: list[int] = []
     children: list[int] = []
     with live.page() as page:
-        page.hear("motion", "state", wanted=lambda one: bool(one["payload"]))
+        page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
         for k in range(200):
             length = 0.1 + k / 1000
             if k % 2:
@@ -63,7 +63,9 @@ def test_two_hundred_edits_half_of_them_broken(live: Served) -> None:
                 assert live.session.board.payload, "the last good motion is still there"
             else:
                 live.write(good(length))
-                solved = page.hear("solved", wanted=lambda one, length=length: one["numbers"][0]["value"] == length)
+                solved = page.hear(
+                    "solved", wanted=lambda header, length=length: header["numbers"][0]["value"] == length
+                )
                 assert solved["numbers"][1]["name"] == "speed"
                 assert page.hear("motion")["payload"]
                 assert live.session.board.error is None
@@ -79,7 +81,7 @@ def test_endless_loops_are_ended_and_newer_edits_do_not_wait(live: Served, monke
         live.write(f"{good(0.31)}\nwhile True:\n    pass\n")
         page.hear("solving")
         live.write(good(0.32))
-        page.hear("solved", wanted=lambda one: one["numbers"][0]["value"] == 0.32)
+        page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == 0.32)
         page.hear("motion")
         monkeypatch.setattr(live.live.nursery, "limit", 2.0)
         live.write(f"{good(0.33)}\nimport time\nwhile True:\n    time.sleep(1)\n")
@@ -97,7 +99,7 @@ def test_a_file_that_is_gone_is_told_and_may_come_back(live: Served) -> None:
         file.unlink()
         assert "arm" in page.hear("error")["text"]
         live.write(good(0.35))
-        page.hear("solved", wanted=lambda one: one["numbers"][0]["value"] == 0.35)
+        page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == 0.35)
 
 
 def test_what_the_file_imports_is_followed_and_a_touch_is_no_edit(live: Served, tmp_path: Path) -> None:
@@ -109,11 +111,11 @@ def test_what_the_file_imports_is_followed_and_a_touch_is_no_edit(live: Served, 
     text = text.replace("0.36 ", f"LENGTH + float(open({str(data)!r}).read()) ", 1)
     with live.page() as page:
         live.write(text)
-        page.hear("solved", wanted=lambda one: one["numbers"][0]["value"] == 0.9)
+        page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == 0.9)
         helper.write_text("LENGTH = 0.6\n")
-        page.hear("solved", wanted=lambda one: one["numbers"][0]["value"] == 1.1)
+        page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == 1.1)
         data.write_text("0.2")
-        page.hear("solved", wanted=lambda one: one["numbers"][0]["value"] == pytest.approx(0.8))
+        page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == pytest.approx(0.8))
         page.hear("motion")
         os.utime(helper)
         live.write(text)

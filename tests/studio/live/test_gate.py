@@ -80,8 +80,8 @@ def test_other_scopes_pass() -> None:
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("guarded") / "mechanisms", "arm", ARM, 30.0) as one:
-        yield one
+    with served(tmp_path_factory.mktemp("guarded") / "mechanisms", "arm", ARM, 30.0) as server:
+        yield server
 
 
 def test_a_second_origin_is_refused_by_the_server_itself(live: Served) -> None:

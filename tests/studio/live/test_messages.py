@@ -93,10 +93,10 @@ def test_messages_of_the_page_are_understood() -> None:
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("hostile") / "mechanisms", "arm", ARM, 30.0) as one:
-        with one.page() as page:
+    with served(tmp_path_factory.mktemp("hostile") / "mechanisms", "arm", ARM, 30.0) as server:
+        with server.page() as page:
             page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
-        yield one
+        yield server
 
 
 def set_and_seen(page: Page, other: Page, length: float) -> None:

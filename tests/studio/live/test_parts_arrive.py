@@ -98,12 +98,14 @@ def _stages(wanted: int) -> int:
     """Processes that make parts, which get a moment to begin or to end."""
     ends = time.monotonic() + 20
     while True:
-        found = 0
-        for one in psutil.Process().children(recursive=True):
+        running = 0
+        for process in psutil.Process().children(recursive=True):
             try:
-                found += one.status() != psutil.STATUS_ZOMBIE and "tests.studio.live.stage" in one.cmdline()[:3]
+                running += (
+                    process.status() != psutil.STATUS_ZOMBIE and "tests.studio.live.stage" in process.cmdline()[:3]
+                )
             except psutil.NoSuchProcess:
                 continue
-        if found == wanted or time.monotonic() > ends:
-            return found
+        if running == wanted or time.monotonic() > ends:
+            return running
         time.sleep(0.1)

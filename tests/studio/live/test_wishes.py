@@ -13,27 +13,27 @@ from tests.studio.live.served import FOUR_BAR, Page, Served, served
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("wished") / "mechanisms", "links", FOUR_BAR, 30.0) as one:
-        with one.page() as page:
+    with served(tmp_path_factory.mktemp("wished") / "mechanisms", "links", FOUR_BAR, 30.0) as server:
+        with server.page() as page:
             page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
-        yield one
+        yield server
 
 
 @pytest.fixture
 def page(live: Served) -> Iterator[Page]:
     """A page, with the file and its numbers as they were at first."""
     text = (live.folder / "links" / "mechanism.py").read_text()
-    with live.page() as one:
-        state = one.hear("state")
+    with live.page() as tab:
+        state = tab.hear("state")
         if text != FOUR_BAR:
             live.write(FOUR_BAR)
-            one.hear("solved", wanted=lambda header: header["numbers"][1]["value"] == 0.040)  # not what still comes
-            one.hear("motion")
+            tab.hear("solved", wanted=lambda header: header["numbers"][1]["value"] == 0.040)  # not what still comes
+            tab.hear("motion")
         elif state["values"]:
-            one.say(do="set", values={number["name"]: number["value"] for number in state["numbers"]}, final=True)
-            one.hear("motion")
+            tab.say(do="set", values={number["name"]: number["value"] for number in state["numbers"]}, final=True)
+            tab.hear("motion")
         live.session.history.keep(set())
-        yield one
+        yield tab
 
 
 def decoded(payload: bytes) -> dict:
@@ -109,13 +109,13 @@ def test_thirty_solutions_a_second(live: Served, page: Page) -> None:
 def test_where_it_cannot_be_closed_it_is_shown_up_to_there(page: Page) -> None:
     """A crank of 0.075 m reaches its last angle where coupler and rocker are in line."""
     page.say(do="set", values={"crank": 0.075, "ground": 0.14})
-    found = page.hear("motion", "refused")
-    stop = found["stop"]
+    refusal = page.hear("motion", "refused")
+    stop = refusal["stop"]
     assert "toggle" in stop["text"] or "do not close" in stop["text"]
     angle = stop["drivers"]["motor"]
     reach = np.hypot(0.14 - 0.075 * np.cos(angle), 0.075 * np.sin(angle))
     assert reach == pytest.approx(0.12 + 0.09, abs=2e-6)
-    shown = decoded(found["payload"])
+    shown = decoded(refusal["payload"])
     assert shown["time"][-1] == pytest.approx(stop["time"])
     assert shown["period"] is None
 
@@ -140,8 +140,8 @@ def test_what_closes_nowhere_is_refused_and_the_last_motion_stays(live: Served, 
 def test_dragging_changes_lengths_as_little_as_may_be(page: Page, thing: tuple[str, str], to: tuple) -> None:
     moment = 0.25
     page.say(do="drag", thing={"kind": thing[0], "name": thing[1]}, time=moment, to=list(to), final=True)
-    found = page.hear("motion")
-    shown, values = decoded(found["payload"]), found["values"]
+    motion = page.hear("motion")
+    shown, values = decoded(motion["payload"]), motion["values"]
     where = shown["joints" if thing[0] == "joint" else "points"][thing[1]]
     k = int(np.argmin(np.abs(shown["time"] - moment)))
     assert shown["time"][k] == pytest.approx(moment)
@@ -178,7 +178,7 @@ def test_numbers_are_written_back_and_nothing_else(live: Served, page: Page) -> 
     page.say(do="set", values={"crank": 0.0435, "tracer[1]": 0.0312, "teeth": 5}, final=True)
     page.hear("motion")
     page.say(do="write")
-    page.hear("solved", wanted=lambda one: one["numbers"][1]["value"] == 0.0435)
+    page.hear("solved", wanted=lambda header: header["numbers"][1]["value"] == 0.0435)
     expected = FOUR_BAR.replace("default=0.040", "default=0.0435").replace("(0.060, 0.030)", "(0.060, 0.0312)")
     assert (live.folder / "links" / "mechanism.py").read_text() == expected.replace("teeth: int = 3", "teeth: int = 5")
     page.say(do="write")
@@ -192,7 +192,7 @@ def test_numbers_are_written_back_and_nothing_else(live: Served, page: Page) -> 
 def test_a_drawn_path_is_fitted_with_progress(page: Page) -> None:
     path = [[0.02, 0.075], [0.05, 0.085], [0.075, 0.07]]
     page.say(do="fit", point="P", path=path[::-1], starts=1, generations=40, ordered=True)
-    assert page.hear("progress", wanted=lambda one: one["done"] > 0)["done"] <= 1
+    assert page.hear("progress", wanted=lambda header: header["done"] > 0)["done"] <= 1
     assert page.hear("motion")["values"], "the best linkage so far"
     fitted = page.heard("fitted")
     assert all(float(f"{value:.4g}") == value for value in fitted["values"].values())
@@ -208,7 +208,7 @@ def test_a_drawn_path_is_fitted_with_progress(page: Page) -> None:
 def test_a_fit_is_cancelled(page: Page) -> None:
     zigzag = [[0.02 + 0.01 * k, 0.02 + 0.09 * (k % 2)] for k in range(9)]  # no linkage follows it, so the fit goes on
     page.say(do="fit", point="P", path=zigzag, starts=50, generations=5000)
-    page.hear("progress", wanted=lambda one: one["done"] > 0)
+    page.hear("progress", wanted=lambda header: header["done"] > 0)
     began = time.monotonic()
     page.say(do="cancel")
     assert page.hear("fitted")["cancelled"]

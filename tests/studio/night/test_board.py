@@ -19,7 +19,7 @@ def play(board: Board, bad: set[tuple[str, str]], data: st.DataObject, cores: in
     running: list[tuple[str, str]] = []
     order: list[tuple[str, str]] = []
     while not board.is_over():
-        renders = [one for one in running if RENDERS[one[1]]]
+        renders = [job for job in running if RENDERS[job[1]]]
         for kind, places in ((True, 1 - len(renders)), (False, cores - (len(running) - len(renders)))):
             for name, step in list(board.ready(kind))[: max(places, 0)]:
                 board.start(name, step)
@@ -27,9 +27,9 @@ def play(board: Board, bad: set[tuple[str, str]], data: st.DataObject, cores: in
                 order.append((name, step))
         assert not any(board.ready(True)) or any(RENDERS[step] for _, step in running)
         assert running
-        one = data.draw(st.sampled_from(sorted(running)))
-        running.remove(one)
-        (board.fail if one in bad else board.done)(*one)
+        job = data.draw(st.sampled_from(sorted(running)))
+        running.remove(job)
+        (board.fail if job in bad else board.done)(*job)
     return order
 
 

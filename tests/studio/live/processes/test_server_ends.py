@@ -51,7 +51,9 @@ def test_nothing_outlives_a_server_that_was_killed(tmp_path: Path) -> None:
     with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, start_new_session=True) as server:
         try:
             until((folder / "arm" / "making").exists, "parts are being made")
-            warm = next(one for one in psutil.Process(server.pid).children() if "forking" in " ".join(one.cmdline()))
+            warm = next(
+                child for child in psutil.Process(server.pid).children() if "forking" in " ".join(child.cmdline())
+            )
             mark = warm.environ()[MARK]
             assert len(processes_of(mark)) >= 9, "the warm process, two keepers, what they keep and what that has begun"
             server.kill()

@@ -118,18 +118,18 @@ class Some:
 
 
 def test_numbers_have_sensible_ranges() -> None:
-    found = {number.name: number for number in numbers_of(Some())}
-    assert list(found) == ["a", "b", "c", "d[0]", "d[1][0]", "f", "g", "h[0]"]
-    for number in found.values():
+    numbers = {number.name: number for number in numbers_of(Some())}
+    assert list(numbers) == ["a", "b", "c", "d[0]", "d[1][0]", "f", "g", "h[0]"]
+    for number in numbers.values():
         assert number.low <= number.value <= number.high
         assert number.low < number.high
         assert 0 < number.step < number.high - number.low
-    assert (found["f"].low, found["f"].high) == (1, 9)
-    assert found["a"].low > 0
-    assert found["d[0]"].high < 0
-    assert found["b"].low < 0 < found["b"].high
-    assert found["c"].whole
-    assert found["c"].step == 1
+    assert (numbers["f"].low, numbers["f"].high) == (1, 9)
+    assert numbers["a"].low > 0
+    assert numbers["d[0]"].high < 0
+    assert numbers["b"].low < 0 < numbers["b"].high
+    assert numbers["c"].whole
+    assert numbers["c"].step == 1
     assert numbers_of(object()) == []
     assert numbers_of(Some(a=float("inf"), b=float("nan"), c=10**400))[0].name == "d[0]"
     assert numbers_of(Some(a=5e-324))[0].step > 0

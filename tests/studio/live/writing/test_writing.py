@@ -29,10 +29,10 @@ DECIDES = {
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with served(tmp_path_factory.mktemp("written") / "mechanisms", "arm", ARM, 30.0) as one:
-        with one.page() as page:
+    with served(tmp_path_factory.mktemp("written") / "mechanisms", "arm", ARM, 30.0) as server:
+        with server.page() as page:
             page.hear("motion", "state", wanted=lambda header: bool(header["payload"]))
-        yield one
+        yield server
 
 
 def file_of(live: Served) -> Path:

@@ -1,4 +1,4 @@
-"""Animations: their pictures and times, what their arrows stand for, files that players read, refusals."""
+"""Animations: their pictures and times, files that players read, refusals."""
 
 from __future__ import annotations
 
@@ -11,15 +11,13 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate
-from mbsd.base.quantity import written
 from mbsd.drawing.animation import encoders
 from mbsd.drawing.animation.between import at_times
 from mbsd.drawing.animation.clip import HOLD, clip_of
 from mbsd.drawing.animation.picture.page import Page
-from mbsd.drawing.animation.picture.scales import LONGEST, scales_of
-from mbsd.drawing.animation.quantities.arrows import Arc, Arrow
+from mbsd.drawing.animation.quantities.arrows import Arrow
 from mbsd.drawing.animation.scene import Scene, scene_of
-from mbsd.drawing.animation.words import EVERYTHING, round_below
+from mbsd.drawing.animation.words import EVERYTHING
 from mbsd.drawing.look import PAPER
 from mbsd.results.solution import Solution
 from tools.models.contact_models import ball
@@ -90,135 +88,6 @@ def test_a_sweep_between_its_outputs_is_the_sweep_at_those_times() -> None:
     assert np.abs(between.v - exact.v).max() < 1e-7
     assert np.abs(between.a - exact.a).max() < 1e-3 * np.abs(exact.a).max()
     assert np.abs(between.wrench - exact.wrench).max() < 2e-3 * np.abs(exact.wrench).max()
-
-
-# -- what arrows stand for -------------------------------------------------------------------------------------------
-
-
-def test_reactions_are_those_on_the_body_that_moves() -> None:
-    drawn = scene(four_bar().sweep())
-    arrows = [mark for mark in drawn.marks(("reactions",)) if isinstance(mark, Arrow)]
-    for mark, name, sign in zip(arrows, "ABCD", (1, 1, 1, -1), strict=True):
-        view = drawn.sol.joint(name)
-        assert np.allclose(mark.vector, sign * view.reaction)
-        assert np.allclose(mark.place, np.stack([view.x, view.y], axis=1))
-
-
-def test_forces_are_weights_and_efforts() -> None:
-    drawn = scene(four_bar().sweep())
-    weights = [mark for mark in drawn.marks(("forces",)) if isinstance(mark, Arrow) and mark.size.max() > 1e-12]
-    assert len(weights) == 3
-    assert all(np.allclose(mark.vector, (0.0, -0.1 * 9.80665)) for mark in weights)
-    torques = [mark for mark in drawn.marks(("forces",)) if isinstance(mark, Arc)]
-    assert any(np.allclose(mark.value, drawn.sol.driver("motor").torque) for mark in torques)
-
-
-def test_velocities_are_drawn_once_for_each_place_that_moves() -> None:
-    drawn = scene(four_bar().sweep())
-    places = [mark.place[0] for mark in drawn.marks(("velocities",))]
-    assert len(places) == 3  # B, C, P
-    gap = np.linalg.norm(np.array(places)[:, None] - np.array(places)[None], axis=-1) + np.eye(3)
-    assert gap.min() > 1e-3
-    p = drawn.sol.point("P")
-    assert any(np.allclose(mark.vector, np.stack([p.vx, p.vy], axis=1)) for mark in drawn.marks(("velocities",)))
-
-
-def test_a_gear_pushes_where_its_teeth_meet() -> None:
-    m = Mechanism("gears", gravity=None)
-    pinion, gear = m.body("one", 1.0, inertia=1e-3), m.body("two", 1.0, inertia=1e-3)
-    m.revolute("A", m.ground.at(0, 0), pinion.origin)
-    m.revolute("B", m.ground.at(0.05, 0), gear.origin)
-    m.gear_pair("teeth", pinion.origin, gear.origin, 0.02, 0.03)
-    m.torque("load", gear, -1.0)
-    m.drive_angle("motor", pinion, constant_rate(3.0))
-    drawn = scene(m.sweep(2 * math.pi))
-    [mesh] = [k for k, joint in enumerate(drawn.sol.packed.joints) if joint.name == "teeth"]
-    marks = [mark for mark in drawn.marks(("reactions",)) if isinstance(mark, Arrow)]
-    assert np.allclose(marks[mesh].place, (0.02, 0.0), atol=1e-12)
-    spins = [mark for mark in drawn.marks(("velocities",)) if isinstance(mark, Arc)]
-    assert sorted(float(mark.value[0]) for mark in spins) == pytest.approx([-2.0, 3.0])
-
-
-def test_teeth_turn_with_their_wheels_and_stay_in_mesh() -> None:
-    from mbsd.drawing.animation.brush import Brush
-
-    m = Mechanism("gears", gravity=None)
-    pinion, gear = m.body("one"), m.body("two")
-    m.revolute("A", m.ground.at(0, 0), pinion.origin)
-    m.revolute("B", m.ground.at(0.05, 0), gear.origin)
-    m.gear_pair("teeth", pinion.origin, gear.origin, 0.02, 0.03)
-    m.drive_angle("motor", pinion, constant_rate(3.0))
-    drawn = scene(m.sweep(2 * math.pi))
-    for k in (0, 7, 23):
-        brush = Brush(None, drawn.unit)
-        drawn.draw(brush, k, {"one": "#112233", "two": "#445566"})
-        (z_i, phase_i), (z_j, phase_j) = brush.wheels["one", 0.02], brush.wheels["two", 0.03]
-        # a tooth of one meets a gap of two at angle 0 of one, which is pi of two
-        assert math.cos(0 * z_i - phase_i) == pytest.approx(-math.cos(math.pi * z_j - phase_j), abs=1e-6)
-        turned = float(drawn.tracks.views["one"].theta[k] - drawn.tracks.views["one"].theta[0])
-        assert phase_i - drawn.steady.wheels["one", 0.02][1] == pytest.approx(z_i * turned)
-
-
-def test_energy_flows_from_the_motor_to_the_slider() -> None:
-    m = Mechanism("slider_crank", gravity=None)
-    crank, rod, slider = m.bar("crank", 0.05), m.bar("rod", 0.15), m.body("slider", 0.5)
-    m.revolute("O", m.ground.at(0, 0), crank.start)
-    m.revolute("A", crank.end, rod.start)
-    m.revolute("B", rod.end, slider.origin)
-    m.prismatic("guide", m.ground.at(0, 0), slider.origin)
-    m.drive_angle("motor", crank, constant_rate(20.0))
-    m.start_near(crank=30, rod=-10)
-    drawn = scene(m.sweep(), 0.05)
-    power = np.abs(drawn.sol.driver("motor").power)
-    flows = [mark for mark in drawn.marks(("energy",)) if mark.size.max() > 1e-9]
-    assert len(flows) == 3  # motor to crank, crank to rod, rod to slider: without mass they pass all of it on
-    assert all(np.allclose(mark.size, power, atol=2e-3 * power.max()) for mark in flows)
-    body = drawn.sol.body("slider")
-    assert np.allclose(power, np.abs(0.5 * body.ax * body.vx), rtol=1e-3, atol=1e-3 * power.max())
-    assert np.allclose(drawn.balance.kinetic, drawn.balance.bodies["slider"])
-
-
-def test_impacts_ring_at_the_floor() -> None:
-    from mbsd.drawing.animation.picture.impacts import impacts_of
-
-    drawn = scene(ball(0.5).simulate(2.0))
-    impacts = impacts_of(drawn)
-    assert impacts[0].time == pytest.approx(math.sqrt(2 / 9.81))
-    assert impacts[0].part == 1.0
-    assert all(np.allclose(impact.place, 0.0, atol=1e-9) for impact in impacts)
-
-
-# -- scales ----------------------------------------------------------------------------------------------------------
-
-
-def test_one_scale_for_the_clip_and_a_round_reference() -> None:
-    marks = scene(four_bar().sweep()).marks(("velocities",))
-    scale = scales_of(marks, {})["m/s"]
-    assert scale.largest == pytest.approx(max(float(mark.size.max()) for mark in marks))
-    assert scale.reference in (0.1, 0.2, 0.5)
-    assert not scale.cut
-
-
-def test_a_rare_peak_is_cut_and_told() -> None:
-    size = np.ones(200)
-    size[50] = 30.0
-    mark = Arrow("forces", np.zeros((200, 2)), np.stack([size, 0 * size], axis=1))
-    scale = scales_of([mark], {})["N"]
-    assert scale.cut
-    assert scale.largest == 1.0
-    assert scale.part(30.0) == LONGEST
-
-
-@pytest.mark.parametrize(("value", "below"), [(0.93, 0.5), (1.0, 1.0), (4.9, 2.0), (730.0, 500.0)])
-def test_round_numbers(value: float, below: float) -> None:
-    assert round_below(value) == pytest.approx(below)
-
-
-def test_units_have_prefixes() -> None:
-    assert written(0.005, "N") == "5 mN"
-    assert written(2000.0, "N") == "2 kN"
-    assert written(0.2, "m/s") == "200 mm/s"
-    assert written(2000.0, "m/s²") == "2000 m/s²"
 
 
 # -- pictures --------------------------------------------------------------------------------------------------------

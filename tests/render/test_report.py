@@ -34,12 +34,12 @@ def slider_crank(
     rate: float = 100.0,
 ) -> Motion:
     m = Mechanism("slider_crank")
-    shaft, link, block = m.bar("crank", crank), m.bar("rod", rod), m.body("slider", mass)
-    m.revolute("O", m.ground.at(0, 0), shaft.start)
-    m.revolute("A", shaft.end, link.start)
+    arm, link, block = m.bar("crank", crank), m.bar("rod", rod), m.body("slider", mass)
+    m.revolute("O", m.ground.at(0, 0), arm.start)
+    m.revolute("A", arm.end, link.start)
     m.revolute("B", link.end, block.origin)
     m.prismatic("guide", m.ground.at(0, 0), block.origin)
-    m.drive_angle("motor", shaft, constant_rate(rate, start))
+    m.drive_angle("motor", arm, constant_rate(rate, start))
     m.start_near(crank=math.degrees(start), rod=-math.degrees(math.asin(crank / rod * math.sin(start))))
     return to_motion(m.sweep(steps=steps), None, "0" * 64, {}, dict.fromkeys(("crank", "rod", "slider"), "mechanism"))
 

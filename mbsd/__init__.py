@@ -56,6 +56,10 @@ if TYPE_CHECKING:
     from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Stats
     from mbsd.studies.study import study
     from mbsd.synthesis.fit_path import PathFit, SynthesisError, fit_path
+    from mbsd.tolerancing.dimensions.clearance import Clearance
+    from mbsd.tolerancing.dimensions.spreads import Normal, Triangular, Uniform
+    from mbsd.tolerancing.outcome import Tolerances
+    from mbsd.tolerancing.tolerances import tolerances
 
 __version__ = "1.0.0"
 
@@ -69,6 +73,7 @@ __all__ = [
     "Batch",
     "Body",
     "BranchError",
+    "Clearance",
     "ContactView",
     "Counterweight",
     "Curve",
@@ -101,6 +106,7 @@ __all__ = [
     "ModelWarning",
     "Moment",
     "Motion",
+    "Normal",
     "PathFit",
     "Picture",
     "SimulationError",
@@ -109,6 +115,9 @@ __all__ = [
     "Stats",
     "Svg",
     "SynthesisError",
+    "Tolerances",
+    "Triangular",
+    "Uniform",
     "angle_reaches",
     "balance",
     "constant_rate",
@@ -126,6 +135,7 @@ __all__ = [
     "speed_reaches",
     "study",
     "table",
+    "tolerances",
     "two_stroke",
 ]
 
@@ -168,6 +178,11 @@ _LATER = {
     "Stats": "mbsd.results.views",
     "Svg": "mbsd.pictures.picture",
     "SynthesisError": "mbsd.synthesis.fit_path",
+    "Clearance": "mbsd.tolerancing.dimensions.clearance",
+    "Normal": "mbsd.tolerancing.dimensions.spreads",
+    "Tolerances": "mbsd.tolerancing.outcome",
+    "Triangular": "mbsd.tolerancing.dimensions.spreads",
+    "Uniform": "mbsd.tolerancing.dimensions.spreads",
     "balance": "mbsd.balancing.balance",
     "angle_reaches": "mbsd.model.event",
     "constant_rate": "mbsd.model.laws",
@@ -185,6 +200,7 @@ _LATER = {
     "speed_reaches": "mbsd.model.event",
     "study": "mbsd.studies.study",
     "table": "mbsd.model.laws",
+    "tolerances": "mbsd.tolerancing.tolerances",
     "two_stroke": "mbsd.model.cylinders.two_stroke",
 }
 """Where each name is; it is loaded when it is asked for, so that the stages can look at what changed without numpy."""

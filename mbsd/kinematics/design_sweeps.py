@@ -34,6 +34,17 @@ CHUNK = 64
 """Designs that a thread takes at once."""
 
 
+class Push(NamedTuple):
+    """A change that differs from one time to the next: ``size`` times ``profile``."""
+
+    column: int
+    """Of the parameters; none of a traced point."""
+    size: np.ndarray
+    """(n,) of each design."""
+    profile: np.ndarray
+    """(T,) at each time."""
+
+
 class Moved(NamedTuple):
     """What one parameter changes."""
 
@@ -95,32 +106,22 @@ class DesignSweeps:
 
     def __call__(self, values: np.ndarray, threads: int | None = None) -> Batch:
         """Sweep designs whose numbers differ from the mechanism's own by ``values`` (n, moved) (m)."""
-        m, grid, groups, moved, traces = self.m, self.grid, self.groups, self.moved, len(self.bodies)
-        count, turned = len(values), self.turned
+        m, grid, traces = self.m, self.grid, len(self.bodies)
+        count, turned = len(values), len(self.turned)
         refuse_beyond_memory(
             f"{m.name}: {count} designs at {len(grid)} times",
-            count * (len(grid) * (2 * traces + len(turned)) + groups.number.size),
+            count * (len(grid) * (2 * traces + turned) + self.groups.number.size),
             "Take fewer designs or steps at once",
         )
-        numbers = self._numbers(values)
-        arms = np.tile(self.arms, (count, 1, 1))
-        for column, change in enumerate(moved):
-            if change.trace is not None:
-                arms[:, change.trace[0], change.trace[1]] += values[:, column]
+        numbers, arms = self._numbers(values), self._arms(values)
         out = np.empty((count, traces, len(grid), 2))
-        out_angles = np.empty((count, len(turned), len(grid)))
+        out_angles = np.empty((count, turned, len(grid)))
         status = np.zeros(count, np.int64)
 
         def work(first: int) -> None:
             part = slice(first, min(first + CHUNK, count))
-            place = np.zeros((len(self.packed.body_names), 7))
-            place[0, COS] = 1.0
-            roots, last = np.zeros((len(groups.kind), 2)), np.zeros(len(turned))
-            place_designs(
-                groups.group, rows_of(groups.kind, numbers[part]), self.q0, self.driven, self.every, place,
-                np.zeros((1, 1)), roots, last, self.bodies, arms[part], turned, out[part], out_angles[part],
-                status[part],
-            )  # fmt: skip
+            self._place(numbers[part], self.q0, slice(None), self.every, arms[part], out[part], out_angles[part],
+                        status[part])  # fmt: skip
             for part_of in (out, out_angles):
                 part_of[part][status[part] != SOLVED] = np.nan
 
@@ -133,6 +134,60 @@ class DesignSweeps:
         points = {name: out[:, k] for k, name in enumerate(m.traces)}
         angles = {name: out_angles[:, k] for k, name in enumerate(self.angles)}
         return Batch(grid, points, angles, status == SOLVED, status == DOUBTED)
+
+    def pushed(
+        self, values: np.ndarray, pushes: Sequence[Push], poses: np.ndarray, threads: int | None = None
+    ) -> Batch:
+        """Poses of designs whose numbers differ from one time to the next: by ``values`` (n, moved) and ``pushes``.
+
+        Each time is solved alone, on the branch of the mechanism itself, whose poses (T, 3 nb) angles are near.
+        """
+        count, times = len(values), len(self.grid)
+        base, arms = self._numbers(values), self._arms(values)
+        out = np.empty((times, count, len(self.bodies), 1, 2))
+        out_angles = np.empty((times, count, len(self.turned), 1))
+        status = np.zeros((times, count), np.int64)
+
+        def work(k: int) -> None:
+            numbers = base.copy()
+            for push in pushes:
+                slope = self.slopes[push.column]
+                assert slope is not None
+                touched = np.flatnonzero(slope.any(axis=1))
+                numbers[:, touched] += (push.profile[k] * push.size)[:, None, None] * slope[touched]
+            self._place(numbers, poses[k], slice(self.every * k, self.every * k + 1), 1, arms, out[k], out_angles[k],
+                        status[k])  # fmt: skip
+
+        if count:
+            work(0)  # compiles before the threads start
+        with ThreadPoolExecutor(threads or cores()) as pool:
+            list(pool.map(work, range(1, times)))
+        closes = (status == SOLVED).all(axis=0)
+        out[:, ~closes], out_angles[:, ~closes] = np.nan, np.nan
+        points = {name: np.moveaxis(out[:, :, k, 0], 0, 1) for k, name in enumerate(self.m.traces)}
+        angles = {name: out_angles[:, :, k, 0].T for k, name in enumerate(self.angles)}
+        return Batch(self.grid, points, angles, closes, (status == DOUBTED).any(axis=0))
+
+    def _arms(self, values: np.ndarray) -> np.ndarray:
+        """(n, points, 2) of the traced points, from centres of mass."""
+        arms = np.tile(self.arms, (len(values), 1, 1))
+        for column, change in enumerate(self.moved):
+            if change.trace is not None:
+                arms[:, change.trace[0], change.trace[1]] += values[:, column]
+        return arms
+
+    def _place(
+        self, numbers: np.ndarray, start: np.ndarray, steps: slice, every: int, arms: np.ndarray, out: np.ndarray,
+        out_angles: np.ndarray, status: np.ndarray,
+    ) -> None:  # fmt: skip
+        """Fill rows of results with the poses of designs with ``numbers`` (n, g, 14); angles go on from ``start``."""
+        place = np.zeros((len(self.packed.body_names), 7))
+        place[0, COS] = 1.0
+        roots, last = np.zeros((len(self.groups.kind), 2)), np.zeros(len(self.turned))
+        place_designs(
+            self.groups.group, rows_of(self.groups.kind, numbers), start, self.driven[steps], every, place,
+            np.zeros((1, 1)), roots, last, self.bodies, arms, self.turned, out, out_angles, status,
+        )  # fmt: skip
 
     def _numbers(self, values: np.ndarray) -> np.ndarray:
         """(n, g, 14) numbers of the groups of all designs; exact, for they are linear in places and lengths."""

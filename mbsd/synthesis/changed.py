@@ -25,15 +25,16 @@ def changed(m: Model, values: Mapping[str, object]) -> Model:
     out = copy.deepcopy(m)
     for name, value in values.items():
         if isinstance(value, tuple):
-            _place(out, name, value)
+            put_place(out, name, value)
         elif name in out.joints and out.joints[name].kind.constraints == ("distance",):
             change(out, name, {"length": value})
         else:
-            _lengthen(out, out.known_body(name), float(value))  # pyright: ignore[reportArgumentType]
+            lengthen(out, out.known_body(name), float(value))  # pyright: ignore[reportArgumentType]
     return out
 
 
-def _place(m: Model, name: str, place: tuple[float, ...]) -> None:
+def put_place(m: Model, name: str, place: tuple[float, ...]) -> None:
+    """Move a traced point, or the marker of a joint that ``batch`` moves, to a place (m) where it stands."""
     x, y = place
     if name in m.traces:
         m.traces[name] = replace(m.traces[name], x=x, y=y)
@@ -46,7 +47,8 @@ def _place(m: Model, name: str, place: tuple[float, ...]) -> None:
     object.__setattr__(joint, side, replace(getattr(joint, side), x=x, y=y))
 
 
-def _lengthen(m: Model, body: Body, length: float) -> None:
+def lengthen(m: Model, body: Body, length: float) -> None:
+    """Give a bar another length (m) where it stands."""
     old = body.length
     assert old is not None
     own: dict[str, object] = {"length": length}

@@ -1,0 +1,192 @@
+"""The dimensions that a user names, as a list of :class:`Dimension`: by the words of ``batch`` and ``change``.
+
+{"crank": 5e-5}                         the length of a bar or a rod
+{"D": 2e-5}                             both coordinates of the place of a joint or a traced point, as in ``batch``
+{"D": {"x": 1e-5}}                      one of them
+{"spring": {"stiffness": 4.0}}          a number that ``change`` takes: of a body, joint, driver, force or contact
+{"B": Clearance(3e-5)}                  the play of a pin
+"m", or "IT9"                           the lengths of all bars and rods
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.model.change import BAR, BODY, given, given_body
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Model, connections
+from mbsd.tolerancing.dimensions.clearance import Clearance
+from mbsd.tolerancing.dimensions.dimension import Column, Dimension, LoosePlay, PushedPlay, Size
+from mbsd.tolerancing.dimensions.spreads import spread_of
+
+PIN = "revolute"
+AXES = ("x", "y")
+
+
+def dimensions_of(m: Model, sizes: Any) -> list[Dimension]:
+    """Those of a mechanism. Pins whose play follows the reaction are still :class:`LoosePlay` here.
+
+    Raises ModelError for names that do not exist and tolerances that cannot be.
+    """
+    if isinstance(sizes, str):
+        sizes = dict.fromkeys(_lengths(m), sizes)
+        if not sizes:
+            raise ModelError(f"{m.name}: tolerances: there is no bar and no rod; name what strays")
+    if not isinstance(sizes, Mapping) or not sizes:
+        raise ModelError(
+            f"{m.name}: tolerances: sizes are {shown(sizes)}; give names and tolerances, {{'crank': 5e-5}}, or a "
+            "class of ISO 2768-1 for all lengths, 'm'"
+        )
+    out: list[Dimension] = []
+    for name, value in sizes.items():
+        if isinstance(value, Clearance):
+            out.append(_play(m, name, value))
+        elif isinstance(value, Mapping):
+            out += [_named(m, name, str(key), part) for key, part in value.items()]
+        else:
+            out += _plain(m, name, value)
+    if not out:
+        raise ModelError(f"{m.name}: tolerances: nothing strays; name a length, a place, a mass or a pin with play")
+    return out
+
+
+def numbers_of(function: str, nominal: Mapping[str, float], sizes: Any) -> list[Dimension]:
+    """Those of a function with ``nominal`` values of its arguments. Raises ModelError."""
+    if not isinstance(sizes, Mapping) or not sizes:
+        raise ModelError(f"{function}: tolerances: sizes are {shown(sizes)}; give names and tolerances: {{'a': 5e-5}}")
+    out: list[Dimension] = []
+    for name, value in sizes.items():
+        if name not in nominal:
+            raise ModelError(f"{function}: tolerances: {no_such('argument with a number', name, nominal)}")
+        if isinstance(value, Clearance | Mapping):
+            raise ModelError(f"{function}: tolerances: '{name}' is {shown(value)}; an argument takes a tolerance")
+        out.append(_size(function, name, value, Column("number", name, "", nominal[name]), abs(nominal[name]) or None))
+    return out
+
+
+def pushed(dimension: LoosePlay) -> PushedPlay:
+    """The same pin, which lies where the reaction pushes it."""
+    column = Column("reaction", dimension.label)
+    return PushedPlay(dimension.label, (column,), dimension.nominal, clearance=dimension.clearance)
+
+
+def _lengths(m: Model) -> list[str]:
+    bars = [name for name, body in m.bodies.items() if body.length is not None]
+    return bars + [name for name, joint in m.joints.items() if _rod(joint)]
+
+
+def _rod(joint: Joint | None) -> bool:
+    return joint is not None and joint.kind.constraints == ("distance",)
+
+
+def _plain(m: Model, name: Any, value: Any) -> list[Dimension]:
+    """A bare tolerance of a name."""
+    if name in _lengths(m):
+        return [_named(m, name, "length", value)]
+    if name in m.traces or name in m.joints:
+        return [_named(m, name, axis, value) for axis in AXES]
+    every = [*(key for table in connections(m) for key in table), *m.bodies, *m.traces]
+    if name not in every or name == "ground":
+        known = [*_lengths(m), *m.joints, *m.traces]
+        raise ModelError(f"{m.name}: tolerances: {no_such('bar, rod, joint or traced point', name, known)}")
+    example = "mass" if name in m.bodies else next(iter(_arguments(m, name)), "stiffness")
+    raise ModelError(
+        f"{m.name}: tolerances: '{name}' has no length; say which of its numbers strays: "
+        f"{{'{name}': {{'{example}': {shown(value)}}}}}"
+    )
+
+
+def _named(m: Model, name: Any, key: str, value: Any) -> Dimension:
+    """One number of a name."""
+    if key in AXES and (name in m.traces or name in m.joints):
+        return _coordinate(m, name, key, value)
+    known = _arguments(m, name)
+    if known is None:
+        every = [*(other for table in connections(m) for other in table), *m.bodies, *m.traces]
+        raise ModelError(
+            f"{m.name}: tolerances: {no_such('body, joint, driver, force, contact or traced point', name, every)}"
+        )
+    if key not in known:
+        there = [*known, *(AXES if name in m.joints else ())]
+        raise ModelError(f"{m.name}: tolerances: '{name}': {no_such('number', key, there)}")
+    nominal = known[key]
+    if isinstance(nominal, bool) or not isinstance(nominal, int | float) or not math.isfinite(nominal):
+        raise ModelError(
+            f"{m.name}: tolerances: {key} of '{name}' is {shown(nominal)}; only a number can stray. Give it one, "
+            "or use a function that builds the mechanism"
+        )
+    kind = "length" if key == "length" and name in _lengths(m) else "argument"
+    label = name if kind == "length" else f"{name}.{key}"
+    length = nominal if "length" in key else None
+    return _size(m.name, label, value, Column(kind, name, key, float(nominal)), length)
+
+
+def _arguments(m: Model, name: Any) -> dict[str, Any]:
+    """What ``change`` takes for a name, with its values; None if there is no such name."""
+    for table in connections(m):
+        if name in table:
+            entry: Any = table[name]
+            return {**entry.params, **given(entry)}
+    if not isinstance(name, str) or name not in m.bodies or name == "ground":
+        return None  # pyright: ignore[reportReturnType]
+    body = m.bodies[name]
+    known = BODY if body.length is None else BAR
+    return {key: getattr(body, key) for key in known} | given_body(body)
+
+
+def _coordinate(m: Model, name: str, axis: str, value: Any) -> Dimension:
+    marker = m.traces.get(name) or first_marker(m, name)
+    nominal = marker.x if axis == "x" else marker.y
+    column = Column("place", name, axis, nominal)
+    return _size(m.name, f"{name}.{axis}", value, column, math.hypot(marker.x, marker.y) or None)
+
+
+def first_marker(m: Model, name: str) -> Any:
+    """Of a joint, the marker that ``batch`` places: that on ground, or else the first."""
+    joint = m.joints[name]
+    return joint.i if joint.i.body is m.ground or joint.j.body is not m.ground else joint.j
+
+
+def _size(owner: str, label: str, value: Any, column: Column, length: float | None) -> Size:
+    what = f"{owner}: tolerances: tolerance of '{label}'"
+    try:
+        spread = spread_of(what, value).at_size(length)
+    except ModelError as error:
+        said = str(error)
+        raise ModelError(said if said.startswith(what) else f"{what}: {said}") from None
+    if column.kind not in ("place", "number"):
+        _refuse_no_size(owner, label, column, spread)
+    return Size(label, (column,), column.nominal, spread=spread)
+
+
+def _refuse_no_size(owner: str, label: str, column: Column, spread: Any) -> None:
+    """Raise ModelError where a length, a mass or a stiffness could pass 0."""
+    sign = -1.0 if column.nominal < 0 else 1.0
+    closest = sign * (column.nominal + spread.middle) - spread.reach
+    if closest > 0.0 or (closest == 0.0 and column.kind == "argument"):
+        return
+    low, high = spread.limits
+    tail = " (a normal distribution reaches further than its tolerance)" if spread.reach > spread.half else ""
+    remedy = "narrow it" if not tail else "narrow it, or cut the distribution: Normal(..., cut=True)"
+    raise ModelError(
+        f"{owner}: tolerances: '{label}' is {column.nominal:g} and strays from {low:g} to {high:+g}{tail}: it "
+        f"would pass 0; {remedy}"
+    )
+
+
+def _play(m: Model, name: Any, clearance: Clearance) -> LoosePlay:
+    if name not in m.joints:
+        pins = [key for key, joint in m.joints.items() if joint.kind.name == PIN]
+        raise ModelError(f"{m.name}: tolerances: {no_such('pin', name, pins)}")
+    if m.joints[name].kind.name != PIN:
+        raise ModelError(
+            f"{m.name}: tolerances: '{name}' is no pin but a {m.joints[name].kind.name}; play is that of a pin in "
+            "its bore"
+        )
+    columns = tuple(Column("bore", name, axis) for axis in AXES)
+    return LoosePlay(name, columns, clearance.play, clearance=clearance)

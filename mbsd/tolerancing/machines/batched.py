@@ -1,0 +1,148 @@
+"""Linkages swept all at once (mbsd/kinematics/batch.py), their pins in the bores where the reaction pushes them."""
+
+from __future__ import annotations
+
+import copy
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mbsd.dynamics.many.measures import Measure
+from mbsd.kinematics.batch import parameters
+from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Push, in_closed_form
+from mbsd.kinematics.prepare import prepare
+from mbsd.model.mechanism import Model
+from mbsd.tolerancing.dimensions.dimension import Column
+from mbsd.tolerancing.dimensions.named import first_marker
+from mbsd.tolerancing.machines.one_by_one import Answers
+from mbsd.tolerancing.machines.results import called, measured, numbers_of_batch, placed
+
+NUMBERS_AT_ONCE = 8_000_000
+"""Of a batch's results: 64 MB."""
+OPEN = "the links do not close over the whole motion"
+DOUBTED = "two assemblies come near each other during the motion"
+NO_NUMBER = "the result is no number"
+
+
+def serves(m: Model, columns: Sequence[Column], result: Any, ready: Any) -> bool:
+    """Whether these machines can be swept all at once."""
+    return (
+        in_closed_form(ready)
+        and all(column.kind != "argument" for column in columns)
+        and (not isinstance(result, Measure) or all(placed(m, name) for name in result.quantities))
+    )
+
+
+class Batched:
+    """Machines swept over times ``grid`` (T,); ``pushes`` by joint are directions of gaps (:func:`push_directions`)."""
+
+    way = "swept all at once"
+
+    def __init__(
+        self, m: Model, columns: Sequence[Column], result: Measure | Callable[[Any], Any], grid: np.ndarray,
+        pushes: dict[str, np.ndarray], poses: np.ndarray | None, threads: int | None,
+    ) -> None:  # fmt: skip
+        self._owner, self._result, self._threads = m.name, result, threads
+        self._columns, self._pushes, self._poses = columns, pushes, poses
+        self._m, self._of = _followed(m, result)
+        self._ready, self._grid = prepare(self._m, float(grid[0]), float(grid[-1])), grid
+        turned = sorted({name for kind, name, part in self._of.values() if part == "theta"})
+        self._angles = turned if isinstance(result, Measure) else [name for name in m.bodies if name != "ground"]
+        self._sweeps: DesignSweeps | None = None
+        width = len(grid) * (2 * len(self._m.traces) + len(self._angles)) + self._ready.groups.number.size  # pyright: ignore[reportOptionalMemberAccess]
+        self.at_once = max(64, NUMBERS_AT_ONCE // width)
+
+    def __call__(self, x: np.ndarray) -> Answers:
+        """The result of each row."""
+        batch = self._batch(x)
+        failures = Counter({DOUBTED: int(batch.doubted.sum()), OPEN: int((~batch.closes & ~batch.doubted).sum())})
+        if isinstance(self._result, Measure):
+            along = {name: self._along(batch, name) for name in self._result.quantities}
+            values = measured(self._owner, self._result, batch.t, along)
+        else:
+            values = numbers_of_batch(self._owner, called(self._owner, self._result, batch), len(x))
+        failures[NO_NUMBER] = int((batch.closes & ~np.isfinite(values)).sum())
+        return Answers(np.where(batch.closes & np.isfinite(values), values, np.nan), +failures)
+
+    def _along(self, batch: Batch, name: str) -> np.ndarray:
+        _, whole, part = self._of[name]
+        return batch.angles[whole] if part == "theta" else batch.points[whole][..., "xy".index(part)]
+
+    def _batch(self, x: np.ndarray) -> Batch:
+        lengths, places = self._numbers(x)
+        values, moved = parameters(self._m, self._ready.packed, lengths, places)
+        if self._sweeps is None:
+            self._sweeps = DesignSweeps(self._m, self._ready, self._grid, moved, self._angles)
+        if not self._pushes:
+            return self._sweeps(values, self._threads)
+        first = values.shape[1] - 2 * len(places)
+        pushes = []
+        for k, column in enumerate(self._columns):
+            if column.kind == "reaction":
+                at = first + 2 * list(places).index(column.name)
+                pushes += [Push(at + axis, x[:, k], self._pushes[column.name][:, axis]) for axis in (0, 1)]
+        assert self._poses is not None
+        return self._sweeps.pushed(values, pushes, self._poses, self._threads)
+
+    def _numbers(self, x: np.ndarray) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """Lengths and places as ``batch`` takes them."""
+        lengths: dict[str, np.ndarray] = {}
+        places: dict[str, np.ndarray] = {}
+        for k, column in enumerate(self._columns):
+            if column.kind == "length":
+                lengths[column.name] = column.nominal + x[:, k]
+                continue
+            if column.name not in places:
+                marker = self._m.traces.get(column.name) or first_marker(self._m, column.name)
+                places[column.name] = np.tile([marker.x, marker.y], (len(x), 1))
+            if column.kind != "reaction":
+                places[column.name][:, "xy".index(column.key)] += x[:, k]
+        return lengths, places
+
+
+def _followed(m: Model, result: Any) -> tuple[Model, dict[str, tuple[str, str, str]]]:
+    """A mechanism that traces all that the result reads, and by quantity the trace or the body and the component."""
+    if not isinstance(result, Measure):
+        return m, {}
+    out, of = m, {}
+    for name in result.quantities:
+        kind, whole, part = placed(m, name)  # pyright: ignore[reportGeneralTypeIssues]
+        if kind == "body" and part != "theta":
+            out = copy.deepcopy(m) if out is m else out
+            trace = f"origin of {whole}"
+            out.traces[trace] = replace(out.bodies[whole].at(0.0, 0.0))
+            whole = trace
+        of[name] = kind, whole, part
+    return out, of
+
+
+def push_directions(sol: Any, names: Sequence[str]) -> dict[str, np.ndarray | None]:
+    """By pin, (T, 2) by what the marker that ``batch`` places moves for a unit of the gap, in its body's frame.
+
+    The centre of the second marker lies behind that of the first, against the force on the second body. None for a
+    pin without force.
+    """
+    m = sol.mechanism
+    forces = {name: sol.joint(name).reaction for name in m.joints}
+    largest = max((float(np.abs(force).max(initial=0.0)) for force in forces.values()), default=0.0)
+    out: dict[str, np.ndarray | None] = {}
+    for name in names:
+        force = forces[name]
+        size = np.hypot(*force.T)
+        if size.max(initial=0.0) <= NOTHING * largest or largest == 0.0:
+            out[name] = None
+            continue
+        along = force / np.where(size > 0.0, size, 1.0)[:, None]
+        marker = first_marker(m, name)
+        behind = -along if marker is m.joints[name].i else along
+        theta = np.zeros(len(sol.t)) if marker.body is m.ground else sol.body(marker.body.name).theta
+        c, s = np.cos(theta), np.sin(theta)
+        out[name] = np.column_stack([c * behind[:, 0] + s * behind[:, 1], c * behind[:, 1] - s * behind[:, 0]])
+    return out
+
+
+NOTHING = 1e-9
+"""Part of the largest reaction that is rounding."""

@@ -1,0 +1,66 @@
+"""A function of numbers in place of a mechanism: it gives the result, or what that is taken from."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.dynamics.many.measures import Measure
+from mbsd.model.mechanism import Model
+from mbsd.tolerancing.dimensions.named import numbers_of
+from mbsd.tolerancing.machines.one_by_one import computed
+from mbsd.tolerancing.machines.results import OfSolution, number_of, result_given
+from mbsd.tolerancing.machines.tasks import Task
+
+
+def function_task(function: Any, sizes: Any, result: Any, duration: float | None, steps: int) -> Task:
+    """That of a function with the nominal values as defaults. Raises ModelError."""
+    if not callable(function) or isinstance(function, type):
+        raise ModelError(
+            f"tolerances: m is {shown(function)}; give a mechanism, or a function of numbers by name with their "
+            "nominal values as defaults: def gap(a=0.044, b=0.019): return a - b"
+        )
+    owner = getattr(function, "__name__", "function")
+    nominal = _defaults(owner, function)
+    dimensions = numbers_of(owner, nominal, sizes)
+    if result is None:
+        measure: Callable[[Any], Any] = lambda given: given  # noqa: E731
+    elif isinstance(result_given(owner, result), Measure):
+        measure = _swept_measure(owner, result, duration, steps)
+    else:
+        measure = lambda given: number_of(owner, result(given))  # noqa: E731
+    machines = computed(owner, function, [column for d in dimensions for column in d.columns], measure)
+    return Task(owner, dimensions, machines, machines.at(np.zeros(len(dimensions))))
+
+
+def _defaults(owner: str, function: Callable[..., Any]) -> dict[str, float]:
+    parameters = inspect.signature(function).parameters.values()
+    for p in parameters:
+        if p.default is p.empty and p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD):
+            raise ModelError(f"{owner}: tolerances: argument '{p.name}' has no default; give its nominal value there")
+    kinds = int, float, np.floating, np.integer
+    return {
+        p.name: float(p.default)
+        for p in parameters
+        if isinstance(p.default, kinds) and not isinstance(p.default, bool) and p.kind is not p.POSITIONAL_ONLY
+    }
+
+
+def _swept_measure(owner: str, result: Measure, duration: float | None, steps: int) -> Callable[[Any], float]:
+    """The measure of a mechanism that a function gives."""
+
+    def measure(given: Any) -> float:
+        if not isinstance(given, Model):
+            raise ModelError(
+                f"{owner}: tolerances: result is a measure, so {owner} must give a mechanism; it gives {shown(given)}"
+            )
+        from mbsd.kinematics.sweep import sweep
+
+        return OfSolution(given, result)(sweep(given, duration, steps, None))
+
+    return measure

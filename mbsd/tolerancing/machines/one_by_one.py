@@ -1,0 +1,160 @@
+"""Machines with other dimensions, evaluated: rows of deviations in, a number a machine out.
+
+swept     one by one, each a copy with other lengths, places and numbers
+simulated all in one compiled loop
+computed  by a function of the user
+(batched.py sweeps linkages all at once)
+"""
+
+from __future__ import annotations
+
+import copy
+import warnings
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from mbsd.base.errors import MechanismError, ModelError
+from mbsd.dynamics.many.measures import Measure
+from mbsd.model.change import change
+from mbsd.model.mechanism import Model
+from mbsd.synthesis.changed import lengthen, put_place
+from mbsd.tolerancing.dimensions.dimension import Column
+from mbsd.tolerancing.dimensions.named import first_marker
+from mbsd.tolerancing.machines.results import NAME, OfSolution, called, number_of
+
+
+@dataclass
+class Answers:
+    """Numbers of n machines."""
+
+    values: np.ndarray
+    """(n,), NaN where a machine failed."""
+    failures: Counter[str] = field(default_factory=Counter)
+    """How many failed for which reason."""
+
+
+class Machines(Protocol):
+    """What evaluates rows of deviations (n, columns) of a mechanism, or of a function."""
+
+    way: str
+    """In words."""
+    at_once: int
+    """Rows that it takes at most."""
+
+    def __call__(self, x: np.ndarray) -> Answers:
+        """The result of each row."""
+        ...
+
+
+def reason_of(error: MechanismError) -> str:
+    """The type of an error: what failed alike is counted together, whatever its numbers."""
+    return f"{type(error).__name__}"
+
+
+class OneByOne:
+    """Machines that are evaluated by a function of a row; those that it refuses have failed."""
+
+    at_once = 64
+
+    def __init__(self, way: str, evaluate: Callable[[np.ndarray], float]) -> None:
+        self.way, self._evaluate = way, evaluate
+
+    def at(self, row: np.ndarray) -> float:
+        """The result of a row. Raises what it raises."""
+        return self._evaluate(row)
+
+    def __call__(self, x: np.ndarray) -> Answers:
+        """The result of each row."""
+        out = Answers(np.full(len(x), np.nan))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            for k, row in enumerate(x):
+                try:
+                    out.values[k] = self._evaluate(row)
+                except ModelError as error:
+                    if "tolerances: result" in str(error):
+                        raise
+                    out.failures[reason_of(error)] += 1
+                except MechanismError as error:
+                    out.failures[reason_of(error)] += 1
+        return out
+
+
+def swept(m: Model, columns: Sequence[Column], result: Measure | Callable[[Any], Any], grid: np.ndarray) -> OneByOne:
+    """Machines swept one by one over times ``grid`` (T,)."""
+    from mbsd.kinematics.sweep import sweep
+
+    of_solution = OfSolution(m, result)
+    return OneByOne("swept one by one", lambda row: of_solution(sweep(with_numbers(m, columns, row), None, 1, grid)))
+
+
+def with_numbers(m: Model, columns: Sequence[Column], row: np.ndarray) -> Any:
+    """A copy of ``m`` whose numbers differ by a row of deviations."""
+    out: Any = copy.deepcopy(m)
+    deviations = list(zip(columns, row.tolist(), strict=True))
+    for column, deviation in deviations:
+        if column.kind == "length" and column.name in out.bodies:
+            lengthen(out, out.bodies[column.name], column.nominal + deviation)
+        elif column.kind in ("length", "argument"):
+            change(out, column.name, {column.key: column.nominal + deviation})
+    for column, deviation in deviations:
+        if column.kind in ("place", "bore"):
+            marker = out.traces.get(column.name) or first_marker(out, column.name)
+            dx, dy = (deviation, 0.0) if column.key == "x" else (0.0, deviation)
+            put_place(out, column.name, (marker.x + dx, marker.y + dy))
+    return out
+
+
+class Simulated:
+    """Machines simulated in one compiled loop."""
+
+    way = "simulated"
+
+    def __init__(
+        self, m: Any, columns: Sequence[Column], result: Measure | Callable[[Any], Any], options: Mapping[str, Any]
+    ) -> None:
+        self._m, self._columns, self._options = m, columns, dict(options)
+        self._result: Any = {NAME: result} if isinstance(result, Measure) else self._of_solution(result)
+        self.at_once = 10_000
+        for column in columns:
+            if column.kind not in ("length", "argument"):
+                what = "play" if column.kind in ("bore", "reaction") else "place"
+                raise ModelError(
+                    f"{m.name}: tolerances: the {what} of '{column.name}' cannot stray in a simulation; drivers "
+                    "that give the motion are swept, and a function that builds the mechanism takes anything"
+                )
+
+    def _of_solution(self, result: Callable[[Any], Any]) -> Callable[[Any], dict[str, float]]:
+        of_solution = OfSolution(self._m, result)
+        return lambda sol: {NAME: of_solution(sol)}
+
+    def __call__(self, x: np.ndarray) -> Answers:
+        """The result of each row."""
+        vary: dict[str, dict[str, np.ndarray]] = {}
+        for k, column in enumerate(self._columns):
+            vary.setdefault(column.name, {})[column.key] = column.nominal + x[:, k]
+        many = self._m.simulate_many(vary=vary, measure=self._result, **self._options)
+        self.way = f"simulated: {many.way}"
+        failures: Counter[str] = Counter(" ".join(reason.split())[:120] for reason in many.reason if reason)
+        wrong = next((reason for reason in failures if "tolerances: result" in reason), None)
+        if wrong:
+            raise ModelError(wrong)
+        return Answers(many[NAME].reshape(len(x)), failures)
+
+
+def computed(
+    name: str, function: Callable[..., Any], columns: Sequence[Column], measure: Callable[[Any], Any]
+) -> OneByOne:
+    """Numbers of ``function`` of its arguments by name, of which ``measure`` makes the result."""
+
+    def evaluate(row: np.ndarray) -> float:
+        named = {column.name: column.nominal + d for column, d in zip(columns, row.tolist(), strict=True)}
+        return number_of(name, measure(called(name, function, **named)))
+
+    machines = OneByOne("computed one by one", evaluate)
+    machines.at_once = 1024
+    return machines

@@ -1,0 +1,137 @@
+"""What is to be evaluated of a mechanism: which dimensions stray, how its machines are solved, where its pins lie."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.dynamics.many.measures import Measure
+from mbsd.tolerancing.dimensions.dimension import Dimension, LoosePlay
+from mbsd.tolerancing.dimensions.named import dimensions_of, pushed
+from mbsd.tolerancing.machines.batched import Batched, push_directions, serves
+from mbsd.tolerancing.machines.one_by_one import Machines, Simulated, swept
+from mbsd.tolerancing.machines.results import OfSolution, result_given
+
+WAYS = ("auto", "batch", "sweep", "simulate")
+
+
+@dataclass
+class Task:
+    """What is to be evaluated."""
+
+    owner: str
+    dimensions: list[Dimension]
+    machines: Machines
+    nominal: float
+    notes: list[str] = field(default_factory=list)
+
+
+def task_of(m: Any, sizes: Any, result: Any, duration: float | None, steps: int, way: str, threads: int | None) -> Task:
+    """That of a mechanism; see :func:`mbsd.tolerances`. Raises ModelError."""
+    if way not in WAYS:
+        raise ModelError(f"{m.name}: tolerances: {no_such('way', way, WAYS)}")
+    result = result_given(m.name, result)
+    dimensions = dimensions_of(m, sizes)
+    _refuse_twice(m.name, dimensions)
+    free = m.mobility().dof - len(m.drivers)
+    if way == "simulate" or (way == "auto" and free > 0):
+        return _simulated(m, dimensions, result, duration, steps, threads)
+    if free > 0:
+        freedoms = "1 degree of freedom is" if free == 1 else f"{free} degrees of freedom are"
+        raise ModelError(f"{m.name}: tolerances: {freedoms} not driven; add a driver, or take way='simulate'")
+    return _driven(m, dimensions, result, duration, steps, way, threads)
+
+
+def _driven(
+    m: Any, dimensions: list[Dimension], result: Any, duration: float | None, steps: int, way: str, threads: int | None
+) -> Task:
+    from mbsd.kinematics.prepare import prepare
+    from mbsd.kinematics.sweep import sweep, sweep_times
+
+    grid = sweep_times(m, duration, steps, None)
+    if isinstance(result, Measure):
+        result.check(f"{m.name}: tolerances: result", grid)
+    ideal = sweep(m, None, 1, grid)
+    if isinstance(result, Measure):
+        OfSolution(m, result)(ideal)  # names that there are not are refused by the names that there are
+    columns = [column for d in dimensions for column in d.columns]
+    can = serves(m, columns, result, prepare(m, float(grid[0]), float(grid[-1])))
+    if way == "batch" and not can:
+        raise ModelError(
+            f"{m.name}: tolerances: these machines cannot be swept all at once: that takes driven bodies and dyads, "
+            "lengths, places and play, and results x, y of bodies and traced points or theta of bodies; take "
+            "way='sweep'"
+        )
+    pins = [d for d in dimensions if isinstance(d, LoosePlay)]
+    if way == "sweep" or not can:
+        for pin in pins:
+            if pin.clearance.direction == "reaction":
+                raise ModelError(
+                    f"{m.name}: tolerances: the gap of '{pin.label}' follows the reaction where machines are "
+                    "swept all at once, and these are not; take Clearance(..., direction='any')"
+                )
+        machines: Machines = swept(m, columns, result, grid)
+        return Task(m.name, dimensions, machines, _alone(machines, columns), _notes([], pins))
+    pushes = push_directions(ideal, [pin.label for pin in pins if pin.clearance.direction != "any"])
+    dimensions = [_settled(m.name, d, pushes) for d in dimensions]
+    columns = [column for d in dimensions for column in d.columns]
+    known = {name: along for name, along in pushes.items() if along is not None}
+    poses = np.ascontiguousarray(ideal.q.reshape(len(grid), -1))
+    machines = Batched(m, columns, result, grid, known, poses, threads)
+    loose = [pin for pin in pins if pin.label not in known]
+    return Task(m.name, dimensions, machines, _alone(machines, columns), _notes(list(known), loose))
+
+
+def _settled(owner: str, dimension: Dimension, pushes: Mapping[str, np.ndarray | None]) -> Dimension:
+    """A pin lies where the reaction pushes it, if it carries any."""
+    if not isinstance(dimension, LoosePlay) or dimension.label not in pushes:
+        return dimension
+    if pushes[dimension.label] is not None:
+        return pushed(dimension)
+    if dimension.clearance.direction == "reaction":
+        raise ModelError(
+            f"{owner}: tolerances: pin '{dimension.label}' carries no force, so its gap has no direction; give "
+            "masses or forces, or take Clearance(..., direction='any')"
+        )
+    return dimension
+
+
+def _notes(known: Sequence[str], loose: Sequence[Any]) -> list[str]:
+    out = [f"gap along the reaction: {', '.join(known)}"] if known else []
+    return out + ([f"gap in any direction: {', '.join(pin.label for pin in loose)}"] if loose else [])
+
+
+def _alone(machines: Machines, columns: Sequence[Any]) -> float:
+    """The result of the mechanism as it is given. Raises ModelError where it has none."""
+    answers = machines(np.zeros((1, len(columns))))
+    if np.isfinite(answers.values[0]):
+        return float(answers.values[0])
+    reasons = ", ".join(answers.failures) or "the result is no number"
+    raise ModelError(f"tolerances: the machine as it is given has no result: {reasons}")
+
+
+def _simulated(
+    m: Any, dimensions: list[Dimension], result: Any, duration: float | None, steps: int, threads: int | None
+) -> Task:
+    if duration is None:
+        raise ModelError(f"{m.name}: tolerances: it is simulated, but how long is not given; say duration=... (s)")
+    if isinstance(result, Measure):
+        result.check(f"{m.name}: tolerances: result", np.linspace(0.0, duration, steps + 1))
+    columns = [column for d in dimensions for column in d.columns]
+    options = {"duration": duration, "steps": steps, "threads": threads}
+    machines = Simulated(m, columns, result, options)
+    return Task(m.name, dimensions, machines, _alone(machines, columns))
+
+
+def _refuse_twice(owner: str, dimensions: Sequence[Dimension]) -> None:
+    """Raise ModelError where a number is named twice, as by "crank" and {"crank": {"length": ...}}."""
+    labels = Counter(dimension.label for dimension in dimensions if not isinstance(dimension, LoosePlay))
+    twice = next((label for label, times in labels.items() if times > 1), None)
+    if twice is not None:
+        raise ModelError(f"{owner}: tolerances: '{twice}' is named twice")

@@ -1,0 +1,194 @@
+"""What :func:`mbsd.tolerances` found: numbers of the result, and a row for each dimension."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.files import write_whole
+from mbsd.tolerancing.dimensions.dimension import Dimension
+from mbsd.tolerancing.statistics.derivatives import parts
+from mbsd.tolerancing.statistics.shares import Sobol
+from mbsd.tolerancing.statistics.yields import Limits, Yield, yield_of
+
+if TYPE_CHECKING:
+    from mbsd.drawing.picture import Picture
+
+QUANTILES = (0.00135, 0.025, 0.25, 0.5, 0.75, 0.975, 0.99865)
+"""Those of -3 and 3 standard deviations of a normal distribution are the first and the last."""
+
+
+class Row(NamedTuple):
+    """A dimension: what it does, and what it would bring to halve its tolerance, or its play."""
+
+    name: str
+    nominal: float
+    low: float
+    """Lower limit of its deviation, or least play, as ``high``."""
+    high: float
+    slope: float
+    """Change of the result for a unit of the dimension; of a pin that lies anywhere, at most."""
+    share: float
+    """Of the variance, by first derivatives."""
+    worst: float
+    """What it adds to the worst case to either side."""
+    std_halved: float
+    """Standard deviation of the result if it is halved."""
+    yield_halved: float
+    """Yield if it is halved; NaN without limits."""
+    sobol_first: float
+    """Sobol's index of first order, as ``sobol_total``; NaN unless asked for."""
+    sobol_total: float
+
+
+@dataclass(frozen=True, eq=False)
+class Tolerances:
+    """The result of n machines that stray, in its own unit."""
+
+    values: np.ndarray
+    """(n,) NaN where a machine failed."""
+    deviations: np.ndarray
+    """(n, columns) of each machine, by ``columns``: from nominal sizes, or places of pins in their bores (m)."""
+    columns: tuple[str, ...]
+    nominal: float
+    """Of the machine as it was given, without play."""
+    linear_std: float
+    """Standard deviation by first derivatives, where squares add up."""
+    linear_worst: tuple[float, float]
+    """Least and largest result by first derivatives, with all dimensions at their limits."""
+    vertex_worst: tuple[float, float] | None
+    """The same, of the machines at the corners of all tolerances; None where they were not solved."""
+    limits: Limits | None
+    confidence: float
+    failures: Mapping[str, int]
+    """How many machines failed for which reason."""
+    sobol: Sobol | None
+    way: str
+    """How the machines were solved, and where pins with play lie."""
+    name: str
+    dimensions: tuple[Dimension, ...]
+    slopes: np.ndarray
+    """(columns,) first derivatives of the result."""
+    shares: np.ndarray
+    """(d,) parts of the variance by first derivatives."""
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def good(self) -> np.ndarray:
+        """(n,) which did not fail."""
+        return np.isfinite(self.values)
+
+    @property
+    def failed(self) -> np.ndarray:
+        """Numbers of the machines that failed; their deviations are ``deviations[failed]``."""
+        return np.flatnonzero(~self.good)
+
+    @property
+    def mean(self) -> float:
+        """Of the machines that did not fail, as all that follows."""
+        return float(self.values[self.good].mean())
+
+    @property
+    def std(self) -> float:
+        """Standard deviation."""
+        return float(self.values[self.good].std(ddof=1))
+
+    def quantile(self, part: float) -> float:
+        """The result that a ``part`` of the machines does not exceed. Raises ModelError for a part beyond 0 .. 1."""
+        if isinstance(part, bool) or not isinstance(part, int | float) or not 0.0 <= part <= 1.0:
+            raise ModelError(f"{self.name}: tolerances: quantile: part is {part!r}; it must be from 0 to 1")
+        return float(np.quantile(self.values[self.good], part))
+
+    @property
+    def quantiles(self) -> dict[float, float]:
+        """At -3 and 3 standard deviations of a normal distribution, the middle, and those between."""
+        return {part: self.quantile(part) for part in QUANTILES}
+
+    @property
+    def yields(self) -> Yield | None:
+        """The part of all machines within the limits with its Wilson interval; those that failed are not within."""
+        return None if self.limits is None else yield_of(self.values, self.limits, self.confidence)
+
+    @property
+    def rows(self) -> list[Row]:
+        """A row a dimension, in the order in which they were named."""
+        out = []
+        for k, (dimension, part) in enumerate(zip(self.dimensions, parts(self.dimensions), strict=True)):
+            halved, slopes = self._halved(k), self.slopes[part]
+            left = np.nan if self.limits is None else yield_of(halved, self.limits, self.confidence).part
+            first, total = (np.nan, np.nan) if self.sobol is None else (self.sobol.first[k], self.sobol.total[k])
+            slope = float(slopes[0]) if len(slopes) == 1 else float(np.hypot(*slopes))
+            out.append(
+                Row(
+                    dimension.label, dimension.nominal, *dimension.limits, slope * dimension.per_unit,
+                    float(self.shares[k]), dimension.swing(slopes), float(halved[self.good].std(ddof=1)), left,
+                    float(first), float(total),
+                )
+            )  # fmt: skip
+        return out
+
+    @property
+    def tighten(self) -> list[Row]:
+        """The same, what brings most first: by the standard deviation that halving a tolerance leaves."""
+        return sorted(self.rows, key=lambda row: row.std_halved)
+
+    def _halved(self, k: int) -> np.ndarray:
+        """(n,) the same machines with the tolerance of one dimension halved, by its first derivatives."""
+        part = parts(self.dimensions)[k]
+        x = self.deviations[:, part]
+        return self.values + (self.dimensions[k].halved(x) - x) @ self.slopes[part]
+
+    def table(self) -> Any:
+        """A pandas DataFrame, a row a dimension, in the order of :attr:`tighten`. Needs the extra ``pandas``."""
+        try:
+            import pandas
+        except ImportError as error:
+            raise ModelError("table needs pandas: install mbsd[pandas]") from error
+        return pandas.DataFrame(self.tighten)
+
+    def to_csv(self, path: str | os.PathLike[str], machines: bool = False) -> None:
+        """Write the rows of :attr:`tighten`, or all ``machines``, their deviations and results."""
+        if machines:
+            rows = np.column_stack([self.deviations, self.values]).tolist()
+            _write(path, [*self.columns, "result"], rows)
+        else:
+            _write(path, Row._fields, self.tighten)
+
+    def plot(self, ax: Any = None) -> Picture:
+        """The distribution with its limits, and the share of each dimension. ``ax``: two axes. Needs ``draw``."""
+        from mbsd.drawing.tolerances import draw_tolerances
+
+        return draw_tolerances(self, ax)
+
+    def __repr__(self) -> str:
+        failed = f", {len(self.failed)} failed" if len(self.failed) else ""
+        within = "" if self.yields is None else f", {self.yields.part:.2%} within limits"
+        return f"<Tolerances of {self.name}: {len(self)} machines{failed}, {self.mean:.6g} +- {self.std:.3g}{within}>"
+
+    def __str__(self) -> str:
+        from mbsd.tolerancing.words import report
+
+        return report(self)
+
+
+def _write(path: str | os.PathLike[str], names: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
+    """A table with all digits; an empty field where there is no number."""
+    out = io.StringIO()
+    out.write(",".join(map(_field, names)) + "\n")
+    for row in rows:
+        out.write(",".join(_field(value) for value in row) + "\n")
+    write_whole(path, out.getvalue().encode())
+
+
+def _field(value: Any) -> str:
+    if isinstance(value, str):
+        return '"' + value.replace('"', '""') + '"' if any(mark in value for mark in ',"\n') else value
+    return "" if value != value else repr(float(value))

@@ -1,0 +1,171 @@
+"""How far a result strays as the dimensions of a mechanism do.
+
+    t = tolerances(m, {"crank": 5e-5, "coupler": 5e-5, "B": Clearance(2e-5)}, largest("P.y"), limits=(0.0694, 0.0696))
+    print(t)                                     # mean, spread, worst case, yield, what to tighten
+    t.plot().save("tolerances.svg")
+
+Sources: Garrett, Hall, Effect of tolerance and clearance in linkage design, J. Eng. for Industry 91, 1969 (bands of a
+linkage that strays); Shigley's Mechanical Engineering Design, section 1-13 (stack-ups, worst case and statistical).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.arguments import checked, finite_number, whole_number
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.model.mechanism import Model
+from mbsd.tolerancing.machines.functions import function_task
+from mbsd.tolerancing.machines.one_by_one import Machines
+from mbsd.tolerancing.machines.tasks import Task, task_of
+from mbsd.tolerancing.outcome import Tolerances
+from mbsd.tolerancing.statistics.derivatives import middles, slopes
+from mbsd.tolerancing.statistics.draws import drawn
+from mbsd.tolerancing.statistics.shares import linear_variances, shares_of, sobol_indices
+from mbsd.tolerancing.statistics.worst import linear_worst, vertex_worst
+from mbsd.tolerancing.statistics.yields import limits_given
+
+MOST = 100_000_000
+"""Machines of one call."""
+MOST_CORNERS = 16
+"""Dimensions whose corners may be solved."""
+FEWEST_SOBOL = 3
+"""Power of 2 of the machines in a set at least."""
+
+
+@checked
+def tolerances(
+    m: Any,
+    sizes: Any,
+    result: Any = None,
+    limits: Any = None,
+    *,
+    n: int = 10_000,
+    seed: int = 0,
+    duration: float | None = None,
+    steps: int = 360,
+    way: str = "auto",
+    sobol: bool = False,
+    corners: bool | None = None,
+    confidence: float = 0.95,
+    threads: int | None = None,
+    progress: Any = None,
+) -> Tolerances:
+    """Let the dimensions of a mechanism stray, and find what its ``result`` does: n machines, worst case, yield.
+
+    ``sizes`` names what strays, by the words of :meth:`Mechanism.batch` and :meth:`Mechanism.change`: a bar or rod by
+    its length, a joint or traced point by its place (m; ``{"D": {"x": 1e-5}}`` for one coordinate), any number by
+    ``{"spring": {"stiffness": 4.0}}``, a pin by :class:`Clearance`. A tolerance is a number t (+-t, normal with 3
+    standard deviations), a pair (lower, upper), a class of ISO 2768-1 ("m") or a grade of ISO 286-1 ("IT7") by size, or
+    ``Normal``, ``Uniform``, ``Triangular`` of these. A class alone in place of names is that of all bars and rods.
+
+    ``result``: a measure of :mod:`mbsd.measures` that gives a number, such as ``samples("P.y", [0.25])``,
+    ``largest("rocker.theta")``; or a function: of the :class:`Batch` of all machines (n numbers), or of a single
+    Solution where they are solved one by one. ``limits`` (lowest, highest) are those within which it is good.
+
+    ``way``: "batch" sweeps linkages all at once, "sweep" one by one, "simulate" integrates ``duration`` s in one
+    compiled loop; "auto" takes the first that can. Times are ``steps`` equal steps, by default over a period.
+
+    ``m`` may be a function of numbers by name, their nominal values as defaults: it gives the result itself, or what
+    ``result`` takes it from, a mechanism to be swept included.
+
+    ``sobol`` adds Sobol's indices, from the largest power of 2 up to n in each of d + 2 sets. ``corners``: whether the
+    worst case is also sought at the 2^d corners of all tolerances; by default where they are no more than n.
+    ``confidence`` is that of the yield's interval. Equal arguments give equal bytes. ``progress`` is called with the
+    part done. Raises ModelError for names that do not exist, tolerances that pass 0, limits the wrong way, results that
+    are no number, and what the machine as given raises.
+    """
+    task = function_task(m, sizes, result, duration, steps) if not isinstance(m, Model) else None
+    owner = task.owner if task else m.name
+    n = whole_number(f"{owner}: tolerances: n", n, 2)
+    if n > MOST:
+        raise ModelError(f"{owner}: tolerances: n is {n}; take {MOST} at most")
+    seed = whole_number(f"{owner}: tolerances: seed", seed, 0)
+    asked = limits_given(owner, limits)
+    if not 0.0 < finite_number(f"{owner}: tolerances: confidence", confidence) < 1.0:
+        raise ModelError(f"{owner}: tolerances: confidence is {confidence:g}; it must be between 0 and 1, such as 0.95")
+    if progress is not None and not callable(progress):
+        raise ModelError(f"{owner}: tolerances: progress is {shown(progress)}; it must be a function of the part done")
+    if task is None:
+        task = task_of(m, sizes, result, duration, steps, way, threads)
+    _refuse_corners(owner, corners, len(task.dimensions))
+    return _carried_out(task, n, seed, asked, sobol, corners, confidence, progress)
+
+
+def _carried_out(
+    task: Task, n: int, seed: int, limits: Any, sobol: bool, corners: bool | None, confidence: float, progress: Any
+) -> Tolerances:
+    dimensions = task.dimensions
+    run = _Run(task.machines)
+    at = middles(dimensions)
+    middle = float(run(at[None])[0])
+    slope = slopes(run, dimensions)
+    if not np.isfinite([middle, *slope]).all():
+        raise ModelError(
+            f"{task.owner}: tolerances: machines in the middle of the tolerances, or a standard deviation beside "
+            "it, fail "
+            f"({', '.join(run.failures)}); the tolerances are too wide for derivatives, or the motion passes a "
+            "dead centre: narrow them, or sweep a part of the motion (duration=...)"
+        )
+    corner = None
+    if corners if corners is not None else 2 ** len(dimensions) <= n:
+        corner, _ = vertex_worst(run, slope, dimensions)
+    x = drawn(dimensions, n, seed)
+    run = _Run(task.machines, progress, n)
+    values = run(x)
+    if np.isfinite(values).sum() < 2:
+        raise ModelError(
+            f"{task.owner}: tolerances: of {n} machines {int(np.isfinite(values).sum())} can be solved "
+            f"({', '.join(run.failures)}); narrow the tolerances"
+        )
+    failures = dict(run.failures)
+    indices = None
+    if sobol:
+        power = max(FEWEST_SOBOL, int(np.log2(n)))
+        indices = sobol_indices(_Run(task.machines), dimensions, power, seed)
+    variances = linear_variances(slope, dimensions)
+    return Tolerances(
+        values, x, tuple(_title(column) for d in dimensions for column in d.columns), task.nominal,
+        float(np.sqrt(variances.sum())), linear_worst(middle, slope, dimensions), corner, limits, confidence, failures,
+        indices, "; ".join([task.machines.way, *task.notes]), task.owner, tuple(dimensions), slope,
+        shares_of(variances),
+    )  # fmt: skip
+
+
+class _Run:
+    """Evaluates rows in parts that fit into memory."""
+
+    def __init__(self, machines: Machines, progress: Callable[[float], object] | None = None, total: int = 1) -> None:
+        self._machines, self._progress, self._total = machines, progress, total
+        self.failures: Counter[str] = Counter()
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        out = np.empty(len(x))
+        for first in range(0, len(x), self._machines.at_once):
+            part = slice(first, first + self._machines.at_once)
+            answers = self._machines(x[part])
+            out[part] = answers.values
+            self.failures += answers.failures
+            if self._progress is not None:
+                self._progress(min(1.0, (first + len(x[part])) / self._total))
+        return out
+
+
+def _title(column: Any) -> str:
+    part = {"bore": f".{column.key} in its bore", "reaction": ", half of its play", "length": ""}
+    return column.name + part.get(column.kind, f".{column.key}" if column.key else "")
+
+
+def _refuse_corners(owner: str, corners: bool | None, count: int) -> None:
+    if corners is not None and not isinstance(corners, bool):
+        raise ModelError(f"{owner}: tolerances: corners is {shown(corners)}; it must be True, False or None")
+    if corners and count > MOST_CORNERS:
+        raise ModelError(
+            f"{owner}: tolerances: {count} dimensions have 2^{count} corners; they are solved of {MOST_CORNERS} "
+            "at most. The worst case by derivatives is there for any number"
+        )

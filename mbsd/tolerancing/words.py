@@ -1,0 +1,40 @@
+"""What was found, in lines of text."""
+
+from __future__ import annotations
+
+from typing import Any
+
+TITLES = ("dimension", "share", "worst +-", "std if halved")
+
+
+def report(t: Any) -> str:
+    """The lines of a Tolerances."""
+    lines = [
+        f"{t.name}: {len(t)} machines, {t.way}",
+        f"nominal {t.nominal:.7g}, mean {t.mean:.7g}",
+        f"standard deviation {t.std:.4g} ({t.linear_std:.4g} by derivatives)",
+        f"99.73 % from {t.quantile(0.00135):.7g} to {t.quantile(0.99865):.7g}",
+        f"worst case {_from_to(t.linear_worst)} by derivatives"
+        + ("" if t.vertex_worst is None else f", {_from_to(t.vertex_worst)} at the corners"),
+    ]
+    if t.yields is not None:
+        part, low, high = t.yields
+        lines.append(f"within limits {part:.3%} ({t.confidence:.0%}: {low:.3%} to {high:.3%})")
+    lines += [f"{count} machines failed: {reason}" for reason, count in t.failures.items()]
+    return "\n".join([*lines, *_table(t)])
+
+
+def _table(t: Any) -> list[str]:
+    rows = t.tighten
+    wide = max(len(TITLES[0]), *(len(row.name) for row in rows))
+    limited = t.limits is not None
+    head = f"{TITLES[0]:{wide}} {TITLES[1]:>7} {TITLES[2]:>10} {TITLES[3]:>14}" + limited * "  yield if halved"
+    return [head] + [
+        f"{row.name:{wide}} {row.share:7.1%} {row.worst:10.3g} {row.std_halved:14.4g}"
+        + (f" {row.yield_halved:16.3%}" if limited else "")
+        for row in rows
+    ]
+
+
+def _from_to(limits: tuple[float, float]) -> str:
+    return f"{limits[0]:.7g} to {limits[1]:.7g}"

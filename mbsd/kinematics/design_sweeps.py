@@ -81,11 +81,18 @@ def in_closed_form(ready: Prepared) -> bool:
 class DesignSweeps:
     """Sweeps over times ``grid`` (T,) of designs that differ in what ``moved`` says.
 
+    ``finer``: so many times more steps between two times than the drivers need; they clear some doubts of branches.
     Raises ModelError for a mechanism that is not made of driven bodies and dyads, and for an angle of no body.
     """
 
     def __init__(
-        self, m: Model, ready: Prepared, grid: np.ndarray, moved: Sequence[Moved], angles: Sequence[str] = ()
+        self,
+        m: Model,
+        ready: Prepared,
+        grid: np.ndarray,
+        moved: Sequence[Moved],
+        angles: Sequence[str] = (),
+        finer: int = 1,
     ) -> None:
         if not in_closed_form(ready):
             raise ModelError(
@@ -100,7 +107,7 @@ class DesignSweeps:
         self.bodies = np.array([packed.body_names.index(p.body.name) for p in m.traces.values()], np.int64)
         self.arms = np.array([(p.x, p.y) for p in m.traces.values()]).reshape(-1, 2) - packed.com[self.bodies]
         self.turned = np.array([_body(m, packed, name) for name in angles], np.int64)
-        self.every = divisions(packed, grid)
+        self.every = finer * divisions(packed, grid)
         dense = np.linspace(grid[0], grid[-1], self.every * (len(grid) - 1) + 1)
         self.driven = _driven(self.groups, packed.drives(dense))
 

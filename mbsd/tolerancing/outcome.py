@@ -64,10 +64,14 @@ class Tolerances:
     """Least and largest result by first derivatives, with all dimensions at their limits."""
     vertex_worst: tuple[float, float] | None
     """The same, of the machines at the corners of all tolerances; None where they were not solved."""
+    corners_failed: int
+    """How many of the corners failed, so that there is no worst case there but the machine itself."""
     limits: Limits | None
     confidence: float
     failures: Mapping[str, int]
     """How many machines failed for which reason."""
+    mended: np.ndarray
+    """(d, failed) results of the machines that failed with the tolerance of one dimension halved; NaN of the rest."""
     sobol: Sobol | None
     way: str
     """How the machines were solved, and where pins with play lie."""
@@ -141,10 +145,15 @@ class Tolerances:
         return sorted(self.rows, key=lambda row: row.std_halved)
 
     def _halved(self, k: int) -> np.ndarray:
-        """(n,) the same machines with the tolerance of one dimension halved, by its first derivatives."""
+        """(n,) the same machines with the tolerance of one dimension halved, by its first derivatives.
+
+        Those that failed were solved again.
+        """
         part = parts(self.dimensions)[k]
         x = self.deviations[:, part]
-        return self.values + (self.dimensions[k].halved(x) - x) @ self.slopes[part]
+        out = self.values + (self.dimensions[k].halved(x) - x) @ self.slopes[part]
+        out[self.failed] = self.mended[k]
+        return out
 
     def table(self) -> Any:
         """A pandas DataFrame, a row a dimension, in the order of :attr:`tighten`. Needs the extra ``pandas``."""

@@ -20,11 +20,12 @@ from mbsd.base.arguments import checked, finite_number, whole_number
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.model.mechanism import Model
+from mbsd.tolerancing.dimensions.dimension import Dimension
 from mbsd.tolerancing.machines.functions import function_task
 from mbsd.tolerancing.machines.one_by_one import Machines
 from mbsd.tolerancing.machines.tasks import Task, task_of
 from mbsd.tolerancing.outcome import Tolerances
-from mbsd.tolerancing.statistics.derivatives import middles, slopes
+from mbsd.tolerancing.statistics.derivatives import middles, parts, slopes
 from mbsd.tolerancing.statistics.draws import drawn
 from mbsd.tolerancing.statistics.shares import linear_variances, shares_of, sobol_indices
 from mbsd.tolerancing.statistics.worst import linear_worst, vertex_worst
@@ -40,7 +41,7 @@ FEWEST_SOBOL = 3
 
 @checked
 def tolerances(
-    m: Any,
+    machine: Any,
     sizes: Any,
     result: Any = None,
     limits: Any = None,
@@ -71,7 +72,7 @@ def tolerances(
     ``way``: "batch" sweeps linkages all at once, "sweep" one by one, "simulate" integrates ``duration`` s in one
     compiled loop; "auto" takes the first that can. Times are ``steps`` equal steps, by default over a period.
 
-    ``m`` may be a function of numbers by name, their nominal values as defaults: it gives the result itself, or what
+    ``machine`` may be a function of numbers by name, its nominal values as defaults: it gives the result, or what
     ``result`` takes it from, a mechanism to be swept included.
 
     ``sobol`` adds Sobol's indices, from the largest power of 2 up to n in each of d + 2 sets. ``corners``: whether the
@@ -80,8 +81,8 @@ def tolerances(
     part done. Raises ModelError for names that do not exist, tolerances that pass 0, limits the wrong way, results that
     are no number, and what the machine as given raises.
     """
-    task = function_task(m, sizes, result, duration, steps) if not isinstance(m, Model) else None
-    owner = task.owner if task else m.name
+    task = function_task(machine, sizes, result, duration, steps) if not isinstance(machine, Model) else None
+    owner = task.owner if task else machine.name
     n = whole_number(f"{owner}: tolerances: n", n, 2)
     if n > MOST:
         raise ModelError(f"{owner}: tolerances: n is {n}; take {MOST} at most")
@@ -92,7 +93,7 @@ def tolerances(
     if progress is not None and not callable(progress):
         raise ModelError(f"{owner}: tolerances: progress is {shown(progress)}; it must be a function of the part done")
     if task is None:
-        task = task_of(m, sizes, result, duration, steps, way, threads)
+        task = task_of(machine, sizes, result, duration, steps, way, threads)
     _refuse_corners(owner, corners, len(task.dimensions))
     return _carried_out(task, n, seed, asked, sobol, corners, confidence, progress)
 
@@ -112,9 +113,9 @@ def _carried_out(
             f"({', '.join(run.failures)}); the tolerances are too wide for derivatives, or the motion passes a "
             "dead centre: narrow them, or sweep a part of the motion (duration=...)"
         )
-    corner = None
+    corner, corners_failed = None, 0
     if corners if corners is not None else 2 ** len(dimensions) <= n:
-        corner, _ = vertex_worst(run, slope, dimensions)
+        corner, corners_failed = vertex_worst(run, slope, dimensions)
     x = drawn(dimensions, n, seed)
     run = _Run(task.machines, progress, n)
     values = run(x)
@@ -124,6 +125,7 @@ def _carried_out(
             f"({', '.join(run.failures)}); narrow the tolerances"
         )
     failures = dict(run.failures)
+    mended = _mended(_Run(task.machines), dimensions, x[np.isnan(values)], n)
     indices = None
     if sobol:
         power = max(FEWEST_SOBOL, int(np.log2(n)))
@@ -131,10 +133,25 @@ def _carried_out(
     variances = linear_variances(slope, dimensions)
     return Tolerances(
         values, x, tuple(_title(column) for d in dimensions for column in d.columns), task.nominal,
-        float(np.sqrt(variances.sum())), linear_worst(middle, slope, dimensions), corner, limits, confidence, failures,
-        indices, "; ".join([task.machines.way, *task.notes]), task.owner, tuple(dimensions), slope,
-        shares_of(variances),
+        float(np.sqrt(variances.sum())), linear_worst(middle, slope, dimensions), corner, corners_failed, limits,
+        confidence, failures, mended, indices, "; ".join([task.machines.way, *task.notes]), task.owner,
+        tuple(dimensions), slope, shares_of(variances),
     )  # fmt: skip
+
+
+def _mended(run: _Run, dimensions: list[Dimension], x: np.ndarray, most: int) -> np.ndarray:
+    """(d, failed) results of machines that failed, with the tolerance of each dimension in turn halved.
+
+    NaN where these would be more than ``most``.
+    """
+    out = np.full((len(dimensions), len(x)), np.nan)
+    if out.size > most:
+        return out
+    for k, part in enumerate(parts(dimensions)):
+        halved = x.copy()
+        halved[:, part] = dimensions[k].halved(x[:, part])
+        out[k] = run(halved)
+    return out
 
 
 class _Run:
@@ -162,8 +179,6 @@ def _title(column: Any) -> str:
 
 
 def _refuse_corners(owner: str, corners: bool | None, count: int) -> None:
-    if corners is not None and not isinstance(corners, bool):
-        raise ModelError(f"{owner}: tolerances: corners is {shown(corners)}; it must be True, False or None")
     if corners and count > MOST_CORNERS:
         raise ModelError(
             f"{owner}: tolerances: {count} dimensions have 2^{count} corners; they are solved of {MOST_CORNERS} "

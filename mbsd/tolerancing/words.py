@@ -15,7 +15,7 @@ def report(t: Any) -> str:
         f"standard deviation {t.std:.4g} ({t.linear_std:.4g} by derivatives)",
         f"99.73 % from {t.quantile(0.00135):.7g} to {t.quantile(0.99865):.7g}",
         f"worst case {_from_to(t.linear_worst)} by derivatives"
-        + ("" if t.vertex_worst is None else f", {_from_to(t.vertex_worst)} at the corners"),
+        + ("" if t.vertex_worst is None else f", {_corners(t)}"),
     ]
     if t.yields is not None:
         part, low, high = t.yields
@@ -34,6 +34,11 @@ def _table(t: Any) -> list[str]:
         + (f" {row.yield_halved:16.3%}" if limited else "")
         for row in rows
     ]
+
+
+def _corners(t: Any) -> str:
+    failed = f", of which {t.corners_failed} fail" if t.corners_failed else ""
+    return f"{_from_to(t.vertex_worst)} at the corners{failed}"
 
 
 def _from_to(limits: tuple[float, float]) -> str:

@@ -94,10 +94,12 @@ def _plain(m: Model, name: Any, value: Any) -> list[Dimension]:
     if name not in every or name == "ground":
         known = [*_lengths(m), *m.joints, *m.traces]
         raise ModelError(f"{m.name}: tolerances: {no_such('bar, rod, joint or traced point', name, known)}")
-    example = "mass" if name in m.bodies else next(iter(_arguments(m, name)), "stiffness")
+    numbers = [key for key, nominal in (_arguments(m, name) or {}).items() if _single(nominal)]
+    if not numbers:
+        raise ModelError(f"{m.name}: tolerances: '{name}' has neither a length nor a number that could stray")
     raise ModelError(
-        f"{m.name}: tolerances: '{name}' has no length; say which of its numbers strays: "
-        f"{{'{name}': {{'{example}': {shown(value)}}}}}"
+        f"{m.name}: tolerances: '{name}' has no length; say which of its numbers strays ({', '.join(numbers)}): "
+        f"{{'{name}': {{'{numbers[0]}': {shown(value)}}}}}"
     )
 
 
@@ -115,7 +117,7 @@ def _named(m: Model, name: Any, key: str, value: Any) -> Dimension:
         there = [*known, *(AXES if name in m.joints else ())]
         raise ModelError(f"{m.name}: tolerances: '{name}': {no_such('number', key, there)}")
     nominal = known[key]
-    if isinstance(nominal, bool) or not isinstance(nominal, int | float) or not math.isfinite(nominal):
+    if not _single(nominal):
         raise ModelError(
             f"{m.name}: tolerances: {key} of '{name}' is {shown(nominal)}; only a number can stray. Give it one, "
             "or use a function that builds the mechanism"
@@ -124,6 +126,11 @@ def _named(m: Model, name: Any, key: str, value: Any) -> Dimension:
     label = name if kind == "length" else f"{name}.{key}"
     length = nominal if "length" in key else None
     return _size(m.name, label, value, Column(kind, name, key, float(nominal)), length)
+
+
+def _single(value: Any) -> bool:
+    """Whether it is a finite number."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _arguments(m: Model, name: Any) -> dict[str, Any]:

@@ -80,7 +80,7 @@ class Spread:
         if not isinstance(self.tolerance, str):
             return self
         if size is None:
-            raise ModelError(f"class {self.tolerance} is that of a length; give a number")
+            raise ModelError(f"class {self.tolerance} goes by the size of a length, and there is none; give a number")
         grade = GRADE.fullmatch(self.tolerance)
         half = 0.5 * standard_tolerance(size, int(grade[1])) if grade else general_tolerance(size, self.tolerance)
         return replace(self, tolerance=half)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_left
 
-from mbsd.base.arguments import positive_number
+from mbsd.base.arguments import positive_number, text
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
@@ -106,7 +106,7 @@ def fit(size: float, name: str) -> tuple[float, float]:
     Holes D, E, F, G, H, JS; shafts d, e, f, g, h, js, k, m, n, p. Below 0 the pin is larger than its bore. Raises
     ModelError for another text, and for a diameter beyond 500 mm.
     """
-    zones = [ZONE.fullmatch(part.strip()) for part in name.split("/")]
+    zones = [ZONE.fullmatch(part.strip()) for part in text("fit: name", name).split("/")]
     hole, shaft = zones if len(zones) == 2 else (None, None)
     if hole is None or shaft is None or not hole[1][0].isupper() or not shaft[1][0].islower():
         raise ModelError(f"fit: {shown(name)} is no fit; write a hole and a shaft, such as 'H7/g6'")

@@ -12,16 +12,20 @@ import numpy as np
 
 from mbsd.dynamics.many.measures import Measure
 from mbsd.kinematics.batch import parameters
-from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Push, in_closed_form
+from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, Push, in_closed_form
 from mbsd.kinematics.prepare import prepare
 from mbsd.model.mechanism import Model
 from mbsd.tolerancing.dimensions.dimension import Column
 from mbsd.tolerancing.dimensions.named import first_marker
-from mbsd.tolerancing.machines.one_by_one import Answers
+from mbsd.tolerancing.machines.one_by_one import Answers, swept
 from mbsd.tolerancing.machines.results import called, measured, numbers_of_batch, placed
 
 NUMBERS_AT_ONCE = 8_000_000
 """Of a batch's results: 64 MB."""
+FINER = 8
+"""Times more steps with which machines are swept again that were given up as doubted."""
+MOST_AGAIN = 500
+"""Machines of a part that are swept again one by one, where that was not enough."""
 OPEN = "the links do not close over the whole motion"
 DOUBTED = "two assemblies come near each other during the motion"
 NO_NUMBER = "the result is no number"
@@ -52,6 +56,8 @@ class Batched:
         turned = sorted({name for kind, name, part in self._of.values() if part == "theta"})
         self._angles = turned if isinstance(result, Measure) else [name for name in m.bodies if name != "ground"]
         self._sweeps: DesignSweeps | None = None
+        self._finer: DesignSweeps | None = None
+        self._again = swept(m, columns, result, grid)
         width = len(grid) * (2 * len(self._m.traces) + len(self._angles)) + self._ready.groups.number.size  # pyright: ignore[reportOptionalMemberAccess]
         self.at_once = max(64, NUMBERS_AT_ONCE // width)
 
@@ -65,7 +71,18 @@ class Batched:
         else:
             values = numbers_of_batch(self._owner, called(self._owner, self._result, batch), len(x))
         failures[NO_NUMBER] = int((batch.closes & ~np.isfinite(values)).sum())
-        return Answers(np.where(batch.closes & np.isfinite(values), values, np.nan), +failures)
+        values = np.where(batch.closes & np.isfinite(values), values, np.nan)
+        return self._without_doubt(x, batch.doubted, Answers(values, +failures))
+
+    def _without_doubt(self, x: np.ndarray, doubted: np.ndarray, answers: Answers) -> Answers:
+        """Machines given up where two assemblies come near each other, swept one by one where these are few."""
+        if not isinstance(self._result, Measure) or self._pushes or not 0 < doubted.sum() <= MOST_AGAIN:
+            return answers
+        again = self._again(x[doubted])
+        answers.values[doubted] = again.values
+        del answers.failures[DOUBTED]
+        answers.failures += again.failures
+        return answers
 
     def _along(self, batch: Batch, name: str) -> np.ndarray:
         _, whole, part = self._of[name]
@@ -75,9 +92,13 @@ class Batched:
         lengths, places = self._numbers(x)
         values, moved = parameters(self._m, self._ready.packed, lengths, places)
         if self._sweeps is None:
-            self._sweeps = DesignSweeps(self._m, self._ready, self._grid, moved, self._angles)
+            self._sweeps = self._made(moved)
         if not self._pushes:
-            return self._sweeps(values, self._threads)
+            batch = self._sweeps(values, self._threads)
+            if batch.doubted.any():
+                self._finer = self._finer or self._made(moved, FINER)
+                _put(batch, batch.doubted.copy(), self._finer(values[batch.doubted], self._threads))
+            return batch
         first = values.shape[1] - 2 * len(places)
         pushes = []
         for k, column in enumerate(self._columns):
@@ -86,6 +107,9 @@ class Batched:
                 pushes += [Push(at + axis, x[:, k], self._pushes[column.name][:, axis]) for axis in (0, 1)]
         assert self._poses is not None
         return self._sweeps.pushed(values, pushes, self._poses, self._threads)
+
+    def _made(self, moved: Sequence[Moved], finer: int = 1) -> DesignSweeps:
+        return DesignSweeps(self._m, self._ready, self._grid, moved, self._angles, finer)
 
     def _numbers(self, x: np.ndarray) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
         """Lengths and places as ``batch`` takes them."""
@@ -101,6 +125,15 @@ class Batched:
             if column.kind != "reaction":
                 places[column.name][:, "xy".index(column.key)] += x[:, k]
         return lengths, places
+
+
+def _put(batch: Batch, rows: np.ndarray, others: Batch) -> None:
+    """Give some rows the results of ``others``."""
+    for name, points in batch.points.items():
+        points[rows] = others.points[name]
+    for name, angles in batch.angles.items():
+        angles[rows] = others.angles[name]
+    batch.closes[rows], batch.doubted[rows] = others.closes, others.doubted
 
 
 def _followed(m: Model, result: Any) -> tuple[Model, dict[str, tuple[str, str, str]]]:

@@ -22,7 +22,7 @@ def function_task(function: Any, sizes: Any, result: Any, duration: float | None
     """That of a function with the nominal values as defaults. Raises ModelError."""
     if not callable(function) or isinstance(function, type):
         raise ModelError(
-            f"tolerances: m is {shown(function)}; give a mechanism, or a function of numbers by name with their "
+            f"tolerances: machine is {shown(function)}; give a mechanism, or a function of numbers by name with their "
             "nominal values as defaults: def gap(a=0.044, b=0.019): return a - b"
         )
     owner = getattr(function, "__name__", "function")

@@ -52,7 +52,8 @@ class Machines(Protocol):
 
 def reason_of(error: MechanismError) -> str:
     """The type of an error: what failed alike is counted together, whatever its numbers."""
-    return f"{type(error).__name__}"
+    said = (type(error).__doc__ or "").strip().partition("\n")[0].rstrip(".")
+    return f"{type(error).__name__} ({said[:1].lower()}{said[1:]})" if said else type(error).__name__
 
 
 class OneByOne:

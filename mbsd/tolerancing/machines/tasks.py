@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.arguments import whole_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.dynamics.many.measures import Measure
@@ -36,6 +37,8 @@ def task_of(m: Any, sizes: Any, result: Any, duration: float | None, steps: int,
     """That of a mechanism; see :func:`mbsd.tolerances`. Raises ModelError."""
     if way not in WAYS:
         raise ModelError(f"{m.name}: tolerances: {no_such('way', way, WAYS)}")
+    if threads is not None:
+        whole_number(f"{m.name}: tolerances: threads", threads)
     result = result_given(m.name, result)
     dimensions = dimensions_of(m, sizes)
     _refuse_twice(m.name, dimensions)
@@ -77,7 +80,7 @@ def _driven(
                     "swept all at once, and these are not; take Clearance(..., direction='any')"
                 )
         machines: Machines = swept(m, columns, result, grid)
-        return Task(m.name, dimensions, machines, _alone(machines, columns), _notes([], pins))
+        return Task(m.name, dimensions, machines, _alone(m.name, machines, columns), _notes([], pins))
     pushes = push_directions(ideal, [pin.label for pin in pins if pin.clearance.direction != "any"])
     dimensions = [_settled(m.name, d, pushes) for d in dimensions]
     columns = [column for d in dimensions for column in d.columns]
@@ -85,7 +88,7 @@ def _driven(
     poses = np.ascontiguousarray(ideal.q.reshape(len(grid), -1))
     machines = Batched(m, columns, result, grid, known, poses, threads)
     loose = [pin for pin in pins if pin.label not in known]
-    return Task(m.name, dimensions, machines, _alone(machines, columns), _notes(list(known), loose))
+    return Task(m.name, dimensions, machines, _alone(m.name, machines, columns), _notes(list(known), loose))
 
 
 def _settled(owner: str, dimension: Dimension, pushes: Mapping[str, np.ndarray | None]) -> Dimension:
@@ -107,13 +110,13 @@ def _notes(known: Sequence[str], loose: Sequence[Any]) -> list[str]:
     return out + ([f"gap in any direction: {', '.join(pin.label for pin in loose)}"] if loose else [])
 
 
-def _alone(machines: Machines, columns: Sequence[Any]) -> float:
+def _alone(owner: str, machines: Machines, columns: Sequence[Any]) -> float:
     """The result of the mechanism as it is given. Raises ModelError where it has none."""
     answers = machines(np.zeros((1, len(columns))))
     if np.isfinite(answers.values[0]):
         return float(answers.values[0])
     reasons = ", ".join(answers.failures) or "the result is no number"
-    raise ModelError(f"tolerances: the machine as it is given has no result: {reasons}")
+    raise ModelError(f"{owner}: tolerances: the machine as it is given has no result: {reasons}")
 
 
 def _simulated(
@@ -126,7 +129,7 @@ def _simulated(
     columns = [column for d in dimensions for column in d.columns]
     options = {"duration": duration, "steps": steps, "threads": threads}
     machines = Simulated(m, columns, result, options)
-    return Task(m.name, dimensions, machines, _alone(machines, columns))
+    return Task(m.name, dimensions, machines, _alone(m.name, machines, columns))
 
 
 def _refuse_twice(owner: str, dimensions: Sequence[Dimension]) -> None:

@@ -1,0 +1,153 @@
+"""Machines solved all at once, one by one, simulated, by functions: the same numbers; those that fail are counted."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, ModelError, Tolerances, constant_rate, tolerances
+from mbsd.measures import largest, samples
+from tests.tolerancing.linkages import SIZES, four_bar, rocker_angle, switch
+
+
+def nearly_open() -> Mechanism:
+    """A four-bar whose crank may just turn: s + l is 0.3 mm less than p + q."""
+    m = Mechanism("nearly open")
+    crank, coupler, rocker = m.bar("crank", 0.04), m.bar("coupler", 0.12), m.bar("rocker", 0.0403)
+    m.revolute("A", m.ground.at(0, 0), crank.start)
+    m.revolute("B", crank.end, coupler.start)
+    m.revolute("C", coupler.end, rocker.end)
+    m.revolute("D", m.ground.at(0.12, 0), rocker.start)
+    m.drive_angle("motor", crank, constant_rate(2 * np.pi))
+    m.start_near(crank=90, coupler=0, rocker=90)
+    return m
+
+
+def test_one_by_one_is_all_at_once() -> None:
+    sizes = SIZES | {"P": {"y": 1e-4}, "B": {"x": 3e-5}}
+    together, alone = (
+        tolerances(four_bar(), sizes, largest("P.y"), n=15, steps=36, way=way) for way in ("batch", "sweep")
+    )
+    assert together.way == "swept all at once"
+    assert alone.way == "swept one by one"
+    assert alone.values == pytest.approx(together.values, abs=1e-13)
+    assert alone.slopes == pytest.approx(together.slopes, abs=1e-9)
+
+
+def test_masses_and_efforts_are_solved_one_by_one() -> None:
+    """Without gravity and friction, the effort at constant speed is proportional to all masses at once."""
+    m = four_bar(mass=0.2)
+    t = tolerances(m, {name: {"mass": 0.01} for name in ("crank", "coupler", "rocker")}, largest("motor.effort"), n=9)
+    assert t.way == "swept one by one"
+    assert t.slopes @ np.full(3, 0.2) == pytest.approx(t.nominal, rel=1e-3)  # Euler: homogeneous of degree 1
+
+
+def test_a_function_of_the_batch_gives_a_number_a_machine() -> None:
+    t = tolerances(four_bar(), SIZES, lambda batch: np.ptp(batch.points["P"][:, :, 1], axis=1), n=64, steps=36)
+    high, low = (
+        tolerances(four_bar(), SIZES, measure, n=64, steps=36).values
+        for measure in (largest("P.y"), lambda batch: batch.points["P"][:, :, 1].min(axis=1))
+    )
+    assert t.values == pytest.approx(high - low, abs=1e-15)
+
+
+def test_simulations_are_those_of_changed_mechanisms() -> None:
+    t = tolerances(
+        switch(), {"spring": {"stiffness": 18.0}, "lever": {"mass": 0.015}}, largest("lever.omega"), n=4, duration=0.2,
+        steps=40,
+    )  # fmt: skip
+    assert "compiled loop" in t.way
+    m = switch()
+    m.change("spring", stiffness=120.0 + t.deviations[2, 0])
+    m.change("lever", mass=0.2 + t.deviations[2, 1])
+    assert t.values[2] == pytest.approx(m.simulate(0.2, steps=40).body("lever").omega.max(), rel=1e-9)
+    assert t.columns == ("spring.stiffness", "lever.mass")
+
+
+def test_a_function_may_build_the_mechanism() -> None:
+    def build(crank: float = 0.040, coupler: float = 0.120) -> Mechanism:
+        m = four_bar()
+        m.change("crank", length=crank)
+        m.change("coupler", length=coupler)
+        return m
+
+    sizes = {"crank": 5e-5, "coupler": 8e-5}
+    asked: dict[str, Any] = {"n": 6, "steps": 10}
+    result = samples("rocker.theta", [0.3])
+    built, same = tolerances(build, sizes, result, **asked), tolerances(four_bar(), sizes, result, **asked)
+    assert built.values == pytest.approx(same.values, abs=1e-12)
+    own = tolerances(build, sizes, lambda m: m.sweep(steps=10).body("rocker").theta[3], **asked)
+    assert own.values.tobytes() == built.values.tobytes()
+
+
+@pytest.fixture(scope="module")
+def failing() -> Tolerances:
+    sizes = dict.fromkeys(("crank", "coupler", "rocker"), 2e-4)
+    return tolerances(nearly_open(), sizes, samples("rocker.theta", [0.25]), limits=(1.5, 1.6), n=4000, steps=40)
+
+
+def test_machines_that_do_not_close_are_counted(failing: Tolerances) -> None:
+    """Those whose crank turns: shortest and longest link are no longer than the other two."""
+    crank, coupler, rocker = (np.array([0.04, 0.12, 0.0403]) + failing.deviations).T
+    lengths = np.sort(np.column_stack([crank, coupler, rocker, np.full(len(crank), 0.12)]), axis=1)
+    grashof = (lengths[:, 0] + lengths[:, 3] <= lengths[:, 1] + lengths[:, 2]) & (lengths[:, 0] == crank)
+    assert 0 < len(failing.failed) < 200
+    assert sum(failing.failures.values()) == len(failing.failed)
+    assert not grashof[[k for k in failing.failed if abs(np.ptp(lengths[k, :2])) > 5e-5]].any()
+    assert failing.good[grashof].mean() > 0.99
+    assert not failing.good[~grashof].any()
+
+
+def test_what_fails_is_not_within_the_limits(failing: Tolerances) -> None:
+    assert failing.yields is not None
+    assert failing.yields.part == pytest.approx(1.0 - len(failing.failed) / 4000)
+    assert all(row.yield_halved > failing.yields.part for row in failing.rows)  # solved again, some close
+    assert failing.corners_failed > 0
+    assert f"{len(failing.failed)} failed" in repr(failing)
+    for reason, count in failing.failures.items():
+        assert f"{count} machines failed: {reason}" in str(failing)
+
+
+def test_one_by_one_they_have_the_names_of_errors() -> None:
+    t = tolerances(
+        nearly_open(), dict.fromkeys(("crank", "rocker"), 3e-4), samples("rocker.theta", [0.25]), n=60, steps=40,
+        way="sweep",
+    )  # fmt: skip
+    assert len(t.failed) == sum(t.failures.values()) > 0
+    assert all("Error (" in reason for reason in t.failures)
+
+
+def test_tables_have_all_digits(tmp_path: Path) -> None:
+    t = tolerances(four_bar(), SIZES, samples("rocker.theta", [0.3]), limits=(1.82, None), n=200, steps=10)
+    t.to_csv(tmp_path / "rows.csv")
+    t.to_csv(tmp_path / "machines.csv", machines=True)
+    rows = list(csv.DictReader((tmp_path / "rows.csv").open()))
+    assert [row["name"] for row in rows] == [row.name for row in t.tighten] == list(t.table()["name"])
+    assert [float(row["share"]) for row in rows] == [row.share for row in t.tighten]
+    assert rows[0]["sobol_first"] == ""
+    machines = np.genfromtxt(tmp_path / "machines.csv", delimiter=",", names=True)
+    assert machines["result"] == pytest.approx(t.values, abs=0)
+    assert machines.dtype.names == ("crank", "coupler", "rocker", "Dx", "result")
+    assert sum(row.share for row in t.rows) == pytest.approx(1.0)
+
+
+def test_the_picture_shows_limits_and_shares(tmp_path: Path) -> None:
+    exact = float(rocker_angle(0.6 * np.pi))
+    t = tolerances(
+        four_bar(), SIZES, samples("rocker.theta", [0.3]), limits=(exact - 3e-4, 9.0), n=500, steps=10, sobol=True
+    )
+    picture = t.plot()
+    histogram, bars = picture.figure.axes
+    assert sum(patch.get_height() for patch in histogram.patches) == 500
+    assert [line.get_label() for line in histogram.lines].count("limit") == 1  # the other is far away
+    assert {label.get_text() for label in bars.get_yticklabels()} == {row.name for row in t.rows}
+    assert max(patch.get_width() for patch in bars.patches) == pytest.approx(100 * t.shares.max(), rel=0.05)
+    for name in ("first.svg", "second.svg"):
+        t.plot().save(tmp_path / name)
+    assert (tmp_path / "first.svg").read_bytes() == (tmp_path / "second.svg").read_bytes()
+    with pytest.raises(ModelError, match="two axes"):
+        t.plot(3)

@@ -16,6 +16,8 @@ from mbsd.drawing.picture import Picture
 MOST_BARS = 12
 """Dimensions that are shown; the rest is one bar."""
 BINS = 60
+HIGH = 0.82
+"""Part of the height that lines take; words are above."""
 FAR = 1.5
 """Widths of the histogram beyond which a limit is not drawn."""
 GOOD, LATER = PALETTE[0], PALETTE[3]
@@ -63,14 +65,14 @@ def _histogram(ax: Any, t: Any) -> None:
         if limit is not None and near[0] <= limit <= near[1]:
             _line(ax, limit, "limit", WRONG, "--")
     titles = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
-    ax.legend(titles.values(), titles.keys(), frameon=False, loc="upper right")
-    ax.set_ylim(0, 1.25 * max(1, counts.max()))
+    ax.legend(titles.values(), titles.keys(), frameon=False, loc="upper center", ncols=3)
+    ax.set_ylim(0, 1.3 * max(1, counts.max()))
     _plain(ax, xlabel="result", ylabel="machines", title=_title(t))
 
 
 def _line(ax: Any, x: float, name: str, colour: str, style: str) -> None:
     if np.isfinite(x):
-        ax.axvline(x, color=colour, linestyle=style, linewidth=1.4, label=name)
+        ax.axvline(x, color=colour, linestyle=style, linewidth=1.4, ymax=HIGH, label=name)
 
 
 def _title(t: Any) -> str:
@@ -80,7 +82,7 @@ def _title(t: Any) -> str:
 
 
 def _bars(ax: Any, t: Any) -> None:
-    rows = sorted(t.rows, key=lambda row: -row.share)
+    rows = sorted(t.rows, key=lambda row: -(row.share if t.sobol is None else row.sobol_total))
     shown, rest = rows[:MOST_BARS], rows[MOST_BARS:]
     names, shares = [row.name for row in shown], [100 * row.share for row in shown]
     if rest:
@@ -88,6 +90,7 @@ def _bars(ax: Any, t: Any) -> None:
     at = np.arange(len(names))
     width = 0.7 if t.sobol is None else 0.38
     ax.barh(at, shares, width, color=GOOD, alpha=0.85, label="by first derivatives")
+    totals: list[float] = []
     if t.sobol is not None:
         totals = [100 * row.sobol_total for row in shown] + [100 * sum(row.sobol_total for row in rest)] * bool(rest)
         ax.barh(at + width, totals, width, color=LATER, alpha=0.85, label="Sobol, total")
@@ -96,7 +99,7 @@ def _bars(ax: Any, t: Any) -> None:
         ax.annotate(f"{share:.1f}", (share, y), (4, 0), textcoords="offset points", va="center", fontsize=9, color=INK)
     ax.set_yticks(at + (0 if t.sobol is None else width / 2), names)
     ax.invert_yaxis()
-    ax.set_xlim(0, 1.12 * max(1.0, *shares))
+    ax.set_xlim(0, 1.12 * max(1.0, *shares, *totals))
     _plain(ax, xlabel="part of the variance, %", title="which to tighten")
 
 

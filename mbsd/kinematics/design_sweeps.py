@@ -38,7 +38,7 @@ class Push(NamedTuple):
     """A change that differs from one time to the next: ``size`` times ``profile``."""
 
     column: int
-    """Of the parameters; none of a traced point."""
+    """Number of the parameter, which moves no traced point."""
     size: np.ndarray
     """(n,) of each design."""
     profile: np.ndarray

@@ -14,6 +14,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.files import write_whole
 from mbsd.tolerancing.dimensions.dimension import Dimension
 from mbsd.tolerancing.statistics.derivatives import parts
+from mbsd.tolerancing.statistics.halving import Halving
 from mbsd.tolerancing.statistics.shares import Sobol
 from mbsd.tolerancing.statistics.yields import Limits, Yield, yield_of
 
@@ -35,7 +36,7 @@ class Row(NamedTuple):
     slope: float
     """Change of the result for a unit of the dimension; of a pin that lies anywhere, at most."""
     share: float
-    """Of the variance, by first derivatives."""
+    """Part of the variance, by first derivatives."""
     worst: float
     """What it adds to the worst case to either side."""
     std_halved: float
@@ -57,21 +58,21 @@ class Tolerances:
     """(n, columns) of each machine, by ``columns``: from nominal sizes, or places of pins in their bores (m)."""
     columns: tuple[str, ...]
     nominal: float
-    """Of the machine as it was given, without play."""
+    """Result of the machine as it was given, without play."""
     linear_std: float
     """Standard deviation by first derivatives, where squares add up."""
     linear_worst: tuple[float, float]
     """Least and largest result by first derivatives, with all dimensions at their limits."""
     vertex_worst: tuple[float, float] | None
-    """The same, of the machines at the corners of all tolerances; None where they were not solved."""
+    """The same, of machines at the corners and in the middle of all tolerances; None where they were not solved."""
     corners_failed: int
     """How many of the corners failed, so that there is no worst case there but the machine itself."""
     limits: Limits | None
     confidence: float
     failures: Mapping[str, int]
     """How many machines failed for which reason."""
-    mended: np.ndarray
-    """(d, failed) results of the machines that failed with the tolerance of one dimension halved; NaN of the rest."""
+    halving: Halving
+    """What it would bring to halve each tolerance."""
     sobol: Sobol | None
     way: str
     """How the machines were solved, and where pins with play lie."""
@@ -96,8 +97,13 @@ class Tolerances:
         return np.flatnonzero(~self.good)
 
     @property
+    def curved(self) -> bool:
+        """Whether first derivatives miss the standard deviation, so that shares and the worst case by them mislead."""
+        return self.halving.again
+
+    @property
     def mean(self) -> float:
-        """Of the machines that did not fail, as all that follows."""
+        """Mean of the machines that did not fail, as all that follows."""
         return float(self.values[self.good].mean())
 
     @property
@@ -126,15 +132,14 @@ class Tolerances:
         """A row a dimension, in the order in which they were named."""
         out = []
         for k, (dimension, part) in enumerate(zip(self.dimensions, parts(self.dimensions), strict=True)):
-            halved, slopes = self._halved(k), self.slopes[part]
-            left = np.nan if self.limits is None else yield_of(halved, self.limits, self.confidence).part
+            slopes = self.slopes[part]
             first, total = (np.nan, np.nan) if self.sobol is None else (self.sobol.first[k], self.sobol.total[k])
             slope = float(slopes[0]) if len(slopes) == 1 else float(np.hypot(*slopes))
             out.append(
                 Row(
                     dimension.label, dimension.nominal, *dimension.limits, slope * dimension.per_unit,
-                    float(self.shares[k]), dimension.swing(slopes), float(halved[self.good].std(ddof=1)), left,
-                    float(first), float(total),
+                    float(self.shares[k]), dimension.swing(slopes), float(self.halving.std[k]),
+                    float(self.halving.within[k]), float(first), float(total),
                 )
             )  # fmt: skip
         return out
@@ -143,17 +148,6 @@ class Tolerances:
     def tighten(self) -> list[Row]:
         """The same, what brings most first: by the standard deviation that halving a tolerance leaves."""
         return sorted(self.rows, key=lambda row: row.std_halved)
-
-    def _halved(self, k: int) -> np.ndarray:
-        """(n,) the same machines with the tolerance of one dimension halved, by its first derivatives.
-
-        Those that failed were solved again.
-        """
-        part = parts(self.dimensions)[k]
-        x = self.deviations[:, part]
-        out = self.values + (self.dimensions[k].halved(x) - x) @ self.slopes[part]
-        out[self.failed] = self.mended[k]
-        return out
 
     def table(self) -> Any:
         """A pandas DataFrame, a row a dimension, in the order of :attr:`tighten`. Needs the extra ``pandas``."""

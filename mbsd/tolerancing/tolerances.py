@@ -20,16 +20,16 @@ from mbsd.base.arguments import checked, finite_number, whole_number
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.model.mechanism import Model
-from mbsd.tolerancing.dimensions.dimension import Dimension
 from mbsd.tolerancing.machines.functions import function_task
 from mbsd.tolerancing.machines.one_by_one import Machines
 from mbsd.tolerancing.machines.tasks import Task, task_of
 from mbsd.tolerancing.outcome import Tolerances
-from mbsd.tolerancing.statistics.derivatives import middles, parts, slopes
+from mbsd.tolerancing.statistics.derivatives import middles, slopes
 from mbsd.tolerancing.statistics.draws import drawn
+from mbsd.tolerancing.statistics.halving import curved, halving
 from mbsd.tolerancing.statistics.shares import linear_variances, shares_of, sobol_indices
 from mbsd.tolerancing.statistics.worst import linear_worst, vertex_worst
-from mbsd.tolerancing.statistics.yields import limits_given
+from mbsd.tolerancing.statistics.yields import limits_given, within
 
 MOST = 100_000_000
 """Machines of one call."""
@@ -61,7 +61,8 @@ def tolerances(
 
     ``sizes`` names what strays, by the words of :meth:`Mechanism.batch` and :meth:`Mechanism.change`: a bar or rod by
     its length, a joint or traced point by its place (m; ``{"D": {"x": 1e-5}}`` for one coordinate), any number by
-    ``{"spring": {"stiffness": 4.0}}``, a pin by :class:`Clearance`. A tolerance is a number t (+-t, normal with 3
+    ``{"spring": {"stiffness": 4.0}}``, a pin by :class:`Clearance`, or by
+    ``{"B": {"x": 1e-5, "play": Clearance(2e-5)}}`` with its place. A tolerance is a number t (+-t, normal with 3
     standard deviations), a pair (lower, upper), a class of ISO 2768-1 ("m") or a grade of ISO 286-1 ("IT7") by size, or
     ``Normal``, ``Uniform``, ``Triangular`` of these. A class alone in place of names is that of all bars and rods.
 
@@ -115,7 +116,7 @@ def _carried_out(
         )
     corner, corners_failed = None, 0
     if corners if corners is not None else 2 ** len(dimensions) <= n:
-        corner, corners_failed = vertex_worst(run, slope, dimensions)
+        corner, corners_failed = vertex_worst(run, middle, slope, dimensions)
     x = drawn(dimensions, n, seed)
     run = _Run(task.machines, progress, n)
     values = run(x)
@@ -125,33 +126,22 @@ def _carried_out(
             f"({', '.join(run.failures)}); narrow the tolerances"
         )
     failures = dict(run.failures)
-    mended = _mended(_Run(task.machines), dimensions, x[np.isnan(values)], n)
     indices = None
     if sobol:
         power = max(FEWEST_SOBOL, int(np.log2(n)))
         indices = sobol_indices(_Run(task.machines), dimensions, power, seed)
     variances = linear_variances(slope, dimensions)
+    linear_std = float(np.sqrt(variances.sum()))
+    halves = halving(
+        _Run(task.machines), dimensions, x, values, slope, curved(values, linear_std),
+        lambda results: np.nan if limits is None else float(within(results, limits).mean()),
+    )  # fmt: skip
     return Tolerances(
         values, x, tuple(_title(column) for d in dimensions for column in d.columns), task.nominal,
-        float(np.sqrt(variances.sum())), linear_worst(middle, slope, dimensions), corner, corners_failed, limits,
-        confidence, failures, mended, indices, "; ".join([task.machines.way, *task.notes]), task.owner,
+        linear_std, linear_worst(middle, slope, dimensions), corner, corners_failed, limits,
+        confidence, failures, halves, indices, "; ".join([task.machines.way, *task.notes]), task.owner,
         tuple(dimensions), slope, shares_of(variances),
     )  # fmt: skip
-
-
-def _mended(run: _Run, dimensions: list[Dimension], x: np.ndarray, most: int) -> np.ndarray:
-    """(d, failed) results of machines that failed, with the tolerance of each dimension in turn halved.
-
-    NaN where these would be more than ``most``.
-    """
-    out = np.full((len(dimensions), len(x)), np.nan)
-    if out.size > most:
-        return out
-    for k, part in enumerate(parts(dimensions)):
-        halved = x.copy()
-        halved[:, part] = dimensions[k].halved(x[:, part])
-        out[k] = run(halved)
-    return out
 
 
 class _Run:

@@ -17,23 +17,32 @@ def report(t: Any) -> str:
         f"worst case {_from_to(t.linear_worst)} by derivatives"
         + ("" if t.vertex_worst is None else f", {_corners(t)}"),
     ]
+    if t.curved:
+        lines.append(
+            "the result is curved within the tolerances: shares and worst case by derivatives mislead; sobol=True"
+        )
     if t.yields is not None:
         part, low, high = t.yields
-        lines.append(f"within limits {part:.3%} ({t.confidence:.0%}: {low:.3%} to {high:.3%})")
+        lines.append(f"within limits {part:.2%} ({t.confidence:.0%}: {low:.2%} to {high:.2%})")
     lines += [f"{count} machines failed: {reason}" for reason, count in t.failures.items()]
     return "\n".join([*lines, *_table(t)])
 
 
 def _table(t: Any) -> list[str]:
+    """The dimensions, what brings most first."""
     rows = t.tighten
     wide = max(len(TITLES[0]), *(len(row.name) for row in rows))
-    limited = t.limits is not None
-    head = f"{TITLES[0]:{wide}} {TITLES[1]:>7} {TITLES[2]:>10} {TITLES[3]:>14}" + limited * "  yield if halved"
-    return [head] + [
-        f"{row.name:{wide}} {row.share:7.1%} {row.worst:10.3g} {row.std_halved:14.4g}"
-        + (f" {row.yield_halved:16.3%}" if limited else "")
-        for row in rows
+    sobol, limited = t.sobol is not None, t.limits is not None
+    out = [
+        f"{TITLES[0]:{wide}} {TITLES[1]:>7} {TITLES[2]:>10} {TITLES[3]:>14}"
+        + limited * "  yield if halved"
+        + sobol * "  Sobol, total"
     ]
+    for row in rows:
+        line = f"{row.name:{wide}} {row.share:7.1%} {row.worst:10.3g} {row.std_halved:14.4g}"
+        line += f" {row.yield_halved:16.2%}" if limited else ""
+        out.append(line + (f" {row.sobol_total:13.1%}" if sobol else ""))
+    return out
 
 
 def _corners(t: Any) -> str:

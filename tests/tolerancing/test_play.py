@@ -57,6 +57,20 @@ def test_gaps_over_the_sweep_are_those_of_single_times() -> None:
     assert high.values == pytest.approx(np.max(single, axis=0), abs=1e-12)
 
 
+def test_a_pin_has_a_place_and_a_play() -> None:
+    """In the frame of the crank, which it is pushed in beside."""
+    m = four_bar(mass=0.2)
+    force = m.sweep(steps=10).joint("B").reaction[3]
+    t = tolerances(
+        m, {"B": {"x": 1e-4, "play": Clearance(1e-4, 5e-5)}}, samples("rocker.theta", [TIME]), n=20, steps=10
+    )  # fmt: skip
+    exact = [
+        rocker_angle(ANGLE, crank=0.04 + x, pin=-gap * force / np.hypot(*force)) for x, gap in t.deviations
+    ]  # fmt: skip
+    assert t.values == pytest.approx(exact, abs=1e-12)
+    assert t.columns == ("B.x", "B, half of its play")
+
+
 def test_without_forces_the_gap_points_anywhere() -> None:
     """The variance is half of that of a gap along the gradient, the worst case all of it."""
     t = tolerances(four_bar(), {"B": Clearance(1e-4)}, samples("rocker.theta", [TIME]), n=20_000, steps=10)

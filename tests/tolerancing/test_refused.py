@@ -42,6 +42,7 @@ def _nothing_runs(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"motor": 1e-5}, "neither a length nor a number"),
         ({"motor": Clearance(1e-5)}, "no pin 'motor'"),
         ({"ground": 1e-5}, "'ground'"),
+        ({"B": {"x": 1e-5, "play": 1e-5}}, "give Clearance"),
         ({"A": {"y": "m"}}, "by the size of a length"),
         ({"A": {"z": 1e-5}}, "no number 'z'"),
         ({"crank": 1e-5, "coupler": {"length": 1e-5}, "P": {"x": 1e-5}, "D": None}, "'D.x' is None"),

@@ -28,6 +28,21 @@ def test_the_indices_of_ishigami_and_homma() -> None:
     assert t.sobol.failed == 0
 
 
+def test_a_curved_result_is_known_as_one_and_solved_again() -> None:
+    """x^2 of x even in -1 .. 1 has no slope in the middle: variance 4/45, a sixteenth of it if x is halved."""
+    t = tolerances(lambda x=0.0, y=1.0: x * x + y, {"x": Uniform(1.0), "y": Uniform(0.01)}, limits=(0.0, 1.5), n=4000)
+    assert t.curved
+    assert "curved" in str(t)
+    assert t.linear_std == pytest.approx(0.01 / math.sqrt(3))
+    assert t.std == pytest.approx(math.sqrt(4 / 45), rel=0.03)
+    x, y = t.rows
+    assert x.std_halved == pytest.approx(math.sqrt(4 / 45) / 4, rel=0.04)
+    assert x.yield_halved == 1.0
+    assert y.yield_halved == pytest.approx(math.sqrt(0.5), abs=0.03)
+    assert t.vertex_worst == pytest.approx((1.0, 2.01))  # the middle is less than all corners
+    assert not tolerances(lambda x=0.0, y=1.0: x + y, {"x": Uniform(1.0), "y": Uniform(0.01)}, n=50).curved
+
+
 def test_where_all_is_nearly_linear_they_are_the_linear_shares() -> None:
     t = tolerances(four_bar(), SIZES, samples("rocker.theta", [0.25]), n=2048, steps=4, sobol=True)
     assert t.sobol is not None

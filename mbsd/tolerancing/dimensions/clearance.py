@@ -1,6 +1,6 @@
 """Pins with play: how much of it there is, and to which side the pin lies in its bore.
 
-A pin touches its bore: the gap is a massless link of half the play between the two centres (Earles, Wu, A determination
+A pin touches its bore: the gap is a massless link of half the play between the two centres (Wu, Earles, A determination
 of contact-loss at a bearing of a linkage mechanism, J. Eng. for Industry 99, 1977). It points along the reaction that
 the pin of the ideal mechanism carries, so the centre of the second body's marker lies behind that of the first body's
 by half the play against the force on the second body. Where there is no force, it points anywhere.

@@ -4,7 +4,7 @@
 {"D": 2e-5}                             both coordinates of the place of a joint or a traced point, as in ``batch``
 {"D": {"x": 1e-5}}                      one of them
 {"spring": {"stiffness": 4.0}}          a number that ``change`` takes: of a body, joint, driver, force or contact
-{"B": Clearance(3e-5)}                  the play of a pin
+{"B": Clearance(3e-5)}                  the play of a pin; beside its place: {"B": {"x": 1e-5, "play": Clearance(3e-5)}}
 "m", or "IT9"                           the lengths of all bars and rods
 """
 
@@ -24,7 +24,7 @@ from mbsd.tolerancing.dimensions.clearance import Clearance
 from mbsd.tolerancing.dimensions.dimension import Column, Dimension, LoosePlay, PushedPlay, Size
 from mbsd.tolerancing.dimensions.spreads import spread_of
 
-PIN = "revolute"
+PIN, PLAY = "revolute", "play"
 AXES = ("x", "y")
 
 
@@ -47,7 +47,9 @@ def dimensions_of(m: Model, sizes: Any) -> list[Dimension]:
         if isinstance(value, Clearance):
             out.append(_play(m, name, value))
         elif isinstance(value, Mapping):
-            out += [_named(m, name, str(key), part) for key, part in value.items()]
+            out += [
+                _play(m, name, part) if key == PLAY else _named(m, name, str(key), part) for key, part in value.items()
+            ]
         else:
             out += _plain(m, name, value)
     if not out:
@@ -114,7 +116,7 @@ def _named(m: Model, name: Any, key: str, value: Any) -> Dimension:
             f"{m.name}: tolerances: {no_such('body, joint, driver, force, contact or traced point', name, every)}"
         )
     if key not in known:
-        there = [*known, *(AXES if name in m.joints else ())]
+        there = [*known, *((*AXES, PLAY) if name in m.joints else ())]
         raise ModelError(f"{m.name}: tolerances: '{name}': {no_such('number', key, there)}")
     nominal = known[key]
     if not _single(nominal):
@@ -154,7 +156,7 @@ def _coordinate(m: Model, name: str, axis: str, value: Any) -> Dimension:
 
 
 def first_marker(m: Model, name: str) -> Any:
-    """Of a joint, the marker that ``batch`` places: that on ground, or else the first."""
+    """The marker of a joint that ``batch`` places: that on ground, or else the first."""
     joint = m.joints[name]
     return joint.i if joint.i.body is m.ground or joint.j.body is not m.ground else joint.j
 
@@ -186,7 +188,9 @@ def _refuse_no_size(owner: str, label: str, column: Column, spread: Any) -> None
     )
 
 
-def _play(m: Model, name: Any, clearance: Clearance) -> LoosePlay:
+def _play(m: Model, name: Any, clearance: Any) -> LoosePlay:
+    if not isinstance(clearance, Clearance):
+        raise ModelError(f"{m.name}: tolerances: play of '{name}' is {shown(clearance)}; give Clearance(...)")
     if name not in m.joints:
         pins = [key for key, joint in m.joints.items() if joint.kind.name == PIN]
         raise ModelError(f"{m.name}: tolerances: {no_such('pin', name, pins)}")

@@ -51,7 +51,7 @@ class Spread:
 
     @property
     def middle(self) -> float:
-        """Of the tolerance."""
+        """Middle of the tolerance."""
         low, high = self.limits
         return 0.5 * (low + high)
 

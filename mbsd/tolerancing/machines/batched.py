@@ -21,7 +21,7 @@ from mbsd.tolerancing.machines.one_by_one import Answers, swept
 from mbsd.tolerancing.machines.results import called, measured, numbers_of_batch, placed
 
 NUMBERS_AT_ONCE = 8_000_000
-"""Of a batch's results: 64 MB."""
+"""Numbers of a batch's results, 64 MB."""
 FINER = 8
 """Times more steps with which machines are swept again that were given up as doubted."""
 MOST_AGAIN = 500

@@ -89,7 +89,7 @@ class OfSolution:
 
 
 def placed(m: Model, name: str) -> tuple[str, str, str] | None:
-    """Of a quantity that ``batch`` gives, what it is of ("body" or "trace"), the name and the component; else None."""
+    """What a quantity is of ("body" or "trace"), the name and the component, if ``batch`` gives it; else None."""
     whole, _, component = name.rpartition(".")
     if whole in m.bodies:
         return ("body", whole, component) if component in ("x", "y", "theta") else None

@@ -18,11 +18,11 @@ def linear_worst(middle: float, slopes: np.ndarray, dimensions: Sequence[Dimensi
 
 
 def vertex_worst(
-    evaluate: Evaluate, slopes: np.ndarray, dimensions: Sequence[Dimension]
+    evaluate: Evaluate, middle: float, slopes: np.ndarray, dimensions: Sequence[Dimension]
 ) -> tuple[tuple[float, float], int]:
-    """Least and largest result at the 2^d corners of all tolerances, and how many of them fail.
+    """Least and largest result at the 2^d corners of all tolerances and in the ``middle``, and how many corners fail.
 
-    A pin that lies anywhere in its bore lies on either side along its gradient. NaN where no corner closes.
+    A pin that lies anywhere in its bore lies on either side along its gradient.
     """
     sides = [
         (d.farthest(slopes[part], -1.0), d.farthest(slopes[part], 1.0))
@@ -30,7 +30,5 @@ def vertex_worst(
     ]
     corners = np.array([np.concatenate(corner) for corner in itertools.product(*sides)])
     values = evaluate(corners)
-    failed = int(np.isnan(values).sum())
-    if failed == len(values):
-        return (np.nan, np.nan), failed
-    return (float(np.nanmin(values)), float(np.nanmax(values))), failed
+    at = np.append(values[np.isfinite(values)], middle)
+    return (float(at.min()), float(at.max())), int(np.isnan(values).sum())

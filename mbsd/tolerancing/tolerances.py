@@ -20,6 +20,7 @@ from mbsd.base.arguments import checked, finite_number, whole_number
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.model.mechanism import Model
+from mbsd.model.output_times import refuse_beyond_memory
 from mbsd.tolerancing.machines.functions import function_task
 from mbsd.tolerancing.machines.one_by_one import Machines
 from mbsd.tolerancing.machines.tasks import Task, task_of
@@ -112,11 +113,13 @@ def _carried_out(
             f"{task.owner}: tolerances: machines in the middle of the tolerances, or a standard deviation beside "
             "it, fail "
             f"({', '.join(run.failures)}); the tolerances are too wide for derivatives, or the motion passes a "
-            "dead centre: narrow them, or sweep a part of the motion (duration=...)"
+            "dead centre: narrow them, or sweep a part of the motion (duration=...). Where joints repeat others "
+            "or gears mesh, only exact lengths close: leave those out"
         )
     corner, corners_failed = None, 0
     if corners if corners is not None else 2 ** len(dimensions) <= n:
         corner, corners_failed = vertex_worst(run, middle, slope, dimensions)
+    refuse_beyond_memory(f"{task.owner}: tolerances: {n} machines", 5 * n * (1 + len(slope)), "Take fewer")
     x = drawn(dimensions, n, seed)
     run = _Run(task.machines, progress, n)
     values = run(x)

@@ -147,3 +147,13 @@ def test_functions(function: Any, sizes: Any, said: str) -> None:
 def test_tolerances_too_wide_for_derivatives() -> None:
     with pytest.raises(ModelError, match="too wide for derivatives"):
         tolerances(four_bar(), {"rocker": Uniform(0.089)}, ANGLE)
+
+
+def test_a_quantity_of_two_things_is_asked_for_by_its_kind() -> None:
+    """A trace and a pin of one name: the kind in front says which."""
+    m = four_bar()
+    m.trace("B", m.bodies["coupler"].at(0.01, 0.0))
+    with pytest.raises(
+        ModelError, match=r"'B' names several things; say which: joint B\.y, trace B\.y|trace B\.y, joint"
+    ):
+        tolerances(m, {"crank": 1e-5}, largest("B.y"))

@@ -138,6 +138,9 @@ def quantity_named(m: Model, name: str, columns: list[str]) -> Quantity:
             lambda sol: getattr(sol.point(bare), component),
             lambda motions: motions.of_frame(bare, "trace", component),
         )
+    if name not in known:
+        shared = [column for column in plain if column.endswith(f" {name}")]
+        raise ModelError(f"{m.name}: measure: '{whole}' names several things; say which: {', '.join(shared)}")
     column = known[name]
     joint, driver = whole.removeprefix("joint "), whole.removeprefix("driver ")
     if joint in m.joints and component in WRENCH:

@@ -16,7 +16,10 @@ ROOMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "events.md": ("Events", ("mbsd.model.event", "mbsd.dynamics")),
     "results.md": ("Results", ("mbsd.results", "mbsd.analyses", "mbsd.kinematics")),
     "pictures.md": ("Pictures", ("mbsd.pictures", "mbsd.drawing")),
-    "design.md": ("Balancing, synthesis, studies", ("mbsd.balancing", "mbsd.synthesis", "mbsd.studies")),
+    "design.md": (
+        "Balancing, tolerances, synthesis, studies",
+        ("mbsd.balancing", "mbsd.tolerancing", "mbsd.synthesis", "mbsd.studies"),
+    ),
     "errors.md": ("Errors and warnings", ("mbsd.base",)),
 }
 """Names of ``mbsd`` by the room in which they are made."""

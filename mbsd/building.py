@@ -28,6 +28,7 @@ from mbsd.model.drivers.relative_angle import drive_relative_angle
 from mbsd.model.event import Event
 from mbsd.model.forces.actuator import actuator
 from mbsd.model.forces.bushing import bushing
+from mbsd.model.forces.clearance_joint import clearance_joint
 from mbsd.model.forces.contact import contact
 from mbsd.model.forces.curve_of_angle import curve_of_angle, motor
 from mbsd.model.forces.curve_of_length import curve_of_length
@@ -115,6 +116,7 @@ class Building(Model):
     gas_strut = gas_strut
     hydraulic_cylinder = hydraulic_cylinder
     contact = contact
+    clearance_joint = clearance_joint
     tyre = tyre
     drag = drag
     rotating_frame = rotating_frame

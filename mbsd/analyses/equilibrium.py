@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.analyses.balance import FLAT, NoneFound, descend, look, newton
+from mbsd.analyses.pose_step import pose_step
 from mbsd.analyses.states_at_rest import refuse_states
-from mbsd.analyses.statics import Statics, statics
+from mbsd.analyses.statics import STEP, Statics, statics
 from mbsd.analyses.tangent import Independent, independent_coordinates
 from mbsd.arrays.driver_laws import refuse_bad_laws
 from mbsd.arrays.packing import pack
@@ -87,6 +88,9 @@ class Equilibrium:
         for name in self.model.starts:
             m.known_body(name)
         m.starts.update(self.model.starts)
+        for name, force in self.model.forces.items():
+            if force.kind.ideal is not None and name in m.forces:
+                m.forces[name] = force
 
     def __repr__(self) -> str:
         return (
@@ -133,7 +137,7 @@ def _result(m: Model, resting: Model, ready: Statics, q: np.ndarray, steps: int)
             f"more ways than the {max(mobility.dof - drivers, 0)} of their mobility, and it is unknown whether it "
             "is stable. Change a length a little, or start so that another equilibrium is nearer."
         )
-    stiffness = ready.stiffness(q, here.lam, here.basis)
+    stiffness = ready.stiffness(q, here.lam, here.basis, pose_step(packed, q, STEP))
     independent = independent_coordinates(packed, here.basis)
     change = np.linalg.lstsq(here.basis * packed.column_scale()[:, None], independent.basis, rcond=None)[0]
     return Equilibrium(

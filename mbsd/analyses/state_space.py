@@ -21,6 +21,7 @@ import numpy as np
 
 from mbsd.analyses.efforts import unit_direction
 from mbsd.analyses.modes import Mode, modes_of
+from mbsd.analyses.pose_step import pose_step
 from mbsd.analyses.statics import DIFFERENCES, OFFSETS
 from mbsd.analyses.tangent import Independent, independent_coordinates, tangent
 from mbsd.arrays.loads import SHARP
@@ -240,8 +241,9 @@ class _Flow:
         """(f + s, f or s) dz''/dz and ds'/dz (part 0), by z' (part 1) or by s (part 2)."""
         columns = []
         sizes = np.full(len(self.columns), self.packed.size) if part == 2 else self.scale[self.independent.indices]
+        pose = pose_step(self.plain, self.state[0][: 3 + self.count], POSE_STEP)
         for k, size in enumerate(sizes):
-            h = (POSE_STEP, SPEED_STEP, SPEED_STEP)[part] * size
+            h = (pose, SPEED_STEP, SPEED_STEP)[part] * size
             moved = [self._rates(k, part, h * offset) for offset in OFFSETS]
             columns.append(DIFFERENCES @ np.array(moved) / h)
         return np.array(columns).T.reshape(len(self.independent.indices) + len(self.columns), -1)

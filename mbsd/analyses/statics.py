@@ -61,20 +61,20 @@ class Statics:
         scaled = (jacobian * rows[:, None] * columns).T
         return rows * np.linalg.lstsq(scaled, load * columns, rcond=1e-9)[0] if len(rows) else np.zeros(0)
 
-    def stiffness(self, q: np.ndarray, lam: np.ndarray, basis: np.ndarray) -> np.ndarray:
-        """(f, f) along the directions ``basis`` (n, f), dimensionless."""
+    def stiffness(self, q: np.ndarray, lam: np.ndarray, basis: np.ndarray, step: float = STEP) -> np.ndarray:
+        """(f, f) along the directions ``basis`` (n, f), dimensionless, by poses ``step`` (sizes, rad) apart."""
         count, columns = basis.shape[1], self.packed.column_scale()
         if not count:
             return np.zeros((0, 0))
         poses = np.tile(q, (len(OFFSETS), count, 1))
-        poses[:, :, 3:] += STEP * OFFSETS[:, None, None] * (basis * columns[:, None]).T
+        poses[:, :, 3:] += step * OFFSETS[:, None, None] * (basis * columns[:, None]).T
         poses = poses.reshape(-1, len(q))
         rows, many = len(lam), len(poses)
         phi, gamma, compact = np.zeros((many, rows)), np.zeros((many, rows)), np.zeros((many, rows, 6))
         drives = np.tile(self.drive, (many, 1, 1))
         tabulate(self.packed.system, drives, poses, np.zeros_like(poses), self.packed.ws, phi, compact, gamma)
         left = generalised(self.packed, compact, np.tile(lam, (many, 1)))[:, 3:] - self.applied(poses)
-        slopes = np.einsum("o,ofn->nf", DIFFERENCES, left.reshape(len(OFFSETS), count, -1)) / STEP
+        slopes = np.einsum("o,ofn->nf", DIFFERENCES, left.reshape(len(OFFSETS), count, -1)) / step
         return (basis * columns[:, None]).T @ slopes
 
     def size_of_load(self, q: np.ndarray) -> float:

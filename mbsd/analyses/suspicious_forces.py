@@ -11,6 +11,8 @@ LEAST_PRESSURE = 1000.0
 """Pa: a hundredth of the air's. Less is a pressure in bar, or a vacuum that nobody needs to give a number."""
 STEEL = 2.1e11
 """Young's modulus of steel (Pa)."""
+LOOSE = 0.1
+"""Part of a bearing's radius: a running fit has about a thousandth, and worn joints some hundredths."""
 THICK = 0.1
 """A spring that is stiffer than a solid steel bar as long as the mechanism and this part of it thick is none."""
 
@@ -37,6 +39,21 @@ def springs(m: Model, size: float) -> Iterator[Finding]:
                 f"its stiffness of {stiffness:.3g} N/m is more than that of a steel bar as long as the mechanism and a "
                 f"tenth as thick ({most:.1e} N/m)",
                 "Stiffness is in N/m: N/mm are multiplied by 1000. What does not give way is m.distance or m.weld",
+            )
+
+
+def plays(m: Model) -> Iterator[Finding]:
+    """Bearings in which the journal has much room."""
+    for name, force in m.forces.items():
+        if force.kind.journal is None:
+            continue
+        radius, clearance = force.kind.journal(force)
+        if clearance > LOOSE * (radius + clearance):
+            yield Finding(
+                f"force '{name}'",
+                f"its clearance of {clearance:g} m is {clearance / (radius + clearance):.0%} of the bearing's radius",
+                "Clearance and radius are in metres: 0.1 mm is 0.1e-3; a running fit has about a thousandth of the "
+                "radius",
             )
 
 

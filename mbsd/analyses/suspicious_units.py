@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from mbsd.analyses.finding import Finding
-from mbsd.analyses.suspicious_forces import pressures, springs, welds
+from mbsd.analyses.suspicious_forces import plays, pressures, springs, welds
 from mbsd.base.errors import ModelWarning
 from mbsd.base.warn import warn
 from mbsd.model.body import Body, Marker
@@ -55,6 +55,7 @@ def check(m: Model) -> list[Finding]:
         *_planes(m),
         *_hydraulics(m),
         *pressures(m),
+        *plays(m),
         *springs(m, max(sizes.values(), default=0.0)),
         *welds(m),
     ]

@@ -56,6 +56,8 @@ def started_at(m: AnyModel, packed: Packed, q: np.ndarray, v: np.ndarray, states
             own = states[own_states(packed.forces, force.name)].tolist()
             params = {**force.params, **dict(zip(force.kind.states.names, own, strict=True))}
             out.forces[force.name] = replace(force, params=params)
+        if force.kind.ideal is not None:
+            out.forces[force.name] = replace(force, params={**force.params, "start": None})
     out.starts, out.velocities = {}, {}
     for b, name in enumerate(packed.body_names[1:], start=1):
         x, y, theta = q[3 * b : 3 * b + 3]

@@ -148,6 +148,10 @@ class ForceKind(ByName):
     mbsd/equations/interactions/surface.py reads them."""
     depth_potential: Callable[[Force, np.ndarray], np.ndarray] | None = None
     """(T,) potential energy (J) of such a contact at depths (T,) of the disc in the surface (m)."""
+    journal: Callable[[Force], tuple[float, float]] | None = None
+    """Radius (m) of a journal about marker j in a bearing about marker i, and its radial clearance (m)."""
+    ideal: Callable[[Force], Joint | None] | None = None
+    """The joint whose place it takes, which holds at the start alone; None of a force that starts as bodies do."""
     along: Callable[[Force], Element] | None = None
     """The one element along which its interaction acts, without terms, if it acts along one."""
     chamber: Callable[[Force, Masses], Chamber] | None = None

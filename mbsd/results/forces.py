@@ -103,7 +103,7 @@ class _Way:
 def _way(moved: Moved, force: Force, i: int, j: int) -> _Way | None:
     """None where several elements, or none, make up the force."""
     packed, q, v = moved.packed, moved.q, moved.v
-    if force.kind.surface is not None:
+    if _touches(force):
         foot = foot_of(packed, force, q)
         return _Way("gap", foot.gap, (foot.normal * relative_velocity(packed, q, v, i, j)).sum(axis=1), foot.normal)
     elements = _elements(packed, force)
@@ -122,6 +122,11 @@ def _way(moved: Moved, force: Force, i: int, j: int) -> _Way | None:
         unit = marker_axes(packed, q, i, element.turned)
     value = None if element.kind == PUSH else measured(packed, element, i, j, q)
     return _Way(MEASURES.get(element.kind), value, (unit * speed).sum(axis=1), unit)
+
+
+def _touches(force: Force) -> bool:
+    """Whether it acts where surfaces touch."""
+    return force.kind.surface is not None or force.kind.journal is not None
 
 
 def _elements(packed: Packed, force: Force) -> tuple[Element, ...]:
@@ -146,7 +151,7 @@ def _places(moved: Moved, force: Force, i: int, j: int) -> list[tuple[int, np.nd
     second = marker_places(packed, q, j)
     if force.kind.outside:
         return [(bj, second)]
-    if force.kind.surface is not None:
+    if _touches(force):
         foot = foot_of(packed, force, q).place
         return [(bi, foot), (bj, foot)]
     elements = _elements(packed, force)

@@ -1,4 +1,4 @@
-"""Where the disc of a contact by penalty, or of a tyre, stands to its surface."""
+"""Where the disc of a contact by penalty, or of a tyre, stands to its surface, and a journal to its bearing."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Foot(NamedTuple):
-    """Where a disc stands to a surface, (T, ...) arrays in the world's axes."""
+    """Where a disc stands to a surface, (T, ...) arrays in the world's axes; a bearing is one around its journal."""
 
     gap: np.ndarray
     """(T,) distance of the surface less the disc's radius (m)."""
@@ -30,7 +30,9 @@ class Foot(NamedTuple):
 
 
 def foot_of(packed: Packed, force: Force, q: np.ndarray) -> Foot:
-    """Where the disc of a force whose kind has a ``surface`` stands to it along poses q (T, 3 nb)."""
+    """Where the disc of a force whose kind has a ``surface`` or ``journal`` stands to it along poses q (T, 3 nb)."""
+    if force.kind.journal is not None:
+        return _in_bearing(packed, force, q)
     assert force.kind.surface is not None
     i, j = packed.force_markers[packed.forces.index(force)]
     numbers, stand = np.array([0.0] * OWN + force.kind.surface(force)), np.zeros((len(q), 3))
@@ -40,6 +42,18 @@ def foot_of(packed: Packed, force: Force, q: np.ndarray) -> Foot:
     normal = -ty * marker_axes(packed, q, i) + tx * marker_axes(packed, q, i, turned=True)
     place = marker_places(packed, q, j) - distance * normal
     return Foot(distance[:, 0] - force.params["radius"], place, normal)
+
+
+def _in_bearing(packed: Packed, force: Force, q: np.ndarray) -> Foot:
+    """Foot of a journal; in the middle of its bearing it is next to no place of it, and the normal is zero."""
+    assert force.kind.journal is not None
+    i, j = packed.force_markers[packed.forces.index(force)]
+    radius, clearance = force.kind.journal(force)
+    centre = marker_places(packed, q, j)
+    away = centre - marker_places(packed, q, i)
+    length = np.hypot(*away.T)[:, None]
+    outwards = np.divide(away, length, out=np.zeros_like(away), where=length > 0.0)
+    return Foot(clearance - length[:, 0], centre + radius * outwards, -outwards)
 
 
 def depths(packed: Packed, force: Force, q: np.ndarray) -> np.ndarray:

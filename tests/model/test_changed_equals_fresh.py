@@ -76,6 +76,9 @@ OTHERS: dict[str, list[Any]] = {
     "stiffness": [77.0, (50.0, 60.0, 2.0), harmonic(3.0, 2.0, 0.0, 10.0)],
     "damping": [0.5, (1.0, 0.5, 0.2)],
     "restitution": [0.6],
+    "clearance": [0.01, 0.1],
+    "slip_speeds": [(0.0, 0.5), (0.2, 3.0)],
+    "start": [(0.01, 0.02), (0.0, 0.0)],
     "damping_model": ["lankarani_nikravesh"],
     "static_friction": [0.9, None],
     "static": [0.9, None],
@@ -225,7 +228,8 @@ def test_every_argument_alone_and_in_pairs(kind: Any) -> None:
         accepted |= values.keys()
     in_groups = {"teeth", "module", "pitch"}  # with each other alone: tests/kinematics/test_gears.py
     in_groups |= {"length"} if kind.name == "friction" else set()  # of guides: below
-    in_groups |= {"restitution"} if kind.name == "contact" else set()  # in place of damping: below
+    in_groups |= {"restitution"} if kind.name in ("contact", "clearance_joint") else set()  # in place of damping: below
+    in_groups |= {"modulus", "journal_modulus"} if kind.name == "clearance_joint" else set()  # of stiffness: below
     in_groups |= {"orifice"} if kind.name == "hydraulic_cylinder" else set()  # in place of rated_flow: below
     assert accepted | in_groups >= set(own), f"never changed: {set(own) - accepted}"
 
@@ -234,6 +238,18 @@ def test_every_argument_alone_and_in_pairs(kind: Any) -> None:
 def test_a_contact_takes_a_restitution_in_place_of_its_damping(model: str) -> None:
     [kind] = [kind for kind in KINDS if kind.name == "contact"]
     values = {"damping": 0.0, "restitution": 0.6, "damping_model": model}
+    there = example(kind)
+    assert isinstance(there, Mechanism)
+    here, fresh = changed(there, values), example(kind, values)
+    assert isinstance(here, Mechanism), here
+    assert isinstance(fresh, Mechanism), fresh
+    assert state(here) == state(fresh)
+
+
+@pytest.mark.parametrize("radius", [0.2, 0.3])
+def test_a_clearance_joint_takes_moduli_in_place_of_its_stiffness(radius: float) -> None:
+    [kind] = [kind for kind in KINDS if kind.name == "clearance_joint"]
+    values = {"stiffness": None, "modulus": 2e9, "journal_modulus": 1e9, "radius": radius}
     there = example(kind)
     assert isinstance(there, Mechanism)
     here, fresh = changed(there, values), example(kind, values)

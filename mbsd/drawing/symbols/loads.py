@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 COILS = 5, 12
 """Fewest and most; between them one for each 1.4 units."""
+BEARING, JOURNAL = 0.8, 0.36
+"""Radii of a bearing with clearance and of the journal in it, in units: play is drawn large, whatever it is."""
 WIDE, NARROW = 0.65, 0.3
 """Half the width of a coil, in units; of a short spring, in its length."""
 
@@ -35,6 +37,9 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint]
         return
     if force.kind.sign == "strut":
         draw_strut(canvas, force, pose)
+        return
+    if force.kind.sign == "clearance":
+        _journal(canvas, force, pose)
         return
     if not force.kind.elements(force):
         draw_special(canvas, force, pose)
@@ -76,16 +81,16 @@ def force_reach(force: Force, pose: Pose, joints: Sequence[Joint] = ()) -> np.nd
     if force.kind.sign == "engine cylinder":
         return engine_cylinder_reach(force, pose, joints)
     place = pose.place(force.j)
-    size = force.params["radius"] if "stiffness" in force.params and "radius" in force.params else 0.0
+    size = force.params["radius"] if force.kind.surface is not None or force.kind.journal is not None else 0.0
     disc = place + size * np.array([[-1.0, -1.0], [1.0, 1.0]])
-    if "stiffness" not in force.params or not size:
+    if force.kind.surface is None or not size:
         return disc
     return np.vstack([disc, surface_way(force, pose, BESIDE * size, whole=False)])
 
 
 def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
     """A ring where the force acts, on each of its bodies; with the surface and the disc if it is a contact."""
-    if "stiffness" in force.params:
+    if force.kind.surface is not None:
         _surface(canvas, force, pose)
     bodies = force.params.get("bodies", ())
     places = [(Carrier("place", (End(name),)), pose.of(name, 0.0, 0.0)) for name in bodies]
@@ -95,6 +100,15 @@ def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
             canvas.circle(place, 0.9, edge=LOAD, order=3.2, width=1.2, alpha=0.3)
     with canvas.on(places[0][0]):
         canvas.label(force.name, places[0][1], 1.2, LOAD)
+
+
+def _journal(canvas: Canvas, force: Force, pose: Pose) -> None:
+    """A pin, and round it the bearing with play that one can see."""
+    with canvas.on(at_place(force.i)):
+        canvas.circle(pose.place(force.i), BEARING, edge=LOAD, order=7.8, width=1.3)
+    with canvas.on(at_place(force.j)):
+        canvas.circle(pose.place(force.j), JOURNAL, edge=LOAD, fill=LOAD, order=8, width=1.0)
+        canvas.label(force.name, pose.place(force.j), BEARING + 0.35, LOAD)
 
 
 def _surface(canvas: Canvas, force: Force, pose: Pose) -> None:

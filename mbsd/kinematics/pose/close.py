@@ -15,6 +15,7 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.errors import AssemblyError
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
+from mbsd.kinematics.pose.ideal_joints import packed_like, take_from, with_ideal_joints
 from mbsd.kinematics.pose.open_loops import turned, why_open
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
@@ -32,7 +33,16 @@ LONGEST_STEP = 0.5
 
 
 def assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
-    """(3 nb,) closed pose at ``time``, centre-of-mass coordinates. Raises AssemblyError naming the open joint."""
+    """(3 nb,) closed pose at ``time``, centre-of-mass coordinates. Raises AssemblyError naming the open joint.
+
+    Forces that take the place of joints stand as these do.
+    """
+    joined = with_ideal_joints(m)
+    if joined is not None:
+        whole = packed_like(joined, packed)
+        q = assemble(joined, whole, time)
+        take_from(packed, whole)
+        return q
     drive = packed.drives(np.array([time]))[0]
     numbers = packed.numbers()
     if numbers is None:

@@ -19,6 +19,7 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
+from mbsd.kinematics.pose.ideal_joints import packed_like, take_from, with_ideal_joints
 from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
@@ -51,6 +52,12 @@ def consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Ini
 
     ``metric`` (3 nb,) is the inverse of the masses that weigh velocities which were not given.
     """
+    joined = with_ideal_joints(m)
+    if joined is not None:
+        whole = packed_like(joined, packed)
+        initial = consistent(joined, whole, time, metric)
+        take_from(packed, whole)
+        return initial
     drive = packed.drives(np.array([time]))[0]
 
     def started() -> tuple[Initial, np.ndarray]:
@@ -72,6 +79,12 @@ def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tupl
 
     drive (motions + 1, 3) at ``time`` (s). Raises AssemblyError.
     """
+    joined = with_ideal_joints(m)
+    if joined is not None:
+        whole = packed_like(joined, packed)
+        q, deviations = start_pose(joined, whole, time, drive)
+        take_from(packed, whole)
+        return q, deviations
     q = assemble(m, packed, time)
     given = given_coordinates(m, packed)
     if not given:

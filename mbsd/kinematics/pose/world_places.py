@@ -97,6 +97,7 @@ def _start(m: Model, packed: Packed) -> np.ndarray:
     """(3 nb,) the closed pose at time 0, with what start_near gives held where the joints leave it."""
     from mbsd.equations.assembly import residual_and_jacobian
     from mbsd.kinematics.pose.close import CLOSED, rough_pose, unwind_angles
+    from mbsd.kinematics.pose.ideal_joints import with_ideal_joints
     from mbsd.kinematics.pose.initial import start_pose
     from mbsd.kinematics.pose.phases import let_phases_go
 
@@ -105,8 +106,10 @@ def _start(m: Model, packed: Packed) -> np.ndarray:
     unwind_angles(packed, rough)
     let_phases_go(packed)
     residual_and_jacobian(packed.system, rough, drive, packed.ws)
-    if all(joint.params.get("phase") is None for joint in packed.joints) and (
-        np.abs(packed.ws.phi * packed.row_scale()).max(initial=0.0) <= CLOSED
+    if (
+        all(joint.params.get("phase") is None for joint in packed.joints)
+        and np.abs(packed.ws.phi * packed.row_scale()).max(initial=0.0) <= CLOSED
+        and with_ideal_joints(m) is None
     ):
         return rough  # as drawn: nothing to close
     return start_pose(m, packed, 0.0, drive)[0]

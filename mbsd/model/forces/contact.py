@@ -30,22 +30,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
 from mbsd.model.adding.forces import above_zero, add_force, amounts_given, curves_given
+from mbsd.model.adding.restitution import loss_of, restitution_given
 from mbsd.model.body import Marker
 from mbsd.model.force import Force, ForceKind, Interaction, register
 from mbsd.model.laws.curve import Curve, curve
-from mbsd.model.mechanism import Model, number_given
+from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
     from mbsd.model.force import Force
 
-MODELS = {
-    "hunt_crossley": lambda e: 1.5 * (1.0 - e),
-    "lankarani_nikravesh": lambda e: 0.75 * (1.0 - e * e),
-    "flores": lambda e: 1.6 * (1.0 - e) / e,
-}
-"""A(e) by the name of the damping model."""
 OWN = ("radius", "stiffness", "exponent", "damping", "friction", "slip_speed")
 
 
@@ -61,8 +55,7 @@ def surface(force: Force) -> list[float]:
 
 def _interactions(force, masses):
     p = force.params
-    restitution = p["restitution"]
-    loss = 0.0 if restitution is None else MODELS[p["damping_model"]](restitution)
+    loss = loss_of(p)
     numbers = surface(force) + [p[name] for name in OWN] + [loss, p["least_approach"]]
     return (Interaction("contact", force.i, force.j, numbers, remembers=loss > 0.0),)
 
@@ -127,32 +120,7 @@ def contact(
     )
     if params["exponent"] < 1.0:
         raise ModelError(f"{m.name}: force '{name}': exponent is {exponent:g}; it must be 1 or more")
-    params |= _restitution_given(m, name, damping, restitution, damping_model, least_approach)
+    params |= restitution_given(m, name, damping, restitution, damping_model, least_approach)
     params["slip_speed"] = above_zero(m, name, "slip_speed", slip_speed)
     laws = {} if profile is None else curves_given(m, name, profile=profile)
     return add_force(m, CONTACT, name, surface, body, params, laws)
-
-
-def _restitution_given(
-    m: Model, name: str, damping: float, restitution: float | None, damping_model: str, least_approach: float
-) -> dict[str, float | str | None]:
-    """Params of damping by approach speed. Raises ModelError."""
-    what = f"{m.name}: force '{name}'"
-    if damping_model not in MODELS:
-        raise ModelError(f"{what}: {no_such('damping_model', damping_model, MODELS)}")
-    least_approach = above_zero(m, name, "least_approach", least_approach)
-    if restitution is not None:
-        restitution = number_given(m, f"force '{name}': restitution", restitution)
-        if not 0.0 <= restitution <= 1.0:
-            raise ModelError(f"{what}: restitution is {restitution:g}; it must be within 0 .. 1")
-        if restitution == 0.0 and damping_model == "flores":
-            raise ModelError(
-                f"{what}: restitution is 0, for which the damping of 'flores' is infinite; give a little more, or take "
-                "damping_model='lankarani_nikravesh'"
-            )
-        if damping:
-            raise ModelError(
-                f"{what}: damping is {damping:g} s/m and restitution {restitution:g}; give one of them, as both say "
-                "how much an impact loses"
-            )
-    return {"restitution": restitution, "damping_model": damping_model, "least_approach": least_approach}

@@ -1,0 +1,46 @@
+"""Forces that take the place of joints, as a pin with play does: at the start the joints hold, then the forces alone.
+
+What closes is a copy of the mechanism with these joints; what its closed pose decides about the others is taken over.
+"""
+
+from __future__ import annotations
+
+from mbsd.arrays.packing import Packed, pack
+from mbsd.arrays.relative import FIRST_OWN
+from mbsd.arrays.start_state import copied
+from mbsd.equations.constraints.relative import ACTIVE, ARM, AT
+from mbsd.model.mechanism import Model
+
+
+def with_ideal_joints(m: Model) -> Model | None:
+    """The mechanism with the joints that hold at its start; None where all its joints are there."""
+    ideal = {name: force.kind.ideal(force) for name, force in m.forces.items() if force.kind.ideal is not None}
+    joints = {name: joint for name, joint in ideal.items() if joint is not None}
+    if not joints:
+        return None
+    out = copied(m)
+    out.joints = {**m.joints, **joints}
+    out.forces = {name: force for name, force in m.forces.items() if name not in joints}
+    return out
+
+
+def packed_like(joined: Model, packed: Packed) -> Packed:
+    """``joined`` as arrays, with the laws of ``packed``, which are ready for its times."""
+    out = pack(joined)
+    out.motions = packed.motions
+    return out
+
+
+def take_from(packed: Packed, joined: Packed) -> None:
+    """Take over phases and turns of the joints of ``packed`` from a packing with more joints, whose start is closed."""
+    own = {joint.name for joint in packed.joints}
+    special, numbers = packed.system.special.copy(), packed.system.numbers.copy()
+    common = [
+        row for row, joint in zip(joined.system.special, joined.specials.joints, strict=True) if joint.name in own
+    ]
+    for row, decided in zip(special, common, strict=True):
+        row[[ARM, ACTIVE]] = decided[[ARM, ACTIVE]]
+        numbers[row[AT] : row[AT] + FIRST_OWN] = joined.system.numbers[decided[AT] : decided[AT] + FIRST_OWN]
+    packed.system = packed.system.changed(
+        special=special, numbers=numbers, angle_offset=joined.system.angle_offset.copy()
+    )

@@ -38,9 +38,11 @@ from mbsd.model.forces.friction import friction
 from mbsd.model.forces.gas import gas
 from mbsd.model.forces.gas_cycle import gas_cycle
 from mbsd.model.forces.gas_strut import gas_strut
+from mbsd.model.forces.gear_mesh import gear_mesh
 from mbsd.model.forces.gravitation import gravitation
 from mbsd.model.forces.hydraulic_cylinder import hydraulic_cylinder
 from mbsd.model.forces.rotating_frame import rotating_frame
+from mbsd.model.forces.shaft import shaft
 from mbsd.model.forces.spring import spring
 from mbsd.model.forces.spring_law import spring_law
 from mbsd.model.forces.torque import torque
@@ -117,6 +119,8 @@ class Building(Model):
     hydraulic_cylinder = hydraulic_cylinder
     contact = contact
     clearance_joint = clearance_joint
+    gear_mesh = gear_mesh
+    shaft = shaft
     tyre = tyre
     drag = drag
     rotating_frame = rotating_frame

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.analyses.statics import Statics
+from mbsd.analyses.pose_step import longest_step, pose_step
+from mbsd.analyses.statics import STEP, Statics
 from mbsd.analyses.tangent import tangent
 from mbsd.base.errors import EquilibriumError
 from mbsd.base.quantity import written
@@ -88,20 +89,25 @@ def descend(ready: Statics, q: np.ndarray) -> tuple[np.ndarray, int]:
     start = here = look(ready, q)
     began = q
     for count in range(MOST_STEPS):
-        stiffness = ready.stiffness(q, here.lam, here.basis)
+        stiffness = ready.stiffness(q, here.lam, here.basis, pose_step(ready.packed, q, STEP))
         value, direction = np.linalg.eigh(0.5 * (stiffness + stiffness.T))
         flat = FLAT * float(np.abs(value).max(initial=0.0))
         if here.balanced(BALANCED, stiffness):
             if not len(value) or value[0] >= -max(flat, 1e-9 * here.largest):
                 return q, count
-            step = LONGEST / 3.0 * direction[:, 0] * (1.0 if direction[:, 0].sum() >= 0.0 else -1.0)
+            step = (
+                longest_step(ready.packed, LONGEST)
+                / 3.0
+                * direction[:, 0]
+                * (1.0 if direction[:, 0].sum() >= 0.0 else -1.0)
+            )
             better = _leave(ready, q, here.basis, step)
         else:
             step = -np.linalg.solve(stiffness, here.slope) if value[0] > flat else None
             if step is None or step @ here.slope >= 0.0:
                 least = max(flat, 1e-3 * float(np.abs(here.slope).max()))
                 step = -direction @ (direction.T @ here.slope / np.maximum(np.abs(value), least))
-            step *= min(1.0, LONGEST / max(float(np.linalg.norm(step)), 1e-300))
+            step *= min(1.0, longest_step(ready.packed, LONGEST) / max(float(np.linalg.norm(step)), 1e-300))
             better = _downhill(ready, q, here, step)
         if better is None:
             if here.balanced(ACCEPTED, stiffness):
@@ -142,11 +148,11 @@ def newton(ready: Statics, q: np.ndarray) -> tuple[np.ndarray, int]:
     start = here = look(ready, q)
     began = q
     for count in range(MOST_STEPS):
-        stiffness = ready.stiffness(q, here.lam, here.basis)
+        stiffness = ready.stiffness(q, here.lam, here.basis, pose_step(ready.packed, q, STEP))
         if here.balanced(BALANCED, stiffness):
             return q, count
         step = -np.linalg.lstsq(stiffness, here.slope, rcond=1e-10)[0]
-        step *= min(1.0, LONGEST / max(float(np.linalg.norm(step)), 1e-300))
+        step *= min(1.0, longest_step(ready.packed, LONGEST) / max(float(np.linalg.norm(step)), 1e-300))
         part, better = 1.0, None
         for _ in range(30):
             moved = _moved(ready, q, here.basis @ (part * step))

@@ -115,8 +115,8 @@ def equilibrium(m: Model, time: float, nearest: bool) -> Equilibrium:
     resting = held(m, time)
     packed = pack(resting)
     refuse_bad_laws(packed, time, time)
-    ready = statics(packed, time)
     start = assemble(resting, packed, time)
+    ready = statics(packed, time)
     try:
         q, steps = (newton if nearest else descend)(ready, start)
     except NoneFound as error:

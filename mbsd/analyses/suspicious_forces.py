@@ -21,7 +21,12 @@ def pressures(m: Model) -> Iterator[Finding]:
     """Pressures between nothing and a hundredth of the air's."""
     for name, force in m.forces.items():
         for word, value in force.given.items():
-            if "pressure" in word and isinstance(value, int | float) and 0.0 < value < LEAST_PRESSURE:
+            if (
+                "pressure" in word
+                and word != "pressure_angle"
+                and isinstance(value, int | float)
+                and 0.0 < value < LEAST_PRESSURE
+            ):
                 yield Finding(
                     f"force '{name}'", f"{word} is {value:g} Pa, where the air has 101325",
                     "Pressures are in pascal: multiply bar by 1e5",

@@ -95,9 +95,12 @@ def pack_interactions(packed: Packed) -> tuple[np.ndarray, np.ndarray, bool, boo
                 (m.x - packed.com[b, 0], m.y - packed.com[b, 1]) for m, b in ((interaction.i, i), (interaction.j, j))
             ]
             axis = math.cos(interaction.i.angle), math.sin(interaction.i.angle)
+            numbers = list(interaction.numbers)
+            if interaction.phased:
+                numbers[0] += packed.phases.get(force.name, 0.0)
             called = (float(law_address(packed, force)),) if interaction.calls_law else ()
             block = np.array(
-                [*arms[0], *axis, *arms[1], interaction.j.angle - interaction.i.angle, *called, *interaction.numbers],
+                [*arms[0], *axis, *arms[1], interaction.j.angle - interaction.i.angle, *called, *numbers],
                 float,
             )
             law_of, crank = (

@@ -6,7 +6,7 @@ Authors place a body's frame where it is convenient; here alone it is shifted to
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -52,6 +52,8 @@ class Packed:
     """Characteristic length (m): the largest distance between joints, or joint and centre of mass, of one body."""
     constant: tuple[bytes, ...] | None
     """What ``numbers`` has of all but the angle offsets."""
+    phases: dict[str, float] = field(default_factory=dict)
+    """Constants of meshes with play (m) by the names of their forces; see mbsd/arrays/force_phases.py."""
     states: int = 0
     """How many of the last bodies hold states of forces; see mbsd/arrays/states.py."""
 

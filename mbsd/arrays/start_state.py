@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from mbsd.arrays.force_phases import placed_params
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.states import own_states, states_of, without_states
 from mbsd.base.users_function import law_of
@@ -57,7 +58,7 @@ def started_at(m: AnyModel, packed: Packed, q: np.ndarray, v: np.ndarray, states
             params = {**force.params, **dict(zip(force.kind.states.names, own, strict=True))}
             out.forces[force.name] = replace(force, params=params)
         if force.kind.ideal is not None:
-            out.forces[force.name] = replace(force, params={**force.params, "start": None})
+            out.forces[force.name] = replace(force, params=placed_params(packed, force, q))
     out.starts, out.velocities = {}, {}
     for b, name in enumerate(packed.body_names[1:], start=1):
         x, y, theta = q[3 * b : 3 * b + 3]

@@ -83,6 +83,23 @@ class Interaction:
     remembers: bool = False
     crank: str | None = None
     with_states: bool = False
+    phased: bool = False
+    """Whether the constant of a mesh that the start pose decides is added to its first number."""
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """How two gears with play stand in each other's teeth; lengths along their line of action."""
+
+    rolled: Callable[[Force, float, float, float], float]
+    """From the angles of the line of centres and of both markers (rad, world): how far they have rolled (m)."""
+    flanks: Callable[[Force, float, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+    """(2, T) depths of both flanks (m), below 0 where they do not touch, from the constant (m) of the start pose and
+    x, y, angle (T,) of marker j in the axes of marker i."""
+    pitch: Callable[[Force], float]
+    """Where the pitch point is on the way from marker i (0) to marker j (1)."""
+    period: Callable[[Mapping[str, Any]], float]
+    """From params: after how much rolling (m) teeth repeat."""
 
 
 @dataclass(frozen=True)
@@ -150,6 +167,8 @@ class ForceKind(ByName):
     """(T,) potential energy (J) of such a contact at depths (T,) of the disc in the surface (m)."""
     journal: Callable[[Force], tuple[float, float]] | None = None
     """Radius (m) of a journal about marker j in a bearing about marker i, and its radial clearance (m)."""
+    mesh: Mesh | None = None
+    """Where gears with play stand in their teeth."""
     ideal: Callable[[Force], Joint | None] | None = None
     """The joint whose place it takes, which holds at the start alone; None of a force that starts as bodies do."""
     along: Callable[[Force], Element] | None = None

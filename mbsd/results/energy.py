@@ -32,7 +32,7 @@ def potential_of(packed: Packed, force: Force, q: np.ndarray) -> np.ndarray:
     if force.kind.potential is not None:
         out += force.kind.potential(force, packed.masses, q)
     if force.kind.depth_potential is not None:
-        out += force.kind.depth_potential(force, depths(packed, force, q))
+        out += force.kind.depth_potential(force, depths(packed, force, q)).sum(axis=0)
     return out
 
 

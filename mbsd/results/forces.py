@@ -154,6 +154,10 @@ def _places(moved: Moved, force: Force, i: int, j: int) -> list[tuple[int, np.nd
     if _touches(force):
         foot = foot_of(packed, force, q).place
         return [(bi, foot), (bj, foot)]
+    if force.kind.mesh is not None:
+        first = marker_places(packed, q, i)
+        pitch_point = first + force.kind.mesh.pitch(force) * (second - first)
+        return [(bi, pitch_point), (bj, pitch_point)]
     elements = _elements(packed, force)
     on_line = bool(elements) and all(element.kind in (LINE, TURN) for element in elements)
     return [(bi, marker_places(packed, q, i) if on_line else second), (bj, second)]

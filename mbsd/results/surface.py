@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from mbsd.arrays.force_phases import relative_poses
 from mbsd.arrays.reactions import marker_axes, marker_places
 from mbsd.base.codes import AXIS
 from mbsd.equations.interactions.law import OWN, STATE
@@ -56,6 +57,22 @@ def _in_bearing(packed: Packed, force: Force, q: np.ndarray) -> Foot:
     return Foot(clearance - length[:, 0], centre + radius * outwards, -outwards)
 
 
+def gaps_of(packed: Packed, force: Force, q: np.ndarray) -> list[float]:
+    """Gaps or depths (m), above 0, of a journal or of both flanks of gears in the pose q (1, 3 nb); none of others."""
+    if force.kind.journal is not None:
+        return [abs(float(foot_of(packed, force, q).gap[0]))]
+    if force.kind.mesh is not None:
+        phase = packed.phases.get(force.name, 0.0)
+        return np.abs(force.kind.mesh.flanks(force, phase, *relative_poses(packed, force, q))[:, 0]).tolist()
+    return []
+
+
 def depths(packed: Packed, force: Force, q: np.ndarray) -> np.ndarray:
-    """(T,) depth (m) of the disc in the surface, 0 where they do not touch, along poses q (T, 3 nb)."""
-    return (-foot_of(packed, force, q).gap).clip(min=0.0)
+    """(k, T) depth (m) of the disc in the surface, of both flanks of gears, 0 where they do not touch.
+
+    Along poses q (T, 3 nb).
+    """
+    if force.kind.mesh is not None:
+        phase = packed.phases.get(force.name, 0.0)
+        return force.kind.mesh.flanks(force, phase, *relative_poses(packed, force, q)).clip(min=0.0)
+    return (-foot_of(packed, force, q).gap).clip(min=0.0)[None]

@@ -78,7 +78,9 @@ OTHERS: dict[str, list[Any]] = {
     "restitution": [0.6],
     "clearance": [0.01, 0.1],
     "slip_speeds": [(0.0, 0.5), (0.2, 3.0)],
-    "start": [(0.01, 0.02), (0.0, 0.0)],
+    "start": [(0.01, 0.02), (0.0, 0.0), 1e-4],
+    "backlash": [1e-3, 0.01],
+    "bore": [0.2, 0.05],
     "damping_model": ["lankarani_nikravesh"],
     "static_friction": [0.9, None],
     "static": [0.9, None],
@@ -228,7 +230,9 @@ def test_every_argument_alone_and_in_pairs(kind: Any) -> None:
         accepted |= values.keys()
     in_groups = {"teeth", "module", "pitch"}  # with each other alone: tests/kinematics/test_gears.py
     in_groups |= {"length"} if kind.name == "friction" else set()  # of guides: below
-    in_groups |= {"restitution"} if kind.name in ("contact", "clearance_joint") else set()  # in place of damping: below
+    in_groups |= (
+        {"restitution"} if kind.name in ("contact", "clearance_joint", "gear_mesh") else set()
+    )  # in place of damping: below
     in_groups |= {"modulus", "journal_modulus"} if kind.name == "clearance_joint" else set()  # of stiffness: below
     in_groups |= {"orifice"} if kind.name == "hydraulic_cylinder" else set()  # in place of rated_flow: below
     assert accepted | in_groups >= set(own), f"never changed: {set(own) - accepted}"

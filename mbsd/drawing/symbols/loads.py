@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.base.codes import AXIS, DAMPING, LINE, PUSH, TURN
+from mbsd.base.codes import AXIS, DAMPING, LINE, LINEAR, PUSH, TURN
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.carriers import Carrier, End, along_line, at_place, beside
 from mbsd.drawing.look import LOAD
@@ -16,7 +16,9 @@ from mbsd.drawing.pose import Pose
 from mbsd.drawing.symbols.cylinder import draw_engine_cylinder, draw_strut, engine_cylinder_reach
 from mbsd.drawing.symbols.reach import BESIDE
 from mbsd.drawing.symbols.ways import draw_way, surface_way
+from mbsd.drawing.symbols.wheels import draw_gear_pair
 from mbsd.model.force import Force
+from mbsd.model.teeth import with_radii
 
 if TYPE_CHECKING:
     from mbsd.model.joint import Joint
@@ -40,6 +42,9 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint]
         return
     if force.kind.sign == "clearance":
         _journal(canvas, force, pose)
+        return
+    if force.kind.sign == "mesh":
+        draw_gear_pair(canvas, force, pose, {})
         return
     if not force.kind.elements(force):
         draw_special(canvas, force, pose)
@@ -80,6 +85,10 @@ def force_reach(force: Force, pose: Pose, joints: Sequence[Joint] = ()) -> np.nd
     """(k, 2) of what a force's sign needs beside its bodies; ``joints`` are those of the mechanism."""
     if force.kind.sign == "engine cylinder":
         return engine_cylinder_reach(force, pose, joints)
+    if force.kind.sign == "mesh":
+        sized = with_radii(force.params)
+        sides = ((pose.place(force.i), sized["radius_i"]), (pose.place(force.j), sized["radius_j"]))
+        return np.vstack([centre + radius * np.array([[-1.0, -1.0], [1.0, 1.0]]) for centre, radius in sides])
     place = pose.place(force.j)
     size = force.params["radius"] if force.kind.surface is not None or force.kind.journal is not None else 0.0
     disc = place + size * np.array([[-1.0, -1.0], [1.0, 1.0]])
@@ -159,7 +168,8 @@ def _coil(canvas: Canvas, name: str, i: np.ndarray, j: np.ndarray, damped: bool)
 
 def _turning(canvas: Canvas, force: Force, centre: np.ndarray) -> None:
     """A spiral spring; an arrow around the centre where it is a torque from outside or a motor."""
-    spring = "stiffness" in (*force.params, *force.laws) or "of_angle" in force.laws or "law" in force.params
+    terms = [term.kind for element in force.kind.elements(force) for term in element.terms]
+    spring = LINEAR in terms or "stiffness" in force.laws or "of_angle" in force.laws or "law" in force.params
     turn = np.linspace(-0.4, 5 * math.pi if spring else 1.2 * math.pi, 90)
     radius = (0.8 + 1.2 * turn / turn[-1] if spring else np.full(len(turn), 1.7)) * canvas.unit
     path = centre + radius[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)

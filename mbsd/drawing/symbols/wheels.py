@@ -10,6 +10,7 @@ from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.carriers import along_line, on_body
 from mbsd.drawing.look import INK, QUIET
 from mbsd.drawing.pose import Pose
+from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 from mbsd.model.teeth import with_radii
@@ -21,7 +22,7 @@ RIM = 1.5
 """Width of a ring beyond its teeth, in units."""
 
 
-def draw_gear_pair(canvas: Canvas, joint: Joint, pose: Pose, colours: dict[str, str]) -> None:
+def draw_gear_pair(canvas: Canvas, joint: Joint | Force, pose: Pose, colours: dict[str, str]) -> None:
     """Both gears. A gear that is new on the canvas is turned so that its teeth mesh with those of the other."""
     internal = bool(joint.params.get("internal"))
     sized = with_radii(joint.params)

@@ -11,11 +11,12 @@ import math
 
 import numpy as np
 
+from mbsd.arrays.force_phases import take_force_phases
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import AssemblyError
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
-from mbsd.kinematics.pose.ideal_joints import packed_like, take_from, with_ideal_joints
+from mbsd.kinematics.pose.ideal_joints import closing_as, packed_like, take_from, with_ideal_joints
 from mbsd.kinematics.pose.open_loops import turned, why_open
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
@@ -38,11 +39,19 @@ def assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
     Forces that take the place of joints stand as these do.
     """
     joined = with_ideal_joints(m)
-    if joined is not None:
+    if joined is None:
+        q = _assemble(m, packed, time)
+    else:
         whole = packed_like(joined, packed)
-        q = assemble(joined, whole, time)
+        with closing_as(m, joined):
+            q = assemble(joined, whole, time)
         take_from(packed, whole)
-        return q
+    take_force_phases(packed, q)
+    return q
+
+
+def _assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
+    """The same of a mechanism whose joints are all there."""
     drive = packed.drives(np.array([time]))[0]
     numbers = packed.numbers()
     if numbers is None:

@@ -5,9 +5,13 @@ What closes is a copy of the mechanism with these joints; what its closed pose d
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.relative import FIRST_OWN
 from mbsd.arrays.start_state import copied
+from mbsd.base.errors import AssemblyError
 from mbsd.equations.constraints.relative import ACTIVE, ARM, AT
 from mbsd.model.mechanism import Model
 
@@ -22,6 +26,19 @@ def with_ideal_joints(m: Model) -> Model | None:
     out.joints = {**m.joints, **joints}
     out.forces = {name: force for name, force in m.forces.items() if name not in joints}
     return out
+
+
+@contextmanager
+def closing_as(m: Model, joined: Model) -> Iterator[None]:
+    """Where ``joined`` does not close, the error says what may start open. Raises AssemblyError."""
+    try:
+        yield
+    except AssemblyError as error:
+        names = ", ".join(f"'{name}'" for name in joined.joints if name not in m.joints)
+        raise AssemblyError(
+            f"{error} {names} {'starts' if names.count(',') == 0 else 'start'} closed, without play; with start=None "
+            "bodies start where start_near puts them"
+        ) from error
 
 
 def packed_like(joined: Model, packed: Packed) -> Packed:

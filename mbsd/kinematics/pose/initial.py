@@ -15,11 +15,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mbsd.arrays.force_phases import take_force_phases
 from mbsd.arrays.packing import Packed
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
-from mbsd.kinematics.pose.ideal_joints import packed_like, take_from, with_ideal_joints
+from mbsd.kinematics.pose.ideal_joints import closing_as, packed_like, take_from, with_ideal_joints
 from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
@@ -53,11 +54,38 @@ def consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Ini
     ``metric`` (3 nb,) is the inverse of the masses that weigh velocities which were not given.
     """
     joined = with_ideal_joints(m)
-    if joined is not None:
+    if joined is None:
+        initial = _consistent(m, packed, time, metric)
+    else:
         whole = packed_like(joined, packed)
-        initial = consistent(joined, whole, time, metric)
+        with closing_as(m, joined):
+            initial = consistent(joined, whole, time, metric)
         take_from(packed, whole)
+        initial = _driven(m, packed, drive_at(packed, time), metric, initial)
+    take_force_phases(packed, initial.q)
+    return initial
+
+
+def drive_at(packed: Packed, time: float) -> np.ndarray:
+    """(motions + 1, 3) what drivers impose at ``time`` (s)."""
+    return packed.drives(np.array([time]))[0]
+
+
+def _driven(m: Model, packed: Packed, drive: np.ndarray, metric: np.ndarray, initial: Initial) -> Initial:
+    """Velocities of the mechanism alone where drivers move both sides of a play otherwise than the joint could."""
+    residual_and_jacobian(packed.system, initial.q, drive, packed.ws)
+    nu = np.zeros(len(packed.ws.phi))
+    nu[packed.driver_rows :] = drive[1:, 1]
+    jac = packed.jacobian()
+    size = np.abs(initial.v[3:] / packed.column_scale()).max(initial=0.0)  # sizes/s, rad/s
+    if np.abs((jac @ initial.v[3:] - nu) * packed.row_scale()).max(initial=0.0) <= TOLD * size:
         return initial
+    v, slips = _velocities(m, packed, initial.q, drive, metric)
+    return replace(initial, v=v, velocities=tuple(slips))
+
+
+def _consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Initial:
+    """The same of a mechanism whose joints are all there."""
     drive = packed.drives(np.array([time]))[0]
 
     def started() -> tuple[Initial, np.ndarray]:
@@ -84,6 +112,7 @@ def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tupl
         whole = packed_like(joined, packed)
         q, deviations = start_pose(joined, whole, time, drive)
         take_from(packed, whole)
+        take_force_phases(packed, q)
         return q, deviations
     q = assemble(m, packed, time)
     given = given_coordinates(m, packed)

@@ -79,6 +79,7 @@ def take_decided(packed: Packed, closed: Packed) -> None:
         array[:common] = decided[:common]
         arrays[name] = array
     packed.system = packed.system.changed(**arrays)
+    packed.phases |= closed.phases
 
 
 def refuse_impossible(packed: Packed, q: np.ndarray) -> None:

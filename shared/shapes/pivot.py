@@ -58,10 +58,14 @@ class Pivot:
         """From the running flange to the far side of the circlip."""
         return self.fit.axial + self.washer_thickness + self.fit.seat + self.clip_thickness
 
-    def bushings(self, joint: str, x: float, y: float, z: float, thickness: float) -> list[Solid]:
-        """The two bushings of a link between z and z + thickness, its eye flush there."""
+    def bored(self, play: float = 0.0) -> float:
+        """Bore of a bushing in which the pin's axis may be ``play`` away from the middle."""
+        return self.pin + self.fit.running + 2 * play
+
+    def bushings(self, joint: str, x: float, y: float, z: float, thickness: float, play: float = 0.0) -> list[Solid]:
+        """The two bushings of a link between z and z + thickness, its eye flush there; see :meth:`bored`."""
         fit, length = self.fit, thickness / 2 - 0.1
-        inner = self.pin + fit.running
+        inner = self.bored(play)
         shape = bushing(inner, self.bushing, self.flange, self.flange_thickness, length)
         below = placed(shape.rotate((0, 0, 0), (1, 0, 0), 180), x, y, z - fit.seat)
         above = placed(shape, x, y, z + thickness + fit.seat)

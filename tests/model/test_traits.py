@@ -79,7 +79,7 @@ def test_forces_know_where_they_act() -> None:
             whole.add(kind.name)
     assert at_second == {
         "force", "torque", "torsion_spring", "torsion_spring_law", "curve_of_angle", "user_force", "drag",
-        "rotating_frame",
+        "rotating_frame", "shaft",
     }  # fmt: skip
     assert whole == {"user_force", "rotating_frame"}
     assert {kind.name: kind.effort for kind in force_kinds() if kind.effort} == {

@@ -10,6 +10,7 @@ from mechanisms.stages.automatic.pins import (  # noqa: F401
     bridge_solids,
     pin_hardware,
     pins,  # revolute, and the ends of rods
+    pins_with_play,  # clearance joint
     welds,  # weld
 )
 from mechanisms.stages.automatic.pins.springs import (  # noqa: F401

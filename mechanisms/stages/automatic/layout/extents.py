@@ -94,6 +94,11 @@ def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ())
             places.setdefault(marker.body.name, []).append((marker.x, marker.y))
             if joint.kind.pair == "pin" or joint.kind.name == ROD or (joint.kind.pair == "slot" and marker is joint.j):
                 pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
+    for force in m.forces.values():
+        for marker in (force.i, force.j) if force.kind.journal is not None else ():
+            if marker.body.name not in left_out:
+                places.setdefault(marker.body.name, []).append((marker.x, marker.y))
+                pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
     for thing in (*m.joints.values(), *m.contacts.values(), *m.forces.values()):
         if thing.kind.name in EXTENTS and not any(body in left_out for body in thing.bodies):
             own = EXTENTS[thing.kind.name](thing, solution)
@@ -105,7 +110,8 @@ def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ())
         for marker in (element.i, element.j):
             places.setdefault(marker.body.name, []).append((marker.x, marker.y))
             studs.setdefault(marker.body.name, []).append((marker.x, marker.y))
-    jointed = {name for joint in m.joints.values() for name in joint.bodies}
+    held = [*m.joints.values(), *(force for force in m.forces.values() if force.kind.journal is not None)]
+    jointed = {name for joint in held for name in joint.bodies}
     for name, body in m.bodies.items():
         if name not in (*jointed, *left_out, "ground"):
             places.setdefault(name, []).append(body.com)

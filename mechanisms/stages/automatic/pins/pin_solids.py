@@ -124,7 +124,7 @@ def run(joint: Pin, runners: list[str], holder: str, plan: Plan, heights: Height
         label = joint.name if len(runners) == 1 else f"{joint.name}_{body}"
         x, y = joint.places[body]
         plan.eye(body, x, y, Eye(sizes.eye, pivot.running))
-        plan.add(body, *pivot.bushings(label, x, y, heights.bottom(body), heights.thickness))
+        plan.add(body, *pivot.bushings(label, x, y, heights.bottom(body), heights.thickness, joint.play))
         if below is not None:
             start = heights.top(below) + run
             tube = washer(pivot.pin + pivot.fit.running, pivot.washer, heights.bottom(body) - run - start)

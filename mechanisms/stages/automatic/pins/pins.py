@@ -42,6 +42,8 @@ class Pin:
     places: dict[str, tuple[float, float]]
     webs: tuple[str, str] | None = None
     """Two plates of one body that it joins (webs.py); all others on it turn between these."""
+    play: float = 0.0
+    """How far its axis is from that of its bushings at most (rmm): of a pin with clearance, and what that yields."""
 
     @cached_property
     def movers(self) -> tuple[str, ...]:

@@ -34,7 +34,7 @@ def flush_pivot(joint: Pin, plan: Plan, heights: Heights) -> None:
     floor = heights.thickness - depth
     plan.eye(body, u, v, Eye(sizes.eye, pivot.running))
     plan.cut(body, placed(bore(SUNK.diameter + fit.running + 0.4, floor + 0.5, heights.thickness + 1.0), u, v), 0)
-    barrel = bushing(pivot.pin + fit.running, pivot.bushing, pivot.flange, pivot.flange_thickness, floor - 0.1)
+    barrel = bushing(pivot.bored(joint.play), pivot.bushing, pivot.flange, pivot.flange_thickness, floor - 0.1)
     barrel = barrel.rotate((0, 0, 0), (1, 0, 0), 180)
     plan.make(body, f"bushing_{name}", placed(barrel, u, v, bottom - fit.seat), "bronze", 1)
     end = bottom + floor + fit.axial

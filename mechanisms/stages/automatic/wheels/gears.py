@@ -1,4 +1,4 @@
-"""Gear pairs, racks, belts: the wheels, racks and pulleys of all such joints, in phase, on common layers.
+"""Gear pairs, gears with play, racks, belts: their wheels, racks and pulleys, in phase, on common layers.
 
 Wheels that mesh share a layer. A wheel that is given by radii gets a standard module if that gives whole numbers of
 teeth. A wheel that several joints name is one, unless its mates overlap: then it is an equal one in another layer.
@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.model.joint import Joint
 from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import kind
+from mechanisms.stages.automatic.layout.features import force_kind, kind
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.wheels import racks, wheels
 from mechanisms.stages.automatic.wheels.belts import BELTS, belts
@@ -27,10 +28,10 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.model.body import Marker
-    from mbsd.model.joint import Joint
+    from mbsd.model.force import Force
     from mechanisms.stages.automatic.layout.layout import Layout
 
-GEARS, RACKS = "gear_pair", "rack_and_pinion"
+GEARS, RACKS, PLAYING = "gear_pair", "rack_and_pinion", "gear_mesh"
 SAME = 0.02
 """Wheels nearer than this (rmm) have one centre."""
 TIP = 0.12
@@ -39,8 +40,9 @@ CENTRES = 0.02
 """How far the distance of two centres may be from that of their radii, as a part of it: the teeth still mesh."""
 
 
+@extent(PLAYING)
 @extent(GEARS)
-def extent_of_gears(joint: Joint, solution: Solution) -> Extent:
+def extent_of_gears(joint: Joint | Force, solution: Solution) -> Extent:
     """Both wheels; smaller ones of a stepped gear have room for the tube they sit on."""
     sized = with_radii(joint.params)
     both = (joint.i, sized["radius_i"]), (joint.j, sized["radius_j"])
@@ -60,14 +62,24 @@ def extent_of_rack(joint: Joint, solution: Solution) -> Extent:
 @kind(GEARS)
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
     """All wheels, racks and pulleys of the mechanism, in phase, when the first of these kinds is asked for."""
+    return _gathered(m, layout)
+
+
+@force_kind(PLAYING)
+def gather_playing(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
+    """The same where gears with play are the first."""
+    return _gathered(m, layout)
+
+
+def _gathered(m: Mechanism, layout: Layout) -> list[Feature]:
     if any(layout.wheels.values()):
         return []
     known: list[Wheel] = []
     bars: list[Rack] = []
     meshes: list[Mesh] = []
-    for joint in (joint for joint in m.joints.values() if joint.kind.name in (GEARS, RACKS)):
+    for joint in _toothed(m, layout):
         sized = with_radii(joint.params)
-        if joint.kind.name == RACKS:
+        if isinstance(joint, Joint) and joint.kind.name == RACKS:
             first = _rack(bars, joint.name, joint.i, layout)
             second = wheel_at(known, joint.name, joint.j, sized["radius"], False, layout)
             add_way(m, first, second, joint, layout)
@@ -89,6 +101,15 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
         layout.extra.append(rack.layer)
     layout.meshing += [*(belt.pulleys for belt in bands), *((mesh.first, mesh.second) for mesh in meshes)]
     return [*known, *bars, *pulleys, *bands]
+
+
+def _toothed(m: Mechanism, layout: Layout) -> list[Joint | Force]:
+    """Gear pairs and racks, and gears with play, unless their bodies are left out."""
+    with_play = [force for force in m.forces.values() if force.kind.name == PLAYING]
+    return [
+        *(joint for joint in m.joints.values() if joint.kind.name in (GEARS, RACKS)),
+        *(force for force in with_play if not layout.apart.intersection(force.bodies)),
+    ]
 
 
 def _apart(known: list[Wheel], wheel: Wheel, mate: Wheel, tip: float, layout: Layout) -> Wheel:
@@ -114,7 +135,7 @@ def _meet(first: Wheel, second: Wheel, tip: float, layout: Layout) -> bool:
     return bool(np.hypot(*away.T).min() < first.radius + second.radius + 2 * tip + layout.sizes.room)
 
 
-def refuse_apart(m: Mechanism, joint: Joint, first: Wheel, second: Wheel, layout: Layout) -> None:
+def refuse_apart(m: Mechanism, joint: Joint | Force, first: Wheel, second: Wheel, layout: Layout) -> None:
     """Raises UserError unless the centres of two wheels stay as far apart as their radii require."""
     wanted = abs(first.radius - second.radius) if first.ring else first.radius + second.radius
     way = layout.seen(second.body, (second.x, second.y), first.body) - (first.x, first.y)
@@ -123,7 +144,7 @@ def refuse_apart(m: Mechanism, joint: Joint, first: Wheel, second: Wheel, layout
         return
     scale = layout.sizes.scale
     raise UserError(
-        f"{m.name}: gear_pair '{joint.name}': the centres of {first.body} and {second.body} are "
+        f"{m.name}: {joint.kind.name} '{joint.name}': the centres of {first.body} and {second.body} are "
         f"{apart.min() * scale:.4g} to {apart.max() * scale:.4g} mm apart over the motion, where teeth of these radii "
         f"mesh at {wanted * scale:.4g} mm; hold them there by pins or an arm, or write {shown_file(m.name, 'parts')}"
     )
@@ -153,8 +174,8 @@ def _rack(bars: list[Rack], name: str, marker: Marker, layout: Layout) -> Rack:
 def _least(marker: Marker, radius: float, m: Mechanism) -> float:
     """Least pitch radius (rmm) of a wheel: on a tube it is larger."""
     others = []
-    for joint in m.joints.values():
-        sized = with_radii(joint.params) if joint.kind.name in (GEARS, RACKS, BELTS) else {}
+    for joint in (*m.joints.values(), *m.forces.values()):
+        sized = with_radii(joint.params) if joint.kind.name in (GEARS, RACKS, BELTS, PLAYING) else {}
         ends = ((joint.i, "radius_i"), (joint.j, "radius_j"), (joint.j, "radius"))
         others += [sized[key] for end, key in ends if key in sized and end.body.name == marker.body.name]
     return wheels.LEAST_ON_TUBE if marker.body.name != "ground" and radius < max(others) * (1 - 1e-9) else wheels.LEAST

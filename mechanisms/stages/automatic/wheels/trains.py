@@ -17,6 +17,7 @@ from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
+    from mbsd.model.force import Force
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Layout
 
@@ -36,7 +37,7 @@ class Mesh:
 
     first: Toothed
     second: Wheel
-    joint: Joint
+    joint: Joint | Force
 
 
 def in_phase(m: Mechanism, toothed: Sequence[Toothed], meshes: Sequence[Mesh], layout: Layout) -> None:
@@ -76,7 +77,8 @@ def _count(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: L
             f"{m.name}: gears with pitch radii {radii} have no whole numbers of teeth with one module; choose radii in "
             "a ratio of small whole numbers, or give teeth= and module="
         )
-    play = max(0.22, 0.06 * module)
+    within = [mesh.joint.params.get("backlash", 0.0) for mesh in meshes]
+    play = max(0.22, 0.06 * module) + mm(max(within, default=0.0)) * layout.sizes.ratio
     for gear in train:
         gear.module, gear.play = module / scale, play / scale
     for wheel in wheels:
@@ -92,9 +94,9 @@ def _refuse_foul(m: Mechanism, mesh: Mesh) -> None:
     ring, pinion = mesh.first, mesh.second
     if isinstance(ring, Wheel) and ring.ring and foul_inside(pinion.radius, pinion.tip, ring.radius, ring.tip):
         raise UserError(
-            f"{m.name}: gear_pair '{mesh.joint.name}': the tips of {pinion.body} with {pinion.teeth} teeth cross those "
-            f"of the ring gear of {ring.body} with {ring.teeth} away from where they mesh; give the pinion at least "
-            f"{LESS} teeth less than the ring, or write {shown_file(m.name, 'parts')}"
+            f"{m.name}: {mesh.joint.kind.name} '{mesh.joint.name}': the tips of {pinion.body} with {pinion.teeth} "
+            f"teeth cross those of the ring gear of {ring.body} with {ring.teeth} away from where they mesh; give the "
+            f"pinion at least {LESS} teeth less than the ring, or write {shown_file(m.name, 'parts')}"
         )
 
 

@@ -82,7 +82,8 @@ class FreeBody:
 def free_bodies(layout: Layout) -> list[Feature]:
     """One for each body without a joint or a shape of its own."""
     m = layout.m
-    shaped = {body for joint in m.joints.values() for body in joint.bodies}
+    held = [*m.joints.values(), *(force for force in m.forces.values() if force.kind.journal is not None)]
+    shaped = {body for joint in held for body in joint.bodies}
     others = [feature for feature in layout.features if not isinstance(feature, Stud)]
     shaped |= {item.body for feature in others for item in feature.items(layout)}
     names = [name for name in layout.bodies if name not in shaped]

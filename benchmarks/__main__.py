@@ -2,6 +2,7 @@
 
 python -m benchmarks                  all of it
 python -m benchmarks calls            the calls as users make them alone, only shown
+python -m benchmarks clearance        a slider-crank with play beside the ideal one, only shown
 python -m benchmarks dynamics         the dynamics problems alone, only shown
 python -m benchmarks engines          sweeps of engines beside a four-bar's, the map of bank angles, only shown
 python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact alone, only shown
@@ -25,6 +26,7 @@ import sys
 from benchmarks import rows, table
 from benchmarks.batch import measure as batch
 from benchmarks.calls import measure as calls
+from benchmarks.clearance import measure as clearance
 from benchmarks.dynamics import measure as dynamics
 from benchmarks.dynamics import scaling
 from benchmarks.dynamics.settings import tune_all
@@ -53,9 +55,10 @@ def main() -> int:
     match sys.argv[1:]:
         case []:
             return _all()
-        case ["calls" | "dynamics" | "engines" | "machines" | "simulations" | "synthesis" as part]:
+        case ["calls" | "clearance" | "dynamics" | "engines" | "machines" | "simulations" | "synthesis" as part]:
             parts = {
                 "calls": calls,
+                "clearance": clearance,
                 "dynamics": dynamics,
                 "engines": engines,
                 "machines": machines,
@@ -83,8 +86,8 @@ def main() -> int:
             tune_all(names)
         case other:
             raise UserError(
-                f"bench: {' '.join(other)}? There is: calls, cluster, dynamics, engines, film, live, machines, "
-                "simulations, start, synthesis, table, tune [names], or nothing for all"
+                f"bench: {' '.join(other)}? There is: calls, clearance, cluster, dynamics, engines, film, live, "
+                "machines, simulations, start, synthesis, table, tune [names], or nothing for all"
             )
     return 0
 
@@ -110,6 +113,7 @@ def _all() -> int:
         synthesis.measured,
         machines.measured,
         engines.measured,
+        clearance.measured,
         dynamics.measured,
         scaling.measured,
     ):

@@ -48,7 +48,7 @@ def test_a_pin_with_play_has_bushings_bored_as_much_wider() -> None:
 
 
 def test_too_much_play_and_a_shared_place_are_refused() -> None:
-    with pytest.raises(UserError, match="clearance joint 'B' moves .* mm to a side, and bushings of"):
+    with pytest.raises(UserError, match=r"clearance joint 'B' moves .* mm to a side, and bushings of"):
         _ = made(loose_crank(4e-3)).layout
     m = loose_crank(0.5e-3)
     extra = m.bar("extra", 0.1, mass=0.1)

@@ -44,7 +44,7 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint]
         _journal(canvas, force, pose)
         return
     if force.kind.sign == "mesh":
-        draw_gear_pair(canvas, force, pose, {})
+        draw_gear_pair(canvas, force, pose, dict.fromkeys(force.bodies, LOAD))
         return
     if not force.kind.elements(force):
         draw_special(canvas, force, pose)

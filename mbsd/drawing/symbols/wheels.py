@@ -61,13 +61,13 @@ def draw_gear_pair(canvas: Canvas, joint: Joint | Force, pose: Pose, colours: di
         canvas.label(joint.name, i + r_i * np.array([math.cos(line), math.sin(line)]), 0.5)
 
 
-def ring_gear(m: Model, name: str) -> Joint | None:
+def ring_gear(m: Model, name: str) -> Joint | Force | None:
     """The mesh of which a body is the ring gear; None for other bodies."""
-    internal = (joint for joint in m.joints.values() if joint.params.get("internal"))
+    internal = (joint for joint in (*m.joints.values(), *m.forces.values()) if joint.params.get("internal"))
     return next((joint for joint in internal if joint.i.body.name == name), None)
 
 
-def rim_of(joint: Joint, pose: Pose, unit: float) -> np.ndarray:
+def rim_of(joint: Joint | Force, pose: Pose, unit: float) -> np.ndarray:
     """Where a ring gear's name belongs: at its rim."""
     away = (with_radii(joint.params)["radius_i"] + RIM * unit) * math.sqrt(0.5)
     return pose.place(joint.i) + away * np.array([-1.0, 1.0])

@@ -1,0 +1,88 @@
+"""What is to be differentiated: quantities by name, measures, functions of a solution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.base.users_function import described
+from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.many.quantities import quantity_named
+from mbsd.model.mechanism import Model
+from mbsd.results.columns import JOINT, columns
+from mbsd.results.solution import Solution
+
+Wanted = Mapping[str, Callable[[Solution], np.ndarray]]
+
+
+def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], np.ndarray]]:
+    """By label, a function that gives a number or numbers of a solution. Raises ModelError for what cannot be."""
+    if isinstance(of, str):
+        of = [of]
+    if isinstance(of, list | tuple):
+        of = {each if isinstance(each, str) else str(k): each for k, each in enumerate(of)}
+    if not isinstance(of, Mapping) or not of:
+        raise ModelError(
+            f"{m.name}: of is {shown(of)}; give names of quantities, or labels and quantities: {{'x': 'P.x'}}"
+        )
+    known = list(columns(sol))
+    return {str(label): _function(m, str(label), each, sol, known) for label, each in of.items()}
+
+
+def _function(m: Model, label: str, given: Any, sol: Solution, known: list[str]) -> Callable[[Solution], np.ndarray]:
+    if isinstance(given, str):
+        return _quantity(m, given, known)
+    if isinstance(given, Measure):
+        given.check(f"{m.name}: '{label}'", sol.t)
+        quantities = {name: _quantity(m, name, known) for name in given.quantities}
+
+        def measured(sol: Solution) -> np.ndarray:
+            along = {name: quantity(sol)[None] for name, quantity in quantities.items()}
+            return given.of(label, sol.t, along)[label][0]
+
+        return measured
+    if callable(given):
+        return lambda sol: _numbers(m, label, given, sol)
+    raise ModelError(
+        f"{m.name}: '{label}' is {shown(given)}; give the name of a quantity, a measure such as "
+        "largest('motor.effort') of mbsd.measures, or a function of a solution"
+    )
+
+
+def _quantity(m: Model, name: str, known: list[str]) -> Callable[[Solution], np.ndarray]:
+    """(T,) of a quantity by name, without all others."""
+    quantity = quantity_named(m, name, known)
+    if name == "work":
+        raise ModelError(f"{m.name}: derivatives of 'work' are not known; take the integral of a power, or 'kinetic'")
+    whole, _, component = name.rpartition(".")
+    title = whole.split(" ", 1)[-1] if whole.split(" ", 1)[0] in ("joint", "driver", "force") else whole
+    if whole in m.bodies or name == "kinetic" or whole.startswith("trace "):
+        return quantity.of_solution
+    if name == "potential":
+        return lambda sol: sol.energy.potential
+    if title in m.joints and component in JOINT:
+        return lambda sol: getattr(sol.joint(title), component)
+    if title in m.drivers:
+        return lambda sol: getattr(sol.driver(title), component)
+    column = next((column for column in known if column.rpartition(" [")[0] == name), "")
+    if title in m.forces and column:
+        return lambda sol: sol.force(title).columns(whole)[column]
+    return quantity.of_solution
+
+
+def _numbers(m: Model, label: str, given: Callable[[Solution], Any], sol: Solution) -> np.ndarray:
+    try:
+        value = given(sol)
+    except Exception as error:
+        raise ModelError(f"{m.name}: the function '{label}' fails: {described(error)}") from error
+    try:
+        out = np.asarray(value, float)
+    except (TypeError, ValueError):
+        out = np.asarray(np.nan)
+    if isinstance(value, str) or value is None or not np.isfinite(out).all():
+        raise ModelError(f"{m.name}: '{label}' gives {shown(value)}; it must give a number, or an array of them")
+    return out

@@ -1,0 +1,232 @@
+"""Numbers of a model by name: what they are now, and the model with another value of them.
+
+    crank.length  crank.mass  crank.com.x  rod (a rod's or bar's length)     of bodies and rods
+    spring.stiffness  motor.rate  push.direction.y                           what change() takes, and numbers of laws
+    B.x  B.y                             place of a joint: its marker on ground, or else its first
+    rocker.B.x  B.j.angle                a marker of a joint, force or contact by its body, or by its side
+    P.x                                  a traced point
+    door.start.angle  door.moving.omega  start_near and start_moving (rad, m, rad/s, m/s)
+    gravity.y                            m/s^2
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
+
+from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.model.body import Marker
+from mbsd.model.change import BAR, BODY, change, given, given_body
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Model, connections
+
+AXES = {"x": 0, "y": 1}
+PLACE = ("x", "y", "angle")
+START = {"start": ("angle", "x", "y"), "moving": ("omega", "vx", "vy")}
+
+
+@dataclass(frozen=True)
+class Number:
+    """One number of a model."""
+
+    name: str
+    value: float
+    put: Callable[[Model, float], None]
+    """Gives a model another value of it. Raises ModelError for one that it refuses."""
+
+
+def numbers_named(m: Model, names: Sequence[str]) -> list[Number]:
+    """The numbers of these names, each once. Raises ModelError for one that there is not."""
+    if not names or len(set(names)) < len(names):
+        raise ModelError(f"{m.name}: derivatives: give the names of numbers, each once, got {shown(names)}")
+    return [number_named(m, name) for name in names]
+
+
+def number_named(m: Model, name: str) -> Number:
+    """The number of this name. Raises ModelError for one that there is not, and for what is no number."""
+    known = [*(key for table in connections(m) for key in table), *m.bodies, *m.traces]
+    if not isinstance(name, str):
+        raise ModelError(f"{m.name}: derivatives: {shown(name)} is no name of a number; write 'crank.length'")
+    for whole, rest in _splits(name):
+        if whole == "gravity" and rest in AXES:
+            return _gravity(m, name, AXES[rest])
+        number = _of_entry(m, name, whole, rest) or _of_body(m, name, whole, rest) or _of_trace(m, name, whole, rest)
+        if number is not None:
+            return number
+    whole = next((whole for whole, _ in _splits(name) if whole in known), None)
+    if whole is None:
+        raise ModelError(f"{m.name}: derivatives: {no_such('thing with numbers', name.partition('.')[0], known)}")
+    rest = name[len(whole) + 1 :]
+    raise ModelError(f"{m.name}: derivatives: '{whole}': {no_such('number', rest, _known_of(m, whole))}")
+
+
+@contextmanager
+def with_value(m: Model, number: Number, value: float) -> Iterator[Model]:
+    """The model ``m`` with another value of a number, for as long as the context lasts."""
+    tables = [(table, dict(table)) for table in (*connections(m), m.traces, m.starts, m.velocities)]
+    bodies = [(body, dict(body.__dict__)) for body in m.bodies.values()]
+    gravity = m.gravity
+    try:
+        number.put(m, value)
+        yield m
+    finally:
+        for table, before in tables:
+            table.clear()
+            table.update(before)  # pyright: ignore[reportArgumentType, reportCallIssue]
+        for body, own in bodies:
+            body.__dict__.clear()
+            body.__dict__.update(own)
+        m.gravity = gravity
+
+
+def with_values(m: Any, numbers: Sequence[Number], values: Sequence[float]) -> Any:
+    """A copy of a model with other values of numbers. Raises ModelError for those that it refuses."""
+    out = copy.deepcopy(m)
+    for number, value in zip(numbers, values, strict=True):
+        number.put(out, float(value))
+    return out
+
+
+def _splits(name: str) -> list[tuple[str, str]]:
+    """The name cut in two at none or one of its dots, the longest first part first."""
+    cuts = [k for k, letter in enumerate(name) if letter == "."]
+    return [(name, ""), *((name[:k], name[k + 1 :]) for k in reversed(cuts))]
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _within(path: str, value: Any) -> tuple[float, Callable[[float], Any]] | None:
+    """The number at ``path`` of a value, a number, several, or a law; and the value with another in its place."""
+    if not path:
+        return (float(value), lambda new: new) if _is_number(value) else None
+    first, _, rest = path.partition(".")
+    if isinstance(value, tuple | list):
+        at = AXES.get(first, int(first) if first.isdigit() else -1)
+        inner = _within(rest, value[at]) if 0 <= at < len(value) else None
+        return inner and (inner[0], lambda new: type(value)([*value[:at], inner[1](new), *value[at + 1 :]]))
+    if isinstance(value, Mapping):
+        inner = _within(rest, value[first]) if first in value else None
+        return inner and (inner[0], lambda new: {**value, first: inner[1](new)})
+    if is_dataclass(value) and not isinstance(value, type) and first in {part.name for part in fields(value)}:
+        inner = _within(rest, getattr(value, first))
+        return inner and (inner[0], lambda new: replace(value, **{first: inner[1](new)}))
+    return None
+
+
+def _of_entry(m: Model, name: str, whole: str, rest: str) -> Number | None:
+    """Of a joint, driver, force or contact."""
+    table = next((table for table in connections(m) if whole in table), None)
+    if table is None:
+        return None
+    entry: Any = table[whole]
+    arguments = given(entry)
+    rest = rest or ("length" if whole not in m.bodies else "")
+    first, _, inner = rest.partition(".")
+    if first in arguments:
+        at = _within(inner, arguments[first])
+        return at and Number(name, at[0], lambda m, new: change(m, whole, {first: at[1](new)}))
+    law = entry.motion if isinstance(entry, Joint) else next(iter(entry.laws.values()), None)
+    if law is not None and (at := _within(rest, law)) is not None:
+        key = next(key for key, value in arguments.items() if value is law)
+        return Number(name, at[0], lambda m, new: change(m, whole, {key: at[1](new)}))
+    derived = entry.params.get(first)
+    if _is_number(derived) and not inner:
+        return Number(name, float(derived), lambda m, new: change(m, whole, {first: new}))
+    if first in ("i", "j") and inner in PLACE:
+        return _of_marker(m, name, whole, first, inner)
+    if rest in PLACE and isinstance(entry, Joint):
+        ground_first = entry.i.body is m.ground or entry.j.body is not m.ground
+        return _of_marker(m, name, whole, "i" if ground_first else "j", rest)
+    return None
+
+
+def _of_marker(m: Model, name: str, entry: str, side: str, axis: str) -> Number:
+    def put(m: Model, new: float) -> None:
+        table: Any = next(table for table in connections(m) if entry in table)
+        marker: Marker = getattr(table[entry], side)
+        table[entry] = replace(table[entry], **{side: replace(marker, **{axis: float(new)})})
+
+    [marker] = [getattr(table[entry], side) for table in connections(m) if entry in table]
+    return Number(name, float(getattr(marker, axis)), put)
+
+
+def _of_body(m: Model, name: str, whole: str, rest: str) -> Number | None:
+    if whole not in m.bodies:
+        return None
+    body = m.bodies[whole]
+    rest = rest or "length"
+    first, _, inner = rest.rpartition(".")
+    if first in START and inner in START[first]:
+        return _of_start(m, name, whole, first, START[first].index(inner))
+    if whole != "ground" and rest.partition(".")[0] in (BODY if body.length is None else BAR):
+        key, _, inner = rest.partition(".")
+        values = {"mass": body.mass, "inertia": body.inertia, "com": body.com} | {
+            key: value for key, value in given_body(body).items() if value is not None
+        }
+        at = _within(inner, values.get(key))
+        return at and Number(name, at[0], lambda m, new: change(m, whole, {key: at[1](new)}))
+    entry, _, axis = rest.rpartition(".")
+    for table in connections(m):
+        if entry in table and axis in PLACE:
+            ends: Any = table[entry]
+            side = next((side for side in ("i", "j") if getattr(ends, side).body is body), None)
+            if side is not None:
+                return _of_marker(m, name, entry, side, axis)
+    return None
+
+
+def _of_start(m: Model, name: str, body: str, what: str, at: int) -> Number | None:
+    given_start: Any = (m.starts if what == "start" else m.velocities).get(body)
+    if given_start is None or (at and given_start.place is None):
+        return None
+    first = "angle" if what == "start" else "omega"
+
+    def put(m: Model, new: float) -> None:
+        table: Any = m.starts if what == "start" else m.velocities
+        old = table[body]
+        own = {first: float(new)} if not at else {"place": tuple(float(new) if k + 1 == at else value
+                                                               for k, value in enumerate(old.place))}  # fmt: skip
+        table[body] = replace(old, **own)
+
+    return Number(name, float(getattr(given_start, first) if not at else given_start.place[at - 1]), put)
+
+
+def _of_trace(m: Model, name: str, whole: str, rest: str) -> Number | None:
+    if whole not in m.traces or rest not in PLACE:
+        return None
+
+    def put(m: Model, new: float) -> None:
+        m.traces[whole] = replace(m.traces[whole], **{rest: float(new)})
+
+    return Number(name, float(getattr(m.traces[whole], rest)), put)
+
+
+def _gravity(m: Model, name: str, axis: int) -> Number:
+    def put(m: Model, new: float) -> None:
+        now = m.gravity or (0.0, 0.0)
+        m.gravity = (float(new), now[1]) if axis == 0 else (now[0], float(new))
+
+    return Number(name, float((m.gravity or (0.0, 0.0))[axis]), put)
+
+
+def _known_of(m: Model, whole: str) -> list[str]:
+    """Some of the numbers that a thing has, for a message."""
+    out: list[str] = []
+    for table in connections(m):
+        if whole in table:
+            entry: Any = table[whole]
+            out += [key for key, value in given(entry).items() if _is_number(value)]
+            law = entry.motion if isinstance(entry, Joint) else next(iter(entry.laws.values()), None)
+            if law is not None and is_dataclass(law):
+                out += [part.name for part in fields(law) if _is_number(getattr(law, part.name))]
+            out += [f"{side}.{axis}" for side in ("i", "j") for axis in PLACE]
+    if whole in m.bodies and whole != "ground":
+        out += ["mass", "inertia", "com.x", "com.y", *(["length"] if m.bodies[whole].length is not None else [])]
+    return out + (list(PLACE) if whole in m.traces else [])

@@ -1,0 +1,137 @@
+"""Sensitivities: what of a motion changes how much with which number of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.names import names_in, no_such
+from mbsd.derivatives.asked import Wanted, wanted
+from mbsd.derivatives.numbers import Number, numbers_named
+from mbsd.derivatives.simulations import SimulationTangents
+from mbsd.derivatives.sweeps import SweepTangents
+from mbsd.dynamics.mobility import mobility
+from mbsd.dynamics.simulate import output_times, refuse_bad_steps, simulate
+from mbsd.kinematics.sweep import sweep
+from mbsd.model.mechanism import Model
+from mbsd.results.solution import Solution
+
+if TYPE_CHECKING:
+    import pandas
+
+
+class Tangents(Protocol):
+    """A motion, and others along its tangents."""
+
+    sol: Solution
+
+    def moved(self, k: int) -> list[Solution]:
+        """The motion at other values of number k."""
+        ...
+
+    def weights(self, k: int) -> np.ndarray:
+        """What these count in a derivative by number k."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivities:
+    """Derivatives of quantities by numbers of the model, at T times."""
+
+    t: np.ndarray
+    """(T,) s."""
+    numbers: tuple[str, ...]
+    """(P,) by which is differentiated."""
+    values: dict[str, np.ndarray]
+    """(T,) of each quantity, or one number of each measure."""
+    slopes: dict[str, np.ndarray]
+    """(T, P), or (P,) of a measure: SI units of the quantity by those of the number."""
+    solution: Any
+    """The Solution."""
+
+    def __getitem__(self, label: str) -> np.ndarray:
+        """Derivatives of one quantity. Raises ModelError for one that there is not."""
+        if label not in self.slopes:
+            raise ModelError(f"sensitivities: {no_such('quantity', label, self.slopes)}")
+        return self.slopes[label]
+
+    def of(self, label: str, number: str) -> np.ndarray:
+        """(T,) of one quantity by one number. Raises ModelError for one that there is not."""
+        if number not in self.numbers:
+            raise ModelError(f"sensitivities: {no_such('number', number, self.numbers)}")
+        return self[label][..., self.numbers.index(number)]
+
+    def table(self) -> pandas.DataFrame:
+        """As a pandas DataFrame over time, a column for each quantity and number. Needs the extra ``pandas``."""
+        try:
+            import pandas
+        except ImportError as error:
+            raise ModelError("table needs pandas: install mbsd[pandas]") from error
+        columns = {
+            f"d {label} / d {number}": slope[:, k]
+            for label, slope in self.slopes.items()
+            if slope.ndim == 2 and len(slope) == len(self.t)
+            for k, number in enumerate(self.numbers)
+        }
+        return pandas.DataFrame({"t": self.t} | columns)
+
+    def __repr__(self) -> str:
+        return f"<Sensitivities of {', '.join(self.slopes)} by {', '.join(self.numbers)}>"
+
+
+def slopes_of(tangents: Tangents, count: int, functions: Wanted) -> dict[str, np.ndarray]:
+    """By label, derivatives (..., count) by all numbers of what functions of a solution give."""
+    columns: dict[str, list[np.ndarray]] = {label: [] for label in functions}
+    for k in range(count):
+        moved, weights = tangents.moved(k), tangents.weights(k)
+        for label, function in functions.items():
+            columns[label].append(sum(w * function(sol) for w, sol in zip(weights, moved, strict=True)))  # pyright: ignore
+    return {label: np.stack(parts, axis=-1) for label, parts in columns.items()}
+
+
+def sensitivities(
+    m: Model,
+    of: Any,
+    to: Sequence[str] | str,
+    duration: float | None,
+    steps: int,
+    times: Sequence[float] | np.ndarray | None,
+    simulated: bool | None = None,
+    tolerance: float = 1e-9,
+) -> Sensitivities:
+    """See :meth:`mbsd.mechanism.Mechanism.sensitivities`."""
+    numbers: list[Number] = numbers_named(m, names_in(f"{m.name}: sensitivities: to", to))
+    tangents: Tangents
+    if moves_freely(m) if simulated is None else simulated:
+        tangents = simulation_tangents(m, output_times(m, duration, steps, times), numbers, tolerance)
+        functions = wanted(m, of, tangents.sol)
+    else:
+        sol = sweep(m, duration, steps, times)
+        functions = wanted(m, of, sol)
+        tangents = SweepTangents(m, sol, numbers)
+    return Sensitivities(
+        tangents.sol.t,
+        tuple(number.name for number in numbers),
+        {label: np.asarray(function(tangents.sol)) for label, function in functions.items()},
+        slopes_of(tangents, len(numbers), functions),
+        tangents.sol,
+    )
+
+
+def moves_freely(m: Model) -> bool:
+    """Whether drivers leave a freedom, so that forces decide the motion."""
+    return mobility(m).dof > len(m.drivers)
+
+
+def simulation_tangents(m: Model, grid: np.ndarray, numbers: Sequence[Number], tolerance: float) -> SimulationTangents:
+    """Of a simulation at output times (T,) (s)."""
+    refuse_bad_steps(m, grid, tolerance, None)
+
+    def simulated(times: np.ndarray) -> Solution:
+        return simulate(m, None, 1, times, "dop853", tolerance, None, None, {}, event_rows=True)
+
+    return SimulationTangents(m, simulated, grid, numbers)

@@ -1,0 +1,226 @@
+"""A simulation and how it changes with numbers of its mechanism: tangents along it, with jumps at events.
+
+The motion is simulated once more at the nodes of the tangents, the outputs and the middles between them, in stretches
+from event to event.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from mbsd.base.errors import ModelError, SimulationError
+from mbsd.derivatives.free_tangents import FreeTangents, Stretch
+from mbsd.derivatives.jumps import Jump, jumps_of
+from mbsd.derivatives.numbers import Number
+from mbsd.derivatives.sweeps import along_of, displaced
+from mbsd.derivatives.tangents import Tangent
+from mbsd.derivatives.terms import Along, terms_of
+from mbsd.derivatives.variants import SECOND, Variants, Variation
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.kinematics.pose.mobility import independent_rows
+from mbsd.kinematics.pose.phases import take_decided
+from mbsd.model.contact import ContactKind
+from mbsd.model.mechanism import Model
+from mbsd.results.solution import Solution
+
+STEP = 1e-5
+"""Step of a number, as part of it."""
+ENOUGH = 1e-5
+"""Error of tangents, as part of the largest, beyond which the nodes come closer."""
+FINER, MOST = 2, 3
+"""By this factor, so often at most."""
+STEPS_OF_METHOD = 2
+"""Steps of the tangents for one of the integrator, at least."""
+
+Simulate = Callable[[np.ndarray], Solution]
+"""Simulates at given times (T,), with rows before and after events."""
+
+
+class SimulationTangents:
+    """A simulation at output times ``grid`` (T,), and its tangents by numbers."""
+
+    def __init__(self, m: Model, simulated: Simulate, grid: np.ndarray, numbers: Sequence[Number]) -> None:
+        self.m, self.simulated = m, simulated
+        self._ready: PreparedDynamics | None = None
+        self.redundant = False
+        first = simulated(grid)
+        _refuse(first)
+        span = float(grid[0]), float(grid[-1])
+        self.span = span
+        self.terms = terms_of(first.packed, span)
+        packed = first.packed
+        contacts = packed.joints[len(packed.joints) - packed.contacts :] if packed.contacts else []
+        variation = Variation(m, self.terms, span, self._closed, contacts, starts=True)
+        self.variants = [variation.of(number, SECOND, STEP) for number in numbers]
+        self.variation = variation
+        divisions = max(1, -(-STEPS_OF_METHOD * first.stats.steps // max(1, len(grid) - 1)))
+        for _ in range(MOST):
+            whole, times = self._meshed(first, grid, divisions)
+            made, error = self._made(whole, times)
+            if error <= ENOUGH:
+                break
+            divisions *= FINER
+        self.error = error
+        """Estimate of the largest error of the tangents, as part of the largest."""
+        rows = self._outputs(whole, grid)
+        self.sol = taken(whole, rows)
+        self.along = along_of(self.sol)
+        self.tangents = [Tangent(*(getattr(x, key)[rows] for key in ("q", "v", "a", "lam"))) for x in made]
+        if self.ends is not None:  # the last output is the event that ended it, whose time changes
+            self._end(made)
+
+    def moved(self, k: int) -> list[Solution]:
+        """The simulation at other values of number k, along its tangent: one for each variant."""
+        out = []
+        for variant in self.variants[k].variants:
+            h = variant.offset * self.variants[k].step
+            sol = displaced(self.sol, self.along, self.tangents[k], variant, h)
+            if self.ends is not None:
+                t = self.sol.t.copy()
+                t[-1] += h * self.ends[k]
+                sol = replace(sol, t=t)
+            out.append(replace(sol, work=None))
+        return out
+
+    def weights(self, k: int) -> np.ndarray:
+        """(v,) of what is found of :meth:`moved`, for a derivative by number k."""
+        return self.variants[k].weights / self.variants[k].step
+
+    # -- nodes -----------------------------------------------------------------------------------------------------
+
+    def _meshed(self, first: Solution, grid: np.ndarray, divisions: int) -> tuple[Solution, np.ndarray]:
+        """The simulation at nodes: outputs, events, and points between, in even numbers."""
+        grid = grid[grid <= first.t[-1]]
+        edges = np.unique(np.concatenate([grid, first.t]))
+        apart = np.concatenate([[True], np.diff(edges) > 1e-12 * (edges[-1] - edges[0])])
+        edges = edges[apart]
+        parts = [np.linspace(a, b, 2 * divisions + 1)[1:-1] for a, b in pairwise(edges)]
+        nodes = np.unique(np.concatenate([grid, *parts]))
+        whole = self.simulated(nodes)
+        return whole, nodes
+
+    def _made(self, whole: Solution, times: np.ndarray) -> tuple[list[Tangent], float]:
+        """Tangents at all rows of the simulation, and their largest error."""
+        along = along_of(whole)
+        along.held = whole.held
+        edges = [0, *(np.flatnonzero(np.diff(whole.t) <= 0.0) + 1).tolist(), len(whole.t)]
+        q, v = self._begun(along)
+        parts: list[list[Tangent]] = [[] for _ in self.variants]
+        worst, self.ends = 0.0, None
+        jumps: list[Jump] = jumps_of(self, whole, along, edges)
+        for k, (a, b) in enumerate(pairwise(edges)):
+            piece = along.take(slice(a, b))
+            stretch = self._stretch(piece)
+            made, error = self._carried(stretch, q, v)
+            worst = max(worst, error)
+            for part, own in zip(parts, made, strict=True):
+                part.append(own)
+            if k < len(jumps):
+                q, v, times_moved = jumps[k].across(made)
+                if jumps[k].ends:
+                    self.ends = times_moved
+        joined = [
+            Tangent(*(np.concatenate([getattr(part, key) for part in own]) for key in ("q", "v", "a", "lam")))
+            for own in parts
+        ]
+        return joined, worst
+
+    def _carried(self, stretch: Stretch, q: np.ndarray, v: np.ndarray) -> tuple[list[Tangent], float]:
+        t = stretch.along.t
+        if len(t) % 2 == 0:  # one node more, in the last gap: never met where events have rows on both sides
+            raise SimulationError(f"{self.m.name}: derivatives: nodes between events do not pair at t = {t[0]:.6g} s")
+        return FreeTangents(self.terms, stretch, self.variants).carry(q, v)
+
+    def _stretch(self, along: Along) -> Stretch:
+        packed = self.terms.packed
+        assert along.held is not None
+        held = along.held[0]
+        rows = np.flatnonzero(held)
+        jac = packed.spread(self.terms.rows(along.take(slice(0, 1)))[2])[0]
+        scaled = jac * packed.row_scale()[:, None] * packed.column_scale()
+        independent = rows[np.sort(np.array(independent_rows(scaled[rows]), np.int64))] if len(rows) else rows
+        if len(independent) < len(rows):
+            self.redundant = True
+        return Stretch(along, independent, self._sliding(held, along.lam))
+
+    def _sliding(self, held: np.ndarray, lam: np.ndarray) -> list[tuple[int, int]]:
+        packed, out = self.terms.packed, []
+        for k in range(len(packed.joints) - packed.contacts, len(packed.joints)):
+            first, end = int(packed.first_row[k]), int(packed.first_row[k + 1])
+            if isinstance(packed.joints[k].kind, ContactKind) and end > first + 1:
+                way = first + 1
+                if held[first] and not held[way] and lam[:, way].any():
+                    out.append((way, first))
+        return out
+
+    def ready(self) -> PreparedDynamics:
+        """The mechanism itself as a simulation begins with it: for the laws of impacts."""
+        if self._ready is None:
+            self._ready = prepare_dynamics(self.m, *self.span, contacts=True)
+            system = self._ready.packed.system
+            self._ready.packed.system = system.changed(angle_offset=self.terms.packed.system.angle_offset)
+        return self._ready
+
+    # -- ends ------------------------------------------------------------------------------------------------------
+
+    def _closed(self, m: Model, packed: object) -> tuple[np.ndarray, np.ndarray]:
+        """The start of a variant, whose phases its packing takes."""
+        ready = prepare_dynamics(m, *self.span)
+        take_decided(packed, ready.packed)  # pyright: ignore[reportArgumentType]
+        return ready.initial.q, ready.initial.v
+
+    def _begun(self, along: Along) -> tuple[np.ndarray, np.ndarray]:
+        """(P, 3 nb) q' and v' at the start."""
+        count, width = len(self.variants), along.q.shape[1]
+        q, v = np.zeros((2, count, width))
+        for k, variants in enumerate(self.variants):
+            if all(variant.start is not None for variant in variants.variants):
+                q[k] = variants.slope(lambda variant: variant.start[0])
+                v[k] = variants.slope(lambda variant: variant.start[1])
+        return q, v
+
+    @staticmethod
+    def _outputs(whole: Solution, grid: np.ndarray) -> np.ndarray:
+        """Rows of the outputs; at an event what comes after it, and its end if one ended it."""
+        rows = np.searchsorted(whole.t, grid[grid <= whole.t[-1]], side="right") - 1
+        ended = bool(whole.events) and whole.events[-1].what == "end"
+        return np.append(rows, len(whole.t) - 1) if ended and rows[-1] < len(whole.t) - 1 else rows
+
+    def _end(self, made: list[Tangent]) -> None:
+        """At the event that ends it, changes are those of the event's own motion, wherever that is."""
+        assert self.ends is not None
+        a = self.along
+        for tangent, moved in zip(self.tangents, self.ends, strict=True):
+            tangent.q[-1] += a.v[-1] * moved
+            tangent.v[-1] += a.a[-1] * moved
+
+
+def taken(sol: Solution, rows: np.ndarray) -> Solution:
+    """Some rows of a solution."""
+    keys = ("t", "q", "v", "a", "wrench", "lam", "drives", "work", "held", "law_times", "approached", "states")
+    parts = {key: getattr(sol, key)[rows] for key in keys if getattr(sol, key) is not None}
+    margin = sol.margin if callable(sol.margin) else sol.margin[rows]
+    return replace(sol, margin=margin, between=None, **parts)
+
+
+def _refuse(sol: Solution) -> None:
+    """Raise ModelError for what a simulation holds that has no derivatives here."""
+    packed = sol.packed
+    if sol.states is not None:
+        names = [force.name for force in packed.forces if force.kind.states is not None]
+        raise ModelError(f"{packed.name}: derivatives of simulations with states of forces ('{names[0]}') are not known")
+    if sol.approached is not None:
+        raise ModelError(
+            f"{packed.name}: derivatives where the damping of a contact remembers how fast it approached are not "
+            "known; give damping= instead of restitution="
+        )
+    for force in packed.forces:
+        if force.params.get("sticks"):
+            raise ModelError(
+                f"{packed.name}: derivatives where joints stick ('{force.name}') are not known; give a slip_speed"
+            )

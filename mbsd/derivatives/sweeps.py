@@ -1,0 +1,112 @@
+"""A sweep and how it changes with numbers of its mechanism, at the same times."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mbsd.arrays.reactions import wrenches
+from mbsd.base.errors import ModelError
+from mbsd.derivatives.numbers import Number
+from mbsd.derivatives.tangents import Inverse, Tangent, tangent
+from mbsd.derivatives.terms import Along, Terms, terms_of
+from mbsd.derivatives.variants import STEP, Variant, Variants, Variation
+from mbsd.kinematics.pose.close import assemble
+from mbsd.kinematics.states_along import states_along
+from mbsd.model.mechanism import Model
+from mbsd.results.solution import Solution
+
+FAR = 1e-3
+"""A variant's motion is no farther than this from the motion itself, in sizes and rad."""
+
+
+def along_of(sol: Solution) -> Along:
+    """A solution as arrays."""
+    q, v, a = (np.ascontiguousarray(part.reshape(len(sol.t), -1)) for part in (sol.q, sol.v, sol.a))
+    return Along(sol.t if sol.law_times is None else sol.law_times, q, v, a, sol.lam, sol.states, sol.approached)
+
+
+class SweepTangents:
+    """A sweep, and its tangents by numbers."""
+
+    def __init__(self, m: Model, sol: Solution, numbers: Sequence[Number]) -> None:
+        self.sol, self.along = sol, along_of(sol)
+        span = float(sol.t[0]), float(sol.t[-1])
+        self.terms: Terms = terms_of(sol.packed, span)
+        variation = Variation(m, self.terms, span, lambda m, packed: assemble(m, packed, span[0]))
+        rows, unknowns = len(sol.packed.ws.phi), sol.packed.coordinates
+        if rows < unknowns:
+            raise ModelError(f"{m.name}: derivatives of a sweep need a driver for every freedom")
+        inverse = Inverse(self.terms, self.along, bool(sol.mobility.redundant_rows))
+        self.variants: list[Variants] = []
+        self.tangents: list[Tangent] = []
+        for number in numbers:
+            variants = variation.of(number)
+            tangent_of = tangent(self.terms, self.along, inverse, variants)
+            far = _extent(self.terms, tangent_of.q) * variants.step
+            if far > FAR:  # near a toggle a small change of a length is a large one of the pose
+                variants = variation.of(number, step=STEP * FAR / far)
+            if sol.states is not None:
+                tangent_of.states = self._states(variants, tangent_of)
+            self.variants.append(variants)
+            self.tangents.append(tangent_of)
+
+    def moved(self, k: int) -> list[Solution]:
+        """The sweep at other values of number k, along its tangent: one for each variant."""
+        return [
+            displaced(self.sol, self.along, self.tangents[k], variant, variant.offset * self.variants[k].step)
+            for variant in self.variants[k].variants
+        ]
+
+    def weights(self, k: int) -> np.ndarray:
+        """(v,) of what is found of :meth:`moved`, for a derivative by number k."""
+        return self.variants[k].weights / self.variants[k].step
+
+    def _states(self, variants: Variants, tangent_of: Tangent) -> np.ndarray:
+        """(T, s) how states of forces change: they are followed along the motion of each variant."""
+
+        def states(variant: Variant) -> np.ndarray:
+            h = variant.offset * variants.step
+            moved = [part + h * slope for part, slope in
+                     ((self.along.q, tangent_of.q), (self.along.v, tangent_of.v), (self.along.a, tangent_of.a))]  # fmt: skip
+            out = states_along(variant.terms.packed, self.along.t, *moved)
+            assert out is not None
+            return out
+
+        return variants.slope(states)
+
+
+def displaced(sol: Solution, along: Along, tangent_of: Tangent, variant: Variant, h: float) -> Solution:
+    """The motion as its tangent has it at another value of a number, h away."""
+    packed, shape = variant.terms.packed, (len(sol.t), -1, 3)
+    q, v, a = along.q + h * tangent_of.q, along.v + h * tangent_of.v, along.a + h * tangent_of.a
+    lam = along.lam + h * tangent_of.lam
+    moved = Along(along.t, q, v, a, lam)
+    compact = variant.terms.rows(moved)[2]
+    states = None if along.states is None or tangent_of.states is None else along.states + h * tangent_of.states
+    more: dict[str, Any] = {}
+    if along.approached is not None:
+        more["approached"] = variant.terms.approaches(moved)
+    return replace(
+        sol,
+        packed=packed,
+        q=q.reshape(shape),
+        v=v.reshape(shape),
+        a=a.reshape(shape),
+        lam=lam,
+        wrench=wrenches(packed, compact, q, lam),
+        drives=packed.drives(along.t),
+        traces=variant.traces,
+        states=states,
+        span=sol.span or (float(sol.t[0]), float(sol.t[-1])),
+        between=None,
+        **more,
+    )
+
+
+def _extent(terms: Terms, q: np.ndarray) -> float:
+    """Largest part of q (T, 3 nb), in sizes and rad."""
+    return float(np.abs(q[:, 3:] / terms.packed.column_scale()).max(initial=0.0))

@@ -1,0 +1,172 @@
+"""How a driven motion and its multipliers change with numbers: its equations differentiated, with one inverse of J.
+
+    J q' = -dPhi/dp        J v' = -d(J v - nu)        J a' = -d(J a - gamma)
+    (J^T - dF/dlam) lam' = d(Q + F + m g - M a - J^T lam) - M a'
+
+d(...) is the change with the number at a held state, and along q' and v' at held numbers; both are differences of
+fourth order of what the kernels evaluate, along a known direction, so that nothing is solved again and any kind of
+joint and force has its derivatives. Joints that repeat others share their loads with the least norm, and that share
+changes too. Source: Haug 1989, ch. 3; Golub, Pereyra, SIAM J. Numer. Anal. 10 (1973) (the pseudo-inverse).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.derivatives.terms import Along, Left, Terms
+from mbsd.derivatives.variants import FOURTH, Variants
+
+REACH = 1e-4
+"""How far a difference along a direction goes: sizes, rad, and parts of the fastest speed."""
+LOOSE = 1e-9
+"""Part of the largest singular value below which one is zero."""
+OPENED = 1e-6
+"""Part of a change that no motion can follow, where redundant joints no longer fit."""
+
+
+@dataclass
+class Tangent:
+    """By a number: how a motion changes with it. (T, 3 nb), (T, m), (T, s)."""
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    lam: np.ndarray
+    states: np.ndarray | None = None
+
+
+class Inverse:
+    """J of a motion, (T, m, n), and its inverse."""
+
+    def __init__(self, terms: Terms, along: Along, redundant: bool) -> None:
+        self.terms, self.redundant = terms, redundant
+        self.compact = terms.rows(along)[2]
+        self.jac = terms.packed.spread(self.compact)
+        self.inverse = np.linalg.pinv(self.jac, rcond=LOOSE) if redundant else np.linalg.inv(self.jac)
+        self.friction = self._friction(along)
+
+    def solved(self, right: np.ndarray, name: str = "") -> np.ndarray:
+        """(T, 3 nb) x of J x = right (T, m). Raises ModelError where joints that repeat others do not let it be."""
+        out = np.zeros((len(right), self.jac.shape[2] + 3))
+        out[:, 3:] = np.einsum("tnm,tm->tn", self.inverse, right)
+        if self.redundant:
+            gap = right - np.einsum("tmn,tn->tm", self.jac, out[:, 3:])
+            if np.abs(gap).max(initial=0.0) > OPENED * np.abs(right).max(initial=0.0):
+                raise ModelError(
+                    f"{self.terms.packed.name}: no derivative by '{name}': joints repeat others, and fit at this value "
+                    "of it alone. Change several numbers together by build=, or free a joint"
+                )
+        return out
+
+    def multipliers(self, load: np.ndarray, share: np.ndarray | None) -> np.ndarray:
+        """(T, m) lam of (J^T - dF/dlam) lam = load (T, 3 nb), and what redundant joints exchange, share (T, m)."""
+        if self.friction is not None:
+            matrix = self.jac.transpose(0, 2, 1) - self.friction
+            return np.linalg.solve(matrix, load[:, 3:, None])[..., 0]
+        lam = np.einsum("tnm,tn->tm", self.inverse, load[:, 3:])
+        if share is not None:
+            lam += share - np.einsum("tnm,tn->tm", self.inverse, np.einsum("tmn,tm->tn", self.jac, share))
+        return lam
+
+    def spread(self, lam: np.ndarray) -> np.ndarray:
+        """(T, 3 nb) J^+ lam; see ``Along.spread``."""
+        out = np.zeros((len(lam), self.jac.shape[2] + 3))
+        out[:, 3:] = np.einsum("tnm,tm->tn", self.inverse, lam)
+        return out
+
+    def _friction(self, along: Along) -> np.ndarray | None:
+        """(T, n, m) of dF/dlam; None where no joint has friction."""
+        loads = self.terms.loads
+        if loads is None or not len(loads.friction):
+            return None
+        if self.redundant:
+            raise ModelError(
+                f"{self.terms.packed.name}: derivatives of friction in joints of which some repeat others are not "
+                "known; leave out the redundant joints"
+            )
+        lam, out = along.lam, np.zeros_like(self.jac.transpose(0, 2, 1))
+        reach = REACH * np.maximum(np.abs(lam).max(axis=1, initial=0.0), 1e-300)
+        for row in range(lam.shape[1]):
+            for offset, weight in zip(*FOURTH, strict=True):
+                moved = lam.copy()
+                moved[:, row] += offset * reach
+                force = self.terms.friction(along, self.compact, moved)
+                out[:, :, row] += weight * force[:, 3:] / reach[:, None]
+        return out
+
+
+def tangent(terms: Terms, along: Along, inverse: Inverse, variants: Variants) -> Tangent:
+    """How the motion changes with a number. Raises ModelError where no motion can follow it."""
+    name = variants.number.name
+    if inverse.redundant:
+        along = along.take(slice(None))
+        along.spread = inverse.spread(along.lam)
+    own = _by_number(terms, along, variants)
+    still = np.zeros_like(along.q)
+    q = inverse.solved(-own.position, name)
+    turned = along_direction(terms, along, q, still).velocity
+    v = inverse.solved(-own.velocity - turned, name)
+    moved = along_direction(terms, along, q, v)
+    a = inverse.solved(-own.acceleration - moved.acceleration, name)
+    load = own.load + moved.load - terms.inertia * a
+    share = None if own.spread is None or moved.spread is None else own.spread + moved.spread
+    return Tangent(q, v, a, inverse.multipliers(load, share))
+
+
+def _by_number(terms: Terms, along: Along, variants: Variants) -> Left:
+    parts = []
+    for variant in variants.variants:
+        own = along
+        if along.approached is not None:
+            own = along.take(slice(None))
+            own.approached = variant.terms.approaches(along)
+        parts.append(variant.terms.left(own))
+    return combined(parts, variants.weights / variants.step)
+
+
+def combined(parts: list[Left], weights: np.ndarray) -> Left:
+    """The sum of parts by weights (k,) or (k, T, 1)."""
+    out = []
+    for columns in zip(*parts, strict=True):
+        out.append(None if columns[0] is None else sum(w * c for w, c in zip(weights, columns, strict=True)))
+    return Left(*out)  # pyright: ignore[reportArgumentType]
+
+
+def along_direction(
+    terms: Terms,
+    along: Along,
+    q: np.ndarray,
+    v: np.ndarray,
+    order: tuple[np.ndarray, np.ndarray] = FOURTH,
+    reach: float = REACH,
+) -> Left:
+    """What is left over, differentiated along a direction q, v (T, 3 nb) of the motion at held numbers."""
+    step = steps_along(terms, along, q, v, reach)
+    offsets, weights = order
+    if along.approached is None:
+        many = along.tiled(len(offsets))
+        shifts = (offsets[:, None] * step).ravel()[:, None]
+        tiled = [np.concatenate([part] * len(offsets)) for part in (q, v)]
+        left = terms.left(
+            many.moved(many.q + shifts * tiled[0], many.v + shifts * tiled[1]),
+        )
+        parts = [Left(*(None if part is None else part.reshape(len(offsets), len(along.t), -1)[k] for part in left))
+                 for k in range(len(offsets))]  # fmt: skip
+    else:
+        parts, step = [], np.full(len(step), step.min())
+        for offset in offsets:
+            moved = along.moved(along.q + offset * step[0] * q, along.v + offset * step[0] * v)
+            moved.approached = terms.approaches(moved)
+            parts.append(terms.left(moved))
+    return combined(parts, weights[:, None, None] / step[:, None])
+
+
+def steps_along(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: float) -> np.ndarray:
+    """(T,) steps of the direction q, v (T, 3 nb) that go as far as ``reach``."""
+    scale = np.concatenate([np.ones(3), terms.packed.column_scale()])
+    fastest = float(np.abs(along.v / scale).max(initial=0.0)) or 1.0
+    far = np.maximum(np.abs(q / scale).max(axis=1), np.abs(v / scale).max(axis=1) / fastest)
+    return reach / np.where(far > 0.0, far, 1.0)

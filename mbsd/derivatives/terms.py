@@ -1,0 +1,146 @@
+"""What the equations of a known motion leave over, at other states and other numbers than those that solve them.
+
+    Phi,   J v - nu,   J a - gamma,   Q + F(lam) + m g - M a - J^T lam        a and lam held
+
+They are zero along the motion. How they change with a number, and along a direction of the motion, is all that a
+derivative needs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from mbsd.arrays.approaches import approached_along
+from mbsd.arrays.curve_branches import tabulate_along
+from mbsd.arrays.friction_along import friction_along
+from mbsd.arrays.laws import compiled_laws
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.reactions import generalised, times_compact
+from mbsd.dynamics.rows.joint_sticks import standing
+from mbsd.equations.laws import Laws
+from mbsd.equations.loads import Loads
+
+
+@dataclass
+class Along:
+    """A motion at T times."""
+
+    t: np.ndarray
+    q: np.ndarray
+    """(T, 3 nb), as v and a."""
+    v: np.ndarray
+    a: np.ndarray
+    lam: np.ndarray
+    """(T, m)"""
+    states: np.ndarray | None = None
+    """(T, s) of forces (SI)."""
+    approached: np.ndarray | None = None
+    """(T, n) of contacts that remember."""
+    spread: np.ndarray | None = None
+    """(T, 3 nb) load whose work the rows of redundant joints share; see tangents.py."""
+    held: np.ndarray | None = None
+    """(T, m) rows that hold, of a simulation."""
+
+    def moved(self, q: np.ndarray, v: np.ndarray | None = None) -> Along:
+        """The same but for positions and velocities."""
+        return replace(self, q=q, v=self.v if v is None else v)
+
+    def tiled(self, times: int) -> Along:
+        """One after the other, so many times."""
+        parts = {key: np.concatenate([part] * times) for key, part in self.__dict__.items() if part is not None}
+        return replace(self, **parts)
+
+    def take(self, at: slice | np.ndarray) -> Along:
+        """Some of its times."""
+        return replace(self, **{key: part[at] for key, part in self.__dict__.items() if part is not None})
+
+
+class Left(NamedTuple):
+    """What is left over."""
+
+    position: np.ndarray
+    """(T, m) Phi."""
+    velocity: np.ndarray
+    """(T, m) J v - nu."""
+    acceleration: np.ndarray
+    """(T, m) J a - gamma."""
+    load: np.ndarray
+    """(T, 3 nb) Q + F + m g - M a - J^T lam; ground's mean nothing."""
+    spread: np.ndarray | None
+    """(T, m) J w of ``Along.spread``, where that is given."""
+
+
+@dataclass
+class Terms:
+    """The equations of a mechanism with one set of numbers."""
+
+    packed: Packed
+    laws: Laws | None
+    loads: Loads | None
+    inertia: np.ndarray
+    weight: np.ndarray
+    """(3 nb,)"""
+
+    def left(self, along: Along) -> Left:
+        """Along a motion."""
+        packed = self.packed
+        drives = packed.drives(along.t)
+        phi, gamma, compact = self.rows(along, drives)
+        rate = times_compact(packed, compact, along.v)
+        rate[:, packed.driver_rows : packed.contact_rows] -= drives[:, 1:, 1]
+        bend = times_compact(packed, compact, along.a) - gamma
+        load = self.applied(along) + self.weight - self.inertia * along.a
+        load -= generalised(packed, compact, along.lam)
+        if self.loads is not None and len(self.loads.friction):
+            load += self.friction(along, compact, along.lam)
+        spread = None if along.spread is None else times_compact(packed, compact, along.spread)
+        return Left(phi, rate, bend, load, spread)
+
+    def rows(self, along: Along, drives: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Phi and gamma (T, m), compact J (T, m, 6)."""
+        packed, count, rows = self.packed, len(along.t), len(self.packed.ws.phi)
+        phi, gamma = np.zeros((2, count, rows))
+        compact = np.zeros((count, rows, 6))
+        q, v = np.ascontiguousarray(along.q), np.ascontiguousarray(along.v)
+        tabulate_along(packed, packed.drives(along.t) if drives is None else drives, q, v, phi, compact, gamma)
+        return phi, gamma, compact
+
+    def applied(self, along: Along) -> np.ndarray:
+        """(T, 3 nb) loads but weight and friction of joints."""
+        if self.loads is None or self.laws is None:
+            return np.zeros_like(along.q)
+        q, v = np.ascontiguousarray(along.q), np.ascontiguousarray(along.v)
+        return loads_along(self.packed, self.loads, self.laws, along.t, q, v, along.approached, along.states)
+
+    def friction(self, along: Along, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
+        """(T, 3 nb) friction of joints under multipliers lam (T, m)."""
+        out = np.zeros_like(along.q)
+        if self.loads is None or not len(self.loads.friction):
+            return out
+        if along.held is None:
+            return friction_along(self.packed, self.loads, along.q, along.v, compact, lam)
+        for loads, at in standing(self.loads, along.held):
+            out[at] = friction_along(self.packed, loads, along.q[at], along.v[at], compact[at], lam[at])
+        return out
+
+    def approaches(self, along: Along) -> np.ndarray | None:
+        """(T, n) how fast contacts approached along a driven motion; None where none asks."""
+        if self.loads is None or self.laws is None:
+            return None
+        return approached_along(self.packed, self.loads, self.laws, along.t, along.q, along.v)
+
+
+def terms_of(packed: Packed, span: tuple[float, float], laws: Laws | None = None) -> Terms:
+    """The equations of a packed mechanism over ``span`` (s); ``laws``: those that are known already."""
+    system = packed.system
+    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
+    weight = np.zeros((len(system.mass), 3))
+    weight[:, :2] = system.mass[:, None] * system.gravity
+    if not packed.forces:
+        return Terms(packed, None, None, inertia, weight.ravel())
+    return Terms(packed, laws or compiled_laws(packed, *span), pack_loads(packed), inertia, weight.ravel())

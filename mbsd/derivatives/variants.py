@@ -1,0 +1,150 @@
+"""A mechanism with other values of a number, packed beside the one that moves: nothing is solved for them.
+
+A derivative by a number at a held state is a difference between these packings. Their steps are so short that what is
+left out is lost in rounding, and where a number cannot go one way (a mass below zero) all of them go the other.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed, pack
+from mbsd.base.errors import AssemblyError, ModelError
+from mbsd.derivatives.numbers import Number, with_value
+from mbsd.derivatives.terms import Terms, terms_of
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Model
+
+STEP = 1e-4
+"""Step of a number, as part of itself, or of the size of the mechanism, or of 1."""
+FOURTH = (np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12)
+"""Offsets and weights of the central difference of fourth order."""
+SECOND = (np.array([-1.0, 1.0]), np.array([-0.5, 0.5]))
+AHEAD = (np.arange(5.0), np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12)
+"""The same to one side."""
+LENGTHS = ("x", "y", "length", "free_length", "radius", "radius_i", "radius_j")
+
+
+@dataclass
+class Variant:
+    """One number at one other value."""
+
+    offset: float
+    """In steps of the number."""
+    terms: Terms
+    traces: dict[str, Any]
+    same_places: bool
+    """Whether all places, lengths, angles and laws of drivers are those of the motion."""
+    same_masses: bool
+    start: Any = None
+    """q, v (3 nb,) at the start, where that changes."""
+
+
+@dataclass
+class Variants:
+    """All that a number was tried at."""
+
+    number: Number
+    step: float
+    weights: np.ndarray
+    """(k,) of the variants, for a derivative by the number: / step."""
+    variants: list[Variant]
+
+    def slope(self, of: Callable[[Variant], np.ndarray]) -> np.ndarray:
+        """The derivative by the number of what ``of`` gives of a variant."""
+        return sum(w * of(v) for w, v in zip(self.weights, self.variants, strict=True)) / self.step  # pyright: ignore
+
+
+Close = Callable[[Model, Packed], Any]
+PLACES = ("marker_arm", "marker_axis", "angle_offset", "distance_length", "numbers")
+
+
+class Variation:
+    """Makes variants of a mechanism ``m`` whose motion is that of ``base``.
+
+    ``close`` closes the start of a variant, where constants follow from it, or with ``starts`` what moves from there.
+    """
+
+    def __init__(
+        self, m: Model, base: Terms, span: tuple[float, float], close: Close, contacts: list[Joint] | None = None,
+        starts: bool = False,
+    ) -> None:  # fmt: skip
+        self.work = copy.deepcopy(m)
+        self.base, self.span, self.close, self.contacts, self.starts = base, span, close, contacts or [], starts
+        self.given = repr((self.work.starts, self.work.velocities))
+        self.first = pack(self.work, self._contacts(self.work))
+        self.motions, self.laws = list(self.first.motions), _laws_of_forces(self.first)
+
+    def of(self, number: Number, order: tuple[np.ndarray, np.ndarray] = FOURTH, step: float = STEP) -> Variants:
+        """The variants of a number. Raises ModelError where it cannot change."""
+        size = number.value or (self.base.packed.size if number.name.rpartition(".")[2] in LENGTHS else 1.0)
+        h = step * abs(size)
+        first: ModelError | None = None
+        for (offsets, weights), sign in ((order, 1.0), (AHEAD, 1.0), (AHEAD, -1.0)):
+            try:
+                made = [self._variant(number, offset * sign, h) for offset in offsets]
+                return Variants(number, sign * h, weights, made)
+            except (ModelError, AssemblyError) as error:
+                first = first or (error if isinstance(error, ModelError) else ModelError(str(error)))
+        raise ModelError(f"{self.base.packed.name}: no derivative by '{number.name}': {first}") from first
+
+    def _variant(self, number: Number, offset: float, h: float) -> Variant:
+        with with_value(self.work, number, number.value + offset * h) as m:
+            packed, lawful = self._packed(m)
+            if packed.first_row.tolist() != self.first.first_row.tolist():
+                raise ModelError(f"{m.name}: '{number.name}' changes which joints there are")
+            first = self.first
+            places = all(np.array_equal(getattr(packed.system, k), getattr(first.system, k)) for k in PLACES)
+            places = places and np.array_equal(packed.com, first.com) and _same(packed.motions, self.base.packed.motions)
+            masses = all(np.array_equal(getattr(packed.system, k), getattr(first.system, k)) for k in ("mass", "inertia"))
+            moving = bool(self.work.velocities) or bool(self.base.packed.motions)
+            begins = self.starts and not (places and (masses or not moving) and self._starts_alike(m))
+            start = self._decide(m, packed, begins)
+            terms = terms_of(packed, self.span, self.base.laws if lawful else None)
+            return Variant(offset, terms, dict(m.traces), places, masses, start)
+
+    def _starts_alike(self, m: Model) -> bool:
+        return repr((m.starts, m.velocities)) == self.given
+
+    def _packed(self, m: Model) -> tuple[Packed, bool]:
+        """The mechanism packed, and whether its laws are those of the motion."""
+        packed = pack(m, self._contacts(m))
+        same = _same(packed.motions, self.motions)
+        if same:
+            packed.motions[:] = self.base.packed.motions
+        else:
+            packed.settle_laws(*self.span)
+        return packed, same and _same(_laws_of_forces(packed), self.laws)
+
+    def _contacts(self, m: Model) -> list[Joint]:
+        return [m.contacts.get(joint.name) or self._limit(m, joint) for joint in self.contacts]
+
+    @staticmethod
+    def _limit(m: Model, joint: Joint) -> Joint:
+        """A stop at a limit of a joint, between the markers that this has in ``m``."""
+        limited = m.joints[joint.name.rpartition(" ")[0]]
+        return replace(joint, i=limited.i, j=limited.j)
+
+    def _decide(self, m: Model, packed: Packed, begins: bool) -> Any:
+        """Turns of angles as in the motion; what rolls, as the start of the variant says. The start, if it is found."""
+        known, mine = self.base.packed.system.angle_offset, packed.system.angle_offset
+        own, start = self.first.system.angle_offset, None
+        turns = np.round((known - own) / math.tau) * math.tau
+        if packed.specials.phased or begins:
+            start = self.close(m, packed)
+        packed.system = packed.system.changed(angle_offset=mine + turns)
+        return start
+
+
+def _laws_of_forces(packed: Packed) -> list[Any]:
+    return [law for force in packed.forces for law in force.laws.values()]
+
+
+def _same(laws: list[Any], others: list[Any]) -> bool:
+    return len(laws) == len(others) and all(a is b for a, b in zip(laws, others, strict=True))

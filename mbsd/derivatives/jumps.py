@@ -37,6 +37,18 @@ STILL = 1e-9
 
 
 @dataclass
+class Plain:
+    """An impact of one contact without friction."""
+
+    joint: int
+    row: int
+    rows: np.ndarray
+    """Independent rows that hold."""
+    restitution: float
+    """Zero where it does not bounce."""
+
+
+@dataclass
 class Jump:
     """One event, between row ``before`` of a simulation and the next."""
 
@@ -51,41 +63,40 @@ class Jump:
     def across(self, made: list[Tangent]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """q', v' (P, 3 nb) after it, and how its time changes (P,) (s by the numbers)."""
         k, along = self.before, self.along
-        after = min(k + 1, len(along.t) - 1) if not self.ends else k
-        q, v, moved = [], [], np.zeros(len(made))
-        for p, (tangent, variants) in enumerate(zip(made, self.whole.variants, strict=True)):
-            dq, dv = tangent.q[-1], tangent.v[-1]
-            moved[p] = self._time(dq, dv, variants)
-            total_q, total_v = dq + along.v[k] * moved[p], dv + along.a[k] * moved[p]
-            if self.impacts:
-                total_v = self._struck(total_q, total_v, moved[p], variants)
-            q.append(total_q - along.v[after] * moved[p])
-            v.append(total_v - along.a[after] * moved[p])
-        return np.array(q), np.array(v), moved
+        after = k if self.ends else k + 1
+        dq, dv = (np.array([getattr(tangent, key)[-1] for tangent in made]) for key in ("q", "v"))
+        moved = self._times(dq, dv)[:, None]
+        total_q, total_v = dq + along.v[k] * moved, dv + along.a[k] * moved
+        if self.impacts:
+            total_v = self._struck(total_q, total_v, moved[:, 0])
+        return total_q - along.v[after] * moved, total_v - along.a[after] * moved, moved[:, 0]
 
-    def _time(self, dq: np.ndarray, dv: np.ndarray, variants: Variants) -> float:
-        """How the time of the event changes with a number."""
+    def _times(self, dq: np.ndarray, dv: np.ndarray) -> np.ndarray:
+        """(P,) how the time of the event changes with each number."""
         what, which = self.guard
+        every = self.whole.variants
         if what == "none":
-            return 0.0
-        k = slice(self.before, self.before + 1)
-        here = self.along.take(k)
+            return np.zeros(len(every))
         if what == "user":
-            return self._user_time(which, dq, dv, variants)
-        terms = self.whole.terms
+            return np.array([self._user_time(which, *one, v) for *one, v in zip(dq, dv, every, strict=True)])
+        terms, here = self.whole.terms, self.along.take(slice(self.before, self.before + 1))
+        row = terms.packed.spread(terms.rows(here)[2])[0, which]
         part = "position" if what == "gap" else "velocity"
-        change = float(getattr(along_direction(terms, here, dq[None], dv[None], SECOND, 1e-5), part)[0, which])
-        if what == "rate":  # a difference along q, v holds the part of v as well: J v is linear in it
-            assert terms is not None
-        change += float(variants.slope(lambda v: getattr(v.terms.left(here), part))[0, which])
-        pace = float(terms.left(here).velocity[0, which] if what == "gap" else terms.left(here).acceleration[0, which])
+        if what == "gap":
+            change, pace = dq[:, 3:] @ row, float(terms.left(here).velocity[0, which])
+        else:
+            pace = float(terms.left(here).acceleration[0, which])
+            change = np.array([along_direction(terms, here, q[None], v[None], SECOND, 1e-5).velocity[0, which]
+                               for q, v in zip(dq, dv, strict=True)])  # fmt: skip
+        own = [0.0 if variants.variants[0].same_places else
+               float(variants.slope(lambda v: getattr(v.terms.left(here), part))[0, which]) for variants in every]  # fmt: skip
         fastest = float(np.abs(self.along.v).max()) or 1.0
         if abs(pace) <= GRAZING * fastest:
             raise ModelError(
                 f"{terms.packed.name}: at t = {self.along.t[self.before]:.6g} s an event is met without speed, so that "
                 "a small change may leave it out: there is no derivative beyond it"
             )
-        return -change / pace
+        return -(change + np.array(own)) / pace
 
     def _user_time(self, event: Any, dq: np.ndarray, dv: np.ndarray, variants: Variants) -> float:
         along, k, packed = self.along, self.before, self.whole.terms.packed
@@ -106,30 +117,81 @@ class Jump:
 
     # -- impacts -----------------------------------------------------------------------------------------------------
 
-    def _struck(self, dq: np.ndarray, dv: np.ndarray, dt: float, variants: Variants) -> np.ndarray:
-        """(3 nb,) how velocities after the impact change."""
+    def _struck(self, dq: np.ndarray, dv: np.ndarray, dt: np.ndarray) -> np.ndarray:
+        """(P, 3 nb) how velocities after the impact change."""
         along, k, whole = self.along, self.before, self.whole
         fastest = float(np.abs(along.v).max()) or 1.0
-        far = max(float(np.abs(dq).max()) / whole.terms.packed.size, float(np.abs(dv).max()) / fastest, 1e-300)
-        h = REACH / far
-        t, q, v = float(along.t[k]), along.q[k], along.v[k]
-        ready = whole.ready()
-        out = (
-            self._after(ready, t + h * dt, q + h * dq, v + h * dv)
-            - self._after(ready, t - h * dt, q - h * dq, v - h * dv)
-        ) / (2 * h)
-        first = variants.variants[0]
-        if first.same_places and first.same_masses and not self._law_changes(variants):
-            return out
-        total = np.zeros_like(out)
+        far = np.maximum(np.abs(dq).max(axis=1) / whole.terms.packed.size, np.abs(dv).max(axis=1) / fastest)
+        h = (REACH / np.where(far > 0.0, far, 1.0))[:, None]
+        t, q, v = along.t[k] + 0.0 * dt, along.q[k], along.v[k]
+        plain = self._plain()
+        both = []
+        for sign in (1.0, -1.0):
+            state = t + sign * h[:, 0] * dt, q + sign * h * dq, v + sign * h * dv
+            if plain is None:
+                both.append(np.array([self._after(whole.ready(), *one) for one in zip(*state, strict=True)]))
+            else:
+                both.append(self._bounced(whole.terms, plain, *state, plain.restitution))
+        out = (both[0] - both[1]) / (2 * h)
+        for p, variants in enumerate(whole.variants):
+            first = variants.variants[0]
+            if not (first.same_places and first.same_masses) or self._law_changes(variants):
+                out[p] += self._by_number(variants, plain, t[:1], q[None], v[None])
+        return out
+
+    def _by_number(self, variants: Variants, plain: Plain | None, t: Any, q: Any, v: Any) -> np.ndarray:
+        """(3 nb,) the same by a number at a held state."""
+        whole, total = self.whole, np.zeros(q.shape[1])
         for variant, weight in zip(variants.variants, variants.weights, strict=True):
+            if plain is not None:
+                own = float(variant.terms.packed.joints[plain.joint].params.get("restitution", 0.0))
+                bounce = own if plain.restitution else 0.0
+                total += weight * self._bounced(variant.terms, plain, t, q, v, bounce)[0]
+                continue
             value = variants.number.value + variant.offset * variants.step
             with with_value(whole.variation.work, variants.number, value) as m:
                 other = prepare_dynamics(m, *whole.span, contacts=True)
             take = other.packed
             take.system = take.system.changed(angle_offset=variant.terms.packed.system.angle_offset)
-            total += weight * self._after(other, t, q, v)
-        return out + total / variants.step
+            total += weight * self._after(other, float(t[0]), q[0], v[0])
+        return total / variants.step
+
+    def _plain(self) -> Plain | None:
+        """What the law needs to know, where a single contact without friction is struck."""
+        packed = self.whole.terms.packed
+        assert self.along.held is not None
+        held = np.flatnonzero(self.along.held[self.before])
+        if len(set(self.impacts)) != 1 or (self.whole.terms.inertia[3:] == 0.0).any() or (held >= packed.contact_rows).any():
+            return None
+        names = [joint.name for joint in packed.joints]
+        joint = names.index(self.impacts[0])
+        params, row = packed.joints[joint].params, int(packed.first_row[joint])
+        if params.get("friction", 0.0):
+            return None
+        here = self.along.take(slice(self.before, self.before + 2))
+        rates = self.whole.terms.left(here).velocity[:, row]
+        bounced = rates[1] > 0.5 * params.get("restitution", 0.0) * abs(rates[0])
+        rows = self.whole.stretch_rows(self.along, self.before)
+        return Plain(joint, row, rows, float(params.get("restitution", 0.0)) if bounced else 0.0)
+
+    def _bounced(
+        self, terms: Any, plain: Plain, t: np.ndarray, q: np.ndarray, v: np.ndarray, restitution: float
+    ) -> np.ndarray:
+        """(S, 3 nb) velocities after, v - a (1 + e) J v / (J a), a: what an impulse along J makes of velocities."""
+        state = Along(t, q, v, v, np.zeros((len(t), len(terms.packed.ws.phi))))
+        jac = terms.packed.spread(terms.rows(state)[2])
+        rows, n, count = jac[:, plain.rows], jac.shape[2], len(plain.rows)
+        matrix = np.zeros((len(t), n + count, n + count))
+        matrix[:, :n, :n] = np.diag(terms.inertia[3:])
+        matrix[:, :n, n:], matrix[:, n:, :n] = rows.transpose(0, 2, 1), rows
+        push = np.zeros((len(t), n + count, 1))
+        push[:, :n, 0] = jac[:, plain.row]
+        answer = np.linalg.solve(matrix, push)[:, :n, 0]
+        rate = (jac[:, plain.row] * v[:, 3:]).sum(axis=1)
+        size = (1.0 + restitution) * rate / (jac[:, plain.row] * answer).sum(axis=1)
+        out = v.copy()
+        out[:, 3:] -= size[:, None] * answer
+        return out
 
     def _law_changes(self, variants: Variants) -> bool:
         mine, other = self.whole.terms.packed, variants.variants[0].terms.packed

@@ -137,16 +137,21 @@ class SimulationTangents:
         return FreeTangents(self.terms, stretch, self.variants).carry(q, v)
 
     def _stretch(self, along: Along) -> Stretch:
+        assert along.held is not None
+        return Stretch(along, self.stretch_rows(along, 0), self._sliding(along.held[0], along.lam))
+
+    def stretch_rows(self, along: Along, k: int) -> np.ndarray:
+        """Independent rows among those that hold at node k."""
         packed = self.terms.packed
         assert along.held is not None
-        held = along.held[0]
-        rows = np.flatnonzero(held)
-        jac = packed.spread(self.terms.rows(along.take(slice(0, 1)))[2])[0]
+        rows = np.flatnonzero(along.held[k])
+        if not len(rows):
+            return rows
+        jac = packed.spread(self.terms.rows(along.take(slice(k, k + 1)))[2])[0]
         scaled = jac * packed.row_scale()[:, None] * packed.column_scale()
-        independent = rows[np.sort(np.array(independent_rows(scaled[rows]), np.int64))] if len(rows) else rows
-        if len(independent) < len(rows):
-            self.redundant = True
-        return Stretch(along, independent, self._sliding(held, along.lam))
+        independent = rows[np.sort(np.array(independent_rows(scaled[rows]), np.int64))]
+        self.redundant = self.redundant or len(independent) < len(rows)
+        return independent
 
     def _sliding(self, held: np.ndarray, lam: np.ndarray) -> list[tuple[int, int]]:
         packed, out = self.terms.packed, []

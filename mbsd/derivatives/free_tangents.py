@@ -11,13 +11,14 @@ stuck, whatever that is. Source: Haug, Ehle, Mech. Mach. Theory 17 (1982); Wehag
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from mbsd.derivatives.linear_motion import carried
-from mbsd.derivatives.tangents import LOOSE, Tangent, along_direction, combined
+from mbsd.derivatives.tangents import LOOSE, along_directions
 from mbsd.derivatives.terms import Along, Left, Terms
-from mbsd.derivatives.variants import SECOND, Variants
+from mbsd.derivatives.variants import Variants
 
 REACH = 1e-5
 """How far differences along a direction go: sizes, rad, parts of the fastest speed."""
@@ -36,34 +37,56 @@ class Stretch:
     """Rows of sliding and of the gap whose normal force makes their friction."""
 
 
-class FreeTangents:
-    """Tangents along one stretch, from q' and v' (P, 3 nb) at its start."""
+@dataclass
+class Tangents:
+    """By P numbers: how a motion changes with them. (P, T, 3 nb), (P, T, m)."""
 
-    def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants]) -> None:
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    lam: np.ndarray
+
+    def parts(self) -> tuple[np.ndarray, ...]:
+        """All of it."""
+        return self.q, self.v, self.a, self.lam
+
+    def take(self, rows: Any) -> Tangents:
+        """Some of the times."""
+        return Tangents(*(part[:, rows] for part in self.parts()))
+
+
+def joined(parts: list[Tangents]) -> Tangents:
+    """One stretch after the other."""
+    return Tangents(*(np.concatenate(own, axis=1) for own in zip(*(part.parts() for part in parts), strict=True)))
+
+
+class FreeTangents:
+    """Tangents along one stretch, from q' and v' (P, 3 nb) at its start.
+
+    ``own``: how the equations change with each number at the held motion.
+    """
+
+    def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants], own: list[Left]) -> None:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
-        self.dependent = stretch.dependent
+        self.dependent, self.own = stretch.dependent, own
         packed = terms.packed
         self.compact = terms.rows(self.along)[2]
         self.scale = packed.column_scale()
         self.jac = packed.spread(self.compact)
         self.held = self.jac[:, self.rows]
 
-    def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[list[Tangent], float]:
-        """Tangents at all nodes by each number, and the largest error of the integration, as part of the largest."""
-        count, first = len(self.along.t), 0
-        parts: list[list[Tangent]] = [[] for _ in self.every]
-        worst = 0.0
+    def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[Tangents, float]:
+        """Tangents at all nodes, and the largest error of the integration, as part of the largest."""
+        count, first, worst = len(self.along.t), 0, 0.0
+        parts: list[Tangents] = []
         while first < count - 1:
             basis, last = self._basis(first)
-            piece = _Piece(self, first, last, basis)
-            made, error = piece.carry(q, v)
+            made, error = _Piece(self, first, last, basis).carry(q, v)
             worst = max(worst, error)
-            skip = 0 if first == 0 else 1
-            for part, own in zip(parts, made, strict=True):
-                part.append(_taken(own, slice(skip, None)))
-            q, v = (np.stack([getattr(own, key)[-1] for own in made]) for key in ("q", "v"))
+            q, v = made.q[:, -1], made.v[:, -1]
+            parts.append(made if first == 0 else made.take(slice(1, None)))
             first = last
-        return [_joined(part) for part in parts], worst
+        return joined(parts), worst
 
     def _basis(self, first: int) -> tuple[np.ndarray, int]:
         """Z (f, n) at node ``first``, and the last node, an even number of nodes away, to which it serves."""
@@ -92,6 +115,7 @@ class _Piece:
         at = slice(first, last + 1)
         self.terms, self.every, self.rows, self.dependent = whole.terms, whole.every, whole.rows, whole.dependent
         self.along, self.basis = whole.along.take(at), basis
+        self.own = [Left(*(None if part is None else part[at] for part in own)) for own in whole.own]
         self.jac, self.held = whole.jac[at], whole.held[at]
         count, n = len(self.along.t), self.jac.shape[2]
         square = np.concatenate([self.held, np.broadcast_to(basis, (count, *basis.shape))], axis=1)
@@ -122,85 +146,90 @@ class _Piece:
 
     # -- derivatives ------------------------------------------------------------------------------------------------
 
-    def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[list[Tangent], float]:
+    def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[Tangents, float]:
         """See :meth:`FreeTangents.carry`."""
-        f, count = self.f, len(self.along.t)
-        a = np.zeros((count, 2 * f, 2 * f))
-        a[:, :f, f:] = np.eye(f)
-        zero = np.zeros((count, self.n))
-        motions: list[tuple[np.ndarray, ...]] = []
-        for k in range(2 * f):
-            along = self.free[:, :, k % f]
-            speeds = self._speeds(along) if k < f else along
-            positions = along if k < f else zero
-            motions.append((positions, speeds, *self._accelerations(self._change(positions, speeds))))
-            a[:, f:, k] = motions[-1][2] @ self.basis.T
-        own = [self._by_number(variants, q[p]) for p, variants in enumerate(self.every)]
-        b = np.zeros((count, 2 * f, len(own)))
-        for p, part in enumerate(own):
-            b[:, f:, p] = part[2] @ self.basis.T
+        f, numbers, (count, n) = self.f, len(self.own), self.jac.shape[::2]
+        free = np.moveaxis(self.free, 2, 0)  # (f, T, n)
+        position, velocity, given = self._by_numbers(q)
+        turned = self._speeds(np.concatenate([free, position]))
+        none = np.zeros_like(free)
+        positions = np.concatenate([free, none, position])
+        velocities = np.concatenate([turned[:f], free, velocity + turned[f:]])
+        change = self._change(positions, velocities)
+        bend, load = change.acceleration, change.load
+        bend[2 * f :] += given.acceleration
+        load[2 * f :] += given.load
+        rubbed = [self._rubbed(variants) for variants in self.every]
+        for p, part in enumerate(rubbed):
+            if part is not None:
+                load[2 * f + p, :, 3:] -= np.einsum("tmn,tm->tn", self.jac, part)
+        a, lam = self._accelerations(bend[..., self.rows], load[..., 3:])
+        for p, part in enumerate(rubbed):
+            if part is not None:
+                lam[2 * f + p] += part
+        matrix = np.zeros((count, 2 * f, 2 * f))
+        matrix[:, :f, f:] = np.eye(f)
+        bent = a @ self.basis.T  # (D, T, f)
+        matrix[:, f:] = bent[: 2 * f].transpose(1, 2, 0)
+        right = np.zeros((count, 2 * f, numbers))
+        right[:, f:] = bent[2 * f :].transpose(1, 2, 0)
         begun = np.concatenate([self.basis @ q[:, 3:].T, self.basis @ v[:, 3:].T])
-        y, error = carried(self.along.t, a, b, begun)
+        y, error = carried(self.along.t, matrix, right, begun)
         out = []
-        for p, part in enumerate(own):
-            total = [own_part + sum(y[:, k, p, None] * motions[k][c] for k in range(2 * f))
-                     for c, own_part in enumerate(part)]  # fmt: skip
-            out.append(Tangent(*(_wide(x) for x in total[:3]), total[3]))
-        return out, error
+        for part in (positions, velocities, a, lam):
+            out.append(part[2 * f :] + np.einsum("tkp,ktn->ptn", y, part[: 2 * f]))
+        return Tangents(*(_wide(part) for part in out[:3]), out[3]), error
 
     def _change(self, q: np.ndarray, v: np.ndarray) -> Left:
-        """Along a direction (T, n)."""
-        return along_direction(self.terms, self.along, _wide(q), _wide(v), SECOND, REACH)
+        """Along directions (D, T, n)."""
+        return along_directions(self.terms, self.along, _wide(q), _wide(v), REACH)
 
     def _speeds(self, q: np.ndarray) -> np.ndarray:
-        """(T, n) v' that belongs to q' alone: Z v' = 0."""
-        return -np.einsum("tnr,tr->tn", self.fixed, self._change(q, np.zeros_like(q)).velocity[:, self.rows])
+        """(D, T, n) v' that belongs to q' alone: Z v' = 0."""
+        out = np.zeros_like(q)
+        some = q.any(axis=(1, 2))
+        if some.any() and len(self.rows):
+            change = self._change(q[some], np.zeros_like(q[some]))
+            out[some] = -np.einsum("tnr,dtr->dtn", self.fixed, change.velocity[..., self.rows])
+        return out
 
-    def _accelerations(self, left: Left) -> tuple[np.ndarray, np.ndarray]:
-        """a' (T, n) and lam' (T, m) where the equations change by ``left``."""
-        load, lam = left.load[:, 3:], np.zeros_like(self.along.lam)
-        fixed = -np.einsum("tnr,tr->tn", self.fixed, left.acceleration[:, self.rows])
+    def _accelerations(self, bend: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """a' (D, T, n) and lam' (D, T, m) where the equations change by ``bend`` (D, T, r) and ``load`` (D, T, n)."""
+        lam = np.zeros((*load.shape[:2], self.jac.shape[1]))
         if self.effort is not None:
             r = len(self.rows)
-            matrix = np.zeros((len(load), self.n + r, self.n + r))
+            matrix = np.zeros((load.shape[1], self.n + r, self.n + r))
             matrix[:, : self.n, : self.n] = np.diag(self.inertia)
             matrix[:, : self.n, self.n :] = self.effort
             matrix[:, self.n :, : self.n] = self.held
-            right = np.concatenate([load, -left.acceleration[:, self.rows]], axis=1)
-            solved = np.linalg.solve(matrix, right[..., None])[..., 0]
-            lam[:, self.rows] = solved[:, self.n :]
+            right = np.concatenate([load, -bend], axis=2).transpose(1, 2, 0)
+            solved = np.linalg.solve(matrix, right).transpose(2, 0, 1)
+            lam[..., self.rows] = solved[..., self.n :]
             for way, gap in self.dependent:
-                lam[:, way] = _ratio(self.along, way, gap) * lam[:, gap]
-            return solved[:, : self.n], lam
-        wanted = np.einsum("tnf,tn->tf", self.free, load - self.inertia * fixed)
-        a = fixed + np.einsum("tnf,tf->tn", self.free, np.linalg.solve(self.mass, wanted[..., None])[..., 0])
-        lam[:, self.rows] = np.einsum("tnr,tn->tr", self.fixed, load - self.inertia * a)
+                lam[..., way] = _ratio(self.along, way, gap) * lam[..., gap]
+            return solved[..., : self.n], lam
+        fixed = -np.einsum("tnr,dtr->dtn", self.fixed, bend)
+        wanted = np.einsum("tnf,dtn->tfd", self.free, load - self.inertia * fixed)
+        a = fixed + np.einsum("tnf,tfd->dtn", self.free, np.linalg.solve(self.mass, wanted))
+        lam[..., self.rows] = np.einsum("tnr,dtn->dtr", self.fixed, load - self.inertia * a)
         return a, lam
 
-    def _by_number(self, variants: Variants, begun: np.ndarray) -> tuple[np.ndarray, ...]:
-        """q', v', a', lam' by a number with s and s' at zero; ``begun`` (3 nb,) is q' at the first node."""
-        parts = [variant.terms.left(self.along) for variant in variants.variants]
-        own = combined(parts, variants.weights / variants.step)
-        position = own.position[:, self.rows]
-        opened = self.held[0] @ begun[3:] + position[0]  # of what sticks: where it stuck changes too
-        q = np.einsum("tnr,tr->tn", self.fixed, opened - position)
-        v = -np.einsum("tnr,tr->tn", self.fixed, own.velocity[:, self.rows])
-        left = own
-        if q.any():
-            v += self._speeds(q)
-        if q.any() or v.any():
-            change = self._change(q, v)
-            left = Left(own.position, own.velocity, own.acceleration + change.acceleration,
-                        own.load + change.load, None)  # fmt: skip
-        rubbed = self._rubbed(variants)
-        if not rubbed.any():
-            return (q, v, *self._accelerations(left))
-        left.load[:, 3:] -= np.einsum("tmn,tm->tn", self.jac, rubbed)
-        a, lam = self._accelerations(left)
-        return q, v, a, lam + rubbed
+    def _by_numbers(self, begun: np.ndarray) -> tuple[np.ndarray, np.ndarray, Left]:
+        """q', v' (P, T, n) by numbers with s and s' at zero, and how the equations change with the numbers alone.
 
-    def _rubbed(self, variants: Variants) -> np.ndarray:
-        """(T, m) how the friction of sliding contacts changes with their coefficients."""
+        ``begun`` (P, 3 nb) is q' at the first node.
+        """
+        own = Left(*(np.stack(parts) for parts in list(zip(*self.own, strict=True))[:4]), None)
+        position = own.position[..., self.rows]
+        opened = begun[:, 3:] @ self.held[0].T + position[:, 0]  # of what sticks: where it stuck changes too
+        q = np.einsum("tnr,ptr->ptn", self.fixed, opened[:, None] - position)
+        v = -np.einsum("tnr,ptr->ptn", self.fixed, own.velocity[..., self.rows])
+        return q, v, own
+
+    def _rubbed(self, variants: Variants) -> np.ndarray | None:
+        """(T, m) how the friction of sliding contacts changes with their coefficients; None where it does not."""
+        if not self.dependent:
+            return None
         out, packed = np.zeros_like(self.along.lam), self.terms.packed
         for way, _ in self.dependent:
             number = packed.joints.index(packed.joint_of_row(way))
@@ -215,13 +244,5 @@ def _ratio(along: Along, way: int, gap: int) -> np.ndarray:
 
 
 def _wide(x: np.ndarray) -> np.ndarray:
-    """(T, 3 nb) with ground's zeros before (T, n)."""
-    return np.concatenate([np.zeros((len(x), 3)), x], axis=1)
-
-
-def _taken(tangent: Tangent, at: slice) -> Tangent:
-    return Tangent(tangent.q[at], tangent.v[at], tangent.a[at], tangent.lam[at])
-
-
-def _joined(parts: list[Tangent]) -> Tangent:
-    return Tangent(*(np.concatenate([getattr(part, key) for part in parts]) for key in ("q", "v", "a", "lam")))
+    """(..., 3 nb) with ground's zeros before (..., n)."""
+    return np.concatenate([np.zeros((*x.shape[:-1], 3)), x], axis=-1)

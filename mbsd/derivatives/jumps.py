@@ -17,7 +17,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.numbers import with_value
-from mbsd.derivatives.tangents import Tangent, along_direction
+from mbsd.derivatives.tangents import along_direction
 from mbsd.derivatives.terms import Along
 from mbsd.derivatives.variants import SECOND, Variants
 from mbsd.dynamics.events.laws.compliance import Compliance
@@ -60,11 +60,10 @@ class Jump:
     """("gap", row), ("rate", row), ("user", event), or ("none", None)."""
     ends: bool
 
-    def across(self, made: list[Tangent]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """q', v' (P, 3 nb) after it, and how its time changes (P,) (s by the numbers)."""
+    def across(self, dq: np.ndarray, dv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """q', v' (P, 3 nb) after it, and how its time changes (P,) (s by the numbers); from those before it."""
         k, along = self.before, self.along
         after = k if self.ends else k + 1
-        dq, dv = (np.array([getattr(tangent, key)[-1] for tangent in made]) for key in ("q", "v"))
         moved = self._times(dq, dv)[:, None]
         total_q, total_v = dq + along.v[k] * moved, dv + along.a[k] * moved
         if self.impacts:

@@ -13,12 +13,12 @@ from itertools import pairwise
 import numpy as np
 
 from mbsd.base.errors import ModelError, SimulationError
-from mbsd.derivatives.free_tangents import FreeTangents, Stretch
+from mbsd.derivatives.free_tangents import FreeTangents, Stretch, Tangents, joined
 from mbsd.derivatives.jumps import Jump, jumps_of
 from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.sweeps import along_of, displaced
-from mbsd.derivatives.tangents import Tangent
-from mbsd.derivatives.terms import Along, terms_of
+from mbsd.derivatives.tangents import Tangent, combined
+from mbsd.derivatives.terms import Along, Left, terms_of
 from mbsd.derivatives.variants import SECOND, Variants, Variation
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -60,8 +60,8 @@ class SimulationTangents:
         self.variation = variation
         divisions = max(1, -(-STEPS_OF_METHOD * first.stats.steps // max(1, len(grid) - 1)))
         for _ in range(MOST):
-            whole, times = self._meshed(first, grid, divisions)
-            made, error = self._made(whole, times)
+            whole = self._meshed(first, grid, divisions)
+            made, error = self._made(whole)
             if error <= ENOUGH:
                 break
             divisions *= FINER
@@ -70,9 +70,11 @@ class SimulationTangents:
         rows = self._outputs(whole, grid)
         self.sol = taken(whole, rows)
         self.along = along_of(self.sol)
-        self.tangents = [Tangent(*(getattr(x, key)[rows] for key in ("q", "v", "a", "lam"))) for x in made]
-        if self.ends is not None:  # the last output is the event that ended it, whose time changes
-            self._end(made)
+        made = made.take(rows)
+        if self.ends is not None:  # the last output is the event that ended it, wherever that is
+            made.q[:, -1] += self.along.v[-1] * self.ends[:, None]
+            made.v[:, -1] += self.along.a[-1] * self.ends[:, None]
+        self.tangents = [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
 
     def moved(self, k: int) -> list[Solution]:
         """The simulation at other values of number k, along its tangent: one for each variant."""
@@ -93,7 +95,7 @@ class SimulationTangents:
 
     # -- nodes -----------------------------------------------------------------------------------------------------
 
-    def _meshed(self, first: Solution, grid: np.ndarray, divisions: int) -> tuple[Solution, np.ndarray]:
+    def _meshed(self, first: Solution, grid: np.ndarray, divisions: int) -> Solution:
         """The simulation at nodes: outputs, events, and points between, in even numbers."""
         grid = grid[grid <= first.t[-1]]
         edges = np.unique(np.concatenate([grid, first.t]))
@@ -101,40 +103,37 @@ class SimulationTangents:
         edges = edges[apart]
         parts = [np.linspace(a, b, 2 * divisions + 1)[1:-1] for a, b in pairwise(edges)]
         nodes = np.unique(np.concatenate([grid, *parts]))
-        whole = self.simulated(nodes)
-        return whole, nodes
+        return self.simulated(nodes)
 
-    def _made(self, whole: Solution, times: np.ndarray) -> tuple[list[Tangent], float]:
+    def _made(self, whole: Solution) -> tuple[Tangents, float]:
         """Tangents at all rows of the simulation, and their largest error."""
         along = along_of(whole)
         along.held = whole.held
         edges = [0, *(np.flatnonzero(np.diff(whole.t) <= 0.0) + 1).tolist(), len(whole.t)]
-        q, v = self._begun(along)
-        parts: list[list[Tangent]] = [[] for _ in self.variants]
+        q, v = self._begun()
+        parts: list[Tangents] = []
         worst, self.ends = 0.0, None
         jumps: list[Jump] = jumps_of(self, whole, along, edges)
+        own = [self._by_number(variants, along) for variants in self.variants]
         for k, (a, b) in enumerate(pairwise(edges)):
-            piece = along.take(slice(a, b))
-            stretch = self._stretch(piece)
-            made, error = self._carried(stretch, q, v)
+            stretch = self._stretch(along.take(slice(a, b)))
+            if len(stretch.along.t) % 2 == 0:
+                raise SimulationError(f"{self.m.name}: derivatives: nodes do not pair from t = {whole.t[a]:.6g} s on")
+            here = [Left(*(None if part is None else part[a:b] for part in left)) for left in own]
+            made, error = FreeTangents(self.terms, stretch, self.variants, here).carry(q, v)
             worst = max(worst, error)
-            for part, own in zip(parts, made, strict=True):
-                part.append(own)
+            parts.append(made)
             if k < len(jumps):
-                q, v, times_moved = jumps[k].across(made)
+                q, v, times_moved = jumps[k].across(made.q[:, -1], made.v[:, -1])
                 if jumps[k].ends:
                     self.ends = times_moved
-        joined = [
-            Tangent(*(np.concatenate([getattr(part, key) for part in own]) for key in ("q", "v", "a", "lam")))
-            for own in parts
-        ]
-        return joined, worst
+        return joined(parts), worst
 
-    def _carried(self, stretch: Stretch, q: np.ndarray, v: np.ndarray) -> tuple[list[Tangent], float]:
-        t = stretch.along.t
-        if len(t) % 2 == 0:  # one node more, in the last gap: never met where events have rows on both sides
-            raise SimulationError(f"{self.m.name}: derivatives: nodes between events do not pair at t = {t[0]:.6g} s")
-        return FreeTangents(self.terms, stretch, self.variants).carry(q, v)
+    @staticmethod
+    def _by_number(variants: Variants, along: Along) -> Left:
+        """How the equations change with a number at the held motion."""
+        left = [variant.terms.left(along) for variant in variants.variants]
+        return combined(left, variants.weights / variants.step)
 
     def _stretch(self, along: Along) -> Stretch:
         assert along.held is not None
@@ -179,9 +178,9 @@ class SimulationTangents:
         take_decided(packed, ready.packed)  # pyright: ignore[reportArgumentType]
         return ready.initial.q, ready.initial.v
 
-    def _begun(self, along: Along) -> tuple[np.ndarray, np.ndarray]:
+    def _begun(self) -> tuple[np.ndarray, np.ndarray]:
         """(P, 3 nb) q' and v' at the start."""
-        count, width = len(self.variants), along.q.shape[1]
+        count, width = len(self.variants), len(self.terms.inertia)
         q, v = np.zeros((2, count, width))
         for k, variants in enumerate(self.variants):
             if all(variant.start is not None for variant in variants.variants):
@@ -195,14 +194,6 @@ class SimulationTangents:
         rows = np.searchsorted(whole.t, grid[grid <= whole.t[-1]], side="right") - 1
         ended = bool(whole.events) and whole.events[-1].what == "end"
         return np.append(rows, len(whole.t) - 1) if ended and rows[-1] < len(whole.t) - 1 else rows
-
-    def _end(self, made: list[Tangent]) -> None:
-        """At the event that ends it, changes are those of the event's own motion, wherever that is."""
-        assert self.ends is not None
-        a = self.along
-        for tangent, moved in zip(self.tangents, self.ends, strict=True):
-            tangent.q[-1] += a.v[-1] * moved
-            tangent.v[-1] += a.a[-1] * moved
 
 
 def taken(sol: Solution, rows: np.ndarray) -> Solution:

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from mbsd.balancing.balance import Balance, balance
     from mbsd.balancing.flywheel import flywheel
     from mbsd.balancing.means import BalanceShaft, Counterweight
+    from mbsd.derivatives.sensitivities import Sensitivities
     from mbsd.dynamics.events.moment import Moment
     from mbsd.kinematics.batch import Batch
     from mbsd.mechanism import STANDARD_GRAVITY, Body, Force, Joint, Marker, Mechanism
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
     from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Stats
     from mbsd.studies.study import study
     from mbsd.synthesis.fit_path import PathFit, SynthesisError, fit_path
+    from mbsd.synthesis.optimise import Optimum, optimise
     from mbsd.tolerancing.dimensions.clearance import Clearance
     from mbsd.tolerancing.dimensions.spreads import Normal, Triangular, Uniform
     from mbsd.tolerancing.outcome import Tolerances
@@ -107,8 +109,10 @@ __all__ = [
     "Moment",
     "Motion",
     "Normal",
+    "Optimum",
     "PathFit",
     "Picture",
+    "Sensitivities",
     "SimulationError",
     "SingularPoseError",
     "Solution",
@@ -129,6 +133,7 @@ __all__ = [
     "four_stroke",
     "function",
     "harmonic",
+    "optimise",
     "polynomial",
     "pressure_table",
     "recorded",
@@ -172,8 +177,10 @@ _LATER = {
     "Mode": "mbsd.analyses.modes",
     "Moment": "mbsd.dynamics.events.moment",
     "Motion": "mbsd.model.laws",
+    "Optimum": "mbsd.synthesis.optimise",
     "PathFit": "mbsd.synthesis.fit_path",
     "Picture": "mbsd.pictures.picture",
+    "Sensitivities": "mbsd.derivatives.sensitivities",
     "Solution": "mbsd.results.solution",
     "Stats": "mbsd.results.views",
     "Svg": "mbsd.pictures.picture",
@@ -194,6 +201,7 @@ _LATER = {
     "four_stroke": "mbsd.model.cylinders.four_stroke",
     "function": "mbsd.model.laws",
     "harmonic": "mbsd.model.laws",
+    "optimise": "mbsd.synthesis.optimise",
     "polynomial": "mbsd.model.laws",
     "pressure_table": "mbsd.model.cylinders.pressure_table",
     "recorded": "mbsd.model.laws",

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,7 +31,9 @@ if TYPE_CHECKING:
     from mbsd.analyses.finding import Finding
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
+    from mbsd.derivatives.sensitivities import Sensitivities
     from mbsd.drawing.of_solution import SkeletonDrawer
+    from mbsd.drawing.picture import Picture, Svg
     from mbsd.dynamics.many.measures import Measure
     from mbsd.dynamics.many.simulate_many import Simulations
     from mbsd.kinematics.batch import Batch
@@ -188,6 +190,33 @@ class Mechanism(Building):
             self, duration, vary, start, moving, measure, steps, times, method, tolerance, step, formulation, threads,
             progress, options,
         )  # fmt: skip
+
+    def sensitivities(
+        self,
+        of: Any,
+        to: Sequence[str] | str,
+        duration: float | None = None,
+        steps: int = 360,
+        times: Sequence[float] | np.ndarray | None = None,
+        simulate: bool | None = None,
+        tolerance: float = 1e-9,
+    ) -> Sensitivities:
+        """Derivatives of what a motion is by numbers of the model: of a sweep, or of a simulation with its events.
+
+        ``of``: names of quantities (``"P.x"``, ``"A.fx"``, ``"motor.effort"``, as measures have them), a list of them,
+        or labels to quantities, measures (mbsd.measures) and functions of a solution. ``to``: names of numbers, such as
+        ``"crank.length"``, ``"spring.stiffness"``, ``"rod.mass"``, ``"B.x"`` (the place of a joint), ``"P.y"`` (of a
+        traced point), ``"motor.rate"``, ``"gravity.y"``, ``"door.moving.omega"``; docs/derivatives.md lists them.
+        A mechanism is swept where its drivers leave no freedom and simulated otherwise; ``simulate`` says which. The
+        other arguments are those of :meth:`sweep` and :meth:`simulate`; times stay what they are.
+
+        Raises ModelError for names that do not exist, before anything is solved, and for what has no derivative.
+        """
+        from mbsd.analyses.suspicious_units import tell
+        from mbsd.derivatives.sensitivities import sensitivities
+
+        tell(self)
+        return sensitivities(self, of, to, duration, steps, times, simulate, tolerance)
 
     def equilibrium(self, time: float = 0.0, nearest: bool = False) -> Equilibrium:
         """Static equilibrium: pose, reactions, efforts of the drivers, stiffness and stability.

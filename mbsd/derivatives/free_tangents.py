@@ -17,7 +17,7 @@ import numpy as np
 
 from mbsd.derivatives.linear_motion import carried
 from mbsd.derivatives.tangents import LOOSE, along_directions
-from mbsd.derivatives.terms import Along, Left, Terms
+from mbsd.derivatives.terms import Along, Left, Terms, stacked
 from mbsd.derivatives.variants import Variants
 
 REACH = 1e-5
@@ -115,7 +115,7 @@ class _Piece:
         at = slice(first, last + 1)
         self.terms, self.every, self.rows, self.dependent = whole.terms, whole.every, whole.rows, whole.dependent
         self.along, self.basis = whole.along.take(at), basis
-        self.own = [Left(*(None if part is None else part[at] for part in own)) for own in whole.own]
+        self.own = [own.each(lambda part: part[at]) for own in whole.own]
         self.jac, self.held = whole.jac[at], whole.held[at]
         count, n = len(self.along.t), self.jac.shape[2]
         square = np.concatenate([self.held, np.broadcast_to(basis, (count, *basis.shape))], axis=1)
@@ -148,7 +148,7 @@ class _Piece:
 
     def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[Tangents, float]:
         """See :meth:`FreeTangents.carry`."""
-        f, numbers, (count, n) = self.f, len(self.own), self.jac.shape[::2]
+        f, numbers, count = self.f, len(self.own), len(self.along.t)
         free = np.moveaxis(self.free, 2, 0)  # (f, T, n)
         position, velocity, given = self._by_numbers(q)
         turned = self._speeds(np.concatenate([free, position]))
@@ -219,7 +219,7 @@ class _Piece:
 
         ``begun`` (P, 3 nb) is q' at the first node.
         """
-        own = Left(*(np.stack(parts) for parts in list(zip(*self.own, strict=True))[:4]), None)
+        own = stacked(self.own, np.stack)
         position = own.position[..., self.rows]
         opened = begun[:, 3:] @ self.held[0].T + position[:, 0]  # of what sticks: where it stuck changes too
         q = np.einsum("tnr,ptr->ptn", self.fixed, opened[:, None] - position)

@@ -11,29 +11,44 @@ Control 63 (1996); Leine, Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mec
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.numbers import with_value
 from mbsd.derivatives.tangents import along_direction
-from mbsd.derivatives.terms import Along
-from mbsd.derivatives.variants import SECOND, Variants
+from mbsd.derivatives.terms import Along, Terms
+from mbsd.derivatives.variants import SECOND, Variant, Variants, Variation
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.impact import impacts
 from mbsd.dynamics.events.moment import Moment
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.results.solution import Solution
-
-if TYPE_CHECKING:
-    from mbsd.derivatives.simulations import SimulationTangents
 
 REACH = 1e-6
 """Of differences of an impact, in sizes, rad, and parts of the fastest speed."""
 GRAZING = 1e-9
 """Speed of the scalar of an event, as part of the fastest motion, below which it only touches zero."""
 STILL = 1e-9
+
+
+class Whole(Protocol):
+    """The simulation that the events are of; see simulations.py."""
+
+    terms: Terms
+    variants: list[Variants]
+    variation: Variation
+    span: tuple[float, float]
+
+    def ready(self) -> PreparedDynamics:
+        """The mechanism as a simulation begins with it."""
+        ...
+
+    def stretch_rows(self, along: Along, k: int) -> np.ndarray:
+        """Independent rows that hold at node k."""
+        ...
 
 
 @dataclass
@@ -52,7 +67,7 @@ class Plain:
 class Jump:
     """One event, between row ``before`` of a simulation and the next."""
 
-    whole: SimulationTangents
+    whole: Whole
     along: Along
     before: int
     impacts: list[str]
@@ -87,8 +102,11 @@ class Jump:
             pace = float(terms.left(here).acceleration[0, which])
             change = np.array([along_direction(terms, here, q[None], v[None], SECOND, 1e-5).velocity[0, which]
                                for q, v in zip(dq, dv, strict=True)])  # fmt: skip
-        own = [0.0 if variants.variants[0].same_places else
-               float(variants.slope(lambda v: getattr(v.terms.left(here), part))[0, which]) for variants in every]  # fmt: skip
+
+        def left(variant: Variant) -> np.ndarray:
+            return getattr(variant.terms.left(here), part)[0, which]
+
+        own = [0.0 if v.variants[0].same_places else float(v.slope(left)) for v in every]
         fastest = float(np.abs(self.along.v).max()) or 1.0
         if abs(pace) <= GRAZING * fastest:
             raise ModelError(
@@ -109,7 +127,9 @@ class Jump:
         h, dt = 1e-5 / far, 1e-6 * max(float(along.t[-1] - along.t[0]), 1e-9)
         change = (value(packed, t, q + h * dq, v + h * dv) - value(packed, t, q - h * dq, v - h * dv)) / (2 * h)
         change += float(variants.slope(lambda variant: np.float64(value(variant.terms.packed, t, q, v))))
-        pace = (value(packed, t + dt, q + dt * v, v + dt * a) - value(packed, t - dt, q - dt * v, v - dt * a)) / (2 * dt)
+        pace = (value(packed, t + dt, q + dt * v, v + dt * a) - value(packed, t - dt, q - dt * v, v - dt * a)) / (
+            2 * dt
+        )
         if not abs(pace) > 0.0:
             raise ModelError(f"{packed.name}: event '{event.name}' is met without speed: there is no derivative of it")
         return -change / pace
@@ -160,7 +180,11 @@ class Jump:
         packed = self.whole.terms.packed
         assert self.along.held is not None
         held = np.flatnonzero(self.along.held[self.before])
-        if len(set(self.impacts)) != 1 or (self.whole.terms.inertia[3:] == 0.0).any() or (held >= packed.contact_rows).any():
+        if (
+            len(set(self.impacts)) != 1
+            or (self.whole.terms.inertia[3:] == 0.0).any()
+            or (held >= packed.contact_rows).any()
+        ):
             return None
         names = [joint.name for joint in packed.joints]
         joint = names.index(self.impacts[0])
@@ -208,7 +232,7 @@ class Jump:
         return impacts(at, closed, v.copy(), STILL / packed.row_scale())[0]
 
 
-def jumps_of(whole: SimulationTangents, sol: Solution, along: Along, edges: list[int]) -> list[Jump]:
+def jumps_of(whole: Whole, sol: Solution, along: Along, edges: list[int]) -> list[Jump]:
     """The events between the stretches of a simulation, in order; and the one that ended it."""
     out = []
     gaps = sol.packed.contact_gaps()
@@ -220,7 +244,7 @@ def jumps_of(whole: SimulationTangents, sol: Solution, along: Along, edges: list
     return out
 
 
-def _jump(whole: Any, sol: Solution, along: Along, row: int, gaps: Any, users: Any, ends: bool) -> Jump:
+def _jump(whole: Whole, sol: Solution, along: Along, row: int, gaps: Any, users: Any, ends: bool) -> Jump:
     t = float(sol.t[row])
     near = 1e-9 * float(sol.t[-1] - sol.t[0])
     here = [event for event in sol.events if abs(event.time - t) <= near]

@@ -1,12 +1,12 @@
 """Numbers of a model by name: what they are now, and the model with another value of them.
 
-    crank.length  crank.mass  crank.com.x  rod (a rod's or bar's length)     of bodies and rods
-    spring.stiffness  motor.rate  push.direction.y                           what change() takes, and numbers of laws
-    B.x  B.y                             place of a joint: its marker on ground, or else its first
-    rocker.B.x  B.j.angle                a marker of a joint, force or contact by its body, or by its side
-    P.x                                  a traced point
-    door.start.angle  door.moving.omega  start_near and start_moving (rad, m, rad/s, m/s)
-    gravity.y                            m/s^2
+crank.length  crank.mass  crank.com.x  rod (a rod's or bar's length)     of bodies and rods
+spring.stiffness  motor.rate  push.direction.y                           what change() takes, and numbers of laws
+B.x  B.y                             place of a joint: its marker on ground, or else its first
+rocker.B.x  B.j.angle                a marker of a joint, force or contact by its body, or by its side
+P.x                                  a traced point
+door.start.angle  door.moving.omega  start_near and start_moving (rad, m, rad/s, m/s)
+gravity.y                            m/s^2
 """
 
 from __future__ import annotations
@@ -38,6 +38,8 @@ class Number:
     value: float
     put: Callable[[Model, float], None]
     """Gives a model another value of it. Raises ModelError for one that it refuses."""
+    built: Callable[[float], Model] | None = None
+    """The model with another value, of a number that a function of the author builds models from."""
 
 
 def numbers_named(m: Model, names: Sequence[str]) -> list[Number]:
@@ -68,6 +70,9 @@ def number_named(m: Model, name: str) -> Number:
 @contextmanager
 def with_value(m: Model, number: Number, value: float) -> Iterator[Model]:
     """The model ``m`` with another value of a number, for as long as the context lasts."""
+    if number.built is not None:
+        yield number.built(value)
+        return
     tables = [(table, dict(table)) for table in (*connections(m), m.traces, m.starts, m.velocities)]
     bodies = [(body, dict(body.__dict__)) for body in m.bodies.values()]
     gravity = m.gravity

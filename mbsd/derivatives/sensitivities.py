@@ -89,7 +89,7 @@ def slopes_of(tangents: Tangents, count: int, functions: Wanted) -> dict[str, np
     for k in range(count):
         moved, weights = tangents.moved(k), tangents.weights(k)
         for label, function in functions.items():
-            columns[label].append(sum(w * function(sol) for w, sol in zip(weights, moved, strict=True)))  # pyright: ignore
+            columns[label].append(np.sum([w * function(sol) for w, sol in zip(weights, moved, strict=True)], axis=0))
     return {label: np.stack(parts, axis=-1) for label, parts in columns.items()}
 
 

@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError, SimulationError
 from mbsd.derivatives.free_tangents import FreeTangents, Stretch, Tangents, joined
 from mbsd.derivatives.jumps import Jump, jumps_of
@@ -30,11 +31,11 @@ from mbsd.results.solution import Solution
 
 STEP = 1e-5
 """Step of a number, as part of it."""
-ENOUGH = 1e-5
+ENOUGH = 2e-4
 """Error of tangents, as part of the largest, beyond which the nodes come closer."""
 FINER, MOST = 2, 3
 """By this factor, so often at most."""
-STEPS_OF_METHOD = 2
+STEPS_OF_METHOD = 1
 """Steps of the tangents for one of the integrator, at least."""
 
 Simulate = Callable[[np.ndarray], Solution]
@@ -119,7 +120,7 @@ class SimulationTangents:
             stretch = self._stretch(along.take(slice(a, b)))
             if len(stretch.along.t) % 2 == 0:
                 raise SimulationError(f"{self.m.name}: derivatives: nodes do not pair from t = {whole.t[a]:.6g} s on")
-            here = [Left(*(None if part is None else part[a:b] for part in left)) for left in own]
+            here = [left.each(lambda part, at=slice(a, b): part[at]) for left in own]
             made, error = FreeTangents(self.terms, stretch, self.variants, here).carry(q, v)
             worst = max(worst, error)
             parts.append(made)
@@ -172,10 +173,11 @@ class SimulationTangents:
 
     # -- ends ------------------------------------------------------------------------------------------------------
 
-    def _closed(self, m: Model, packed: object) -> tuple[np.ndarray, np.ndarray]:
+    def _closed(self, m: Model, packed: Packed) -> tuple[np.ndarray, np.ndarray]:
         """The start of a variant, whose phases its packing takes."""
         ready = prepare_dynamics(m, *self.span)
-        take_decided(packed, ready.packed)  # pyright: ignore[reportArgumentType]
+        take_decided(packed, ready.packed)
+        packed.specials.callbacks += ready.packed.specials.callbacks  # some of these numbers are their addresses
         return ready.initial.q, ready.initial.v
 
     def _begun(self) -> tuple[np.ndarray, np.ndarray]:
@@ -209,7 +211,9 @@ def _refuse(sol: Solution) -> None:
     packed = sol.packed
     if sol.states is not None:
         names = [force.name for force in packed.forces if force.kind.states is not None]
-        raise ModelError(f"{packed.name}: derivatives of simulations with states of forces ('{names[0]}') are not known")
+        raise ModelError(
+            f"{packed.name}: derivatives of simulations with states of forces ('{names[0]}') are not known"
+        )
     if sol.approached is not None:
         raise ModelError(
             f"{packed.name}: derivatives where the damping of a contact remembers how fast it approached are not "

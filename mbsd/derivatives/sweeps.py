@@ -70,8 +70,8 @@ class SweepTangents:
 
         def states(variant: Variant) -> np.ndarray:
             h = variant.offset * variants.step
-            moved = [part + h * slope for part, slope in
-                     ((self.along.q, tangent_of.q), (self.along.v, tangent_of.v), (self.along.a, tangent_of.a))]  # fmt: skip
+            motion = zip(self.along.parts(), (tangent_of.q, tangent_of.v, tangent_of.a), strict=True)
+            moved = [part + h * slope for part, slope in motion]
             out = states_along(variant.terms.packed, self.along.t, *moved)
             assert out is not None
             return out

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.terms import Along, Left, Terms
+from mbsd.derivatives.terms import Along, Left, Terms, stacked
 from mbsd.derivatives.variants import FOURTH, Variants
 
 REACH = 1e-4
@@ -131,10 +131,7 @@ def _by_number(terms: Terms, along: Along, variants: Variants) -> Left:
 
 def combined(parts: list[Left], weights: np.ndarray) -> Left:
     """The sum of parts by weights (k,) or (k, T, 1)."""
-    out = []
-    for columns in zip(*parts, strict=True):
-        out.append(None if columns[0] is None else sum(w * c for w, c in zip(weights, columns, strict=True)))
-    return Left(*out)  # pyright: ignore[reportArgumentType]
+    return stacked(parts, lambda own: np.sum([w * part for w, part in zip(weights, own, strict=True)], axis=0))
 
 
 def along_direction(
@@ -155,8 +152,8 @@ def along_direction(
         left = terms.left(
             many.moved(many.q + shifts * tiled[0], many.v + shifts * tiled[1]),
         )
-        parts = [Left(*(None if part is None else part.reshape(len(offsets), len(along.t), -1)[k] for part in left))
-                 for k in range(len(offsets))]  # fmt: skip
+        shape = len(offsets), len(along.t), -1
+        parts = [left.each(lambda part, k=k: part.reshape(shape)[k]) for k in range(len(offsets))]
     else:
         parts, step = [], np.full(len(step), step.min())
         for offset in offsets:
@@ -171,23 +168,21 @@ def along_directions(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, r
     directions, count = len(q), len(along.t)
     at_once = max(1, AT_ONCE // (count * max(1, 6 * len(terms.packed.ws.phi))))
     if directions > at_once:
-        halves = [along_directions(terms, along, q[k : k + at_once], v[k : k + at_once], reach)
-                  for k in range(0, directions, at_once)]  # fmt: skip
-        return Left(*(None if parts[0] is None else np.concatenate(parts) for parts in zip(*halves, strict=True)))
+        parts = [
+            along_directions(terms, along, q[k : k + at_once], v[k : k + at_once], reach)
+            for k in range(0, directions, at_once)
+        ]
+        return stacked(parts, np.concatenate)
     step = np.stack([steps_along(terms, along, *one, reach) for one in zip(q, v, strict=True)])[..., None]
     many = along.tiled(2 * directions)
     shift_q, shift_v = ((step * part).reshape(directions * count, -1) for part in (q, v))
-    moved = many.moved(
-        many.q + np.concatenate([shift_q, -shift_q]), many.v + np.concatenate([shift_v, -shift_v])
-    )
-    out = []
-    for part in terms.left(moved):
-        if part is None:
-            out.append(None)
-            continue
+    moved = many.moved(many.q + np.concatenate([shift_q, -shift_q]), many.v + np.concatenate([shift_v, -shift_v]))
+
+    def difference(part: np.ndarray) -> np.ndarray:
         ahead, behind = part.reshape(2, directions, count, -1)
-        out.append((ahead - behind) / (2 * step))
-    return Left(*out)
+        return (ahead - behind) / (2 * step)
+
+    return terms.left(moved).each(difference)
 
 
 def steps_along(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: float) -> np.ndarray:

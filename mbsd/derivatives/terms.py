@@ -8,6 +8,7 @@ derivative needs.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -46,6 +47,10 @@ class Along:
     held: np.ndarray | None = None
     """(T, m) rows that hold, of a simulation."""
 
+    def parts(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """q, v and a."""
+        return self.q, self.v, self.a
+
     def moved(self, q: np.ndarray, v: np.ndarray | None = None) -> Along:
         """The same but for positions and velocities."""
         return replace(self, q=q, v=self.v if v is None else v)
@@ -73,6 +78,23 @@ class Left(NamedTuple):
     """(T, 3 nb) Q + F + m g - M a - J^T lam; ground's mean nothing."""
     spread: np.ndarray | None
     """(T, m) J w of ``Along.spread``, where that is given."""
+
+    def each(self, of: Callable[[np.ndarray], np.ndarray]) -> Left:
+        """What ``of`` makes of each."""
+        return Left(
+            of(self.position), of(self.velocity), of(self.acceleration), of(self.load),
+            None if self.spread is None else of(self.spread),
+        )  # fmt: skip
+
+
+def stacked(lefts: Sequence[Left], of: Callable[[list[np.ndarray]], np.ndarray]) -> Left:
+    """What ``of`` makes of each part of all of them."""
+    spread = [left.spread for left in lefts if left.spread is not None]
+    return Left(
+        of([left.position for left in lefts]), of([left.velocity for left in lefts]),
+        of([left.acceleration for left in lefts]), of([left.load for left in lefts]),
+        of(spread) if spread else None,
+    )  # fmt: skip
 
 
 @dataclass

@@ -58,7 +58,7 @@ class Variants:
 
     def slope(self, of: Callable[[Variant], np.ndarray]) -> np.ndarray:
         """The derivative by the number of what ``of`` gives of a variant."""
-        return sum(w * of(v) for w, v in zip(self.weights, self.variants, strict=True)) / self.step  # pyright: ignore
+        return np.sum([w * of(v) for w, v in zip(self.weights, self.variants, strict=True)], axis=0) / self.step
 
 
 Close = Callable[[Model, Packed], Any]
@@ -101,8 +101,12 @@ class Variation:
                 raise ModelError(f"{m.name}: '{number.name}' changes which joints there are")
             first = self.first
             places = all(np.array_equal(getattr(packed.system, k), getattr(first.system, k)) for k in PLACES)
-            places = places and np.array_equal(packed.com, first.com) and _same(packed.motions, self.base.packed.motions)
-            masses = all(np.array_equal(getattr(packed.system, k), getattr(first.system, k)) for k in ("mass", "inertia"))
+            places = (
+                places and np.array_equal(packed.com, first.com) and _same(packed.motions, self.base.packed.motions)
+            )
+            masses = all(
+                np.array_equal(getattr(packed.system, k), getattr(first.system, k)) for k in ("mass", "inertia")
+            )
             moving = bool(self.work.velocities) or bool(self.base.packed.motions)
             begins = self.starts and not (places and (masses or not moving) and self._starts_alike(m))
             start = self._decide(m, packed, begins)

@@ -1,0 +1,161 @@
+"""The motion of a mechanism with other numbers, its measures, and their derivatives by these numbers."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from mbsd.base.errors import ModelError
+from mbsd.base.users_function import described
+from mbsd.derivatives.asked import wanted
+from mbsd.derivatives.numbers import Number, number_named, with_values
+from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, slopes_of
+from mbsd.derivatives.sweeps import SweepTangents
+from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.simulate import output_times, refuse_bad_steps
+from mbsd.kinematics.sweep import sweep, sweep_times
+from mbsd.model.mechanism import Model
+from mbsd.synthesis.wishes import Bounds, Condition, function_of_values
+
+Span = tuple[float | None, int, Any]
+"""Duration (s), steps, times."""
+
+
+@dataclass
+class Tried:
+    """What one set of numbers gives."""
+
+    value: float
+    slope: np.ndarray
+    """(k,) by the numbers."""
+    conditions: list[float]
+    condition_slopes: list[np.ndarray]
+    solution: Any
+    """None where there is no motion."""
+    model: Any
+
+
+class Moves:
+    """Numbers x (k,) in, measures and derivatives out."""
+
+    def __init__(
+        self,
+        m: Model,
+        bounds: Bounds,
+        build: Callable[..., Any] | None,
+        objective: Any,
+        conditions: list[Condition],
+        span: Span,
+        simulated: bool | None,
+        tolerance: float,
+    ) -> None:
+        self.m, self.bounds, self.build, self.tolerance = m, bounds, build, tolerance
+        self.wishes: dict[str, Any] = {"objective": objective}
+        self.wishes |= {f"condition {condition.name}": condition.what for condition in conditions}
+        for label, what in self.wishes.items():
+            self._refuse(label, what)
+        if build is None:
+            self.numbers = [number_named(m, name) for name in bounds.names]
+            self.given = np.array([number.value for number in self.numbers])
+        else:
+            self.given = self._defaults(build)
+        self.free = moves_freely(m) if simulated is None else bool(simulated)
+        duration, steps, times = span
+        self.grid = output_times(m, duration, steps, times) if self.free else sweep_times(m, duration, steps, times)
+        refuse_bad_steps(m, self.grid, tolerance, None)
+
+    def __call__(self, x: np.ndarray) -> Tried:
+        """Solve the motion with numbers x. Raises MechanismError where there is none."""
+        model = self.model(x)
+        numbers = self._numbers(model, x)
+        own = {label: function_of_values(self.bounds.names, what) for label, what in self.wishes.items()}
+        asked = {label: what for label, what in self.wishes.items() if own[label] is None}
+        tangents = self._tangents(model, numbers)
+        functions = wanted(model, asked, tangents.sol) if asked else {}
+        values = {label: np.asarray(function(tangents.sol)) for label, function in functions.items()}
+        for label, value in values.items():
+            if value.size != 1:
+                raise ModelError(
+                    f"{self.m.name}: optimise: {label} gives {value.size} numbers; it must give one: take a measure, "
+                    "such as largest(...), of it"
+                )
+        slopes = slopes_of(tangents, len(numbers), functions) if functions else {}
+        out = []
+        for label, known in own.items():
+            if known is not None:
+                out.append(known(x))
+                continue
+            slope = slopes[label].reshape(-1)
+            if not (np.isfinite(slope).all() and np.isfinite(values[label]).all()):
+                raise ModelError(f"{self.m.name}: optimise: {label} is no number in this motion, or has no derivative")
+            out.append((float(values[label].reshape(())), slope))
+        (value, slope), *rest = out
+        return Tried(value, slope, [v for v, _ in rest], [s for _, s in rest], tangents.sol, model)
+
+    def model(self, x: np.ndarray) -> Any:
+        """The mechanism with numbers x. Raises what the author's function raises."""
+        if self.build is None:
+            return with_values(self.m, self.numbers, list(x))
+        try:
+            made = self.build(**dict(zip(self.bounds.names, map(float, x), strict=True)))
+        except Exception as error:
+            raise ModelError(f"{self.m.name}: optimise: build fails: {described(error)}") from error
+        if not isinstance(made, Model):
+            raise ModelError(f"{self.m.name}: optimise: build returned {type(made).__name__}, not a Mechanism")
+        return made
+
+    def _tangents(self, model: Model, numbers: list[Number]) -> Tangents:
+        if self.free:
+            return simulation_tangents(model, self.grid, numbers, self.tolerance)
+        return SweepTangents(model, sweep(model, None, 1, self.grid), numbers)
+
+    def _numbers(self, model: Model, x: np.ndarray) -> list[Number]:
+        if self.build is None:
+            return [number_named(model, name) for name in self.bounds.names]
+
+        def built(k: int, value: float) -> Model:
+            return self.model(np.where(np.arange(len(x)) == k, value, x))
+
+        def put(m: Model, value: float) -> None:
+            raise AssertionError("it is built")
+
+        return [Number(name, float(x[k]), put, partial(built, k)) for k, name in enumerate(self.bounds.names)]
+
+    def _defaults(self, build: Callable[..., Any]) -> np.ndarray:
+        """(k,) defaults of the author's function, the middle of the bounds where it has none. Raises ModelError."""
+        if not callable(build):
+            raise ModelError(f"{self.m.name}: optimise: build is a {type(build).__name__}; give a function")
+        try:
+            known = inspect.signature(build).parameters
+        except (TypeError, ValueError):
+            known = {}
+        out = (self.bounds.low + self.bounds.high) / 2
+        free = any(parameter.kind is parameter.VAR_KEYWORD for parameter in known.values())
+        for k, name in enumerate(self.bounds.names):
+            if known and name not in known and not free:
+                raise ModelError(f"{self.m.name}: optimise: build has no argument '{name}'; it has {', '.join(known)}")
+            default = known[name].default if name in known else None
+            if isinstance(default, int | float) and not isinstance(default, bool):
+                out[k] = default
+        return out
+
+    def _refuse(self, label: str, what: Any) -> None:
+        """Raise ModelError for what can give no number."""
+        if isinstance(what, Measure) or (callable(what) and not isinstance(what, type)):
+            return
+        if isinstance(what, str):
+            if what in self.bounds.names:
+                return
+            raise ModelError(
+                f"{self.m.name}: optimise: {label} is '{what}', which is no number that varies; for a quantity take a "
+                f"measure: largest('{what}') of mbsd.measures"
+            )
+        raise ModelError(
+            f"{self.m.name}: optimise: {label} is a {type(what).__name__}; give a measure of mbsd.measures, a function "
+            "of a solution, or the name of a number that varies"
+        )

@@ -15,13 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.derivatives.linear_motion import carried
+from mbsd.derivatives.linear_motion import NODES, carried
 from mbsd.derivatives.tangents import LOOSE, along_directions
 from mbsd.derivatives.terms import Along, Left, Terms, stacked
-from mbsd.derivatives.variants import Variants
+from mbsd.derivatives.variants import TINY, Variants
 
 REACH = 1e-5
 """How far differences along a direction go: sizes, rad, parts of the fastest speed."""
+SLIGHT = 1e-3
+"""Changes of the motion below this, in sizes, rad, and parts of the fastest speed, count as small."""
 WORST = 30.0
 """Condition of [J; Z] beyond which another Z is taken."""
 
@@ -75,21 +77,22 @@ class FreeTangents:
         self.jac = packed.spread(self.compact)
         self.held = self.jac[:, self.rows]
 
-    def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[Tangents, float]:
-        """Tangents at all nodes, and the largest error of the integration, as part of the largest."""
-        count, first, worst = len(self.along.t), 0, 0.0
+    def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[Tangents, np.ndarray]:
+        """Tangents at all nodes, and the error that each double step adds, as part of the largest."""
+        count, first = len(self.along.t), 0
+        errors: list[np.ndarray] = []
         parts: list[Tangents] = []
         while first < count - 1:
             basis, last = self._basis(first)
             made, error = _Piece(self, first, last, basis).carry(q, v)
-            worst = max(worst, error)
+            errors.append(error)
             q, v = made.q[:, -1], made.v[:, -1]
             parts.append(made if first == 0 else made.take(slice(1, None)))
             first = last
-        return joined(parts), worst
+        return joined(parts), np.concatenate(errors)
 
     def _basis(self, first: int) -> tuple[np.ndarray, int]:
-        """Z (f, n) at node ``first``, and the last node, an even number of nodes away, to which it serves."""
+        """Z (f, n) at node ``first``, and the last node, whole double steps away, to which it serves."""
         scaled = self.held[first] * self.scale
         if not len(scaled):
             return np.diag(1.0 / self.scale), len(self.along.t) - 1
@@ -104,7 +107,7 @@ class FreeTangents:
         inverse = np.linalg.inv(square)
         far = np.abs(inverse).max(axis=(1, 2)) > WORST * np.abs(inverse[0]).max()
         beyond = int(np.argmax(far)) if far.any() else len(far)
-        last = min(first + max(2, (beyond - 1) // 2 * 2), len(self.along.t) - 1)
+        last = min(first + max(NODES, (beyond - 1) // NODES * NODES), len(self.along.t) - 1)
         return basis, last
 
 
@@ -122,7 +125,7 @@ class _Piece:
         self.inverse = np.linalg.inv(square)
         self.fixed, self.free = self.inverse[:, :, : len(self.rows)], self.inverse[:, :, len(self.rows) :]
         self.f, self.n = len(basis), n
-        self.inertia = self.terms.inertia[3:]
+        self.inertia, self._scale = self.terms.inertia[3:], 1.0 / whole.scale
         self.effort = self._efforts(whole)
         self.mass = np.einsum("tnf,n,tng->tfg", self.free, self.inertia, self.free)
 
@@ -146,7 +149,7 @@ class _Piece:
 
     # -- derivatives ------------------------------------------------------------------------------------------------
 
-    def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[Tangents, float]:
+    def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[Tangents, np.ndarray]:
         """See :meth:`FreeTangents.carry`."""
         f, numbers, count = self.f, len(self.own), len(self.along.t)
         free = np.moveaxis(self.free, 2, 0)  # (f, T, n)
@@ -174,11 +177,17 @@ class _Piece:
         right = np.zeros((count, 2 * f, numbers))
         right[:, f:] = bent[2 * f :].transpose(1, 2, 0)
         begun = np.concatenate([self.basis @ q[:, 3:].T, self.basis @ v[:, 3:].T])
-        y, error = carried(self.along.t, matrix, right, begun)
+        y, error = carried(self.along.t, matrix, right, begun, self._slight())
         out = []
         for part in (positions, velocities, a, lam):
             out.append(part[2 * f :] + np.einsum("tkp,ktn->ptn", y, part[: 2 * f]))
         return Tangents(*(_wide(part) for part in out[:3]), out[3]), error
+
+    def _slight(self) -> np.ndarray:
+        """(2 f, P) changes of s and s' that are rounding where the number changes by all of itself."""
+        fastest = float(np.abs(self.along.v[:, 3:] * self._scale).max(initial=0.0)) or 1.0
+        numbers = np.array([abs(variants.step) / TINY for variants in self.every])
+        return SLIGHT * np.repeat([1.0, fastest], self.f)[:, None] / numbers
 
     def _change(self, q: np.ndarray, v: np.ndarray) -> Left:
         """Along directions (D, T, n)."""

@@ -16,11 +16,13 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError, SimulationError
 from mbsd.derivatives.free_tangents import FreeTangents, Stretch, Tangents, joined
 from mbsd.derivatives.jumps import Jump, jumps_of
+from mbsd.derivatives.linear_motion import NODES
+from mbsd.derivatives.mesh import first_edges, nodes_of, refined
 from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.sweeps import along_of, displaced
 from mbsd.derivatives.tangents import Tangent, combined
 from mbsd.derivatives.terms import Along, Left, terms_of
-from mbsd.derivatives.variants import SECOND, Variants, Variation
+from mbsd.derivatives.variants import SECOND, TINY, Variants, Variation
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.kinematics.pose.mobility import independent_rows
@@ -29,14 +31,14 @@ from mbsd.model.contact import ContactKind
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
 
-STEP = 1e-5
-"""Step of a number, as part of it."""
-ENOUGH = 2e-4
-"""Error of tangents, as part of the largest, beyond which the nodes come closer."""
-FINER, MOST = 2, 3
-"""By this factor, so often at most."""
-STEPS_OF_METHOD = 1
-"""Steps of the tangents for one of the integrator, at least."""
+ENOUGH = 1e-4
+"""Error of tangents of fourth order, as part of the largest, beyond which nodes come closer; the result is better."""
+MOST = 6
+"""So often at most."""
+MOST_STEPS = 20_000
+"""Double steps at most."""
+STEPS_OF_METHOD = 0.5
+"""Double steps of the tangents for one of the integrator, at least."""
 
 Simulate = Callable[[np.ndarray], Solution]
 """Simulates at given times (T,), with rows before and after events."""
@@ -57,15 +59,22 @@ class SimulationTangents:
         packed = first.packed
         contacts = packed.joints[len(packed.joints) - packed.contacts :] if packed.contacts else []
         variation = Variation(m, self.terms, span, self._closed, contacts, starts=True)
-        self.variants = [variation.of(number, SECOND, STEP) for number in numbers]
+        self.variants = [variation.of(number, SECOND, TINY) for number in numbers]
         self.variation = variation
-        divisions = max(1, -(-STEPS_OF_METHOD * first.stats.steps // max(1, len(grid) - 1)))
-        for _ in range(MOST):
-            whole = self._meshed(first, grid, divisions)
-            made, error = self._made(whole)
-            if error <= ENOUGH:
+        reached = grid[grid <= first.t[-1]]
+        met = np.append(first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]])
+        longest = (first.t[-1] - first.t[0]) / max(1.0, STEPS_OF_METHOD * first.stats.steps)
+        edges = first_edges(reached, met, longest)
+        for turn in range(MOST):
+            whole = simulated(nodes_of(edges, reached, met))
+            made, errors = self._made(whole)
+            error = float(errors.sum())
+            if error <= ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
                 break
-            divisions *= FINER
+            finer = refined(edges, errors, ENOUGH)
+            if len(finer) > MOST_STEPS:
+                break
+            edges = finer
         self.error = error
         """Estimate of the largest error of the tangents, as part of the largest."""
         rows = self._outputs(whole, grid)
@@ -96,39 +105,33 @@ class SimulationTangents:
 
     # -- nodes -----------------------------------------------------------------------------------------------------
 
-    def _meshed(self, first: Solution, grid: np.ndarray, divisions: int) -> Solution:
-        """The simulation at nodes: outputs, events, and points between, in even numbers."""
-        grid = grid[grid <= first.t[-1]]
-        edges = np.unique(np.concatenate([grid, first.t]))
-        apart = np.concatenate([[True], np.diff(edges) > 1e-12 * (edges[-1] - edges[0])])
-        edges = edges[apart]
-        parts = [np.linspace(a, b, 2 * divisions + 1)[1:-1] for a, b in pairwise(edges)]
-        nodes = np.unique(np.concatenate([grid, *parts]))
-        return self.simulated(nodes)
-
-    def _made(self, whole: Solution) -> tuple[Tangents, float]:
-        """Tangents at all rows of the simulation, and their largest error."""
+    def _made(self, whole: Solution) -> tuple[Tangents, np.ndarray]:
+        """Tangents at all rows of the simulation, and the error that each double step adds."""
         along = along_of(whole)
         along.held = whole.held
         edges = [0, *(np.flatnonzero(np.diff(whole.t) <= 0.0) + 1).tolist(), len(whole.t)]
         q, v = self._begun()
         parts: list[Tangents] = []
-        worst, self.ends = 0.0, None
+        errors: list[np.ndarray] = []
+        self.ends = None
         jumps: list[Jump] = jumps_of(self, whole, along, edges)
         own = [self._by_number(variants, along) for variants in self.variants]
         for k, (a, b) in enumerate(pairwise(edges)):
             stretch = self._stretch(along.take(slice(a, b)))
-            if len(stretch.along.t) % 2 == 0:
-                raise SimulationError(f"{self.m.name}: derivatives: nodes do not pair from t = {whole.t[a]:.6g} s on")
+            if (b - a) % NODES != 1:
+                raise SimulationError(
+                    f"{self.m.name}: derivatives: events from t = {whole.t[a]:.9g} s on come at other times when they "
+                    "are simulated again; take a smaller tolerance"
+                )
             here = [left.each(lambda part, at=slice(a, b): part[at]) for left in own]
             made, error = FreeTangents(self.terms, stretch, self.variants, here).carry(q, v)
-            worst = max(worst, error)
+            errors.append(error)
             parts.append(made)
             if k < len(jumps):
                 q, v, times_moved = jumps[k].across(made.q[:, -1], made.v[:, -1])
                 if jumps[k].ends:
                     self.ends = times_moved
-        return joined(parts), worst
+        return joined(parts), np.concatenate(errors)
 
     @staticmethod
     def _by_number(variants: Variants, along: Along) -> Left:

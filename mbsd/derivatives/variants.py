@@ -21,8 +21,8 @@ from mbsd.derivatives.terms import Terms, terms_of
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 
-STEP = 1e-4
-"""Step of a number, as part of itself, or of the size of the mechanism, or of 1."""
+STEP, TINY = 1e-4, 1e-5
+"""Steps of a number, as parts of itself, or of the size of the mechanism, or of 1: of fourth and of second order."""
 FOURTH = (np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12)
 """Offsets and weights of the central difference of fourth order."""
 SECOND = (np.array([-1.0, 1.0]), np.array([-0.5, 0.5]))

@@ -21,13 +21,12 @@ Wanted = Mapping[str, Callable[[Solution], np.ndarray]]
 
 def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], np.ndarray]]:
     """By label, a function that gives a number or numbers of a solution. Raises ModelError for what cannot be."""
-    if isinstance(of, str):
-        of = [of]
+    given, of = of, [of] if isinstance(of, str) else of
     if isinstance(of, list | tuple):
         of = {each if isinstance(each, str) else str(k): each for k, each in enumerate(of)}
     if not isinstance(of, Mapping) or not of:
         raise ModelError(
-            f"{m.name}: of is {shown(of)}; give names of quantities, or labels and quantities: {{'x': 'P.x'}}"
+            f"{m.name}: of is {shown(given)}; give names of quantities, or labels and quantities: {{'x': 'P.x'}}"
         )
     known = list(columns(sol))
     return {str(label): _function(m, str(label), each, sol, known) for label, each in of.items()}

@@ -66,7 +66,8 @@ class SimulationTangents:
         longest = (first.t[-1] - first.t[0]) / max(1.0, STEPS_OF_METHOD * first.stats.steps)
         edges = first_edges(reached, met, longest)
         for turn in range(MOST):
-            whole = simulated(nodes_of(edges, reached, met))
+            nodes = nodes_of(edges, reached, met)
+            whole = simulated(nodes if len(reached) == len(grid) else np.append(nodes, grid[-1]))
             made, errors = self._made(whole)
             error = float(errors.sum())
             if error <= ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:

@@ -17,7 +17,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.terms import Along, Left, Terms, stacked
-from mbsd.derivatives.variants import FOURTH, Variants
+from mbsd.derivatives.variants import FOURTH, STEP, Variants
 
 REACH = 1e-4
 """How far a difference along a direction goes: sizes, rad, and parts of the fastest speed."""
@@ -50,13 +50,16 @@ class Inverse:
         self.inverse = np.linalg.pinv(self.jac, rcond=LOOSE) if redundant else np.linalg.inv(self.jac)
         self.friction = self._friction(along)
 
-    def solved(self, right: np.ndarray, name: str = "") -> np.ndarray:
-        """(T, 3 nb) x of J x = right (T, m). Raises ModelError where joints that repeat others do not let it be."""
+    def solved(self, right: np.ndarray, name: str = "", slight: float = np.inf) -> np.ndarray:
+        """(T, 3 nb) x of J x = right (T, m).
+
+        Raises ModelError where joints that repeat others do not let it be, by more than ``slight``.
+        """
         out = np.zeros((len(right), self.jac.shape[2] + 3))
         out[:, 3:] = np.einsum("tnm,tm->tn", self.inverse, right)
-        if self.redundant:
+        if self.redundant and slight < np.inf:
             gap = right - np.einsum("tmn,tn->tm", self.jac, out[:, 3:])
-            if np.abs(gap).max(initial=0.0) > OPENED * np.abs(right).max(initial=0.0):
+            if np.abs(gap).max(initial=0.0) > max(OPENED * np.abs(right).max(initial=0.0), slight):
                 raise ModelError(
                     f"{self.terms.packed.name}: no derivative by '{name}': joints repeat others, and fit at this value "
                     "of it alone. Change several numbers together by build=, or free a joint"
@@ -108,11 +111,12 @@ def tangent(terms: Terms, along: Along, inverse: Inverse, variants: Variants) ->
         along.spread = inverse.spread(along.lam)
     own = _by_number(terms, along, variants)
     still = np.zeros_like(along.q)
-    q = inverse.solved(-own.position, name)
+    slight = OPENED * terms.packed.size / max(abs(variants.step) / STEP, 1e-300)
+    q = inverse.solved(-own.position, name, slight)
     turned = along_direction(terms, along, q, still).velocity
-    v = inverse.solved(-own.velocity - turned, name)
+    v = inverse.solved(-own.velocity - turned)
     moved = along_direction(terms, along, q, v)
-    a = inverse.solved(-own.acceleration - moved.acceleration, name)
+    a = inverse.solved(-own.acceleration - moved.acceleration)
     load = own.load + moved.load - terms.inertia * a
     share = None if own.spread is None or moved.spread is None else own.spread + moved.spread
     return Tangent(q, v, a, inverse.multipliers(load, share))

@@ -242,7 +242,7 @@ class _Piece:
         out, packed = np.zeros_like(self.along.lam), self.terms.packed
         for way, _ in self.dependent:
             number = packed.joints.index(packed.joint_of_row(way))
-            slope = float(variants.slope(lambda v, k=number: np.float64(v.terms.packed.joints[k].params["friction"])))
+            slope = float(variants.slope(lambda v, k=number: np.array(v.terms.packed.joints[k].params["friction"])))
             out[:, way] = self.along.lam[:, way] * slope / packed.joints[number].params["friction"]
         return out
 

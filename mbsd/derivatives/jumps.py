@@ -126,7 +126,7 @@ class Jump:
         t, q, v, a = float(along.t[k]), along.q[k], along.v[k], along.a[k]
         h, dt = 1e-5 / far, 1e-6 * max(float(along.t[-1] - along.t[0]), 1e-9)
         change = (value(packed, t, q + h * dq, v + h * dv) - value(packed, t, q - h * dq, v - h * dv)) / (2 * h)
-        change += float(variants.slope(lambda variant: np.float64(value(variant.terms.packed, t, q, v))))
+        change += float(variants.slope(lambda variant: np.array(value(variant.terms.packed, t, q, v))))
         pace = (value(packed, t + dt, q + dt * v, v + dt * a) - value(packed, t - dt, q - dt * v, v - dt * a)) / (
             2 * dt
         )

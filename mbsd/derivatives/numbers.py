@@ -142,7 +142,7 @@ def _of_entry(m: Model, name: str, whole: str, rest: str) -> Number | None:
         key = next(key for key, value in arguments.items() if value is law)
         return Number(name, at[0], lambda m, new: change(m, whole, {key: at[1](new)}))
     derived = entry.params.get(first)
-    if _is_number(derived) and not inner:
+    if derived is not None and _is_number(derived) and not inner:
         return Number(name, float(derived), lambda m, new: change(m, whole, {first: new}))
     if first in ("i", "j") and inner in PLACE:
         return _of_marker(m, name, whole, first, inner)

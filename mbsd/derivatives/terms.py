@@ -157,12 +157,15 @@ class Terms:
         return approached_along(self.packed, self.loads, self.laws, along.t, along.q, along.v)
 
 
-def terms_of(packed: Packed, span: tuple[float, float], laws: Laws | None = None) -> Terms:
-    """The equations of a packed mechanism over ``span`` (s); ``laws``: those that are known already."""
+def terms_of(packed: Packed, span: tuple[float, float], laws: Laws | None = None, loads: bool = True) -> Terms:
+    """The equations of a packed mechanism over ``span`` (s); ``laws``: those that are known already.
+
+    Without ``loads`` forces are left out.
+    """
     system = packed.system
     inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
     weight = np.zeros((len(system.mass), 3))
     weight[:, :2] = system.mass[:, None] * system.gravity
-    if not packed.forces:
+    if not packed.forces or not loads:
         return Terms(packed, None, None, inertia, weight.ravel())
     return Terms(packed, laws or compiled_laws(packed, *span), pack_loads(packed), inertia, weight.ravel())

@@ -69,14 +69,16 @@ class Variation:
     """Makes variants of a mechanism ``m`` whose motion is that of ``base``.
 
     ``close`` closes the start of a variant, where constants follow from it, or with ``starts`` what moves from there.
+    Without ``loads`` forces are left out.
     """
 
     def __init__(
         self, m: Model, base: Terms, span: tuple[float, float], close: Close, contacts: list[Joint] | None = None,
-        starts: bool = False,
+        starts: bool = False, loads: bool = True,
     ) -> None:  # fmt: skip
         self.work = copy.deepcopy(m)
         self.base, self.span, self.close, self.contacts, self.starts = base, span, close, contacts or [], starts
+        self.loads = loads
         self.given = repr((self.work.starts, self.work.velocities))
         self.first = pack(self.work, self._contacts(self.work))
         self.motions, self.laws = list(self.first.motions), _laws_of_forces(self.first)
@@ -110,7 +112,7 @@ class Variation:
             moving = bool(self.work.velocities) or bool(self.base.packed.motions)
             begins = self.starts and not (places and (masses or not moving) and self._starts_alike(m))
             start = self._decide(m, packed, begins)
-            terms = terms_of(packed, self.span, self.base.laws if lawful else None)
+            terms = terms_of(packed, self.span, self.base.laws if lawful else None, self.loads)
             return Variant(offset, terms, dict(m.traces), places, masses, start)
 
     def _starts_alike(self, m: Model) -> bool:

@@ -18,12 +18,16 @@ from mbsd.kinematics.batch import parameters
 from mbsd.kinematics.design_sweeps import DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.march import kinematics_at
 from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import Prepared
 from mbsd.model.mechanism import Model
 from mbsd.synthesis.changed import changed
 from mbsd.synthesis.conditions import Pin, four_bar, grashof_excess, pins, transmission_angles
+from mbsd.synthesis.path_tangents import path_of, tangents_of_path
 from mbsd.synthesis.varied import Varied
 
 Build = Callable[..., Model]
+KEPT = 100
+"""Designs whose poses are kept for their tangents."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +42,10 @@ class Paths:
     """(n,) least transmission angle (rad); pi/2 where there is no pin that has one."""
     excess: np.ndarray
     """(n,) by how much Grashof's inequality is missed, relative to the sum of the lengths; 0 where not asked for."""
+
+    def parts(self) -> tuple[np.ndarray, ...]:
+        """All of it."""
+        return self.path, self.closes, self.transmission, self.excess
 
 
 class Designs:
@@ -61,18 +69,46 @@ class Designs:
         if build is not None:
             self.at_once = self.at_once and all(self._only_places(x) for x in (varied.low, middle, varied.high))
         self._sweeps: dict[bool, DesignSweeps] = {}
+        self._solved: dict[tuple[bytes, int], tuple[Model, Prepared, np.ndarray]] = {}
 
     def __call__(self, x: np.ndarray, fine: bool = False, threads: int | None = None) -> Paths:
         """Paths of designs x (n, k)."""
         self.evaluations += len(x)
+        if not self.at_once:
+            return self._judged(x, *self._one_by_one(x, self.grids[fine]))
         values, moved = self.changes(x)
-        if self.at_once:
-            if fine not in self._sweeps:
-                self._sweeps[fine] = DesignSweeps(self.m, self.ready, self.grids[fine], moved, self.turned)
-            swept = self._sweeps[fine](values, threads)
-            path, angles, closes = swept.points[self.trace], swept.angles, swept.closes
-        else:
-            path, angles, closes = self._one_by_one(x, self.grids[fine])
+        if fine not in self._sweeps:
+            self._sweeps[fine] = DesignSweeps(self.m, self.ready, self.grids[fine], moved, self.turned)
+        swept = self._sweeps[fine](values, threads)
+        return self._judged(x, swept.points[self.trace], swept.angles, swept.closes)
+
+    def beside(self, x: np.ndarray, steps: np.ndarray, fine: bool) -> Paths:
+        """Paths (n k) of designs x (n, k) of which one number after the other goes a step (n, k) on.
+
+        They go along the exact tangents of the paths of x: nothing is swept but x.
+        """
+        n, k = x.shape
+        path, angles, closes = self._one_by_one(x, self.grids[fine])
+        paths = np.repeat(path, k, axis=0)
+        turned = {body: np.repeat(rows, k, axis=0) for body, rows in angles.items()}
+        closes = np.repeat(closes, k)
+        for row, values in enumerate(x):
+            if not closes[row * k]:
+                continue
+            try:
+                along, turns = tangents_of_path(self, values, self.grids[fine])
+            except MechanismError:
+                closes[row * k : (row + 1) * k] = False
+                continue
+            at = slice(row * k, (row + 1) * k)
+            paths[at] += along * steps[row, :, None, None]
+            for body, rows in turned.items():
+                rows[at] += turns[body] * steps[row, :, None]
+        return self._judged((x[:, None] + steps[:, :, None] * np.eye(k)).reshape(n * k, k), paths, turned, closes)
+
+    def _judged(self, x: np.ndarray, path: np.ndarray, angles: dict[str, np.ndarray], closes: np.ndarray) -> Paths:
+        """Paths of designs x (n, k), and how they meet the conditions."""
+        values, moved = self.changes(x) if self.pins or self.links else (np.zeros((len(x), 0)), [])
         arms = np.tile(self.ready.packed.system.marker_arm, (len(x), 1, 1))
         for column, change in enumerate(moved):
             for number, axis in change.markers:
@@ -140,21 +176,26 @@ class Designs:
             other.body_names
         )
 
+    def solved(self, x: np.ndarray, grid: np.ndarray) -> tuple[Model, Prepared, np.ndarray]:
+        """The mechanism of one design x (k,), made ready, and its poses (T, nb, 3); the last ones are kept."""
+        key = x.tobytes(), len(grid)
+        if key not in self._solved:
+            m = self.model(x)
+            ready = prepare(m, float(grid[0]), float(grid[-1]))
+            while len(self._solved) >= KEPT:
+                del self._solved[next(iter(self._solved))]
+            self._solved[key] = m, ready, kinematics_at(ready, grid)[0]
+        return self._solved[key]
+
     def _one_by_one(self, x: np.ndarray, grid: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray], np.ndarray]:
         path = np.full((len(x), len(grid), 2), np.nan)
         angles = {body: np.full((len(x), len(grid)), np.nan) for body in self.turned}
         for k, values in enumerate(x):
             try:
-                m = self.model(values)
-                ready = prepare(m, float(grid[0]), float(grid[-1]))
-                q = kinematics_at(ready, grid)[0]
+                m, ready, q = self.solved(values, grid)
             except MechanismError:
                 continue
-            marker = m.traces[self.trace]
-            body = ready.packed.body_names.index(marker.body.name)
-            x0, y0 = np.array([marker.x, marker.y]) - ready.packed.com[body]
-            c, s = np.cos(q[:, body, 2]), np.sin(q[:, body, 2])
-            path[k] = q[:, body, :2] + np.column_stack([c * x0 - s * y0, s * x0 + c * y0])
+            path[k] = path_of(ready.packed, m.traces[self.trace], q)
             for name, rows in angles.items():
                 rows[k] = q[:, ready.packed.body_names.index(name), 2]
         return path, angles, np.isfinite(path).all(axis=(1, 2))

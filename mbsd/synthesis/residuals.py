@@ -75,7 +75,7 @@ class Residuals:
         n, k = u.shape
         steps = np.where(u < 0.5, STEP, -STEP)
         changed = (u[:, None] + steps[:, None] * np.eye(k)).reshape(n * k, k)
-        paths, shifts = self._paths(changed, fine)
+        paths, shifts = self._paths(changed, fine) if self.designs.at_once else self._beside(u, steps, fine)
         closes = paths.closes & np.repeat(np.isfinite(missed.cost), k)
         there = np.where(closes[:, None, None], paths.path, 0.0)
         held = np.repeat(missed.where, k, axis=0)
@@ -93,6 +93,21 @@ class Residuals:
         x = self.low + self.size * u
         count = self.designs.varied.count
         return self.designs(x[:, :count], fine), x[:, count:].sum(axis=1)
+
+    def _beside(self, u: np.ndarray, steps: np.ndarray, fine: bool) -> tuple[Paths, np.ndarray]:
+        """The same of designs u (n, k) that differ by a step (n, k) in one number each, along exact tangents."""
+        count, k = self.designs.varied.count, u.shape[1]
+        x = self.low + self.size * u
+        shifts = (x[:, None] + (self.size * steps)[:, :, None] * np.eye(k))[..., count:].sum(axis=2).ravel()
+        paths = self.designs.beside(x[:, :count], (self.size * steps)[:, :count], fine)
+        if count == k:
+            return paths, shifts
+        own = np.arange(len(u))[:, None] * count + np.minimum(np.arange(k), count - 1)  # the shift leaves the path
+        still = self.designs.beside(x[:, :count], 0.0 * steps[:, :count], fine)
+        pick = own.ravel()
+        free = np.tile(np.arange(k) >= count, len(u))
+        return Paths(*(np.where(free.reshape(-1, *[1] * (a.ndim - 1)), b[pick], a[pick])
+                       for a, b in zip(paths.parts(), still.parts(), strict=True))), shifts  # fmt: skip
 
     def _rows(self, paths: Paths, there: np.ndarray, where: np.ndarray, fine: bool) -> np.ndarray:
         away = self.target.missed(there, where, fine).reshape(len(there), -1) / self.target.extent

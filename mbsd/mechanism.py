@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from mbsd.analyses.state_space import Linearisation
     from mbsd.derivatives.sensitivities import Sensitivities
     from mbsd.drawing.of_solution import SkeletonDrawer
-    from mbsd.drawing.picture import Picture, Svg
     from mbsd.dynamics.many.measures import Measure
     from mbsd.dynamics.many.simulate_many import Simulations
     from mbsd.kinematics.batch import Batch

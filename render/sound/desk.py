@@ -101,7 +101,7 @@ class Desk:
         for source, rows in self._powers.items():
             wave = self._waves.setdefault(source, np.zeros((2, self.setting.samples)))
             for k, power in rows.items():
-                bank[k] = bank[k] if k in bank else octave_noise(self.setting.samples, float(OCTAVES[k]), k)
+                bank[k] = bank[k] if k in bank else self._octave(k)
                 for channel, row in zip(wave, power, strict=True):
                     channel += self._fine(self._soft(np.sqrt(row))) * bank[k]
         stems = {source: np.fft.rfft(wave) for source, wave in self._waves.items()}
@@ -113,6 +113,9 @@ class Desk:
                 rung = self._blows([blows for name, blows in struck if name == body]) * responses[body]
                 stems[source] = stems[source] + rung if source in stems else rung
         return stems
+
+    def _octave(self, k: int) -> Array:
+        return octave_noise(self.setting.samples, float(OCTAVES[k]), self.setting.streams + k)
 
     def _blows(self, blows: Sequence[Blows]) -> Spectrum:
         """(2, N // 2 + 1) the spectrum of all strikes of a body; those that come from one place are summed first."""

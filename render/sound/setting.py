@@ -38,12 +38,18 @@ FADE = 0.012
 class Setting:
     """One showing of a film, as sources hear it."""
 
-    def __init__(self, film: Film, time_map: TimeMap | None = None) -> None:
+    def __init__(
+        self, film: Film, time_map: TimeMap | None = None, within: tuple[float, float] = (-1.0, 1.0), streams: int = 0
+    ) -> None:
         """``time_map`` of another film of the same motion, such as a story; that of the film's clock if not given.
+
+        ``within`` is where the machine's picture begins and ends in the whole picture, -1 at its left edge, 1 at its
+        right; ``streams`` is the number of the first stream of chance of its noises.
 
         Raises UserError where the showing is longer than what there is room for.
         """
         self.film, self.motion, self.map = film, film.motion, time_map or film.clock.time_map
+        self.within, self.streams = within, streams
         self.seconds = self.map.seconds
         if self.seconds > LONGEST:
             raise UserError(
@@ -137,16 +143,21 @@ class Setting:
         The edges of what moves are at the edges; the camera's distance, which is costly, is not asked for.
         """
         right, middle, half = self._across
-        return np.clip((self.series(right[0] * x + right[1] * y) - middle) / half, -1.0, 1.0) * WIDEST
+        return self._laid(np.clip((self.series(right[0] * x + right[1] * y) - middle) / half, -1.0, 1.0))
 
     def side_of(self, body: str) -> Array:
         """(M + 1,) the same of a body's centre of mass; the middle of ground."""
         if body not in self.motion.bodies:
-            return np.zeros(self.steps + 1)
+            return self._laid(np.zeros(self.steps + 1))
         moved = self.motion.bodies[body]
         c, s = np.cos(moved.theta), np.sin(moved.theta)
         x, y = moved.com
         return self.side(np.asarray(moved.x) + c * x - s * y, np.asarray(moved.y) + s * x + c * y)
+
+    def _laid(self, side: Array) -> Array:
+        """Sides (n,) in the machine's picture as they are heard in the whole one."""
+        low, high = self.within
+        return (low + (high - low) * (side + 1) / 2) * WIDEST
 
     @cached_property
     def _across(self) -> tuple[Array, Array | float, float]:

@@ -88,13 +88,17 @@ class Story:
         placed = self.at(frame)
         return placed.shot.model(s - placed.first / self.fps)
 
-    def time_map(self, start: float, end: float) -> TimeMap:
-        """The same for sound, a piece a frame long, of a motion from ``start`` to ``end`` (s) that begins anew."""
+    def time_map(self, start: float, end: float, anew: bool = True) -> TimeMap:
+        """The same for sound, a piece a frame long, of a motion from ``start`` to ``end`` (s) that begins anew, or
+        stands at its end if it does not.
+        """
         seconds, moments = [0.0], [self.model_time(0.0)]
         for placed in self.placed:
             for k in range(placed.end - placed.first + 1):
                 seconds.append((placed.first + k) / self.fps)
                 moments.append(placed.shot.model(k / self.fps))
+        if not anew:
+            return TimeMap.through(seconds, [min(max(moment, start), end) for moment in moments], closes=False)
         return TimeMap.through(*_folded(seconds, moments, start, end), closes=False)
 
     @cached_property

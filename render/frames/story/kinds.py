@@ -27,7 +27,7 @@ def run(name: str, preset: Preset, show: str = "", story: str = "loop", loop: fl
     if story == "compare":
         from render.frames.story import beside
 
-        beside.run(name, preset)
+        beside.run(name, preset, sound)
         return
     from render.frames.story import stage
 

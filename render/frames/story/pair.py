@@ -42,7 +42,7 @@ def pair_of(outs: Sequence[Out], preset: Preset, half: Preset) -> Pair:
     spans = (_span(films[0]), _span(films[1]))
     whys = [reasons(film.motion) for film in films]
     curves = _common(films, curves_of(films[0].motion, films[0].shot.story.curves, whys[0]))
-    most = differences(*curves, spans)
+    most = differences(*curves, spans, (films[0].clock.repeats, films[1].clock.repeats))
     ramp = ramp_of(films[0].clock.rate, max(spans), most[0].time if most else None)
     names = (_name(outs[0], films[0]), _name(outs[1], films[1]))
     drawing = _drawing(outs[0], preset, names, _strip(preset, films, curves, max(spans)))

@@ -31,15 +31,23 @@ class Difference:
     values: tuple[float, float]
 
 
-def differences(first: Sequence[Curve], second: Sequence[Curve], spans: tuple[float, float]) -> list[Difference]:
-    """For curves that both variants have, the largest difference as a part of the larger curve first."""
+def differences(
+    first: Sequence[Curve], second: Sequence[Curve], spans: tuple[float, float], repeats: tuple[bool, bool]
+) -> list[Difference]:
+    """For curves that both variants have, the largest difference as a part of the larger curve first.
+
+    Where the shorter motion has no period it stands at its end.
+    """
     times = np.linspace(0.0, max(spans), ROWS)
     out = []
     for a in first:
         b = next((curve for curve in second if curve.name == a.name and curve.unit == a.unit), None)
         if b is None:
             continue
-        rows = [np.interp(times % span, c.time - c.time[0], c.values) for c, span in zip((a, b), spans, strict=True)]
+        rows = [
+            np.interp(times % span if anew else times, c.time - c.time[0], c.values)
+            for c, span, anew in zip((a, b), spans, repeats, strict=True)
+        ]
         k = int(np.abs(rows[0] - rows[1]).argmax())
         top = max(float(np.abs(row).max()) for row in rows)
         part = float(abs(rows[0][k] - rows[1][k])) / top if top else 0.0

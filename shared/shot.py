@@ -1,5 +1,5 @@
 """The door of ``shot.py``: how a motion is filmed."""
 
-from shared.contract.shot import Camera, Label, Shot, Sound, Story, Surface, Title, Trail
+from shared.contract.shot import Camera, Label, Section, Shot, Sound, Story, Surface, Title, Trail
 
-__all__ = ["Camera", "Label", "Shot", "Sound", "Story", "Surface", "Title", "Trail"]
+__all__ = ["Camera", "Label", "Section", "Shot", "Sound", "Story", "Surface", "Title", "Trail"]

@@ -67,7 +67,7 @@ class Film:
         return Scene(
             mechanism=self.motion.mechanism,
             fps=self.shot.fps,
-            pieces=piece_specs(self.parts, self.shot, self.folder),
+            pieces=piece_specs(self.parts, self.shot, self.folder, self.motion),
             trails=self.trails.specs(self.look.dark),
             labels=[LabelSpec(text=s.text, size=s.size * self.size, colour=s.colour) for s in self.shot.labels],
             studio=self.studio,

@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 
 from render.film.scene import PieceSpec, SurfaceSpec
-from render.film.section import cut_height
+from render.film.section import is_gone, planes_of
 from shared.contract import Motion, Parts, Piece
 from shared.contract.materials import MATERIALS
 from shared.contract.shot import Shot, Surface
@@ -18,16 +18,19 @@ from shared.stage.suggestions import did_you_mean
 
 COLOURED, KEPT = 0.05, 0.06
 """Difference of linear RGB from which on a surface is coloured, and the part of its own colour that it keeps."""
+TINT, PANE = 0.3, 0.06
+"""How much of its colour a transparent piece keeps, and its roughness."""
 GREY, DARKEST = 0.9, 0.14
 """What a coloured surface is beside arrows, in its lightness, and that at least."""
 
 
-def piece_specs(parts: Parts, shot: Shot, folder: Path) -> list[PieceSpec]:
-    """All solids, whose STL files are in ``folder``, as far as the shot's section leaves them.
+def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = None) -> list[PieceSpec]:
+    """All solids, whose STL files are in ``folder``, as far as the shot's section leaves them; ``motion`` says where
+    bodies stand that a section names.
 
     Raises UserError for a material that is not known, and for a section that cuts nothing.
     """
-    height = cut_height(parts, shot.section)
+    cuts = planes_of(parts, shot.section, folder, motion)
     return [
         PieceSpec(
             body=body,
@@ -36,10 +39,10 @@ def piece_specs(parts: Parts, shot: Shot, folder: Path) -> list[PieceSpec]:
             sha256=piece.stl_sha256,
             surface=_surface(parts.mechanism, shot, body, name, piece),
             turns_about=(piece.rolls.x, piece.rolls.y) if piece.rolls else None,
-            cut_above=height if height is not None and piece.z_range[1] > height else None,
+            cut=cuts.get((body, name), ()),
         )
         for body, name, piece in _pieces(parts)
-        if height is None or piece.z_range[0] < height
+        if (body, name) not in cuts or not is_gone(piece, cuts[body, name], folder)
     ]
 
 
@@ -73,7 +76,15 @@ def _pieces(parts: Parts) -> Iterator[tuple[str, str, Piece]]:
 
 def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> SurfaceSpec:
     chosen = _chosen(mechanism, shot, body, name, piece)
+    if shot.transparent and {body, f"{body}/{name}"} & set(shot.transparent):
+        chosen = as_pane(chosen)
     return neutral(chosen) if shot.show else chosen
+
+
+def as_pane(surface: SurfaceSpec) -> SurfaceSpec:
+    """A pane of glass in a light tint of the surface's colour."""
+    red, green, blue = (TINT * channel + (1 - TINT) for channel in surface.colour)
+    return SurfaceSpec(colour=(red, green, blue), finish="glass", roughness=PANE)
 
 
 def neutral(surface: SurfaceSpec) -> SurfaceSpec:

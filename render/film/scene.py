@@ -16,6 +16,8 @@ from shared.contract.signals import Head
 
 Colour = tuple[float, float, float]
 Point = tuple[float, float, float]
+Plane = tuple[float, float, float, float]
+"""A unit normal, and how far along it the plane is (m)."""
 Hidden = Literal["", "trails", "all"]
 
 
@@ -40,8 +42,8 @@ class PieceSpec(msgspec.Struct, kw_only=True, frozen=True):
     surface: SurfaceSpec
     turns_about: tuple[float, float] | None = None
     """x, y of the axis (m) about which it turns against its body; the States have its pose as ``body/name``."""
-    cut_above: float | None = None
-    """Height (m) in the body's frame above which a section has cut it away."""
+    cut: tuple[Plane, ...] = ()
+    """Planes of the body's frame beyond all of which a section has cut it away."""
 
 
 class TrailSpec(msgspec.Struct, kw_only=True, frozen=True):

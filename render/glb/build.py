@@ -99,7 +99,7 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec]) -> tuple[Document, Animati
 def _mesh(document: Document, piece: PieceSpec, paints: Paints) -> int:
     triangles = read_triangles(Path(piece.stl))
     faces = [(triangles, piece.surface)]
-    if piece.cut_above is not None:
+    if piece.cut:
         rest, cut = cut_open(triangles, piece)
         faces = [(rest, piece.surface), (cut, cut_surface(piece.surface))]
     primitives = [_primitive(document, part, piece, paints.of(surface)) for part, surface in faces if len(part)]

@@ -8,7 +8,9 @@ solid   looks {dark, light}: see looks.py; reach: away from the camera (m); size
         pieces [{body, name, mesh, at (m, of its lowest corner in the body), surface, turns, lift (m, of an exploded
         machine, along the normal of its plane)}]; turns is null, or
         {x, y, angle (T,)} of a roller about a point of its body (m, rad)
-        section: part of the depth that the page shows cut away at first
+        section: part that the page shows cut away at first; sawn: whether the shot has other planes than one from the
+        front, those of pieces then: cut [(x, y, z, m)] a normal and how far along it each plane is, in the body, and
+        gone: whether all of it is away
         heights {joints, points, bodies: {name: m}}: of what floats over them
         tubes: bytes of a GLB with springs, ropes and belts and their motion, or null
 """
@@ -28,11 +30,13 @@ from render.film.framing import axes, in_studio, studio
 from render.film.pieces import piece_specs
 from render.film.poses import Moment
 from render.film.scene import PieceSpec, SurfaceSpec
+from render.film.section import is_gone, planes_of, section_of
 from render.glb.build import tubes
 from render.glb.materials import CLEAR, METALLIC, TONE
 from render.view.loads import arcs_of, arrows_of
 from render.view.looks import looks_of
 from render.view.meshes import Meshes, shapes
+from shared.contract.shot import Section
 
 COAT = {"anodised": 0.18, "plastic": 0.25, "wood": 0.1}
 """Strength of varnish, by finish."""
@@ -56,6 +60,7 @@ def with_parts(payload: dict[str, Any], film: Film) -> dict[str, Any]:
 def solid(film: Film) -> dict[str, Any]:
     """See the file."""
     specs = piece_specs(film.parts, msgspec.structs.replace(film.shot, section=0.0), film.folder)
+    sawn = sawn_of(film)
     solids = list(shapes([Path(spec.stl) for spec in specs]))
     meshes = Meshes(max(float(np.ptp(positions, axis=0).max()) for positions, _, _ in solids))
     surfaces: dict[SurfaceSpec, int] = {}
@@ -75,6 +80,7 @@ def solid(film: Film) -> dict[str, Any]:
                 "surface": surface,
                 "turns": turns,
                 "lift": lifts.get((spec.body, spec.name), 0.0),
+                **sawn.get((spec.body, spec.name), {}),
             }
         )
     return {
@@ -85,13 +91,27 @@ def solid(film: Film) -> dict[str, Any]:
         "axes": studio(film.parts.mount.up).tolist(),
         "floor": float(in_studio(film.space.all, film.parts.mount.up)[:, 2].min()),
         "camera": _camera(film),
-        "section": film.shot.section,
+        "section": 1.0 if sawn else section_of(film.shot.section).front,
+        "sawn": bool(sawn),
         "step": meshes.step,
         "meshes": meshes.list,
         "surfaces": [_surface(surface) for surface in surfaces],
         "pieces": pieces,
         "heights": _heights(film),
         "tubes": np.frombuffer(tubes(film), np.uint8) if film.drawn else None,
+    }
+
+
+def sawn_of(film: Film) -> dict[tuple[str, str], dict[str, Any]]:
+    """By body and piece, how the shot's section cuts it; nothing where the page's own slider does the same."""
+    section = section_of(film.shot.section)
+    if section == Section(front=section.front):
+        return {}
+    planes = planes_of(film.parts, section, film.folder, film.motion)
+    pieces = {key: film.parts.bodies[key[0]].pieces[key[1]] for key in planes}
+    return {
+        key: {"cut": [list(plane) for plane in cut], "gone": is_gone(pieces[key], cut, film.folder)}
+        for key, cut in planes.items()
     }
 
 

@@ -139,6 +139,26 @@ class Surface(_Strict, frozen=True):
     roughness: Unit = 0.3
 
 
+Part = Annotated[float, msgspec.Meta(ge=0, lt=1)]
+
+
+class Section(_Strict, frozen=True):
+    """What is cut away, as parts of the reach of the pieces that are cut. From one side it is what is beyond a plane;
+    from two, as ``Section(front=0.5, right=0.5)``, the quarter that is beyond both."""
+
+    front: Part = 0.0
+    """Along the normal of the plane of the motion, from where it is seen."""
+    right: Part = 0.0
+    left: Part = 0.0
+    """From where x is largest, or smallest, ..."""
+    above: Part = 0.0
+    below: Part = 0.0
+    """... and y."""
+    only: tuple[str, ...] = ()
+    """Bodies, or pieces as "body/piece", that are cut; () is all of them from the front alone, and from other sides
+    what stands still. What moves is cut as it stands at the start."""
+
+
 class Shot(_Strict, frozen=True):
     """shot.json: camera, look and film of one mechanism."""
 
@@ -174,8 +194,11 @@ class Shot(_Strict, frozen=True):
     """null writes nothing but the rate of a motion without a period that is not in real time."""
     materials: dict[str, str | Surface] = {}
     """Other surfaces for the film alone, by ``body`` or ``body/piece``: the name of a material or a Surface."""
-    section: Annotated[float, msgspec.Meta(ge=0, lt=1)] = 0.0
-    """Part of the machine's depth that is cut away from the front; cut faces are hatched. 0 cuts nothing."""
+    section: Part | Section = 0.0
+    """Part of the machine's depth that is cut away from the front, or a Section: other sides, a quarter, certain
+    pieces; cut faces are hatched. 0 cuts nothing."""
+    transparent: tuple[str, ...] = ()
+    """Bodies, or pieces as "body/piece", that are seen through as tinted glass is, such as covers."""
     sound: Sound = Sound()
     poster: Unit = 0.3
     """Which moment the poster shows, as a part of the motion."""
@@ -200,6 +223,12 @@ def refuse_unsound(shot: Shot, where: Path | str) -> Shot:
     if shot.rate is not None and shot.seconds_per_turn is not None:
         raise UserError(f"{where}: rate and seconds_per_turn both say how fast the film goes; give one of them")
     jsonfile.refuse_non_finite(shot, where)
+    if isinstance(shot.section, Section):
+        for a, b in (("right", "left"), ("above", "below")):
+            if getattr(shot.section, a) and getattr(shot.section, b):
+                raise UserError(f"{where}: section cuts from {a} and from {b}; a section has one of them")
+        if not any(getattr(shot.section, side) for side in ("front", "right", "left", "above", "below")):
+            raise UserError(f"{where}: section cuts from no side; give front, right, left, above or below, 0 .. 1")
     return jsonfile.decode(jsonfile.encode(shot), Shot, where)
 
 
@@ -256,10 +285,17 @@ def refuse_unknown(shot: Shot, names: Names) -> None:
     if shot.story.joint is not None:
         known("story.joint", shot.story.joint, names.joints)
     pieces = [f"{body}/{piece}" for body, solids in names.pieces.items() for piece in solids]
+    for field, given in (("section.only", _only(shot)), ("transparent", shot.transparent)):
+        for index, name in enumerate(given):
+            known(f"{field}[{index}]", name, [*names.pieces, *pieces])
     for name, surface in shot.materials.items():
         known("materials", name, [*names.pieces, *pieces])
         if isinstance(surface, str):
             known(f"materials['{name}']", surface, MATERIALS)
+
+
+def _only(shot: Shot) -> tuple[str, ...]:
+    return shot.section.only if isinstance(shot.section, Section) else ()
 
 
 def _known(mechanism: str, field: str, name: str, names: Iterable[str]) -> None:

@@ -44,11 +44,17 @@ def flat(colour: tuple[float, float, float], name: str) -> Any:
     return made
 
 
-def hatched(surface: SurfaceSpec, name: str, radius: float, way: int) -> Any:
-    """A cut face: stripes in light and dark of the surface's colour; their slope and width follow ``way``, 0 .. 3."""
+def hatched(surface: SurfaceSpec, name: str, radius: float, way: int, normal: Colour = (0.0, 0.0, 1.0)) -> Any:
+    """A cut face: stripes in light and dark of the surface's colour; their slope and width follow ``way``, 0 .. 3.
+
+    ``normal`` is the unit normal of the face, along z or across it.
+    """
     made, graph = new_material(name)
     place = graph.add("SeparateXYZ", Vector=graph.add("TexCoord").outputs["Object"])
-    along = graph.math("SUBTRACT" if way % 2 else "ADD", place.outputs["X"], place.outputs["Y"])
+    x, y, z = (place.outputs[axis] for axis in "XYZ")
+    if not normal[2]:  # in a face that stands up, along it and z
+        x, y = graph.math("SUBTRACT", graph.math("MULTIPLY", y, normal[0]), graph.math("MULTIPLY", x, normal[1])), z
+    along = graph.math("SUBTRACT" if way % 2 else "ADD", x, y)
     period = radius * (STRIPE + way // 2 * STRIPE / 3)
     stripe = graph.math("GREATER_THAN", graph.math("FRACT", graph.math("DIVIDE", along, period)), 0.55)
     light: Colour = tuple(0.5 * part + 0.32 for part in surface.colour)  # type: ignore[assignment]

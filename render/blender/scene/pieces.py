@@ -50,8 +50,8 @@ def build(
         solid.parent = bodies[carrier]
         if solids is not None:
             solids[name] = solid
-        if piece.cut_above is not None:
-            cut_open(solid.data, piece.cut_above, SHARP)
+        if piece.cut:
+            cut_open(solid.data, piece.cut, SHARP)
         if piece.turns_about is not None:
             x, y = piece.turns_about
             solid.data.transform(Matrix.Translation((-x, -y, 0.0)))
@@ -66,8 +66,8 @@ def build(
         solid.data.materials.append(paint)
         if only_flat is None:
             _fill_engraving(solid.data, piece.surface, inks)
-            if piece.cut_above is not None:
-                hatch(solid.data, piece.surface, name, radius)
+            if piece.cut:
+                hatch(solid.data, piece.surface, name, radius, piece.cut)
     return bodies
 
 

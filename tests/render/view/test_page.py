@@ -14,7 +14,7 @@ import pytest
 
 from render import view
 from render.view.bundle import PAGE, node, node_modules
-from shared.contract import read_motion
+from shared.contract import read_motion, read_parts
 from shared.contract.shot import Shot
 from shared.stage.paths import Out
 from tests.running.needs import needed
@@ -97,6 +97,33 @@ def test_a_section_cuts_away_what_is_in_front_and_paints_the_cut_faces(page: Any
     assert seen["whole"]
     assert cut["height"] == pytest.approx(cut["high"] - 0.4 * (cut["high"] - cut["low"]), abs=1e-6)
     assert (folder / "cut.png").stat().st_size > 0
+
+
+def test_arrows_go_with_what_is_below_them_when_the_machine_is_apart(page: Any) -> None:
+    out, seen, _ = page
+    parts = read_parts(out.parts)
+    middles = np.array([sum(parts.bodies[body].pieces[piece].z_range) / 2 for body, piece in seen["arrows"]["order"]])
+    lifts, apart = np.array(seen["lifts"]), dict(seen["arrows"]["apart"])
+    assert len(apart) == len(seen["arrows"]["together"]) > 2
+    for index, z in seen["arrows"]["together"]:
+        assert apart[index] == pytest.approx(z + lifts[middles <= z].max() - lifts.max() / 2, abs=1e-6)
+
+
+def test_a_quarter_is_what_is_in_front_of_two_planes(page: Any) -> None:
+    _, seen, _ = page
+    assert seen["quarter"] == [[2, True]] * len(seen["quarter"])
+
+
+def test_pieces_are_cut_as_the_film_cuts_them(page: Any) -> None:
+    """Here the base, which stands still, so that planes of the world are its own; and a piece that is gone."""
+    _, seen, _ = page
+    sawn = seen["sawn"]
+    assert sawn["of"]["body"] == "ground"
+    assert (sawn["count"], sawn["hidden"]) == (1, 1)
+    assert sawn["own"]
+    assert sawn["whole"], "materials that others share stay whole"
+    assert np.array(sawn["planes"]) == pytest.approx(np.array([[-1, 0, 0, 0.06], [0, -1, 0, 0.01]]), abs=1e-6)
+    assert sawn["after"]
 
 
 def test_scrubbing_keys_and_playing_move_the_machine(page: Any) -> None:

@@ -34,9 +34,16 @@ const box = (page, name) => page.evaluate((one) => {
   await frame(page);
   const heights = () => page.evaluate(() => window.mbsd.app.stage.solid.parts.meshes.map((mesh) => mesh.position.z));
   seen.together = await heights();
+  await page.evaluate(() => window.mbsd.app.store.set({ shown: { reactions: true } }));
+  await frame(page);
+  const arrows = () => page.evaluate(() => [...window.mbsd.app.stage.solid.arrows.straight].filter(([, one]) => one.visible).map(([index, one]) => [index, one.position.z]));
+  seen.arrows = { together: await arrows() };
   await page.evaluate(() => window.mbsd.app.store.set({ apart: 1 }));
   await frame(page);
   seen.apart = await heights();
+  seen.arrows.apart = await arrows();
+  seen.arrows.order = await page.evaluate(() => window.mbsd.app.payload.solid.pieces.map(({ body, name }) => [body, name]));
+  await page.evaluate(() => window.mbsd.app.store.set({ shown: {} }));
   seen.lifts = await page.evaluate(() => window.mbsd.app.payload.solid.pieces.map(({ lift }) => lift));
   await page.evaluate(() => window.mbsd.app.store.set({ apart: 0, cut: 0.4, cutSide: "front" }));
   await frame(page);
@@ -46,8 +53,28 @@ const box = (page, name) => page.evaluate((one) => {
     const place = window.mbsd.app.stage.solid.machine.worldToLocal(section.plane.coplanarPoint(section.place.clone()));
     return { height: place.z, low, high, clipped: parts.materials.every((material) => material.clippingPlanes?.length === 1) };
   });
-  await page.evaluate(() => window.mbsd.app.store.set({ cut: 0 }));
+  await page.evaluate(() => window.mbsd.app.store.set({ cut: 0.5, cutSide: "quarter" }));
   await frame(page);
+  seen.quarter = await page.evaluate(() => window.mbsd.app.stage.solid.parts.materials.map((material) => [material.clippingPlanes?.length, material.clipIntersection]));
+  seen.sawn = await page.evaluate(() => {
+    const { app } = window.mbsd, { parts } = app.stage.solid, last = app.payload.solid.pieces.length - 1;
+    Object.assign(app.payload.solid.pieces[0], { cut: [[1, 0, 0, 0.06], [0, 1, 0, 0.01]], gone: false });
+    Object.assign(app.payload.solid.pieces[last], { cut: [[1, 0, 0, -9], [0, 1, 0, -9]], gone: true });
+    app.store.set({ cutSide: "film", cut: 1 });
+    return { last, of: parts.meshes[0].userData };
+  });
+  await frame(page);
+  Object.assign(seen.sawn, await page.evaluate(() => {
+    const { section, parts, machine } = window.mbsd.app.stage.solid, { mesh, planes } = section.sawn[0], back = machine.matrixWorld.clone().invert();
+    return {
+      count: section.sawn.length, own: mesh.material !== parts.materials[0], whole: parts.materials.every((material) => !material.clippingPlanes),
+      planes: planes.map((plane) => { const one = plane.clone().applyMatrix4(back); return [...one.normal.toArray(), one.constant]; }), hidden: parts.meshes.filter((one) => !one.visible).length,
+    };
+  }));
+  await page.screenshot({ path: path.join(folder, "sawn.png") });
+  await page.evaluate(() => window.mbsd.app.store.set({ cut: 0, cutSide: "front" }));
+  await frame(page);
+  seen.sawn.after = await page.evaluate(() => window.mbsd.app.stage.solid.parts.meshes.every((mesh) => mesh.visible && !mesh.material.clippingPlanes));
   seen.whole = await page.evaluate(() => window.mbsd.app.stage.solid.parts.materials.every((material) => !material.clippingPlanes?.length));
   await page.evaluate(() => window.mbsd.app.store.set({ view: "2d" }));
   await frame(page);

@@ -30,7 +30,7 @@ export class App {
     this.ready = this.asked = false;
     this.take(payload);
     this.store = new Store({
-      time: payload.clock.start, playing: !still(), speed: 1, selected: null, view: "3d", theme: "auto", apart: 0, cut: payload.solid?.section ?? 0, cutSide: "front",
+      time: payload.clock.start, playing: !still(), speed: 1, selected: null, view: "3d", theme: "auto", apart: 0, cut: payload.solid?.section ?? 0, cutSide: payload.solid?.sawn ? "film" : "front",
       shown: initiallyShown(payload),
     });
     this.parts = layout(root, this);

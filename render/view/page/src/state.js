@@ -11,7 +11,7 @@
  * @property {"auto" | "dark" | "light"} theme
  * @property {number} apart         how far the parts are taken apart, 0 .. 1
  * @property {number} cut           how much of them is cut away, 0 .. 1, from the side cutSide
- * @property {"front" | "side" | "top"} cutSide
+ * @property {"front" | "side" | "top" | "quarter" | "film"} cutSide   film: as the shot says, whatever cut is
  * @property {Record<string, boolean>} shown   by the words of ui/shown.js
  */
 export class Store {

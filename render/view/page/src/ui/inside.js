@@ -1,7 +1,7 @@
 /** Sliders that look into the machine: how far it is taken apart, and how much of it is cut away from which side. */
 import { el } from "./dom.js";
 
-const SIDES = { front: "from the front", side: "from the side", top: "from above" };
+const SIDES = { front: "from the front", side: "from the side", top: "from above", quarter: "a quarter", film: "as in the film" };
 
 /** @param {import("../app.js").App} app  @returns {HTMLElement} */
 export function inside(app) {
@@ -12,7 +12,7 @@ export function inside(app) {
     return input;
   };
   const apart = range("apart", "Exploded"), cut = range("cut", "Section");
-  const side = el("select", { class: "side-of", "aria-label": "Side of the section" }, ...Object.entries(SIDES).map(([value, words]) => el("option", { value }, words)));
+  const side = el("select", { class: "side-of", "aria-label": "Side of the section" }, ...Object.entries(SIDES).filter(([value]) => value !== "film" || app.payload.solid?.sawn).map(([value, words]) => el("option", { value }, words)));
   side.addEventListener("change", () => store.set({ cutSide: side.value }));
   const box = el("div", { class: "inside", role: "group", "aria-label": "Inside" },
     el("label", {}, "Exploded", apart), el("label", {}, "Section", cut), side);

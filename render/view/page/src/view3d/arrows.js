@@ -43,7 +43,8 @@ export class Arrows {
     });
   }
 
-  draw(payload, motion, shown, colours) {
+  /** @param {(z: number) => number} raised  where a height is in a machine that is apart */
+  draw(payload, motion, shown, colours, raised = (z) => z) {
     const size = payload.solid.size;
     for (const one of [...this.straight.values(), ...this.curved.values()]) one.visible = false;
     for (const { index, row, tail, tip, z } of arrowsAt(payload, motion, shown)) {
@@ -51,7 +52,7 @@ export class Arrows {
       const length = Math.hypot(dx, dy), point = Math.min(POINT * size, (HEADS[row].endsWith("double") ? 0.5 : 0.7) * length);
       const thin = Math.min(1, length / (1.4 * POINT * size)), thick = SHAFT * size * thin, halo = HALO * thick;
       one.visible = true;
-      one.position.set(tail[0], tail[1], z);
+      one.position.set(tail[0], tail[1], raised(z));
       one.rotation.z = Math.atan2(dy, dx);
       one.children.forEach((mesh, k) => {
         const more = k % 2 ? 0 : halo, head = HEAD * size * thin;
@@ -65,7 +66,7 @@ export class Arrows {
     for (const { index, row, centre, sweep, radius, z } of arcsAt(payload, motion, shown)) {
       const one = this.arc(index, radius, size, payload, this.material(row, colours)), part = Math.abs(sweep) / one.userData.full;
       one.visible = true;
-      one.position.set(...centre, z);
+      one.position.set(...centre, raised(z));
       one.scale.y = Math.sign(sweep);
       const angle = Math.abs(sweep);
       const thin = Math.min(1, (0.55 * radius * angle) / (STOUT * POINT * size)), neck = Math.max(part - (0.8 * thin * STOUT * POINT * size) / (radius * one.userData.full), 0);

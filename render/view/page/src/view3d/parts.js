@@ -17,7 +17,9 @@ export class Parts {
     this.rollers = [];
     /** Meshes, their own height, and how far an exploded machine lifts them (m). */
     this.lifts = [];
-    this.apart = 0;
+    /** Heights of the middles of pieces when all is together, and their lifts (m). */
+    this.steps = [];
+    this.apart = this.dressed = 0;
     this.meshes = [];
     this.materials = solid.surfaces.map((surface) => materialOf(surface, soft));
     const geometries = solid.meshes.map((mesh) => geometryOf(mesh, solid.step));
@@ -27,6 +29,8 @@ export class Parts {
       mesh.userData = { body: piece.body, piece: piece.name };
       mesh.position.set(...piece.at);
       this.lifts.push([mesh, piece.at[2], piece.lift ?? 0]);
+      mesh.geometry.boundingBox ?? mesh.geometry.computeBoundingBox();
+      this.steps.push([piece.at[2] + mesh.geometry.boundingBox.max.z / 2, piece.lift ?? 0]);
       this.meshes.push(mesh);
       if (piece.turns) {
         const axis = new Group();
@@ -100,6 +104,14 @@ export class Parts {
     for (const [mesh, height, lift] of this.lifts) mesh.position.z = height + apart * (lift - half);
   }
 
+  /** Where something that floats at a height goes when the machine is apart: with what is just below it. @param {number} z m */
+  raised(z) {
+    if (!this.apart) return z;
+    let lift = 0;
+    for (const [middle, more] of this.steps) if (middle <= z && more > lift) lift = more;
+    return z + this.apart * (lift - this.tallest / 2);
+  }
+
   /** Least and largest place of all pieces along an axis of the machine, at the moment and as far as they are apart. */
   reach(axis) {
     const box = new Box3(), along = new Vector3(...axis), corner = new Vector3(), back = this.group.matrixWorld.clone().invert();
@@ -124,5 +136,8 @@ export class Parts {
   }
 
   /** @param {"" | "glass" | "dim"} look  @param {boolean} neutral whether no part has a colour */
-  dress(look, neutral) { for (const material of this.materials) setLook(material, look, neutral); }
+  dress(look, neutral) {
+    for (const material of this.materials) setLook(material, look, neutral);
+    this.dressed++;
+  }
 }

@@ -168,13 +168,14 @@ export class Solid {
       this.ghosts.update(this.parts, motion);
       this.ghosted = this.parts;
     }
-    const colours = inks(look.dark, payload.bodies);
+    const colours = inks(look.dark, payload.bodies), raised = (z) => this.parts.raised(z);
+    const lifted = (list) => list.map((one) => ({ ...one, at: [one.at[0], one.at[1], raised(one.at[2])] }));
     this.trails.group.visible = !!shown.trails;
-    if (shown.trails) this.trails.draw(payload, motion, colours.trail);
-    this.arrows.draw(payload, motion, shown, colours.arrows);
-    this.marks.show(wantedMarks(this.app), colours, this.size[1], this.tangent * this.radius);
+    if (shown.trails) this.trails.draw(payload, motion, colours.trail, raised);
+    this.arrows.draw(payload, motion, shown, colours.arrows, raised);
+    this.marks.show(lifted(wantedMarks(this.app)), colours, this.size[1], this.tangent * this.radius);
     this.renderer.render(this.scene, this.camera);
-    this.labels.show(wantedLabels(this.app), (vector) => this.pixel(vector));
+    this.labels.show(lifted(wantedLabels(this.app)), (vector) => this.pixel(vector));
   }
 
   /** Take the machine apart, and stand so far away that all of it is seen. */
@@ -200,7 +201,7 @@ export class Solid {
     const { payload, motion } = this.app, { heights } = payload.solid;
     let best = null, nearest = NEAR;
     const look = (kind, name, place, z) => {
-      const [x, y] = this.pixel(new Vector3(...place, z)), away = Math.hypot(x - px, y - py);
+      const [x, y] = this.pixel(new Vector3(...place, this.parts.raised(z))), away = Math.hypot(x - px, y - py);
       if (away < nearest) [best, nearest] = [{ kind, name }, away];
     };
     for (const name in payload.joints) look("joint", name, motion.joint(name), heights.joints[name] ?? 0);

@@ -25,10 +25,11 @@ export class Trails {
   }
 
   /** @param {string} ink  as {@link update} */
-  draw(payload, motion, ink) {
+  /** @param {(z: number) => number} raised  where a height is in a machine that is apart */
+  draw(payload, motion, ink, raised = (z) => z) {
     if (ink !== this.ink) this.update(payload, ink);
     for (const { trail, mesh } of this.made) {
-      const places = tailOf(payload, motion, trail.point, trail.tail, RINGS), { array } = mesh.geometry.attributes.position;
+      const places = tailOf(payload, motion, trail.point, trail.tail, RINGS), { array } = mesh.geometry.attributes.position, z = raised(trail.z);
       for (let k = 0; k < RINGS; k++) {
         const a = places[Math.max(k - 1, 0)], b = places[Math.min(k + 1, RINGS - 1)];
         const length = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1, u = -(b[1] - a[1]) / length, v = (b[0] - a[0]) / length;
@@ -37,7 +38,7 @@ export class Trails {
           const angle = (2 * Math.PI * n) / SIDES, c = r * Math.cos(angle), at = 3 * (k * SIDES + n);
           array[at] = places[k][0] + u * c;
           array[at + 1] = places[k][1] + v * c;
-          array[at + 2] = trail.z + r * Math.sin(angle);
+          array[at + 2] = z + r * Math.sin(angle);
         }
       }
       mesh.geometry.attributes.position.needsUpdate = true;

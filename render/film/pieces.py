@@ -18,7 +18,7 @@ from shared.stage.suggestions import did_you_mean
 
 COLOURED, KEPT = 0.05, 0.06
 """Difference of linear RGB from which on a surface is coloured, and the part of its own colour that it keeps."""
-TINT, PANE = 0.3, 0.06
+TINT, PANE = 0.6, 0.06
 """How much of its colour a transparent piece keeps, and its roughness."""
 GREY, DARKEST = 0.9, 0.14
 """What a coloured surface is beside arrows, in its lightness, and that at least."""

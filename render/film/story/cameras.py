@@ -66,10 +66,11 @@ def raised(stand: Stand, up: Vector, top: float) -> Stand:
     if back < 1e-3:
         return stand
     needed = (top - height) / (back - OVER) if back > OVER else 0.0
-    return stand if stand.distance >= needed else _at(stand, needed)
+    return stand if stand.distance >= needed else at_distance(stand, needed)
 
 
-def _at(stand: Stand, distance: float) -> Stand:
+def at_distance(stand: Stand, distance: float) -> Stand:
+    """The stand at another distance (m) from what it looks at."""
     return Stand(stand.target, stand.azimuth, stand.elevation, distance, stand.lens)
 
 

@@ -112,6 +112,10 @@ class Scenery:
             self.kept[asked] = self._stand(*asked)
         return self.kept[asked]
 
+    def hold(self, stand: Stand) -> None:
+        """Have the stand that is asked for without any words be this one."""
+        self.kept[0.0, 0.0, True, False] = stand
+
     def _stand(self, azimuth: float, elevation: float, strip: bool, arrows: bool) -> Stand:
         film = self.forces if arrows and self.forces is not None else self.film
         at = angles(film.shot.camera, film.parts.mount, film.aspect)

@@ -37,7 +37,7 @@ TABLE: dict[str, dict[str, str]] = {
         "slower": "{factor} times slower",
         "faster": "{factor} times faster",
         "usual": "as it is",
-        "difference": "{curve}: {first} ({a}), {second} ({b}).",
+        "difference": "Here {curve} differs most: {first} ({a}), {second} ({b}).",
     },
     "de": {
         "title": "Titel",
@@ -67,7 +67,7 @@ TABLE: dict[str, dict[str, str]] = {
         "slower": "{factor}-mal langsamer",
         "faster": "{factor}-mal schneller",
         "usual": "wie sie ist",
-        "difference": "{curve}: {first} ({a}), {second} ({b}).",
+        "difference": "Hier unterscheidet sich {curve} am meisten: {first} ({a}), {second} ({b}).",
     },
 }
 """By language, then by what is said; every language says the same things with the same names in braces."""

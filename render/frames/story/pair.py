@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from render.film.film import Film
 from render.film.inputs import read_film
+from render.film.story.cameras import at_distance
 from render.film.story.curves import Curve, curve_of, curves_of
 from render.film.story.planned import scenery_of
+from render.film.story.scenery import Scenery
 from render.film.story.shots.beside import beside, differences, ramp_of
 from render.film.story.shots.title import title
 from render.film.story.story import Story
@@ -24,6 +26,8 @@ from shared.stage.paths import Out, variant_of
 
 FIRST, SECOND = "#ff9a1a", "#f0f3f7"
 """Colours of the curves of the first and of the second."""
+ALIKE = 2.5
+"""Machines whose sizes differ by a larger factor are each as large as the picture lets them be."""
 ROWS = 1500
 """Times of a curve of the strip."""
 
@@ -46,10 +50,12 @@ def pair_of(outs: Sequence[Out], preset: Preset, half: Preset) -> Pair:
     ramp = ramp_of(films[0].clock.rate, max(spans), most[0].time if most else None)
     names = (_name(outs[0], films[0]), _name(outs[1], films[1]))
     drawing = _drawing(outs[0], preset, names, _strip(preset, films, curves, max(spans)))
+    sceneries = [
+        replace(scenery_of(film, None, why, half), curves=curves[0]) for film, why in zip(films, whys, strict=True)
+    ]
+    _on_one_scale(sceneries)
     tellings = []
-    for film, why in zip(films, whys, strict=True):
-        scenery = scenery_of(film, None, why, half)
-        scenery.curves = curves[0]
+    for film, scenery in zip(films, sceneries, strict=True):
         shot = beside(scenery, ramp, most[0] if most else None, names)
         shots = [made for made in (title(scenery, shot), shot) if made is not None]
         story = Story(film.motion.mechanism, films[0].shot.fps, scenery.step, shots, curves[0])
@@ -61,6 +67,15 @@ def pair_of(outs: Sequence[Out], preset: Preset, half: Preset) -> Pair:
 def _film(out: Out, half: Preset) -> Film:
     film = read_film(out, aspect=half.aspect)
     return Film(film.motion, film.parts, shown_plain(film.shot), film.folder, half.aspect)
+
+
+def _on_one_scale(sceneries: Sequence[Scenery]) -> None:
+    """Let both cameras stand as far away as the farther one: the larger machine is larger in the picture, too."""
+    stands = [scenery.stand() for scenery in sceneries]
+    far = max(stand.distance for stand in stands)
+    if far <= ALIKE * min(stand.distance for stand in stands) and len({stand.lens for stand in stands}) == 1:
+        for scenery, stand in zip(sceneries, stands, strict=True):
+            scenery.hold(at_distance(stand, far))
 
 
 def _span(film: Film) -> float:

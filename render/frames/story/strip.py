@@ -75,10 +75,12 @@ class Strip:
             line = max(1.0, self.unit / 360) / 2
             fine.rectangle(_times((x - line, panel[1], x + line, panel[3])), fill=(*INK, 235))
             right = panel[2]
-            for curve in (*self.others[k : k + 1], self.shown[k]):
+            both = (*self.others[k : k + 1], self.shown[k])
+            for curve in both:
                 value = float(np.interp(inside, curve.time, curve.values))
                 self._dot(fine, x, self._height(k, value), _rgb(curve.colour))
-                right -= self._number(fine, k, value, right, _rgb(curve.colour) if self.others else (*INK, 255))
+                ink = _rgb(curve.colour) if self.others else (*INK, 255)
+                right -= self._number(fine, k, value, right, ink, curve is not both[0])
         page.alpha_composite(head.reduce(FINE))
         return page
 
@@ -91,20 +93,28 @@ class Strip:
         for radius, fill in ((0.011 * self.unit, (*INK, 255)), (0.0066 * self.unit, ink)):
             draw.ellipse(_times((x - radius, y - radius, x + radius, y + radius)), fill=fill)
 
-    def _number(self, draw: Any, k: int, value: float, right: float, ink: tuple[int, ...]) -> float:
-        """Write the value that lives; how much room (pixels) it takes, whatever it will be."""
+    def _number(self, draw: Any, k: int, value: float, right: float, ink: tuple[int, ...], bare: bool) -> float:
+        """Write the value that lives, ``bare`` of its unit; how much room (pixels) it takes, whatever it will be."""
         size = layout.SMALL * self.unit
         letters = font(FINE * size, True)
-        draw.text((FINE * right, FINE * 0.45 * size), self._writers[k](value), fill=ink, font=letters, anchor="ra")
-        return self._room(k)
+        words = self._words(k, value, bare)
+        draw.text((FINE * right, FINE * 0.45 * size), words, fill=ink, font=letters, anchor="ra")
+        return self._room(k, bare)
 
-    def _room(self, k: int) -> float:
-        widest = self._writers[k](-max(abs(value) for value in self._ranges[k]))
+    def _words(self, k: int, value: float, bare: bool) -> str:
+        words = self._writers[k](value)
+        return words.partition(" ")[0] if bare else words
+
+    def _room(self, k: int, bare: bool = False) -> float:
+        widest = self._words(k, -max(abs(value) for value in self._ranges[k]), bare)
         return layout.SMALL * self.unit * (width_of(widest, True) + 0.7)
 
     @cached_property
     def _writers(self) -> list[Any]:
-        return [live(curve.values.tolist(), curve.unit, 3) for curve in self.shown]
+        return [
+            live([value for each in (curve, *self.others[k : k + 1]) for value in each.values.tolist()], curve.unit, 3)
+            for k, curve in enumerate(self.shown)
+        ]
 
     @cached_property
     def _ranges(self) -> list[tuple[float, float]]:
@@ -131,7 +141,7 @@ class Strip:
             self._curve(draw, curve, panel, span, 1.5, _rgb(curve.colour))
         size = layout.SMALL * self.unit
         for k, (curve, panel) in enumerate(zip(self.shown, self.panels, strict=True)):
-            room = panel[2] - panel[0] - self._room(k) * (2 if self.others else 1)
+            room = panel[2] - panel[0] - self._room(k) - (self._room(k, True) if self.others else 0.0)
             name = plain(curve.name)
             fit = min(size, max(0.6 * size, room / max(width_of(name, True), 1e-9)))
             at = (FINE * panel[0], FINE * 0.45 * size)

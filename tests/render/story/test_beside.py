@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from render.film.story.cameras import Stand
 from render.frames.story import beside
-from render.frames.story.pair import FIRST, SECOND, Pair, pair_of
+from render.frames.story.pair import FIRST, SECOND, Pair, _on_one_scale, pair_of
 from render.presets import PRESETS, preset_named
 from shared.contract import read_motion, write_motion
 from shared.stage.errors import UserError
@@ -49,12 +50,40 @@ def test_time_stops_where_they_differ_most_and_both_numbers_are_said(pair: Pair)
     assert {curve.colour for curve in strip.curves} == {FIRST}
     assert {curve.colour for curve in strip.others} == {SECOND}
     if "C" in curves:
-        assert story.captions[0].text.startswith("C: ")
+        assert story.captions[0].text.startswith("Here C differs most: ")
     for caption in story.captions:
         frame = int((caption.start + caption.end) / 2 * story.fps)
         assert story.over(frame).rate == "time stands still"
         assert "(as it is)" in caption.text
         assert "(bank 45)" in caption.text
+
+
+@pytest.mark.parametrize(("far", "held"), [(0.6, [0.6, 0.6]), (2.0, [0.4, 2.0])])
+def test_both_are_on_one_scale_unless_one_would_be_lost(far: float, held: list[float]) -> None:
+    class Asked:
+        def __init__(self, distance: float) -> None:
+            self.held = Stand((0.0, 0.0, 0.0), 0.1, 0.5, distance, 55.0)
+
+        def stand(self) -> Stand:
+            return self.held
+
+        def hold(self, stand: Stand) -> None:
+            self.held = stand
+
+    both = [Asked(0.4), Asked(far)]
+    _on_one_scale(both)  # pyright: ignore[reportArgumentType]
+    assert [each.held.distance for each in both] == held
+
+
+def test_numbers_beside_each_other_have_the_unit_once_and_room_for_both(pair: Pair) -> None:
+    strip = pair.drawing.strip
+    assert strip is not None
+    for k, (ours, theirs) in enumerate(zip(strip.shown, strip.others, strict=False)):
+        top = max(np.abs(ours.values).max(), np.abs(theirs.values).max())
+        assert strip._words(k, top, False).startswith(strip._words(k, top, True))
+        assert " " in strip._words(k, top, False)
+        assert " " not in strip._words(k, top, True)
+        assert strip._room(k, True) < strip._room(k, False)
 
 
 def test_halves_fill_the_picture() -> None:

@@ -81,7 +81,6 @@ def beside(scenery: Scenery, ramp: Ramp, differs: Difference | None, names: tupl
             "difference", curve=plain(differs.name), first=written(differs.values[0], differs.unit),
             second=written(differs.values[1], differs.unit), a=plain(names[0]), b=plain(names[1]),
         )  # fmt: skip
-        text = text[:1].upper() + text[1:]
         stop = ramp.segments[0][0] + ramp.segments[1][0]
         shown = (stop - 0.2, stop + STANDS + 0.2)
 

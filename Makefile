@@ -176,7 +176,7 @@ live-%: install always ## a page that follows the editor: sliders, dragging, fit
 poster-%: libraries always ## one picture at its best: out/<name>/poster.png
 	@$(MBSD) poster -- "$$MECHANISM"
 
-exploded-%: libraries always ## the parts taken apart, with names and masses: out/<name>/exploded.png
+exploded-%: libraries always ## the parts taken apart, with names and masses: out/<name>/exploded.png, .glb
 	@$(MBSD) exploded -- "$$MECHANISM"
 
 contact-%: libraries always ## a sheet of twelve frames, drafts if nothing else is asked: out/<name>/contact.png

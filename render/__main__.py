@@ -19,7 +19,7 @@ COMMANDS = {
     "still": "one frame as a picture",
     "contact": "a sheet of twelve frames as contact.png",
     "poster": "the shot's best moment as poster.png",
-    "exploded": "the parts taken apart, with names and masses, as exploded.png",
+    "exploded": "the parts taken apart, with names and masses, as exploded.png and .glb",
     "frames": "render every frame that is not there yet",
     "film": "frames, then the MP4",
     "scene": "save the scene as a .blend that plays the motion",
@@ -115,8 +115,10 @@ def main() -> int | None:
 def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namespace) -> None:
     if command == "exploded":
         from render.frames.story import apart
+        from render.glb import exploded
 
         apart.run(name, preset)
+        exploded.run(name)
         return
     show = show_words(arguments.show)
     if command == "film":

@@ -33,10 +33,14 @@ def is_fresh(name: str) -> bool:
 
 
 def _stage(out: Out) -> Stage:
+    return Stage(out, "glb", glb_key(out), [out.glb])
+
+
+def glb_key(out: Out) -> str:
+    """What decides a GLB. Raises UserError where motion, parts or shot are missing."""
     refuse_missing(out)
     sources = [ROOT / "render" / name for name in ("presets.py", "film", "blender/scene/tubes.py")]
     shared = contract_sources(*SHARED)
-    key = key_of(
+    return key_of(
         out.motion, out.parts, out.shot, sources_hash(Path(__file__).parent, *sources, *shared), versions("numpy")
     )
-    return Stage(out, "glb", key, [out.glb])

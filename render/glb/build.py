@@ -66,7 +66,7 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec]) -> tuple[Document, Animati
     for piece in pieces:
         if piece.body not in nodes:
             nodes[piece.body] = document.add("nodes", {"name": piece.body, "children": []})
-        node: dict[str, Any] = {"name": f"{piece.body}/{piece.name}", "mesh": _mesh(document, piece, paints)}
+        node: dict[str, Any] = {"name": f"{piece.body}/{piece.name}", "mesh": mesh_of(document, piece, paints)}
         if piece.turns_about is not None:
             node["translation"] = [*piece.turns_about, 0.0]
         child = children[piece.body, piece.name] = document.add("nodes", node)
@@ -96,7 +96,8 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec]) -> tuple[Document, Animati
     return document, animation
 
 
-def _mesh(document: Document, piece: PieceSpec, paints: Paints) -> int:
+def mesh_of(document: Document, piece: PieceSpec, paints: Paints) -> int:
+    """The number of a piece's mesh in the document, as far as a section leaves it."""
     triangles = read_triangles(Path(piece.stl))
     faces = [(triangles, piece.surface)]
     if piece.cut:

@@ -95,7 +95,7 @@ COMMANDS: dict[str, Command] = {
         Command("poster", "one picture at its best: out/<name>/poster.png", (*stages.SCENERY, stages.POSTER)),
         Command("contact", "a sheet of twelve frames, drafts if nothing else is asked: out/<name>/contact.png",
                 (*stages.SCENERY, stages.CONTACT), defaults={"preset": "draft"}),
-        Command("exploded", "the parts taken apart, with names and masses: out/<name>/exploded.png",
+        Command("exploded", "the parts taken apart, with names and masses: out/<name>/exploded.png, .glb",
                 (*stages.SCENERY, stages.EXPLODED)),
         Command("still", "one frame of the film: out/<name>/stills/",
                 (*stages.SCENERY, stages.STILL), example="mbsd still excavator --frame 15"),

@@ -11,6 +11,7 @@ from render.film.composing.filling import View
 from render.film.story import cameras, layout
 from render.film.story.cameras import Stand
 from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
+from render.film.story.lifting import lifted
 from render.film.story.ramp import eased
 from render.film.story.scenery import MARGIN, Array, Scenery
 from render.film.story.shots.leaders import leaders
@@ -18,8 +19,6 @@ from shared.contract.quantity import written
 
 WHOLE, LIFTS, APART, SETTLED = 0.5, 1.7, 3.2, 0.5
 """Seconds: as a whole, coming apart (and together), apart, and as a whole again."""
-EACH = 0.45
-"""Part of the time of coming apart that each layer takes."""
 LYING, STANDING = (12.0, -14.0), (42.0, 10.0)
 """Degrees: azimuth and elevation beside those of the shot for what lies, whose layers are seen from lower down; for
 what stands an azimuth on the side of the shot's, from which layers are seen beside each other, and more elevation."""
@@ -32,7 +31,6 @@ def assembly(scenery: Scenery) -> Shot | None:
     if not any(lift.distance for lift in scenery.lifts):
         return None
     lifts, move = scenery.lifts, scenery.moving(LIFTS)
-    layers = lifts[-1].order or 1
     together, begin = _points(scenery, 0.0), scenery.film.clock.start
     spread = _points(scenery, 1.0)
     points = np.concatenate([together, spread])
@@ -50,12 +48,8 @@ def assembly(scenery: Scenery) -> Shot | None:
 
     def picture(s: float) -> Picture:
         part = round(apart(s), 6)
-        placed = []
-        for lift in lifts:
-            delay = (1 - lift.order / layers) * (1 - EACH)
-            height = lift.distance * eased((part - delay) / EACH)
-            if height > 0:
-                placed.append((lift.name, round(height, 9)))
+        heights = zip(lifts, lifted(lifts, part), strict=True)
+        placed = [(lift.name, round(height, 9)) for lift, height in heights if height > 0]
         way = eased(part)
         sharp = together + way * (spread - together)
         camera = cameras.posed(cameras.between(near, wide, way), scenery.up, sharp, blur)

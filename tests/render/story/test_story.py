@@ -8,13 +8,15 @@ import numpy as np
 import pytest
 
 from render.film.film import Film
-from render.film.story.planned import planned
+from render.film.framing import project
+from render.film.story.planned import planned, scenery_of
 from render.film.story.reason import Reason
 from render.film.story.story import Story
 from render.frames.story import kinds
 from render.frames.story.telling import Telling, telling_of
 from render.presets import PRESETS, preset_named
-from shared.contract.shot import STORY_SHOTS, Shot
+from render.report.reasons import reasons
+from shared.contract.shot import STORY_SHOTS, Camera, Shot
 from shared.contract.shot import Story as Wishes
 from shared.stage.errors import UserError
 from tools.fixtures import film_fixture
@@ -130,6 +132,20 @@ def test_an_assembly_comes_together_as_it_came_apart(out_root) -> None:
     assert {name for name, _ in pictures[middle].lifts} == {lift.name for lift in _lifts(made()) if lift.distance}
     names = [leader.words for leader in story.over(placed.first + middle).leaders]
     assert sorted(names) == ["coupler", "crank", "frame", "rocker"]
+
+
+def test_all_pieces_are_in_the_picture_while_they_come_apart(out_root) -> None:
+    telling = made(camera=Camera(lens=90.0))
+    film, preset = telling.film, PRESETS["draft"]
+    scenery = scenery_of(film, telling.forces, reasons(film.motion), preset)
+    (placed,) = (each for each in telling.story.placed if each.shot.name == "assembly")
+    for frame in range(placed.first, placed.end, telling.story.step):
+        picture = telling.story.picture(frame)
+        heights = dict(picture.lifts)
+        for lift in scenery.lifts:
+            corners = scenery.piece(lift, heights.get(lift.name, 0.0) / (lift.distance or 1.0))
+            places = project(picture.camera, corners, film.aspect, 1.0) / np.array([film.aspect, 1.0])
+            assert 0.0 <= places.min() <= places.max() <= 1.0, (frame - placed.first, lift.name)
 
 
 def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:

@@ -11,7 +11,7 @@ from render.film.composing.filling import View
 from render.film.story import cameras, layout
 from render.film.story.cameras import Stand
 from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
-from render.film.story.lifting import lifted
+from render.film.story.lifting import EACH, lifted
 from render.film.story.ramp import eased
 from render.film.story.scenery import MARGIN, Array, Scenery
 from render.film.story.shots.leaders import leaders
@@ -50,7 +50,7 @@ def assembly(scenery: Scenery) -> Shot | None:
         part = round(apart(s), 6)
         heights = zip(lifts, lifted(lifts, part), strict=True)
         placed = [(lift.name, round(height, 9)) for lift, height in heights if height > 0]
-        way = eased(part)
+        way = eased(part / EACH)  # all of it is seen while what came last leaves first
         sharp = together + way * (spread - together)
         camera = cameras.posed(cameras.between(near, wide, way), scenery.up, sharp, blur)
         return Picture(at=0.0, camera=camera, lifts=tuple(sorted(placed)), hidden="all")

@@ -107,7 +107,7 @@ class Sound(_Strict, frozen=True):
     """Joints, drivers, forces and contacts that make no sound, such as a driver that is a hand and no motor."""
 
 
-STORY_SHOTS = ("title", "assembly", "motion", "macro", "reason", "last")
+STORY_SHOTS = ("title", "assembly", "motion", "macro", "section", "reason", "last")
 """Shots of a story, in the order in which they follow each other where nothing else is said."""
 
 

@@ -20,6 +20,8 @@ class Picture(msgspec.Struct, kw_only=True, frozen=True):
     forces: bool = False
     """Whether it is of the scene with arrows, which ``grown`` (0 .. 1) makes long."""
     grown: float = 0.0
+    cut: bool = False
+    """Whether it is of the scene that the shot's section cuts open."""
     lifts: tuple[tuple[str, float], ...] = ()
     hidden: Hidden = ""
 

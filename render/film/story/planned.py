@@ -16,6 +16,7 @@ from render.film.story.shots.loop import loop
 from render.film.story.shots.macro import macro
 from render.film.story.shots.motion import motion
 from render.film.story.shots.reason import reason
+from render.film.story.shots.section import section
 from render.film.story.shots.title import title
 from render.film.story.story import Story
 from render.film.story.words import words_in
@@ -37,13 +38,17 @@ SHALLOW = 13.0
 """Lens blur of a macro by preset, and of all others, in pixels of a picture 1280 wide."""
 
 
-def planned(film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset, seconds: float = 0.0) -> Story:
-    """The story of a film: ``forces`` is the same with arrows, None where nothing has any; the first of ``reasons`` is
+def planned(
+    film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset, seconds: float = 0.0,
+    cut: Film | None = None,
+) -> Story:  # fmt: skip
+    """The story of a film: ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut open,
+    None of a shot without a section; the first of ``reasons`` is
     what time stops for, unless the shot asks for another. With ``seconds`` it is a loop of that length.
 
     Raises UserError with place and remedy for wishes of the shot that cannot be.
     """
-    scenery = scenery_of(film, forces, reasons, preset)
+    scenery = replace(scenery_of(film, forces, reasons, preset), cut=cut)
     if seconds:
         return Story(film.motion.mechanism, scenery.fps, scenery.step, [loop(scenery, seconds)], scenery.curves)
     most = BUDGET * min(film.clock.frames, film.clock.moving + 1) * (2 / scenery.step)
@@ -96,6 +101,7 @@ SHOTS: dict[str, Callable[[Scenery], Shot | None]] = {
     "assembly": assembly,
     "motion": motion,
     "macro": macro,
+    "section": section,
     "reason": reason,
     "last": last,
 }

@@ -43,6 +43,8 @@ class Scenery:
     """Frames for which a picture that moves stands: 2 is on twos."""
     blur: float
     """Lens blur of a macro, in pixels of a picture 1280 wide; 0 is a pinhole."""
+    cut: Film | None = None
+    """The same film cut open; None where the shot has no section."""
     scale: float = 1.0
     """Part of the seconds in which pictures move; what is cut is held instead."""
     turning: bool = True
@@ -131,13 +133,24 @@ class Scenery:
         return cameras.posed(stand, self.up, sharp, self.film.shot.camera.blur, self.film.way(at))
 
     def picture(
-        self, stand: Stand, time: float, forces: bool = False, grown: float = 0.0, hidden: Hidden = ""
+        self,
+        stand: Stand,
+        time: float,
+        forces: bool = False,
+        grown: float = 0.0,
+        hidden: Hidden = "",
+        cut: bool = False,
     ) -> Picture:
         """The machine at a time of the motion (s), from a stand."""
         at = self.loop_frame(time)
         forces = forces and self.forces is not None
         return Picture(
-            at=at, camera=self.camera(stand, at), forces=forces, grown=grown if forces else 0.0, hidden=hidden
+            at=at,
+            camera=self.camera(stand, at),
+            forces=forces,
+            grown=grown if forces else 0.0,
+            hidden=hidden,
+            cut=cut,
         )
 
     def moving(self, seconds: float) -> float:

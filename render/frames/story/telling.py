@@ -47,15 +47,16 @@ class Telling:
     forces: Film | None
     story: Story
     drawing: Drawing
+    cut: Film | None = None
 
     def pictures(self, preset: Preset) -> list[StoryPictures]:
         """The different pictures of the story, in sets of one scene each."""
         rows: dict[Around, None] = dict.fromkeys(self.row(frame, preset) for frame in range(self.story.total))
         sets = []
-        for forces, film in ((False, self.film), (True, self.forces)):
-            own = tuple(row for row in rows if row[1].forces == forces)
+        for forces, cut, film in ((False, False, self.film), (False, True, self.cut), (True, False, self.forces)):
+            own = tuple(row for row in rows if (row[1].forces, row[1].cut) == (forces, cut))
             if film is not None and own:
-                what = f"in the story, {'with' if forces else 'without'} arrows"
+                what = f"in the story, {'cut open' if cut else 'with arrows' if forces else 'without arrows'}"
                 sets.append(StoryPictures(film, preset, rows=own, what=what))
         return sets
 
@@ -95,11 +96,12 @@ def telling_of(
     film = Film(whole, parts, shown_plain(shot), out.parts_folder, preset.aspect)
     chosen = _chosen(shot.story.event, why)
     arrows = _with_arrows(show or _shows(motion, chosen), film)
-    story = planned(film, arrows, why, preset, loop)
+    cut = _cut_open(shot, film)
+    story = planned(film, arrows, why, preset, loop, cut)
     clearance = read_clearance(out.clearance) if out.clearance.is_file() else None
     drawing = _drawing(out, preset, film, story, facts(motion, parts, clearance))
     refuse_long(out.name, story, preset)
-    return Telling(film, arrows, story, drawing)
+    return Telling(film, arrows, story, drawing, cut)
 
 
 def shown_plain(shot: Shot) -> Shot:
@@ -124,6 +126,17 @@ def _with_arrows(show: str, film: Film) -> Film | None:
     """The same film with arrows; None where none is ever seen."""
     made = Film(film.motion, film.parts, shown(film.shot, show), film.folder, film.aspect)
     return made if made.arrows.vectors or made.arcs.torques else None
+
+
+def _cut_open(shot: Shot, film: Film) -> Film | None:
+    """The same film as the shot cuts it open; None where it does not. Raises UserError for one that opens no piece."""
+    if not shot.section:
+        return None
+    made = Film(
+        film.motion, film.parts, msgspec.structs.replace(film.shot, section=shot.section), film.folder, film.aspect
+    )
+    assert made.scene  # refused now, not after the first picture
+    return made
 
 
 def _drawing(out: Out, preset: Preset, film: Film, story: Story, known: list[str]) -> Drawing:

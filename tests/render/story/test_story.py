@@ -16,7 +16,7 @@ from render.frames.story import kinds
 from render.frames.story.telling import Telling, telling_of
 from render.presets import PRESETS, preset_named
 from render.report.reasons import reasons
-from shared.contract.shot import STORY_SHOTS, Camera, Shot
+from shared.contract.shot import STORY_SHOTS, Camera, Section, Shot
 from shared.contract.shot import Story as Wishes
 from shared.stage.errors import UserError
 from tools.fixtures import film_fixture
@@ -55,7 +55,7 @@ def _lifts(telling: Telling):
 def test_it_has_all_shots_and_costs_little_more_than_the_loop(out_root) -> None:
     telling = made()
     story = check(telling)
-    assert [placed.shot.name for placed in story.placed] == list(STORY_SHOTS)
+    assert [placed.shot.name for placed in story.placed] == [name for name in STORY_SHOTS if name != "section"]
     assert 20 <= story.seconds <= 40
     assert story.step == 2
     assert len(story.pictures) <= 2.5 * telling.film.clock.frames
@@ -146,6 +146,27 @@ def test_all_pieces_are_in_the_picture_while_they_come_apart(out_root) -> None:
             corners = scenery.piece(lift, heights.get(lift.name, 0.0) / (lift.distance or 1.0))
             places = project(picture.camera, corners, film.aspect, 1.0) / np.array([film.aspect, 1.0])
             assert 0.0 <= places.min() <= places.max() <= 1.0, (frame - placed.first, lift.name)
+
+
+def test_a_shot_with_a_section_has_a_shot_of_it(out_root) -> None:
+    telling = made(section=Section(right=0.5), preset="final")
+    story, cut = check(telling), telling.cut
+    assert [placed.shot.name for placed in story.placed] == list(STORY_SHOTS)
+    (placed,) = (each for each in story.placed if each.shot.name == "section")
+    for frame in range(story.total):
+        assert story.picture(frame).cut == (placed.first <= frame < placed.end)
+    assert cut is not None
+    assert any(piece.cut for piece in cut.scene.pieces)
+    assert not any(piece.cut for piece in telling.film.scene.pieces)
+    sets = telling.pictures(PRESETS["final"])
+    assert [pictures.film for pictures in sets] == [telling.film, cut, telling.forces]
+    assert sum(len(pictures.rows) for pictures in sets) == len(
+        {telling.row(k, PRESETS["final"]) for k in range(story.total)}
+    )
+    with pytest.raises(UserError, match=r"shots has a section, and shot\.section cuts nothing open"):
+        made(Wishes(shots=("section", "last")))
+    with pytest.raises(UserError, match=r"shot\.section = front=0\.5 cuts no piece open"):
+        made(section=Section(front=0.5, only=("ground/base", "coupler/coupler")))
 
 
 def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from render.film.story import layout
 from render.film.story.frame import Leader, Note, Over
@@ -140,7 +141,7 @@ class Drawing:
     def _caption(self, draw: Any, over: Over) -> None:
         """In the middle over the strip, or over where it would be."""
         size, lines = caption_lines(over.caption, self.wide, self.high)
-        low = self.high - self.below - 0.35 * layout.EDGE * self.unit
+        low = self.high - self.below - (0.35 if self.below else 0.8) * layout.EDGE * self.unit
         half = max(size * width_of(line) for line in lines) / 2 + 0.7 * size
         top, x = low - (LINE * len(lines) + 0.5) * size, self.wide / 2
         card(draw, (x - half, top, x + half, low), size, over.caption_shown)
@@ -180,6 +181,8 @@ class Drawing:
             y = note.y * self.high + note.dy * (high / 2 + 1.2 * size)
             x = min(max(x, edge + wide / 2), self.wide - edge - wide / 2)
             y = min(max(y, edge + 2.2 * size + high / 2), low - high / 2)
+            if _on_arrow((x - wide / 2, y - high / 2, x + wide / 2, y + high / 2), note, self.wide, self.high):
+                x += (wide / 2 + 1.1 * size) * (1 if x < self.wide / 2 else -1)
             for _ in range(6):
                 box = (x - wide / 2, y - high / 2, x + wide / 2, y + high / 2)
                 if not any(_overlap(box, other) for other in taken):
@@ -207,6 +210,13 @@ def png(page: Any) -> bytes:
 
 def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> bool:
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+
+
+def _on_arrow(box: tuple[float, float, float, float], note: Note, wide: int, high: int) -> bool:
+    """Whether a box (pixels) that could not go farther lies on the arrow whose tip it names."""
+    tip, back = np.array([note.x * wide, note.y * high]), np.linspace(0.0, 0.25 * min(wide, high), 40)
+    x, y = (tip[:, None] - np.array([[note.dx], [note.dy]]) * back).tolist()
+    return any(box[0] < a < box[2] and box[1] < b < box[3] for a, b in zip(x, y, strict=True))
 
 
 def _faded(layer: Any, shown: float) -> Any:

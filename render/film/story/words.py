@@ -36,6 +36,7 @@ TABLE: dict[str, dict[str, str]] = {
         "speed": "Here {name} is fastest: {amount}.",
         "stopped": "time stands still",
         "real": "real time",
+        "about": "about real time",
         "slower": "{factor} times slower",
         "faster": "{factor} times faster",
         "usual": "as it is",
@@ -68,6 +69,7 @@ TABLE: dict[str, dict[str, str]] = {
         "speed": "Hier ist {name} am schnellsten: {amount}.",
         "stopped": "die Zeit steht",
         "real": "Echtzeit",
+        "about": "etwa Echtzeit",
         "slower": "{factor}-mal langsamer",
         "faster": "{factor}-mal schneller",
         "usual": "wie sie ist",
@@ -75,8 +77,8 @@ TABLE: dict[str, dict[str, str]] = {
     },
 }
 """By language, then by what is said; every language says the same things with the same names in braces."""
-SAME = 0.05
-"""Rates that differ from real time by less are real time."""
+SAME, ABOUT = 0.05, 0.2
+"""Rates that differ from real time by less are real time, and about real time."""
 
 
 def words_in(language: str, mechanism: str) -> Callable[..., str]:
@@ -100,6 +102,8 @@ def rate_words(rate: float, say: Callable[..., str]) -> str:
         return say("stopped")
     if abs(rate - 1) < SAME:
         return say("real")
+    if abs(rate - 1) < ABOUT:
+        return say("about")
     factor = 1 / rate if rate < 1 else rate
     return say("slower" if rate < 1 else "faster", factor=figures(factor, 2 if factor < 100 else 1))
 

@@ -22,6 +22,8 @@ NAME, SAID = 1 / 9.5, 1 / 26
 """Heights of letters of a title, in the picture's shorter side."""
 ACCENT = (255, 142, 62)
 LEFT = 0.085
+BETWEEN, JOINED = " · ", "_"
+"""Between facts, and what stands for a space within one while lines are broken; names have none any more."""
 
 
 @dataclass
@@ -264,6 +266,16 @@ def _sentences(said: tuple[str, ...], size: float, room: float, most: int) -> tu
     return size, []
 
 
+def _facts(facts: str, size: float, room: float, most: int) -> tuple[float, list[str]]:
+    """Height of letters and lines, broken between facts where that fits. Raises ValueError where nothing does."""
+    whole = facts.replace(" ", JOINED).replace(f"{JOINED}·{JOINED}", "· ")
+    try:
+        small, lines = fitted(whole, size, room, most)
+    except ValueError:
+        return fitted(facts, size, room, most)
+    return small, [line.replace(JOINED, " ").replace("· ", BETWEEN) for line in lines]
+
+
 @lru_cache(maxsize=2)
 def _ending(wide: int, high: int, name: str, facts: str) -> Any:
     """The name and a line of facts at the lower left, on a shade."""
@@ -273,7 +285,7 @@ def _ending(wide: int, high: int, name: str, facts: str) -> Any:
     draw, room = ImageDraw.Draw(page), wide * (1 - 2 * LEFT)
     small = 0.036 * unit
     try:
-        small, lines = fitted(facts, small, room, 2 if wide > high else 4)
+        small, lines = _facts(facts, small, room, 2 if wide > high else 4)
     except ValueError:
         lines = []
     large = min(0.075 * unit, room / width_of(name, True))

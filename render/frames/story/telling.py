@@ -15,7 +15,7 @@ from render.film.story.planned import planned
 from render.film.story.reason import Reason
 from render.film.story.story import Story
 from render.film.story.words import plain
-from render.frames.story.drawing import Drawing, caption_lines
+from render.frames.story.drawing import BETWEEN, Drawing, caption_lines
 from render.frames.story.pictures import Around, StoryPictures
 from render.frames.story.strip import Strip
 from render.presets import Preset
@@ -35,6 +35,8 @@ SHOWN = {"effort": "forces", "speed": "velocities"}
 """What arrows show by the kind of what a story stops for; reactions else."""
 FACTS = 4
 """Facts at the end, at most."""
+WALK = 5.0
+"""km/h"""
 MARKS = 8
 """Events in the strip, at most: more are a pattern of their own."""
 
@@ -143,11 +145,16 @@ def _drawing(out: Out, preset: Preset, film: Film, story: Story, known: list[str
     words = out.name.replace("_", " ").replace("-", ": ")
     said = tuple(re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", " ".join(description(out.name).split("\n\n")[0].split())))
     said = tuple(sentence for sentence in said if sentence != "SI units.")
-    line = plain(" · ".join(known[1 : 1 + FACTS]))
+    line = plain(BETWEEN.join(_without_slow(fact) for fact in known[1 : 1 + FACTS]))
     return Drawing(
         wide=preset.width, high=preset.height, name=words[:1].upper() + words[1:], said=said,
         facts=line[:1].upper() + line[1:], strip=strip_of(film, story, preset),
     )  # fmt: skip
+
+
+def _without_slow(fact: str) -> str:
+    """A fact without the km/h of what is slower than a walk."""
+    return re.sub(r" \(([\d.]+) km/h\)", lambda match: match[0] if float(match[1]) >= WALK else "", fact)
 
 
 def strip_of(film: Film, story: Story, preset: Preset) -> Strip | None:

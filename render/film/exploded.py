@@ -15,7 +15,7 @@ SAME = 0.03
 """Pieces whose middles are nearer than this part of the height of the stack are of one layer."""
 STEP = 0.085
 """From one layer to the next, as a part of the machine's size, ..."""
-MOST = 0.85
+MOST = 0.6
 """... and all of them together."""
 
 

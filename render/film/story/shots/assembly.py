@@ -19,7 +19,7 @@ from shared.contract.quantity import written
 
 WHOLE, LIFTS, APART, SETTLED = 0.5, 1.7, 3.2, 0.5
 """Seconds: as a whole, coming apart (and together), apart, and as a whole again."""
-LYING, STANDING = (12.0, -14.0), (42.0, 10.0)
+LYING, STANDING = (12.0, -6.0), (42.0, 10.0)
 """Degrees: azimuth and elevation beside those of the shot for what lies, whose layers are seen from lower down; for
 what stands an azimuth on the side of the shot's, from which layers are seen beside each other, and more elevation."""
 MOST = 25.0

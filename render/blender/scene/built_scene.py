@@ -18,6 +18,8 @@ from shared.contract.mount import Z
 
 PINHOLE = 1000.0
 """f-stop of a camera without a lens blur."""
+NEAR, FAR = 0.01, 1000.0
+"""What a camera sees, in radii of the machine."""
 
 
 @dataclass
@@ -63,7 +65,7 @@ def build(job: Job) -> BuiltScene:
     scene.unit_settings.system = "METRIC"
     solids: dict[str, Any] = {}
     bodies = pieces.build(scene, job.scene.pieces, job.scene.studio.radius, job.flat, solids)
-    camera = _camera(scene, job.states)
+    camera = _camera(scene, job)
     texts: list[Any] = []
     trails: list[Any] = []
     wires: list[Any] = []
@@ -136,14 +138,15 @@ def _bake(thing: Any, shapes: list[np.ndarray]) -> None:
     _key(keys, "eval_time", [np.array([block.frame for block in keys.key_blocks])], "OBJECT")
 
 
-def _camera(scene: Any, states: list[State]) -> Any:
+def _camera(scene: Any, job: Job) -> Any:
+    """The camera. What is not keyed follows from the scene alone: a picture is the same whatever its job renders."""
     import bpy
 
-    pose, focuses = states[0].camera, [state.camera.focus for state in states]
+    pose, radius = job.states[0].camera, job.scene.studio.radius
     lens = bpy.data.cameras.new("camera")
     lens.sensor_fit, lens.sensor_width, lens.lens = "AUTO", SENSOR, pose.lens
-    lens.clip_start, lens.clip_end = min(focuses) / 100, max(focuses) * 100
-    lens.dof.use_dof = any(state.camera.fstop > 0 for state in states)
+    lens.clip_start, lens.clip_end = NEAR * radius, FAR * radius
+    lens.dof.use_dof = True
     lens.dof.focus_distance = pose.focus
     lens.dof.aperture_fstop = _stop(pose)
     camera = bpy.data.objects.new("camera", lens)

@@ -100,6 +100,23 @@ def test_pieces_are_lifted_trails_hidden_and_lenses_changed(out_root: Path) -> N
     assert np.abs(near - shown[4]).mean() < 0.5 * np.abs(shown[2] - shown[4]).mean()
 
 
+def test_a_picture_has_the_same_bytes_whatever_else_its_job_renders(out_root: Path) -> None:
+    """A story that was stopped renders the rest alone: near and far cameras, lens blur and lifts of others are gone."""
+    out = film_fixture.write(Shot(seconds_per_turn=0.3))
+    telling = telling_of(out, TINY)
+    story = telling.story
+    middles = {placed.shot.name: story.picture((placed.first + placed.end) // 2) for placed in story.placed}
+    rows = [middles[name] for name in ("macro", "assembly", "last", "motion")]
+    contents = []
+    for chosen in (rows, rows[2:]):
+        pictures = StoryPictures(telling.film, TINY, rows=tuple((row, row, row) for row in chosen), what="trials")
+        store = FrameStore(out.frames(f"trials{len(chosen)}"), (TINY.width, TINY.height))
+        with store.locked():
+            frames.render(pictures, store, range(len(chosen)), "trials", frames.Tally())
+        contents.append([frames.picture_of(pictures, store, k).read_bytes() for k in range(len(chosen))])
+    assert contents[0][2:] == contents[1]
+
+
 def _pixels(path: Path) -> np.ndarray:
     with Image.open(path) as picture:
         return np.asarray(picture.convert("RGB"), float)

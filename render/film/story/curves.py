@@ -64,7 +64,7 @@ def curves_of(motion: Motion, wished: Sequence[str] | None, reasons: Sequence[Re
     """Those of ``wished`` names; without a wish what the first reason is about, what drives, and what is fastest."""
     if wished is not None:
         return [curve for name in wished if (curve := curve_of(motion, name)) is not None]
-    first = [reasons[0].joint, reasons[0].name] if reasons else []
+    first = [reasons[0].name, reasons[0].joint] if reasons else []
     fast = [reason.name for reason in reasons if reason.kind == "speed"]
     names = dict.fromkeys([*first, *motion.drivers, *fast, *motion.points, *motion.bodies])
     curves = [curve for name in names if name and (curve := curve_of(motion, name)) is not None]

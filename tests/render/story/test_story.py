@@ -9,6 +9,7 @@ import pytest
 
 from render.film.film import Film
 from render.film.framing import project
+from render.film.story.curves import curves_of
 from render.film.story.planned import planned, scenery_of
 from render.film.story.reason import Reason
 from render.film.story.story import Story
@@ -167,6 +168,14 @@ def test_a_shot_with_a_section_has_a_shot_of_it(out_root) -> None:
         made(Wishes(shots=("section", "last")))
     with pytest.raises(UserError, match=r"shot\.section = front=0\.5 cuts no piece open"):
         made(section=Section(front=0.5, only=("ground/base", "coupler/coupler")))
+
+
+def test_what_time_stops_for_is_in_the_strip_before_the_joint_that_carries_most(out_root) -> None:
+    motion = made().film.motion
+    both = [Reason(0.5, "reaction", "C", joint="B"), Reason(0.1, "reaction", "B", joint="B")]
+    named = [curve.name for curve in curves_of(motion, None, both)]
+    assert named[0] == "C", "B has the same unit"
+    assert "B" not in named
 
 
 def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:

@@ -1,4 +1,4 @@
-"""Every kind of joint, driver, force and contact: derivatives along a motion against central differences of whole ones."""
+"""Every kind of joint, driver, force and contact: derivatives against central differences of whole motions."""
 
 from __future__ import annotations
 

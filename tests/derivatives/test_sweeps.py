@@ -1,4 +1,4 @@
-"""Derivatives of sweeps: exact ones of four-bars and sliders, against differences of whole sweeps, and against formulas."""
+"""Derivatives of sweeps: of four-bars and sliders, against differences of whole sweeps, and against formulas."""
 
 from __future__ import annotations
 
@@ -64,8 +64,8 @@ def test_random_linkages_agree_with_differences_of_whole_motions(seed: int) -> N
     m = linkage(seed, 2, damping=True).m
     bodies = [body.name for body in m.bodies.values() if body.name != "ground"]
     numbers = [f"{bodies[0]}.mass", *(f"{joint}.i.x" for joint in list(m.joints)[:2]), f"{list(m.joints)[2]}.j.y"]
-    quantities = [f"{bodies[-1]}.x", f"{bodies[0]}.omega", f"joint {list(m.joints)[0]}.fx"]
-    quantities[2] = quantities[2] if list(m.joints)[0] in {*m.bodies, *m.traces} else quantities[2][6:]
+    quantities = [f"{bodies[-1]}.x", f"{bodies[0]}.omega", f"joint {next(iter(m.joints))}.fx"]
+    quantities[2] = quantities[2] if next(iter(m.joints)) in {*m.bodies, *m.traces} else quantities[2][6:]
     check_derivatives(m, quantities, numbers, 0.2, 10, tolerance=1e-5, step=1e-4)
 
 

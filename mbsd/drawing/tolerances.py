@@ -11,7 +11,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.drawing.look import FAINT, INK, PALETTE, QUIET, WRONG
-from mbsd.drawing.picture import Picture
+from mbsd.pictures.picture import Picture
 
 MOST_BARS = 12
 """Dimensions that are shown; the rest is one bar."""

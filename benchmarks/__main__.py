@@ -13,6 +13,7 @@ python -m benchmarks simulations       many simulations beside study, MuJoCo and
 python -m benchmarks synthesis        lengths for a path alone, only shown
 python -m benchmarks start            the table of start-up (make bench-start)
 python -m benchmarks table            the tables again from the last run
+python -m benchmarks tolerances        four-bars whose lengths stray beside numpy and a loop with scipy, only shown
 python -m benchmarks tune [names]     the sweeps for the best settings, of some codes or problems
 """
 
@@ -39,6 +40,7 @@ from benchmarks.rows import Bar, Row
 from benchmarks.simulations import measure as simulations
 from benchmarks.start import measure as start
 from benchmarks.synthesis import measure as synthesis
+from benchmarks.tolerances import measure as tolerances
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
@@ -55,7 +57,16 @@ def main() -> int:
     match sys.argv[1:]:
         case []:
             return _all()
-        case ["calls" | "clearance" | "dynamics" | "engines" | "machines" | "simulations" | "synthesis" as part]:
+        case [
+            "calls"
+            | "clearance"
+            | "dynamics"
+            | "engines"
+            | "machines"
+            | "simulations"
+            | "synthesis"
+            | "tolerances" as part
+        ]:
             parts = {
                 "calls": calls,
                 "clearance": clearance,
@@ -64,6 +75,7 @@ def main() -> int:
                 "machines": machines,
                 "simulations": simulations,
                 "synthesis": synthesis,
+                "tolerances": tolerances,
             }
             rows_of_part, bars = parts[part].measured()
             rows.show_all(rows_of_part)
@@ -87,7 +99,7 @@ def main() -> int:
         case other:
             raise UserError(
                 f"bench: {' '.join(other)}? There is: calls, clearance, cluster, dynamics, engines, film, live, "
-                "machines, simulations, start, synthesis, table, tune [names], or nothing for all"
+                "machines, simulations, start, synthesis, table, tolerances, tune [names], or nothing for all"
             )
     return 0
 

@@ -32,6 +32,7 @@ from mbsd.tolerancing.statistics.shares import linear_variances, shares_of, sobo
 from mbsd.tolerancing.statistics.worst import linear_worst, vertex_worst
 from mbsd.tolerancing.statistics.yields import limits_given, within
 
+NO_NUMBER = "the result is no number"
 MOST = 100_000_000
 """Machines of one call."""
 MOST_CORNERS = 16
@@ -68,8 +69,9 @@ def tolerances(
     ``Normal``, ``Uniform``, ``Triangular`` of these. A class alone in place of names is that of all bars and rods.
 
     ``result``: a measure of :mod:`mbsd.measures` that gives a number, such as ``samples("P.y", [0.25])``,
-    ``largest("rocker.theta")``; or a function: of the :class:`Batch` of all machines (n numbers), or of a single
-    Solution where they are solved one by one. ``limits`` (lowest, highest) are those within which it is good.
+    ``largest("rocker.theta")``; or a function: of a :class:`Batch` of some of the machines at a time (a number of
+    each), or of a single Solution where they are solved one by one. ``limits`` (lowest, highest) are those within which
+    it is good.
 
     ``way``: "batch" sweeps linkages all at once, "sweep" one by one, "simulate" integrates ``duration`` s in one
     compiled loop; "auto" takes the first that can. Times are ``steps`` equal steps, by default over a period.
@@ -159,8 +161,9 @@ class _Run:
         for first in range(0, len(x), self._machines.at_once):
             part = slice(first, first + self._machines.at_once)
             answers = self._machines(x[part])
-            out[part] = answers.values
-            self.failures += answers.failures
+            out[part] = np.where(np.isfinite(answers.values), answers.values, np.nan)
+            nameless = int(np.isnan(out[part]).sum()) - answers.failures.total()
+            self.failures += answers.failures + Counter({NO_NUMBER: nameless})
             if self._progress is not None:
                 self._progress(min(1.0, (first + len(x[part])) / self._total))
         return out

@@ -151,3 +151,25 @@ def test_the_picture_shows_limits_and_shares(tmp_path: Path) -> None:
     assert (tmp_path / "first.svg").read_bytes() == (tmp_path / "second.svg").read_bytes()
     with pytest.raises(ModelError, match="two axes"):
         t.plot(3)
+
+
+def test_machines_without_a_number_are_counted() -> None:
+    """2.3 % lie two standard deviations below the middle, where there is none."""
+    t = tolerances(lambda a=0.0: a if a > -2.0 else np.nan, {"a": 3.0}, n=4000)
+    assert t.failures == {"the result is no number": len(t.failed)}
+    assert len(t.failed) == (t.deviations[:, 0] <= -2.0).sum()
+    assert len(t.failed) / 4000 == pytest.approx(0.0228, abs=0.01)
+
+    def coupled(batch: Any) -> np.ndarray:
+        angle = batch.angles["rocker"][:, 0]
+        return np.where(angle > float(rocker_angle(0.0)) - 1e-3, angle, np.inf)
+
+    t = tolerances(four_bar(), {"coupler": 1e-4}, coupled, n=4000, steps=4)
+    assert t.failures == {"the result is no number": len(t.failed)}
+    assert 20 < len(t.failed) < 600
+    assert np.isfinite(t.mean)
+
+
+def test_what_a_function_raises_of_the_machine_itself_is_raised() -> None:
+    with pytest.raises(ModelError, match="did you mean 'rocker'"):
+        tolerances(four_bar(), {"coupler": 1e-4}, lambda sol: sol.body("rockr").theta[0], n=5, way="sweep")

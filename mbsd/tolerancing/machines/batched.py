@@ -28,7 +28,6 @@ MOST_AGAIN = 500
 """Machines of a part that are swept again one by one, where that was not enough."""
 OPEN = "the links do not close over the whole motion"
 DOUBTED = "two assemblies come near each other during the motion"
-NO_NUMBER = "the result is no number"
 
 
 def serves(m: Model, columns: Sequence[Column], result: Any, ready: Any) -> bool:
@@ -70,8 +69,7 @@ class Batched:
             values = measured(self._owner, self._result, batch.t, along)
         else:
             values = numbers_of_batch(self._owner, called(self._owner, self._result, batch), len(x))
-        failures[NO_NUMBER] = int((batch.closes & ~np.isfinite(values)).sum())
-        values = np.where(batch.closes & np.isfinite(values), values, np.nan)
+        values = np.where(batch.closes, values, np.nan)
         return self._without_doubt(x, batch.doubted, Answers(values, +failures))
 
     def _without_doubt(self, x: np.ndarray, doubted: np.ndarray, answers: Answers) -> Answers:

@@ -16,7 +16,7 @@ from mbsd.dynamics.many.measures import Measure
 from mbsd.tolerancing.dimensions.dimension import Dimension, LoosePlay
 from mbsd.tolerancing.dimensions.named import dimensions_of, pushed
 from mbsd.tolerancing.machines.batched import Batched, push_directions, serves
-from mbsd.tolerancing.machines.one_by_one import Machines, Simulated, swept
+from mbsd.tolerancing.machines.one_by_one import Answers, Machines, OneByOne, Simulated, swept
 from mbsd.tolerancing.machines.results import OfSolution, result_given
 
 WAYS = ("auto", "batch", "sweep", "simulate")
@@ -112,7 +112,11 @@ def _notes(known: Sequence[str], loose: Sequence[Any]) -> list[str]:
 
 def _alone(owner: str, machines: Machines, columns: Sequence[Any]) -> float:
     """The result of the mechanism as it is given. Raises ModelError where it has none."""
-    answers = machines(np.zeros((1, len(columns))))
+    if isinstance(machines, OneByOne):
+        value = machines.at(np.zeros(len(columns)))
+        answers = Answers(np.array([value]))
+    else:
+        answers = machines(np.zeros((1, len(columns))))
     if np.isfinite(answers.values[0]):
         return float(answers.values[0])
     reasons = ", ".join(answers.failures) or "the result is no number"

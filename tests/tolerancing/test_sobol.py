@@ -40,6 +40,7 @@ def test_a_curved_result_is_known_as_one_and_solved_again() -> None:
     assert x.yield_halved == 1.0
     assert y.yield_halved == pytest.approx(math.sqrt(0.5), abs=0.03)
     assert t.vertex_worst == pytest.approx((1.0, 2.01))  # the middle is less than all corners
+    assert not tolerances(four_bar(), {"crank": 1e-4}, samples("crank.theta", [0.25]), n=50, steps=4).curved  # it stays
     assert not tolerances(lambda x=0.0, y=1.0: x + y, {"x": Uniform(1.0), "y": Uniform(0.01)}, n=50).curved
 
 

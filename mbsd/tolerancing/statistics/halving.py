@@ -17,6 +17,8 @@ from mbsd.tolerancing.statistics.derivatives import Evaluate, parts
 
 CURVED = 0.1
 """Part by which the standard deviation by derivatives may be off."""
+ROUNDING = 1e-11
+"""Part of the largest result that is nothing."""
 CHANCE = 3.0
 """Standard deviations of the standard deviation of n machines, which is nearly 1 / sqrt(2 n)."""
 
@@ -34,8 +36,8 @@ class Halving:
 def curved(values: np.ndarray, linear_std: float) -> bool:
     """Whether derivatives miss the standard deviation of (n,) results by more than chance."""
     good = values[np.isfinite(values)]
-    off = CURVED + CHANCE / math.sqrt(2.0 * len(good))
-    return bool(abs(good.std(ddof=1) - linear_std) > off * max(good.std(ddof=1), linear_std))
+    std, off = float(good.std(ddof=1)), CURVED + CHANCE / math.sqrt(2.0 * len(good))
+    return abs(std - linear_std) > off * max(std, linear_std) + ROUNDING * float(np.abs(good).max())
 
 
 def halving(

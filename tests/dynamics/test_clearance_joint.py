@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError
+from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, constant_rate, polynomial
 from mbsd.measures import final, largest
 from mbsd.model.adding.restitution import MODELS
 from mbsd.results.force_view import ForceView
@@ -215,3 +215,59 @@ def test_much_play_is_suspicious() -> None:
     assert not slider_crank(0.5e-3).check()
     [finding] = slider_crank(2e-3).check()
     assert "its clearance of 0.002 m is 20% of the bearing's radius" in str(finding)
+
+
+def test_a_sweep_says_that_play_is_simulated() -> None:
+    with pytest.raises(MobilityError, match=r"What has play \('B'\) is free to move in it, .* simulate\(\) does"):
+        slider_crank(0.5e-3).sweep()
+
+
+def test_a_mechanism_that_does_not_close_as_ideal_says_how_it_may_start() -> None:
+    m = slider_crank(0.5e-3)
+    m.change("rod", length=0.03)  # shorter than the crank: it reaches the guide in no half turn
+    m.start_near(crank=90)
+    m.drivers.clear()
+    m.drive_angle("motor", m.bodies["crank"], constant_rate(1.0, 0.5 * math.pi))
+    with pytest.raises(AssemblyError, match="'B' starts closed, without play; with start=None"):
+        m.simulate(1e-3)
+    m.change("B", start=None)
+    assert m.simulate(1e-6).force("B").gap[0] < 0.0
+
+
+def four_loose_pins() -> Mechanism:
+    m = Mechanism("four_bar", gravity=None)
+    crank, coupler, rocker = (m.bar(name, n, mass=0.2) for name, n in (("a", 0.04), ("b", 0.12), ("c", 0.09)))
+    places = {
+        "A": (m.ground.at(0, 0), crank.start), "B": (crank.end, coupler.start),
+        "C": (coupler.end, rocker.end), "D": (m.ground.at(0.12, 0), rocker.start),
+    }  # fmt: skip
+    for name, (i, j) in places.items():
+        m.clearance_joint(name, i, j, 0.1e-3, 5e-3, modulus=207e9, restitution=0.8)
+    m.start_near(a=40, b=30, c=82.14)
+    m.start_moving(a=30.0)
+    return m
+
+
+def test_play_in_every_pin_keeps_the_links_together_and_takes_energy() -> None:
+    m = four_loose_pins()
+    assert m.mobility().dof == 9
+    sol = m.simulate(0.05, tolerance=1e-9)
+    views = [sol.force(name) for name in "ABCD"]
+    assert all(view.gap.min() > -0.02e-3 and view.gap.max() < 0.1e-3 + 1e-12 for view in views)
+    lost = sol.energy.total[0] - sol.energy.total
+    assert lost[-1] > 0.0
+    assert np.diff(sol.energy.total).max() < 1e-9 * sol.energy.total[0]
+
+
+def test_many_starts_are_those_that_one_makes() -> None:
+    many = hanging().simulate_many(0.05, start={"bar": [-60.0, 0.0]}, measure={"y": final("bar.y")})
+    for k, angle in enumerate((-60.0, 0.0)):
+        m = hanging()
+        m.start_near(bar=angle)
+        assert many["y"][k] == pytest.approx(m.simulate(0.05).body("bar").y[-1], abs=1e-9)
+
+
+def test_drivers_on_both_sides_of_a_play_move_as_they_are_said_to() -> None:
+    m = slider_crank(0.5e-3)
+    m.drive_coordinate("push", m.ground.at(0, 0), m.bodies["slider"].origin, polynomial(CRANK + ROD, 0.3))
+    assert m.simulate(1e-5).body("slider").vx[0] == pytest.approx(0.3, abs=1e-9)

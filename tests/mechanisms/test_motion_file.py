@@ -182,6 +182,17 @@ def test_wheels_curves_and_cams_have_their_shapes() -> None:
     assert way[120] == pytest.approx([1.0, 0.3])
 
 
+def test_bearings_and_gears_with_play_have_their_shapes() -> None:
+    m = Mechanism("play")
+    a, b = m.body("a", mass=1.0, inertia=1e-3), m.body("b", mass=1.0, inertia=1e-3)
+    m.clearance_joint("A", m.ground.at(0, 0), a.origin, 0.5e-3, 0.01, stiffness=1e9)
+    m.gear_mesh("mesh", a.origin, b.origin, 1e7, teeth=(40, 20), module=3e-3)
+    bearing, mesh = (shape_of(m.forces[name]) for name in ("A", "mesh"))
+    assert (bearing.radius_first, bearing.radius_second, bearing.ring) == (0.01, pytest.approx(0.0095), True)
+    assert (mesh.radius_first, mesh.radius_second) == (pytest.approx(0.06), pytest.approx(0.03))
+    assert (mesh.teeth, mesh.ring) == ([40, 20], False)
+
+
 def test_a_sweep_has_no_contacts_and_no_work() -> None:
     m = Mechanism("arm")
     arm = m.bar("arm", 0.3, mass=0.4)

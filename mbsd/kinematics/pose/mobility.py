@@ -142,7 +142,7 @@ def _chosen(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> lis
             f"{packed.name}: at t = {time:.6g} s {missing} of {joints.dof} degrees of freedom "
             f"{'is' if missing == 1 else 'are'} not driven: {', '.join(free)} can still move. "
             f"Add {'a driver' if missing == 1 else f'{missing} drivers'}, "
-            "for example m.drive_angle(...)."
+            "for example m.drive_angle(...)." + _of_play(packed)
         )
     if len(here) < len(kept):
         raise SingularPoseError(
@@ -265,3 +265,11 @@ def _motion(jac: np.ndarray) -> np.ndarray:
     rank = int((singular > RANK_TOLERANCE * max(1.0, singular.max(initial=0.0))).sum())
     null = v[rank:]
     return np.linalg.norm(null, axis=0).reshape(-1, 3).max(axis=1)
+
+
+def _of_play(packed: Packed) -> str:
+    """A sentence where forces take the place of joints."""
+    names = [f"'{force.name}'" for force in packed.forces if force.kind.ideal is not None]
+    if not names:
+        return ""
+    return f" What has play ({', '.join(names)}) is free to move in it, and no driver moves that: simulate() does."

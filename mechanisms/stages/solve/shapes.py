@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 from shared.contract import Shape
 
 if TYPE_CHECKING:
-    from mbsd import Force, Joint
+    from mbsd import Joint
+    from mbsd.model.force import Force
 
 POINTS = 240
 """Points of an outline, about and at most."""
@@ -15,6 +16,7 @@ POINTS = 240
 
 def shape_of(element: Joint | Force) -> Shape:
     """The shape between the two markers of a joint, force or contact."""
+    from mbsd.model.force import Force as AnyForce
     from mbsd.model.force import ForceKind
     from mbsd.model.teeth import with_radii
 
@@ -28,6 +30,8 @@ def shape_of(element: Joint | Force) -> Shape:
         outline = _curve(params["points"], params["closed"])
     elif "profile" in laws:
         outline = _profile(laws["profile"])
+    if isinstance(element, AnyForce) and element.kind.journal is not None:  # the bearing lies around the journal
+        params |= {"radius_i": params["radius"], "radius_j": element.kind.journal(element)[0], "inside": True}
     geneva = "slots" in params
     teeth = params.get("teeth")
     of_pin = isinstance(element.kind, ForceKind) and element.kind.of_reactions

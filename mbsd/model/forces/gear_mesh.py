@@ -15,8 +15,8 @@ c is such that the start pose is the middle of the play, or ``start`` away from 
 a single tooth. The elastic part has the potential energy k p^(n+1) / (n+1) of both flanks. Gears start with velocities
 of gears without play. The stiffness is constant: how many teeth touch, and where, is left out; so is their friction.
 
-Sources: ISO 21771 (backlash, involute function), ISO 6336-1 (mesh stiffness: 14 N/(mm um) for each width of steel
-gears); Dubowsky, Freudenstein 1971, J. Eng. Ind. 93, 305 (impact pair).
+Sources: ISO 21771 (backlash, involute function), ISO 6336-1 (stiffness of a pair of steel teeth: about 14 N/um for a mm
+of face width); Dubowsky, Freudenstein 1971, J. Eng. Ind. 93, 305 (impact pair).
 """
 
 from __future__ import annotations

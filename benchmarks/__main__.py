@@ -4,6 +4,7 @@ python -m benchmarks                  all of it
 python -m benchmarks calls            the calls as users make them alone, only shown
 python -m benchmarks clearance        a slider-crank with play beside the ideal one, only shown
 python -m benchmarks dynamics         the dynamics problems alone, only shown
+python -m benchmarks derivatives      gradients in ten numbers beside their motions, only shown
 python -m benchmarks engines          sweeps of engines beside a four-bar's, the map of bank angles, only shown
 python -m benchmarks machines         gears, a Geneva, a cam and a stiff contact alone, only shown
 python -m benchmarks film [--help]     what a film costs (make bench-film)
@@ -28,6 +29,7 @@ from benchmarks import rows, table
 from benchmarks.batch import measure as batch
 from benchmarks.calls import measure as calls
 from benchmarks.clearance import measure as clearance
+from benchmarks.derivatives import measure as derivatives
 from benchmarks.dynamics import measure as dynamics
 from benchmarks.dynamics import scaling
 from benchmarks.dynamics.settings import tune_all
@@ -50,6 +52,19 @@ ROUNDS = 8
 BARS = {"exudyn": 20.0, "numpy": 200.0, "pylinkage": 2.0}
 """How many times the time of mbsd each peer takes at least."""
 LARGEST_ERROR = 1e-12
+PARTS = {
+    "calls": calls,
+    "clearance": clearance,
+    "derivatives": derivatives,
+    "dynamics": dynamics,
+    "engines": engines,
+    "machines": machines,
+    "simulations": simulations,
+    "synthesis": synthesis,
+    "tolerances": tolerances,
+}
+"""What is measured alone, by its word."""
+OTHERS = ("cluster", "film", "live", "start", "table", "tune [names]")
 
 
 def main() -> int:
@@ -57,27 +72,8 @@ def main() -> int:
     match sys.argv[1:]:
         case []:
             return _all()
-        case [
-            "calls"
-            | "clearance"
-            | "dynamics"
-            | "engines"
-            | "machines"
-            | "simulations"
-            | "synthesis"
-            | "tolerances" as part
-        ]:
-            parts = {
-                "calls": calls,
-                "clearance": clearance,
-                "dynamics": dynamics,
-                "engines": engines,
-                "machines": machines,
-                "simulations": simulations,
-                "synthesis": synthesis,
-                "tolerances": tolerances,
-            }
-            rows_of_part, bars = parts[part].measured()
+        case [part] if part in PARTS:
+            rows_of_part, bars = PARTS[part].measured()
             rows.show_all(rows_of_part)
             return _tell(bars)
         case ["film", *words]:
@@ -98,8 +94,7 @@ def main() -> int:
             tune_all(names)
         case other:
             raise UserError(
-                f"bench: {' '.join(other)}? There is: calls, clearance, cluster, dynamics, engines, film, live, "
-                "machines, simulations, start, synthesis, table, tolerances, tune [names], or nothing for all"
+                f"bench: {' '.join(other)}? There is: {', '.join(sorted([*PARTS, *OTHERS]))}, or nothing for all"
             )
     return 0
 
@@ -123,6 +118,7 @@ def _all() -> int:
         calls.measured,
         batch.measured,
         synthesis.measured,
+        derivatives.measured,
         machines.measured,
         engines.measured,
         clearance.measured,

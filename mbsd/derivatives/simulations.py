@@ -33,6 +33,8 @@ from mbsd.results.solution import Solution
 
 ENOUGH = 1e-4
 """Error of tangents of fourth order, as part of the largest, beyond which nodes come closer; the result is better."""
+SHARE = 0.5
+"""Part of it that one double step adds at most where the motion is smooth, so that the sixth order holds."""
 MOST = 6
 """So often at most."""
 MOST_STEPS = 20_000
@@ -70,7 +72,8 @@ class SimulationTangents:
             whole = simulated(nodes if len(reached) == len(grid) else np.append(nodes, grid[-1]))
             made, errors = self._made(whole)
             error = float(errors.sum())
-            if error <= ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
+            smooth = error <= 5 * ENOUGH and errors.max() <= SHARE * ENOUGH
+            if error <= ENOUGH or smooth or len(errors) != len(edges) - 1 or turn == MOST - 1:
                 break
             finer = refined(edges, errors, ENOUGH)
             if len(finer) > MOST_STEPS:

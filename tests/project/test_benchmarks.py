@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from benchmarks import machines, table
+from benchmarks.derivatives import SWEEP
+from benchmarks.derivatives import measure as derivatives
 from benchmarks.dynamics import CODES, chain, n_four_bar, pins, squeezer
 from benchmarks.dynamics.cases import BESIDE_PEERS, case
 from benchmarks.dynamics.equations import Chain, Equations
@@ -186,3 +188,11 @@ def test_our_synthesis_passes_through_its_points() -> None:
     point = fitted.traces["P"]
     fitted.traces["P"] = point.body.at(point.x + 1e-3, point.y)
     assert synthesis.error(fitted) > 1e-4
+
+
+def test_our_gradients_are_those_of_whole_motions() -> None:
+    make, numbers, duration, measure = derivatives.PROBLEMS[SWEEP]
+    m, numbers = make(), numbers[1:4]
+    gradient = m.sensitivities({"of": measure}, numbers, duration, derivatives.STEPS)["of"]
+    assert derivatives.error(m, numbers, duration, measure, gradient) < 1e-6
+    assert derivatives.error(m, numbers, duration, measure, 1.001 * gradient) > 5e-4

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -22,6 +23,8 @@ NAME, SAID = 1 / 9.5, 1 / 26
 """Heights of letters of a title, in the picture's shorter side."""
 ACCENT = (255, 142, 62)
 LEFT = 0.085
+LEANS = 0.15
+"""Sideways part of an arrow's way from which on a number beside it stands on the side to which it leans."""
 BETWEEN, JOINED = " · ", "_"
 """Between facts, and what stands for a space within one while lines are broken; names have none any more."""
 
@@ -184,7 +187,9 @@ class Drawing:
             x = min(max(x, edge + wide / 2), self.wide - edge - wide / 2)
             y = min(max(y, edge + 2.2 * size + high / 2), low - high / 2)
             if _on_arrow((x - wide / 2, y - high / 2, x + wide / 2, y + high / 2), note, self.wide, self.high):
-                x += (wide / 2 + 1.1 * size) * (1 if x < self.wide / 2 else -1)
+                away = note.dx if abs(note.dx) > LEANS else 1.0 if x < self.wide / 2 else -1.0
+                x += math.copysign(wide / 2 + 1.1 * size, away)
+                x = min(max(x, edge + wide / 2), self.wide - edge - wide / 2)
             for _ in range(6):
                 box = (x - wide / 2, y - high / 2, x + wide / 2, y + high / 2)
                 if not any(_overlap(box, other) for other in taken):

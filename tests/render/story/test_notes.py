@@ -26,6 +26,13 @@ def test_a_number_at_the_upper_edge_is_beside_its_arrow(x: float) -> None:
     assert card.min() >= 0
 
 
+def test_it_is_on_the_side_to_which_the_arrow_leans() -> None:
+    note = Note(0.3, 0.03, -0.35, -0.94, "O  1.37 N", "#5aa9ff")
+    card = dark(note)
+    tip = 0.3 * WIDE
+    assert card[:, 0].max() < tip, "the shaft goes to the right from here"
+
+
 def test_a_number_with_room_is_beyond_the_tip() -> None:
     note = Note(0.5, 0.5, 0.0, -1.0, "O  1.37 N", "#5aa9ff")
     card = dark(note)

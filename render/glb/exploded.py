@@ -5,6 +5,7 @@ The motion has its own file: viewers play the first clip of a file, and some all
 
 from __future__ import annotations
 
+import msgspec
 import numpy as np
 
 from render.film.exploded import exploded
@@ -35,7 +36,9 @@ def run(name: str) -> None:
     if stage.is_fresh():
         say("exploded", f"{out.name}: {target.name}: nothing to do")
         return
-    write_bytes(target, exploded_glb(read_film(out)))
+    film = read_film(out)
+    whole = msgspec.structs.replace(film.shot, section=0.0)  # as the picture beside it
+    write_bytes(target, exploded_glb(Film(film.motion, film.parts, whole, film.folder)))
     stage.done()
     say("exploded", f"{out.name}: {target}: {_LAST:.1f} s, {target.stat().st_size / 1e6:.1f} MB")
 

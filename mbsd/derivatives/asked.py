@@ -32,6 +32,12 @@ def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], n
     return {str(label): _function(m, str(label), each, sol, known) for label, each in of.items()}
 
 
+def needs_models(of: Any) -> bool:
+    """Whether a function of the user may ask the mechanism of a solution."""
+    given = of.values() if isinstance(of, Mapping) else of if isinstance(of, list | tuple) else [of]
+    return any(callable(each) for each in given)
+
+
 def _function(m: Model, label: str, given: Any, sol: Solution, known: list[str]) -> Callable[[Solution], np.ndarray]:
     if isinstance(given, str):
         return _quantity(m, given, known)

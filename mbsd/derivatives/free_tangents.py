@@ -178,10 +178,12 @@ class _Piece:
         right[:, f:] = bent[2 * f :].transpose(1, 2, 0)
         begun = np.concatenate([self.basis @ q[:, 3:].T, self.basis @ v[:, 3:].T])
         y, error = carried(self.along.t, matrix, right, begun, self._slight())
-        out = []
-        for part in (positions, velocities, a, lam):
-            out.append(part[2 * f :] + np.einsum("tkp,ktn->ptn", y, part[: 2 * f]))
-        return Tangents(*(_wide(part) for part in out[:3]), out[3]), error
+
+        def total(part: np.ndarray) -> np.ndarray:
+            return part[2 * f :] + np.einsum("tkp,ktn->ptn", y, part[: 2 * f])
+
+        out = Tangents(_wide(total(positions)), _wide(total(velocities)), _wide(total(a)), total(lam))
+        return out, error
 
     def _slight(self) -> np.ndarray:
         """(2 f, P) changes of s and s' that are rounding where the number changes by all of itself."""

@@ -92,7 +92,7 @@ class Jump:
         if what == "none":
             return np.zeros(len(every))
         if what == "user":
-            return np.array([self._user_time(which, *one, v) for *one, v in zip(dq, dv, every, strict=True)])
+            return np.array([self._user_time(which, q, v, own) for q, v, own in zip(dq, dv, every, strict=True)])
         terms, here = self.whole.terms, self.along.take(slice(self.before, self.before + 1))
         row = terms.packed.spread(terms.rows(here)[2])[0, which]
         part = "position" if what == "gap" else "velocity"

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import names_in, no_such
-from mbsd.derivatives.asked import Wanted, wanted
+from mbsd.derivatives.asked import Wanted, needs_models, wanted
 from mbsd.derivatives.numbers import Number, numbers_named
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.sweeps import SweepTangents
@@ -35,6 +35,10 @@ class Tangents(Protocol):
 
     def weights(self, k: int) -> np.ndarray:
         """What these count in a derivative by number k."""
+        ...
+
+    def models(self, k: int, number: Number) -> list[Model]:
+        """The mechanisms of these."""
         ...
 
 
@@ -83,11 +87,18 @@ class Sensitivities:
         return f"<Sensitivities of {', '.join(self.slopes)} by {', '.join(self.numbers)}>"
 
 
-def slopes_of(tangents: Tangents, count: int, functions: Wanted) -> dict[str, np.ndarray]:
-    """By label, derivatives (..., count) by all numbers of what functions of a solution give."""
+def slopes_of(
+    tangents: Tangents, numbers: Sequence[Number], functions: Wanted, models: bool = False
+) -> dict[str, np.ndarray]:
+    """By label, derivatives (..., P) by all numbers of what functions of a solution give.
+
+    With ``models`` the solutions have mechanisms with the other numbers, for functions that ask them.
+    """
     columns: dict[str, list[np.ndarray]] = {label: [] for label in functions}
-    for k in range(count):
+    for k, number in enumerate(numbers):
         moved, weights = tangents.moved(k), tangents.weights(k)
+        if models:
+            moved = [replace(sol, mechanism=m) for sol, m in zip(moved, tangents.models(k, number), strict=True)]
         for label, function in functions.items():
             columns[label].append(np.sum([w * function(sol) for w, sol in zip(weights, moved, strict=True)], axis=0))
     return {label: np.stack(parts, axis=-1) for label, parts in columns.items()}
@@ -117,7 +128,7 @@ def sensitivities(
         tangents.sol.t,
         tuple(number.name for number in numbers),
         {label: np.asarray(function(tangents.sol)) for label, function in functions.items()},
-        slopes_of(tangents, len(numbers), functions),
+        slopes_of(tangents, numbers, functions, needs_models(of)),
         tangents.sol,
     )
 

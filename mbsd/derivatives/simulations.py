@@ -22,7 +22,7 @@ from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.sweeps import along_of, displaced
 from mbsd.derivatives.tangents import Tangent, combined
 from mbsd.derivatives.terms import Along, Left, terms_of
-from mbsd.derivatives.variants import SECOND, TINY, Variants, Variation
+from mbsd.derivatives.variants import SECOND, TINY, Variants, Variation, models_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.kinematics.pose.mobility import independent_rows
@@ -106,6 +106,10 @@ class SimulationTangents:
     def weights(self, k: int) -> np.ndarray:
         """(v,) of what is found of :meth:`moved`, for a derivative by number k."""
         return self.variants[k].weights / self.variants[k].step
+
+    def models(self, k: int, number: Number) -> list[Model]:
+        """The mechanisms of :meth:`moved`."""
+        return models_of(self.m, number, self.variants[k])
 
     # -- nodes -----------------------------------------------------------------------------------------------------
 
@@ -227,6 +231,11 @@ def _refuse(sol: Solution) -> None:
             "known; give damping= instead of restitution="
         )
     for force in packed.forces:
+        if "cycle" in {*force.params, *force.laws}:
+            raise ModelError(
+                f"{packed.name}: derivatives of simulations with the cycle of a gas ('{force.name}'), whose pressure "
+                "jumps on the way, are not known; those of a sweep are"
+            )
         if force.params.get("sticks"):
             raise ModelError(
                 f"{packed.name}: derivatives where joints stick ('{force.name}') are not known; give a slip_speed"

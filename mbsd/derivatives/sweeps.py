@@ -13,7 +13,7 @@ from mbsd.base.errors import ModelError
 from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.tangents import Inverse, Tangent, tangent
 from mbsd.derivatives.terms import Along, Terms, terms_of
-from mbsd.derivatives.variants import STEP, Variant, Variants, Variation
+from mbsd.derivatives.variants import STEP, Variant, Variants, Variation, models_of
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
@@ -33,7 +33,7 @@ class SweepTangents:
     """A sweep, and its tangents by numbers."""
 
     def __init__(self, m: Model, sol: Solution, numbers: Sequence[Number]) -> None:
-        self.sol, self.along = sol, along_of(sol)
+        self.m, self.sol, self.along = m, sol, along_of(sol)
         span = float(sol.t[0]), float(sol.t[-1])
         self.terms: Terms = terms_of(sol.packed, span)
         variation = Variation(m, self.terms, span, lambda m, packed: assemble(m, packed, span[0]))
@@ -64,6 +64,10 @@ class SweepTangents:
     def weights(self, k: int) -> np.ndarray:
         """(v,) of what is found of :meth:`moved`, for a derivative by number k."""
         return self.variants[k].weights / self.variants[k].step
+
+    def models(self, k: int, number: Number) -> list[Model]:
+        """The mechanisms of :meth:`moved`."""
+        return models_of(self.m, number, self.variants[k])
 
     def _states(self, variants: Variants, tangent_of: Tangent) -> np.ndarray:
         """(T, s) how states of forces change: they are followed along the motion of each variant."""

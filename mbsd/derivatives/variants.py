@@ -16,7 +16,7 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
-from mbsd.derivatives.numbers import Number, with_value
+from mbsd.derivatives.numbers import Number, with_value, with_values
 from mbsd.derivatives.terms import Terms, terms_of
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
@@ -59,6 +59,14 @@ class Variants:
     def slope(self, of: Callable[[Variant], np.ndarray]) -> np.ndarray:
         """The derivative by the number of what ``of`` gives of a variant."""
         return np.sum([w * of(v) for w, v in zip(self.weights, self.variants, strict=True)], axis=0) / self.step
+
+
+def models_of(m: Model, number: Number, variants: Variants) -> list[Model]:
+    """Mechanisms with the values of a number that variants have."""
+    values = [number.value + variant.offset * variants.step for variant in variants.variants]
+    if number.built is not None:
+        return [number.built(value) for value in values]
+    return [with_values(m, [number], [value]) for value in values]
 
 
 Close = Callable[[Model, Packed], Any]

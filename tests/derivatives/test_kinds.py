@@ -1,4 +1,4 @@
-"""Every kind of joint, driver, force and contact: derivatives against central differences of whole motions."""
+"""Every kind of joint, driver, force and contact: derivatives along a motion against differences of whole ones."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from mbsd.testing.kinds import contact_kinds
 KINDS: list[Any] = [*joint_kinds(), *force_kinds(), *contact_kinds()]
 IN_A_MACHINE = {"gear_pair", "geneva", "rack_and_pinion"}
 """Kinds whose places must suit each other: their machines are below."""
-SWITCHING = {"contact", "gas_cycle", "tyre"}
-"""Kinds whose force has kinks, or jumps, on the way of their example: not to all digits, and refused where it jumps."""
-REFUSED = {"hydraulic_cylinder"}
+SWITCHING = ("contact", "tyre")
+"""Kinds whose force has kinks on the way of their example, which cost digits."""
+REFUSED = {"hydraulic_cylinder": "states of forces", "gas_cycle": "cycle of a gas"}
 PLACES = ("example.i.x", "example.j.x", "example.j.y")
 OWN = {
     "belt": "radius_i",
@@ -64,7 +64,7 @@ def numbers_of(kind: Any) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "kind", [k for k in KINDS if k.name not in IN_A_MACHINE | SWITCHING | REFUSED], ids=lambda k: k.name
+    "kind", [k for k in KINDS if k.name not in {*IN_A_MACHINE, *SWITCHING, *REFUSED}], ids=lambda k: k.name
 )
 def test_a_simulation_with_it(kind: Any) -> None:
     m = started(kind)
@@ -123,7 +123,14 @@ def test_an_indexed_geneva() -> None:
     )  # fmt: skip
 
 
-def test_states_of_forces_are_refused_by_name() -> None:
-    [kind] = [kind for kind in KINDS if kind.name == "hydraulic_cylinder"]
-    with pytest.raises(ModelError, match="states of forces \\('example'\\)"):
+@pytest.mark.parametrize("name", SWITCHING)
+def test_a_simulation_with_a_force_that_has_kinks(name: str) -> None:
+    [kind] = [kind for kind in KINDS if kind.name == name]
+    check_derivatives(started(kind), ["second.x", "second.theta"], ["second.mass", "example.damping"], 0.2, 10, 3e-3)
+
+
+@pytest.mark.parametrize(("name", "says"), REFUSED.items())
+def test_what_a_simulation_has_no_derivatives_of_is_refused_by_name(name: str, says: str) -> None:
+    [kind] = [kind for kind in KINDS if kind.name == name]
+    with pytest.raises(ModelError, match=f"{says} \\('example'\\)"):
         started(kind).sensitivities("second.x", "second.mass", 0.1)

@@ -101,7 +101,14 @@ def slopes_of(
             moved = [replace(sol, mechanism=m) for sol, m in zip(moved, tangents.models(k, number), strict=True)]
         for label, function in functions.items():
             columns[label].append(np.sum([w * function(sol) for w, sol in zip(weights, moved, strict=True)], axis=0))
-    return {label: np.stack(parts, axis=-1) for label, parts in columns.items()}
+    out = {label: np.stack(parts, axis=-1) for label, parts in columns.items()}
+    for label, slopes in out.items():
+        if not np.isfinite(slopes).all() and np.isfinite(functions[label](tangents.sol)).all():
+            raise ModelError(
+                f"{tangents.sol.mechanism.name}: '{label}' has no derivative: reactions of joints that repeat others "
+                "are not known along a simulation. Free a joint, m.mobility() says which, or ask for the motion alone"
+            )
+    return out
 
 
 def sensitivities(

@@ -85,6 +85,8 @@ class SimulationTangents:
         self.sol = taken(whole, rows)
         self.along = along_of(self.sol)
         made = made.take(rows)
+        if self.redundant:
+            made.lam[:] = np.nan  # joints that repeat others share their loads in many ways
         if self.ends is not None:  # the last output is the event that ended it, wherever that is
             made.q[:, -1] += self.along.v[-1] * self.ends[:, None]
             made.v[:, -1] += self.along.a[-1] * self.ends[:, None]

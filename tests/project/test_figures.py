@@ -31,12 +31,13 @@ ANALYSES = (
     "linearisation",
     "batch",
     "synthesis",
+    "derivatives",
     "joints",
     "cams",
     "forces",
 )
 
-SLOW = ("integrators", "forward_dynamics")
+SLOW = ("integrators", "forward_dynamics", "derivatives")
 """Pages whose code takes ten seconds and more."""
 
 once = cache(drawn)

@@ -18,7 +18,7 @@ from mechanisms.stages.automatic.assembly.kernel_refusals import kernel_refusals
 from mechanisms.stages.automatic.assembly.looks import ROD, materials
 from mechanisms.stages.automatic.assembly.marks import Wish, place, refuse_letters
 from mechanisms.stages.automatic.decided import decided
-from mechanisms.stages.automatic.gathered import gathered
+from mechanisms.stages.automatic.laid_out import laid_out
 from mechanisms.stages.automatic.layout.extents import extents, lengths_of
 from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.items import Need
@@ -27,14 +27,11 @@ from mechanisms.stages.automatic.layout.motion import poses_of, times_of
 from mechanisms.stages.automatic.layout.order.heights import Heights, heights
 from mechanisms.stages.automatic.layout.printed import printed_sizes
 from mechanisms.stages.automatic.layout.sizes import THINNEST, Sizes, of_pin, refuse_sizes, sizes
-from mechanisms.stages.automatic.pins.free.free_bodies import free_bodies
-from mechanisms.stages.automatic.pins.free.points import styluses, weights
-from mechanisms.stages.automatic.pins.rods import add_poses, places
+from mechanisms.stages.automatic.pins.rods import places
 from mechanisms.stages.automatic.rolling.roads import runs_on_ground
 from mechanisms.stages.automatic.shafts.along import THINNEST_ALONG, Along
 from mechanisms.stages.automatic.shafts.bodies.planes import has_places
 from mechanisms.stages.automatic.standing.held import hold
-from mechanisms.stages.automatic.wheels.sharing import with_own_layers
 from mechanisms.stages.automatic.wished_names import refuse_material, refuse_unknown
 from mechanisms.stages.loading.wished_mount import wished
 from mechanisms.stages.loading.wished_scale import wished_scale
@@ -324,14 +321,7 @@ class Automatic:
         layout = Layout(self.m, size, poses, times_of(self.solution), springs)
         layout.apart = frozenset(self._left_out)
         layout.touching = frozenset(map(frozenset, self._touching))
-        add_poses(layout)
-        layout.features = gathered(layout)
-        layout.features += free_bodies(layout)
-        layout.features += weights(layout, heavy=True)
-        layout.features += styluses(layout, tall, pointers)
-        layout.features += weights(layout, heavy=False)
-        layout.features += self._joined
-        return with_own_layers(layout, tubes)
+        return laid_out(layout, self._joined, tubes, tall, pointers)
 
     def _plan_anew(self) -> None:
         """Forget what was found before a wish."""

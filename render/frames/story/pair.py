@@ -47,6 +47,8 @@ def pair_of(outs: Sequence[Out], preset: Preset, half: Preset) -> Pair:
     whys = [reasons(film.motion) for film in films]
     curves = _common(films, curves_of(films[0].motion, films[0].shot.story.curves, whys[0]))
     most = differences(*curves, spans, (films[0].clock.repeats, films[1].clock.repeats))
+    if most:  # what the words are of is seen in pictures that have room for fewer curves, too
+        curves = _first(curves[0], most[0].name), _first(curves[1], most[0].name)
     ramp = ramp_of(films[0].clock.rate, max(spans), most[0].time if most else None)
     names = (_name(outs[0], films[0]), _name(outs[1], films[1]))
     drawing = _drawing(outs[0], preset, names, _strip(preset, films, curves, max(spans)))
@@ -67,6 +69,11 @@ def pair_of(outs: Sequence[Out], preset: Preset, half: Preset) -> Pair:
 def _film(out: Out, half: Preset) -> Film:
     film = read_film(out, aspect=half.aspect)
     return Film(film.motion, film.parts, shown_plain(film.shot), film.folder, half.aspect)
+
+
+def _first(curves: Sequence[Curve], name: str) -> list[Curve]:
+    """The curves, that of a name first."""
+    return sorted(curves, key=lambda curve: curve.name != name)
 
 
 def _on_one_scale(sceneries: Sequence[Scenery]) -> None:

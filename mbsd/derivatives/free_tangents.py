@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.derivatives.linear_motion import NODES, carried
-from mbsd.derivatives.tangents import LOOSE, along_directions
+from mbsd.derivatives.tangents import LOOSE, along_directions, refuse_large
 from mbsd.derivatives.terms import Along, Left, Terms, stacked
 from mbsd.derivatives.variants import TINY, Variants
 
@@ -72,6 +72,7 @@ class FreeTangents:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
         self.dependent, self.own = stretch.dependent, own
         packed = terms.packed
+        refuse_large(terms, len(self.along.t))
         self.compact = terms.rows(self.along)[2]
         self.scale = packed.column_scale()
         self.jac = packed.spread(self.compact)

@@ -18,6 +18,7 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.terms import Along, Left, Terms, stacked
 from mbsd.derivatives.variants import FOURTH, STEP, Variants
+from mbsd.model.output_times import refuse_beyond_memory
 
 REACH = 1e-4
 """How far a difference along a direction goes: sizes, rad, and parts of the fastest speed."""
@@ -40,11 +41,22 @@ class Tangent:
     states: np.ndarray | None = None
 
 
+def refuse_large(terms: Terms, count: int) -> None:
+    """Raise ModelError where Jacobians of so many times, their inverses and what is made of them do not fit."""
+    packed = terms.packed
+    size = max(len(packed.ws.phi), packed.coordinates)
+    refuse_beyond_memory(
+        f"{packed.name}: derivatives at {count} times of {packed.coordinates} coordinates", 4 * count * size**2,
+        "Take fewer steps",
+    )  # fmt: skip
+
+
 class Inverse:
     """J of a motion, (T, m, n), and its inverse."""
 
     def __init__(self, terms: Terms, along: Along, redundant: bool) -> None:
         self.terms, self.redundant = terms, redundant
+        refuse_large(terms, len(along.t))
         self.compact = terms.rows(along)[2]
         self.jac = terms.packed.spread(self.compact)
         self.inverse = np.linalg.pinv(self.jac, rcond=LOOSE) if redundant else np.linalg.inv(self.jac)

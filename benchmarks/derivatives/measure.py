@@ -17,7 +17,7 @@ from mbsd.measures import Measure, final, integral, largest
 ROUNDS = 8
 STEPS = 100
 LARGEST_ERROR = 1e-4
-"""Of a gradient, as part of each derivative."""
+"""Error of a gradient, as part of each derivative."""
 TIME = "; processor time"
 WEIGHTS = {-2.0: 1 / 12, -1.0: -8 / 12, 1.0: 8 / 12, 2.0: -1 / 12}
 

@@ -28,7 +28,7 @@ from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.results.solution import Solution
 
 REACH = 1e-6
-"""Of differences of an impact, in sizes, rad, and parts of the fastest speed."""
+"""Reach of the differences of an impact, in sizes, rad, and parts of the fastest speed."""
 GRAZING = 1e-9
 """Speed of the scalar of an event, as part of the fastest motion, below which it only touches zero."""
 STILL = 1e-9
@@ -148,7 +148,7 @@ class Jump:
         for sign in (1.0, -1.0):
             state = t + sign * h[:, 0] * dt, q + sign * h * dq, v + sign * h * dv
             if plain is None:
-                both.append(np.array([self._after(whole.ready(), *one) for one in zip(*state, strict=True)]))
+                both.append(np.array([self._after(whole.ready(), *single) for single in zip(*state, strict=True)]))
             else:
                 both.append(self._bounced(whole.terms, plain, *state, plain.restitution))
         out = (both[0] - both[1]) / (2 * h)

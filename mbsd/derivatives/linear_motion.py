@@ -37,7 +37,7 @@ def carried(
 
 
 def _steps(t: np.ndarray, a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of every step what makes its middle and its end of its start: (s, k, k + c), a matrix and what is added."""
+    """What makes the middle and the end of every step of its start: (s, k, k + c), a matrix and what is added."""
     k = a.shape[1]
     h = (t[2::2] - t[:-2:2])[:, None, None]
     a0, a1, a2 = a[:-2:2], a[1::2], a[2::2]

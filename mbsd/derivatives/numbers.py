@@ -126,7 +126,7 @@ def _within(path: str, value: Any) -> tuple[float, Callable[[float], Any]] | Non
 
 
 def _of_entry(m: Model, name: str, whole: str, rest: str) -> Number | None:
-    """Of a joint, driver, force or contact."""
+    """The number of a joint, driver, force or contact."""
     table = next((table for table in connections(m) if whole in table), None)
     if table is None:
         return None

@@ -146,7 +146,7 @@ def moves_freely(m: Model) -> bool:
 
 
 def simulation_tangents(m: Model, grid: np.ndarray, numbers: Sequence[Number], tolerance: float) -> SimulationTangents:
-    """Of a simulation at output times (T,) (s)."""
+    """Simulate at output times (T,) (s), with tangents by numbers."""
     refuse_bad_steps(m, grid, tolerance, None)
 
     def simulated(times: np.ndarray) -> Solution:

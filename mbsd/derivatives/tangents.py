@@ -189,7 +189,7 @@ def along_directions(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, r
             for k in range(0, directions, at_once)
         ]
         return stacked(parts, np.concatenate)
-    step = np.stack([steps_along(terms, along, *one, reach) for one in zip(q, v, strict=True)])[..., None]
+    step = np.stack([steps_along(terms, along, dq, dv, reach) for dq, dv in zip(q, v, strict=True)])[..., None]
     many = along.tiled(2 * directions)
     shift_q, shift_v = ((step * part).reshape(directions * count, -1) for part in (q, v))
     moved = many.moved(many.q + np.concatenate([shift_q, -shift_q]), many.v + np.concatenate([shift_v, -shift_v]))

@@ -42,7 +42,7 @@ class Optimum:
     conditions: dict[str, float]
     """By name, what the conditions are of."""
     gradient: dict[str, float]
-    """Of the objective by each number at the end."""
+    """Slopes of the objective by each number at the end."""
     met: bool
     """Whether all conditions hold and scipy says that it ended at an optimum."""
     message: str

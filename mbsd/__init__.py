@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
     from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Stats
+    from mbsd.studies.simulated import Simulated, simulated
     from mbsd.studies.study import study
     from mbsd.synthesis.fit_path import PathFit, SynthesisError, fit_path
     from mbsd.synthesis.optimise import Optimum, optimise
@@ -113,6 +114,7 @@ __all__ = [
     "PathFit",
     "Picture",
     "Sensitivities",
+    "Simulated",
     "SimulationError",
     "SingularPoseError",
     "Solution",
@@ -137,6 +139,7 @@ __all__ = [
     "polynomial",
     "pressure_table",
     "recorded",
+    "simulated",
     "speed_reaches",
     "study",
     "table",
@@ -206,6 +209,8 @@ _LATER = {
     "pressure_table": "mbsd.model.cylinders.pressure_table",
     "recorded": "mbsd.model.laws",
     "speed_reaches": "mbsd.model.event",
+    "Simulated": "mbsd.studies.simulated",
+    "simulated": "mbsd.studies.simulated",
     "study": "mbsd.studies.study",
     "table": "mbsd.model.laws",
     "tolerances": "mbsd.tolerancing.tolerances",

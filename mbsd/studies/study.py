@@ -10,6 +10,8 @@ from contextlib import closing, nullcontext
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
+import numpy as np
+
 from mbsd.base.arguments import checked
 from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError, ModelWarning
@@ -24,6 +26,7 @@ from mbsd.studies.identity.depends import StudyPlaces, loaded_inputs, root_of
 from mbsd.studies.points import Point, points_of
 from mbsd.studies.progress import progress as reported
 from mbsd.studies.sent import bytes_of
+from mbsd.studies.simulated import Simulated
 from mbsd.studies.store import Store
 from mbsd.studies.table import pandas_here, refuse_format, refuse_taken, save_table, table_of
 from mbsd.studies.voice import VOICE
@@ -33,6 +36,12 @@ if TYPE_CHECKING:
     import pandas
 
     from mbsd.studies.points import Point
+
+
+WAY = "way"
+"""What ``attrs`` of a table has of points that were simulated."""
+LOOKED_AT = 9
+"""Points of which the way is told."""
 
 
 @checked
@@ -53,6 +62,9 @@ def study(
     names to values, of which all combinations are taken (the last name varies fastest), or lists points as mappings or
     rows of a DataFrame. Columns of the table: the point, what was measured, and ``reason``: why build or measure
     failed there, where the numbers are NaN; missing where they did not. ``save`` writes it as ``.parquet`` or ``.csv``.
+
+    ``measure`` may be :func:`mbsd.simulated`, whose points go through one compiled loop where they differ in numbers
+    alone.
 
     Without ``client`` the work is done by ``processes`` of this machine, by default one a core; 1 stays in this
     process. ``client`` is a ``distributed.Client`` or the address of a scheduler. Neither changes an order or a number.
@@ -106,9 +118,22 @@ def study(
     if points and all(result.values is None for result in results.values()):
         warn(f"study: all {len(points)} points failed, the first for: {results[0].reason}", ModelWarning)
     frame = table_of(points, [results[number] for number in range(len(points))], _index_of(grid))
+    if isinstance(measure, Simulated):
+        frame.attrs[WAY] = _way(build, measure, points)
     if save is not None:
         save_table(frame, save)
     return frame
+
+
+def _way(build: Callable[..., Mechanism], measure: Simulated, points: Sequence[Point]) -> str:
+    """How points like some of these are simulated."""
+    some = []
+    for number in sorted({*np.linspace(0, len(points) - 1, LOOKED_AT, dtype=int).tolist()} if points else ()):
+        try:
+            some.append(build(**points[number]))
+        except Exception:
+            continue  # that is the reason of the point
+    return measure.way(some)
 
 
 def _index_of(grid: Any) -> Any:

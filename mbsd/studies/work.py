@@ -21,6 +21,7 @@ from mbsd.dependencies.recorder import Recorder
 from mbsd.dependencies.recording import recording
 from mbsd.studies.identity.depends import StudyPlaces, is_of_mbsd, recorded_inputs
 from mbsd.studies.points import Point
+from mbsd.studies.simulated import Simulated
 
 PASSING = (OSError, MemoryError)
 """Failures of the machine: such a point is computed anew the next time."""
@@ -118,9 +119,27 @@ def chunk_of(
     started = time.perf_counter()
     with warnings.catch_warnings(), recording(recorder) if recorder else nullcontext():
         warnings.simplefilter("ignore")
-        results = [result_of(build, measure, point) for point in points]
+        if isinstance(measure, Simulated):
+            results = _together(build, measure, points)
+        else:
+            results = [result_of(build, measure, point) for point in points]
     inputs = recorded_inputs(recorder) if recorder else Inputs()
     return Done(results, time.perf_counter() - started, inputs)
+
+
+def _together(build: Callable[..., Any], measure: Simulated, points: Sequence[Point]) -> list[Result]:
+    """Build all, then measure all that there are at once."""
+    built: dict[int, Any] = {}
+    results: dict[int, Result] = {}
+    for number, point in enumerate(points):
+        try:
+            built[number] = build(**point)
+        except Exception as error:
+            results[number] = Result(None, described(error), isinstance(error, PASSING))
+    if built:
+        measured = measure.of_all(list(built.values()))
+        results |= {number: Result(*row) for number, row in zip(built, measured, strict=True)}
+    return [results[number] for number in range(len(points))]
 
 
 def result_of(build: Callable[..., Any], measure: Callable[[Any], Any], point: Point) -> Result:

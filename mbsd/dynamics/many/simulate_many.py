@@ -90,11 +90,15 @@ class Simulations:
             import pandas
         except ImportError as error:
             raise ModelError("table needs pandas: install mbsd[pandas]") from error
-        flat: dict[str, Any] = {}
+        return pandas.DataFrame(self.flat() | {REASON: self.reason})
+
+    def flat(self) -> dict[str, Any]:
+        """(n,) columns alone: one of k numbers a row is k columns, ``name_0`` and so on."""
+        out: dict[str, Any] = {}
         for name, column in self.columns.items():
             wide = column.reshape(len(column), -1)
-            flat |= {name if column.ndim == 1 else f"{name}_{k}": wide[:, k] for k in range(wide.shape[1])}
-        return pandas.DataFrame(flat | {REASON: self.reason})
+            out |= {name if column.ndim == 1 else f"{name}_{k}": wide[:, k] for k in range(wide.shape[1])}
+        return out
 
     def __repr__(self) -> str:
         bad = len(self) - int(self.good.sum())
@@ -119,6 +123,28 @@ def simulate_many(
     options: Mapping[str, float],
 ) -> Simulations:
     """See :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
+    return simulations(
+        designs_of(m, vary, start, moving), duration, measure, steps, times, method, tolerance, step, formulation,
+        threads, progress, options,
+    )  # fmt: skip
+
+
+def simulations(
+    designs: Designs,
+    duration: float | None,
+    measure: Any,
+    steps: int,
+    times: Sequence[float] | np.ndarray | None,
+    method: str,
+    tolerance: float,
+    step: float | None,
+    formulation: str,
+    threads: int | None,
+    progress: Callable[[float], None] | None,
+    options: Mapping[str, float],
+) -> Simulations:
+    """Measures of all designs; see :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
+    m = designs.m
     integrator = integrator_named(m.name, method)
     integrator.numbers(m.name, options)
     if formulation not in FORMULATIONS:
@@ -130,7 +156,6 @@ def simulate_many(
     grid = output_times(m, duration, steps, times)
     refuse_bad_steps(m, grid, tolerance, step)
     asked = Asked(grid, integrator, tolerance, step, formulation, options)
-    designs = designs_of(m, vary, start, moving)
     measures = _measures(m, measure, grid)
     quantities = {} if callable(measures) else _quantities(designs, measures)
     why = _why_single(designs, asked, measures, quantities)

@@ -1,0 +1,138 @@
+"""Mechanisms that differ in numbers alone, and these numbers as ``simulate_many`` takes them.
+
+As bytes (pickle) a mechanism has each of its numbers as eight bytes behind an opcode. Mechanisms that a function built
+in one way have the same bytes but for these, so one comparison finds what differs, in some 25 us a mechanism. What such
+a number is, a change of the first mechanism tells: it moves the same bytes. Some mechanisms are changed into as a whole
+and compared, number by number.
+
+Only numbers of forces are known. Where masses or starts vary, velocities at the start are found for many at once, and
+last digits would follow from which points a process happens to get.
+"""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import pickletools
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from mbsd.base.errors import MechanismError
+from mbsd.dynamics.many.designs import designs_of
+from mbsd.mechanism import Mechanism
+
+PROTOCOL = 5
+COMPARED = 3
+"""Mechanisms that are changed into and compared."""
+OTHER = "build makes mechanisms that differ in more than numbers"
+ELSEWHERE = "numbers differ that are none of a force"
+
+
+class MoreThanNumbers(Exception):
+    """Why mechanisms do not differ in known numbers alone."""
+
+
+Changes = dict[str, dict[str, np.ndarray]]
+"""Names to arguments of ``change`` and their values (n,)."""
+
+
+def differences(mechanisms: Sequence[Mechanism]) -> Changes:
+    """How the others differ from the first. Raises MoreThanNumbers where that is more than numbers, or nothing."""
+    first = mechanisms[0]
+    numbers = _Numbers(first)
+    values = np.array([numbers.of(m) for m in mechanisms])
+    left = set(np.flatnonzero((values != values[0]).any(axis=0)).tolist())
+    if not left:
+        raise MoreThanNumbers("build makes the same mechanism at all points")
+    changes: Changes = {}
+    work = copy.deepcopy(first)
+    for number in _known(first):
+        own, moved = _moved(number, work, numbers, values, left)
+        if own is not None:
+            left -= moved
+            changes.setdefault(number.name, {})[number.key] = values[:, own]
+    if left:
+        raise MoreThanNumbers(ELSEWHERE)
+    _compare(first, changes, numbers, values)
+    return changes
+
+
+class _Numbers:
+    """Where mechanisms like one have their numbers as bytes."""
+
+    def __init__(self, m: Mechanism) -> None:
+        content = _bytes(m)
+        at = [
+            place + 1 for code, _, place in pickletools.genops(content) if code.name == "BINFLOAT" and place is not None
+        ]
+        self.at = (np.array(at, np.int64)[:, None] + np.arange(8)).reshape(-1)
+        self.rest = np.ones(len(content), bool)
+        self.rest[self.at] = False
+        self.fixed = np.frombuffer(content, np.uint8)[self.rest]
+
+    def of(self, m: Mechanism) -> np.ndarray:
+        """(N,) numbers of another. Raises MoreThanNumbers where it has other bytes besides."""
+        content = np.frombuffer(_bytes(m), np.uint8)
+        if len(content) != len(self.rest) or not np.array_equal(content[self.rest], self.fixed):
+            raise MoreThanNumbers(OTHER)
+        return content[self.at].reshape(-1, 8).view(">f8")[:, 0].astype(float)
+
+
+def _bytes(m: Mechanism) -> bytes:
+    try:
+        return pickle.dumps(m, PROTOCOL)
+    except Exception as error:  # functions of the user that have no name
+        raise MoreThanNumbers("mechanisms have functions of Python") from error
+
+
+class _Number(NamedTuple):
+    """A number of a mechanism that may vary, as ``change`` names it."""
+
+    name: str
+    key: str
+    value: float
+
+
+def _known(m: Mechanism) -> Iterator[_Number]:
+    for force in m.forces.values():
+        for key, value in force.params.items():
+            if isinstance(value, float):
+                yield _Number(force.name, key, value)
+
+
+def _moved(
+    number: _Number, work: Mechanism, numbers: _Numbers, values: np.ndarray, left: set[int]
+) -> tuple[int | None, set[int]]:
+    """The place of a number that differs, and all that move with it; None if it is none of ``left``."""
+    for place in sorted(left):
+        if values[0, place] != number.value:
+            continue
+        other = float(values[np.flatnonzero(values[:, place] != number.value)[0], place])
+        try:
+            work.change(number.name, **{number.key: other})
+            changed = numbers.of(work)
+            work.change(number.name, **{number.key: number.value})
+            back = numbers.of(work)
+        except MechanismError:
+            raise MoreThanNumbers(ELSEWHERE) from None
+        if not np.array_equal(back, values[0]):
+            raise MoreThanNumbers(ELSEWHERE)
+        moved = set(np.flatnonzero(changed != values[0]).tolist())
+        if place in moved and changed[place] == other:
+            return place, moved
+    return None, set()
+
+
+def _compare(first: Mechanism, changes: Changes, numbers: _Numbers, values: np.ndarray) -> None:
+    """Raise MoreThanNumbers unless the first mechanism changes into others by these."""
+    designs = designs_of(first, changes, None, None)
+    for row in sorted({*np.linspace(0, len(values) - 1, COMPARED, dtype=int).tolist()}):
+        work = designs.copied()
+        try:
+            designs.put(work, row)
+        except MechanismError:
+            continue  # that is its reason
+        if not np.array_equal(numbers.of(work), values[row]):
+            raise MoreThanNumbers(ELSEWHERE)

@@ -17,8 +17,8 @@ ROOMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "results.md": ("Results", ("mbsd.results", "mbsd.analyses", "mbsd.kinematics")),
     "pictures.md": ("Pictures", ("mbsd.pictures", "mbsd.drawing")),
     "design.md": (
-        "Balancing, tolerances, synthesis, studies",
-        ("mbsd.balancing", "mbsd.tolerancing", "mbsd.synthesis", "mbsd.studies"),
+        "Balancing, tolerances, derivatives, synthesis, studies",
+        ("mbsd.balancing", "mbsd.tolerancing", "mbsd.derivatives", "mbsd.synthesis", "mbsd.studies"),
     ),
     "errors.md": ("Errors and warnings", ("mbsd.base",)),
 }

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 WAY = "way"
 """What ``attrs`` of a table has of points that were simulated."""
 LOOKED_AT = 9
-"""Points of which the way is told."""
+"""Points from which the way is found."""
 
 
 @checked

@@ -12,7 +12,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.dynamics.many.designs import Designs, designs_of
 from mbsd.dynamics.many.measures import Measure
-from mbsd.dynamics.many.simulate_many import Simulations, simulations
+from mbsd.dynamics.many.simulate_many import Simulations, asked_for, simulations
 from mbsd.mechanism import Mechanism
 from mbsd.studies.numbers_alone import MoreThanNumbers, differences
 
@@ -66,10 +66,11 @@ class Simulated:
 
     def _run(self, designs: Designs) -> Simulations:
         times = None if self.times is None else np.array(self.times)
-        return simulations(
-            designs, self.duration, self.measures, self.steps, times, self.method, self.tolerance, self.step,
-            self.formulation, 1, None, self.options,
+        asked = asked_for(
+            designs.m, self.duration, self.steps, times, self.method, self.tolerance, self.step, self.formulation,
+            self.options,
         )  # fmt: skip
+        return simulations(designs, self.measures, asked, 1, None)
 
 
 def _rows(many: Simulations) -> list[Numbers]:

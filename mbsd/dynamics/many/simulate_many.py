@@ -123,39 +123,40 @@ def simulate_many(
     options: Mapping[str, float],
 ) -> Simulations:
     """See :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
-    return simulations(
-        designs_of(m, vary, start, moving), duration, measure, steps, times, method, tolerance, step, formulation,
-        threads, progress, options,
-    )  # fmt: skip
+    asked = asked_for(m, duration, steps, times, method, tolerance, step, formulation, options)
+    if threads is not None and whole_number(f"{m.name}: threads", threads) > MOST_THREADS:
+        raise ModelError(f"{m.name}: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
+    if progress is not None and not callable(progress):
+        raise ModelError(f"{m.name}: progress is {shown(progress)}; it must be a function of the part done, 0 .. 1")
+    return simulations(designs_of(m, vary, start, moving), measure, asked, threads, progress)
 
 
-def simulations(
-    designs: Designs,
+def asked_for(
+    m: Model,
     duration: float | None,
-    measure: Any,
     steps: int,
     times: Sequence[float] | np.ndarray | None,
     method: str,
     tolerance: float,
     step: float | None,
     formulation: str,
-    threads: int | None,
-    progress: Callable[[float], None] | None,
     options: Mapping[str, float],
-) -> Simulations:
-    """Measures of all designs; see :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
-    m = designs.m
+) -> Asked:
+    """How each is simulated. Raises ModelError for what ``simulate`` refuses."""
     integrator = integrator_named(m.name, method)
     integrator.numbers(m.name, options)
     if formulation not in FORMULATIONS:
         raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
-    if threads is not None and whole_number(f"{m.name}: threads", threads) > MOST_THREADS:
-        raise ModelError(f"{m.name}: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
-    if progress is not None and not callable(progress):
-        raise ModelError(f"{m.name}: progress is {shown(progress)}; it must be a function of the part done, 0 .. 1")
     grid = output_times(m, duration, steps, times)
     refuse_bad_steps(m, grid, tolerance, step)
-    asked = Asked(grid, integrator, tolerance, step, formulation, options)
+    return Asked(grid, integrator, tolerance, step, formulation, options)
+
+
+def simulations(
+    designs: Designs, measure: Any, asked: Asked, threads: int | None, progress: Callable[[float], None] | None
+) -> Simulations:
+    """Measures of all designs; see :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
+    m, grid = designs.m, asked.times
     measures = _measures(m, measure, grid)
     quantities = {} if callable(measures) else _quantities(designs, measures)
     why = _why_single(designs, asked, measures, quantities)

@@ -5,15 +5,10 @@ from __future__ import annotations
 import math
 
 from mbsd.equations.interactions.law import (
-    APPROACH,
     FX,
     FY,
     OMEGA,
     OWN,
-    POWER,
-    SIDE,
-    SPEED,
-    SWITCH,
     TORQUE,
     VX,
     VY,
@@ -21,6 +16,7 @@ from mbsd.equations.interactions.law import (
     Y,
     interaction,
 )
+from mbsd.equations.interactions.normal_force import normal_force, note, touches
 
 JOURNAL, CLEARANCE, STIFFNESS, EXPONENT, DAMPING, FRICTION, CREEP, SLIDE, LOSS, LEAST_APPROACH = range(10)
 SWITCHES = True
@@ -34,25 +30,19 @@ def force(numbers, state, out):
     out[TORQUE] = 0.0
     eccentricity = math.sqrt(state[X] * state[X] + state[Y] * state[Y])
     depth = eccentricity - numbers[OWN + CLEARANCE]
-    power = numbers[OWN + EXPONENT]
     nx = 0.0
     ny = 0.0
     if eccentricity > 0.0:
         nx = state[X] / eccentricity
         ny = state[Y] / eccentricity
     rate = nx * state[VX] + ny * state[VY]
-    out[SWITCH] = depth
-    out[SPEED] = rate
-    out[POWER] = power if power != math.floor(power) else 0.0
-    if state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0):
-        damping = numbers[OWN + DAMPING]
-        approach = state[APPROACH]
-        if numbers[OWN + LOSS] > 0.0 and approach == approach:  # no number: it began to move within the bearing's wall
-            damping = numbers[OWN + LOSS] / max(approach, numbers[OWN + LEAST_APPROACH])
-        normal = depth
-        if power != 1.0:
-            normal = math.copysign(abs(depth) ** power, depth)
-        normal = normal * numbers[OWN + STIFFNESS] * max(1.0 + damping * rate, 0.0)
+    exponent = numbers[OWN + EXPONENT]
+    note(out, depth, rate, exponent)
+    if touches(state, depth):
+        normal = normal_force(
+            state, depth, rate, numbers[OWN + STIFFNESS], exponent, numbers[OWN + DAMPING], numbers[OWN + LOSS],
+            numbers[OWN + LEAST_APPROACH],
+        )  # fmt: skip
         along = 0.0
         if numbers[OWN + FRICTION] > 0.0:
             slip = nx * state[VY] - ny * state[VX] + state[OMEGA] * numbers[OWN + JOURNAL]

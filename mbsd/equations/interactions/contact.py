@@ -5,19 +5,15 @@ from __future__ import annotations
 import math
 
 from mbsd.equations.interactions.law import (
-    APPROACH,
     FX,
     FY,
     OMEGA,
-    POWER,
-    SIDE,
-    SPEED,
-    SWITCH,
     TORQUE,
     VX,
     VY,
     interaction,
 )
+from mbsd.equations.interactions.normal_force import normal_force, note, touches
 from mbsd.equations.interactions.surface import DISTANCE, TX, TY, after, stand
 
 RADIUS, STIFFNESS, EXPONENT, DAMPING, FRICTION, SLIP_SPEED, LOSS, LEAST_APPROACH = range(8)
@@ -33,22 +29,16 @@ def force(numbers, state, out):
     out[FY] = 0.0
     out[TORQUE] = 0.0
     depth = numbers[own + RADIUS] - state[DISTANCE]
-    power = numbers[own + EXPONENT]
     tx = state[TX]
     ty = state[TY]
     rate = ty * state[VX] - tx * state[VY]
-    out[SWITCH] = depth
-    out[SPEED] = rate
-    out[POWER] = power if power != math.floor(power) else 0.0
-    if state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0):
-        damping = numbers[own + DAMPING]
-        approach = state[APPROACH]
-        if numbers[own + LOSS] > 0.0 and approach == approach:  # no number: it began to move within the surface
-            damping = numbers[own + LOSS] / max(approach, numbers[own + LEAST_APPROACH])
-        normal = depth
-        if power != 1.0:
-            normal = math.copysign(abs(depth) ** power, depth)
-        normal = normal * numbers[own + STIFFNESS] * max(1.0 + damping * rate, 0.0)
+    exponent = numbers[own + EXPONENT]
+    note(out, depth, rate, exponent)
+    if touches(state, depth):
+        normal = normal_force(
+            state, depth, rate, numbers[own + STIFFNESS], exponent, numbers[own + DAMPING], numbers[own + LOSS],
+            numbers[own + LEAST_APPROACH],
+        )  # fmt: skip
         along = 0.0
         if numbers[own + FRICTION] > 0.0:
             slip = tx * state[VX] + ty * state[VY] + state[OMEGA] * state[DISTANCE]

@@ -5,15 +5,10 @@ from __future__ import annotations
 import math
 
 from mbsd.equations.interactions.law import (
-    APPROACH,
     FX,
     FY,
     OMEGA,
     OWN,
-    POWER,
-    SIDE,
-    SPEED,
-    SWITCH,
     TORQUE,
     VX,
     VY,
@@ -22,6 +17,7 @@ from mbsd.equations.interactions.law import (
     Y,
     interaction,
 )
+from mbsd.equations.interactions.normal_force import normal_force, note, touches
 
 MIDDLE, FLANK, BASE_I, BASE_J, HALF, INVOLUTE, PERIOD, STIFFNESS, EXPONENT, DAMPING, LOSS, LEAST_APPROACH = range(12)
 SWITCHES = True
@@ -52,19 +48,13 @@ def force(numbers, state, out):
     turning = (ux * state[VY] - uy * state[VX]) / distance
     parting = ux * state[VX] + uy * state[VY]
     rate = flank * (base * state[OMEGA] - both * turning) - way * sine * parting
-    power = numbers[OWN + EXPONENT]
-    out[SWITCH] = depth
-    out[SPEED] = rate
-    out[POWER] = power if power != math.floor(power) else 0.0
-    if state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0):
-        damping = numbers[OWN + DAMPING]
-        approach = state[APPROACH]
-        if numbers[OWN + LOSS] > 0.0 and approach == approach:  # no number: it began to move with teeth pressed in
-            damping = numbers[OWN + LOSS] / max(approach, numbers[OWN + LEAST_APPROACH])
-        normal = depth
-        if power != 1.0:
-            normal = math.copysign(abs(depth) ** power, depth)
-        normal = normal * numbers[OWN + STIFFNESS] * max(1.0 + damping * rate, 0.0)
+    exponent = numbers[OWN + EXPONENT]
+    note(out, depth, rate, exponent)
+    if touches(state, depth):
+        normal = normal_force(
+            state, depth, rate, numbers[OWN + STIFFNESS], exponent, numbers[OWN + DAMPING], numbers[OWN + LOSS],
+            numbers[OWN + LEAST_APPROACH],
+        )  # fmt: skip
         across = normal * flank * both / distance
         apart = normal * way * sine
         out[FX] = apart * ux - across * uy

@@ -16,9 +16,9 @@ from mbsd.testing.joints import example as of_joint
 from mbsd.testing.kinds import contact_kinds
 
 KINDS: list[Any] = [*joint_kinds(), *force_kinds(), *contact_kinds()]
-IN_A_MACHINE = {"gear_pair", "geneva", "rack_and_pinion"}
+IN_A_MACHINE = {"gear_mesh", "gear_pair", "geneva", "rack_and_pinion"}
 """Kinds whose places must suit each other: their machines are below."""
-SWITCHING = ("contact", "tyre")
+SWITCHING = ("clearance_joint", "contact", "tyre")
 """Kinds whose force has kinks on the way of their example, which cost digits."""
 REFUSED = {"hydraulic_cylinder": "states of forces", "gas_cycle": "cycle of a gas"}
 PLACES = ("example.i.x", "example.j.x", "example.j.y")
@@ -107,6 +107,20 @@ def test_gears_and_racks_whose_phase_follows_from_the_start() -> None:
         rack(), ["pinion.theta", "bar.x", "A.fx"], ["bar.mass", "spring.free_length", "pinion.inertia"], 0.5, 20,
         tolerance=1e-6,
     )  # fmt: skip
+
+
+def test_gears_with_play() -> None:
+    m = Mechanism("rattle", gravity=None)
+    first, second = m.body("first", 1.0, inertia=2e-3), m.body("second", 1.0, inertia=1e-3)
+    m.revolute("A", m.ground.at(0, 0), first.origin)
+    m.revolute("B", m.ground.at(0.09, 0), second.origin)
+    m.gear_mesh(
+        "mesh", first.origin, second.origin, 1e5, backlash=1e-4, radius_i=0.06, radius_j=0.03, exponent=1.5, damping=0.2
+    )
+    m.torque("motor", first, 2.0)
+    m.torque("load", second, 0.2)
+    numbers = ["motor.torque", "first.inertia", "mesh.stiffness", "mesh.damping", "mesh.backlash", "B.x"]
+    check_derivatives(m, ["first.theta", "second.omega"], numbers, 0.02, 20, tolerance=1e-3)
 
 
 def test_an_indexed_geneva() -> None:

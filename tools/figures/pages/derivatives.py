@@ -27,7 +27,9 @@ def pictures(page: SimpleNamespace) -> dict[str, Figure]:
             1e3 * x[::EVERY], 1e3 * y[::EVERY], 1e3 * dx[::EVERY], 1e3 * dy[::EVERY], color=colour, angles="xy",
             scale_units="xy", scale=1.0, width=0.008, label=name,
         )  # fmt: skip
+        path.update_datalim(1e3 * np.stack([x + dx, y + dy], axis=1)[::EVERY])  # a quiver counts its tails alone
         torque.plot(s.t, 1e1 * page.m.bodies[name].length * s.of("motor.effort", name), color=colour, label=name)
+    path.autoscale_view()
     path.set_aspect("equal", adjustable="datalim")
     plain(path, xlabel="x, mm", ylabel="y, mm", title=f"where {1e3 * ARROW:g} mm more move the point")
     torque.legend(loc="best")

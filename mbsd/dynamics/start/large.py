@@ -31,7 +31,7 @@ from mbsd.dynamics.reference.sequence import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.start.row_strength import factor_at
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, rough_pose, unwind_angles
-from mbsd.kinematics.pose.ideal_joints import closing_as, packed_like, take_from, with_ideal_joints
+from mbsd.kinematics.pose.ideal_joints import closed_ideally
 from mbsd.kinematics.pose.initial import Initial, given_coordinates, given_velocities, nearest_turn, tell_coordinates
 from mbsd.kinematics.pose.open_loops import why_open
 from mbsd.kinematics.pose.phases import active_rows, let_phases_go, refuse_impossible, take_decided, take_phases
@@ -63,14 +63,7 @@ def consistent_large(m: Model, packed: Packed, time: float, inverse: np.ndarray)
 
     ``inverse`` (3 nb,) of the inertias weighs velocities.
     """
-    joined = with_ideal_joints(m)
-    if joined is None:
-        initial = _consistent(m, packed, time, inverse)
-    else:
-        whole = packed_like(joined, packed)
-        with closing_as(m, joined):
-            initial = consistent_large(joined, whole, time, inverse)
-        take_from(packed, whole)
+    initial, _ = closed_ideally(m, packed, lambda own, whole: _consistent(own, whole, time, inverse))
     take_force_phases(packed, initial.q)
     return initial
 

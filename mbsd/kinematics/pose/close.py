@@ -16,7 +16,7 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.errors import AssemblyError
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
-from mbsd.kinematics.pose.ideal_joints import closing_as, packed_like, take_from, with_ideal_joints
+from mbsd.kinematics.pose.ideal_joints import closed_ideally
 from mbsd.kinematics.pose.open_loops import turned, why_open
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
@@ -38,14 +38,7 @@ def assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
 
     Forces that take the place of joints stand as these do.
     """
-    joined = with_ideal_joints(m)
-    if joined is None:
-        q = _assemble(m, packed, time)
-    else:
-        whole = packed_like(joined, packed)
-        with closing_as(m, joined):
-            q = assemble(joined, whole, time)
-        take_from(packed, whole)
+    q, _ = closed_ideally(m, packed, lambda own, whole: _assemble(own, whole, time))
     take_force_phases(packed, q)
     return q
 

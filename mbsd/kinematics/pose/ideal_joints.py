@@ -5,8 +5,9 @@ What closes is a copy of the mechanism with these joints; what its closed pose d
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TypeVar
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.relative import FIRST_OWN
@@ -14,6 +15,9 @@ from mbsd.arrays.start_state import copied
 from mbsd.base.errors import AssemblyError
 from mbsd.equations.constraints.relative import ACTIVE, ARM, AT
 from mbsd.model.mechanism import Model
+
+Start = TypeVar("Start")
+"""Initial conditions."""
 
 
 def with_ideal_joints(m: Model) -> Model | None:
@@ -61,3 +65,18 @@ def take_from(packed: Packed, joined: Packed) -> None:
     packed.system = packed.system.changed(
         special=special, numbers=numbers, angle_offset=joined.system.angle_offset.copy()
     )
+
+
+def closed_ideally(m: Model, packed: Packed, initial_of: Callable[[Model, Packed], Start]) -> tuple[Start, bool]:
+    """The start by ``initial_of`` of the mechanism with the joints that hold then, and whether there are any.
+
+    Raises AssemblyError where it does not close.
+    """
+    joined = with_ideal_joints(m)
+    if joined is None:
+        return initial_of(m, packed), False
+    whole = packed_like(joined, packed)
+    with closing_as(m, joined):
+        start = initial_of(joined, whole)
+    take_from(packed, whole)
+    return start, True

@@ -20,7 +20,7 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
-from mbsd.kinematics.pose.ideal_joints import closing_as, packed_like, take_from, with_ideal_joints
+from mbsd.kinematics.pose.ideal_joints import closed_ideally
 from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
@@ -53,14 +53,8 @@ def consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Ini
 
     ``metric`` (3 nb,) is the inverse of the masses that weigh velocities which were not given.
     """
-    joined = with_ideal_joints(m)
-    if joined is None:
-        initial = _consistent(m, packed, time, metric)
-    else:
-        whole = packed_like(joined, packed)
-        with closing_as(m, joined):
-            initial = consistent(joined, whole, time, metric)
-        take_from(packed, whole)
+    initial, joined = closed_ideally(m, packed, lambda own, whole: _consistent(own, whole, time, metric))
+    if joined:
         initial = _driven(m, packed, drive_at(packed, time), metric, initial)
     take_force_phases(packed, initial.q)
     return initial
@@ -107,13 +101,14 @@ def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tupl
 
     drive (motions + 1, 3) at ``time`` (s). Raises AssemblyError.
     """
-    joined = with_ideal_joints(m)
-    if joined is not None:
-        whole = packed_like(joined, packed)
-        q, deviations = start_pose(joined, whole, time, drive)
-        take_from(packed, whole)
+    (q, deviations), joined = closed_ideally(m, packed, lambda own, whole: _start_pose(own, whole, time, drive))
+    if joined:
         take_force_phases(packed, q)
-        return q, deviations
+    return q, deviations
+
+
+def _start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """The same of a mechanism whose joints are all there."""
     q = assemble(m, packed, time)
     given = given_coordinates(m, packed)
     if not given:

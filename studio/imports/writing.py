@@ -109,12 +109,13 @@ class _Writer:
         lines = [self._docstring(), "", "from dataclasses import dataclass", *self._imports(motors), "", ""]
         if self.sketch.duration is not None:
             lines += [f"DURATION = {_number(self.sketch.duration)}  # s", "", ""]
-        lines += ["@dataclass(frozen=True)", "class Params:", '    """Lengths in metres, speeds in rad/s."""', ""]
-        lines += [f"    {field}: {value}" for field, value in self.params.items()]
+        lines += ["@dataclass(frozen=True)", "class Params:", '    """Lengths in metres, speeds in rad/s."""']
+        lines += ["", *(f"    {field}: {value}" for field, value in self.params.items())] if self.params else []
         lines += ["", "", "def build(p: Params) -> Mechanism:"]
         gravity = self.sketch.gravity
         lines += [f'    m = Mechanism("{self.name}", gravity={_place(gravity) if gravity else None})']
-        lines += [f"    {line}" for line in (*bodies, "", *joints, *([""] if motors else []), *motors, *traces)]
+        body = (*bodies, "", *joints, *([""] if motors else []), *motors, *traces)
+        lines += [f"    {line}" if line else "" for line in body]
         lines += ["", *self._starts(), "    return m", ""]
         return "\n".join(lines)
 

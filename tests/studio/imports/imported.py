@@ -1,7 +1,9 @@
-"""What tests ask of an import: the text that is written, run as a module of its own."""
+"""What tests ask of an import: the text that is written, formatted as ruff does, and run as a module of its own."""
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -17,5 +19,8 @@ def built(source: str | Path) -> tuple[Sketch, Mechanism, dict[str, Any]]:
     """The sketch, the mechanism of the written text, and that text's names."""
     sketch = read(str(source))
     names: dict[str, Any] = {}
-    exec(compile(mechanism_py(sketch, "imported"), "mechanism.py", "exec"), names)
+    text = mechanism_py(sketch, "imported")
+    formatted = [sys.executable, "-m", "ruff", "format", "--isolated", "--line-length", "200", "--check", "-"]
+    assert subprocess.run(formatted, input=text.encode(), capture_output=True).returncode == 0, text
+    exec(compile(text, "mechanism.py", "exec"), names)
     return sketch, names["build"](names["Params"]()), names

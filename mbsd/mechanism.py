@@ -48,10 +48,14 @@ class Mechanism(Building):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
 
     def check(self) -> list[Finding]:
-        """Numbers that look like a mixed-up unit, with remedies; the first solution warns of them (ModelWarning)."""
+        """What looks as if it was not meant, with remedies: mixed-up units, links that do not close at the start.
+
+        The first solution warns of the former (ModelWarning) and raises the latter as an error.
+        """
+        from mbsd.analyses.start import start_problems
         from mbsd.analyses.suspicious_units import check
 
-        return check(self)
+        return check(self) or list(start_problems(self))  # a wrong unit keeps links from closing, too
 
     # -- what it can compute -----------------------------------------------------------------------------------
 

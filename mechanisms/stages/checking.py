@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from mbsd import MechanismError
 from mechanisms.stages.loading import loading
 from shared.stage.console import say, warn
 from shared.stage.paths import known_name
@@ -16,14 +17,18 @@ def run(name: str, as_json: bool = False) -> int:
     with loading.author_code(name):
         m = module.build(given)
         findings = [(finding.name, finding.problem, finding.remedy) for finding in m.check()]
-        mobility = m.mobility()
+        try:
+            mobility = m.mobility()
+        except MechanismError:  # which is among the findings
+            mobility = None
     if as_json:
         rows = [{"name": where, "problem": problem, "remedy": remedy} for where, problem, remedy in findings]
-        print(msgspec.json.encode({"machine": name, "freedom": mobility.dof, "findings": rows}).decode())
+        print(msgspec.json.encode({"machine": name, "freedom": mobility and mobility.dof, "findings": rows}).decode())
         return int(bool(findings))
     for where, problem, remedy in findings:
         warn("check", f"{name}: {where}: {problem}. {remedy}")
     joints, bodies = len(m.joints), len(m.bodies) - 1
     looks = f"{len(findings)} things look odd" if len(findings) > 1 else "one looks odd" if findings else "nothing odd"
-    say("check", f"{name}: {bodies} bodies, {joints} joints, {str(mobility).splitlines()[0]}; {looks}")
+    freedom = str(mobility).splitlines()[0] if mobility else "not assembled"
+    say("check", f"{name}: {bodies} bodies, {joints} joints, {freedom}; {looks}")
     return int(bool(findings))

@@ -187,6 +187,17 @@ def test_a_new_machine_runs_and_marks_its_folder(tmp_path: Path, kind: str, sing
     assert "is there already" in again.stderr
 
 
+def test_a_check_says_what_does_not_close(tmp_path: Path) -> None:
+    far = crank("far").replace("    return m", "    m.distance('rod', crank.end, m.ground.at(1, 0), 0.1)\n    return m")
+    (tmp_path / "far.py").write_text(far)
+    checked = mbsd("check", "far", "--json", at=tmp_path)
+    assert checked.returncode == 1, checked.stderr
+    said = json.loads(checked.stdout)
+    assert said["freedom"] is None
+    assert [finding["name"] for finding in said["findings"]] == ["start"]
+    assert "joint A stays open" in said["findings"][0]["problem"]
+
+
 @pytest.mark.parametrize("name", ["stages", "automatic", "all", "class", "2fast", "", "../x"])
 def test_names_that_cannot_be_are_refused(tmp_path: Path, name: str) -> None:
     done = mbsd("new", "--", name, at=tmp_path)

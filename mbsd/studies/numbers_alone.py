@@ -5,8 +5,7 @@ in one way have the same bytes but for these, so one comparison finds what diffe
 a number is, a change of the first mechanism tells: it moves the same bytes. Some mechanisms are changed into as a whole
 and compared, number by number.
 
-Only numbers of forces are known. Where masses or starts vary, velocities at the start are found for many at once, and
-last digits would follow from which points a process happens to get.
+Known are numbers of forces, masses and moments of inertia. Where others vary, each mechanism is prepared as it is.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ import copy
 import pickle
 import pickletools
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,10 +23,12 @@ from mbsd.dynamics.many.designs import designs_of
 from mbsd.mechanism import Mechanism
 
 PROTOCOL = 5
+SHARED = {"PROTO", "FRAME", "BINGET", "LONG_BINGET"}
+"""Opcodes of pickle that say how much comes, and what comes again."""
 COMPARED = 3
 """Mechanisms that are changed into and compared."""
 OTHER = "build makes mechanisms that differ in more than numbers"
-ELSEWHERE = "numbers differ that are none of a force"
+ELSEWHERE = "numbers differ that are neither of a force nor a mass"
 
 
 class MoreThanNumbers(Exception):
@@ -71,6 +72,7 @@ class _Numbers:
         self.rest = np.ones(len(content), bool)
         self.rest[self.at] = False
         self.fixed = np.frombuffer(content, np.uint8)[self.rest]
+        self.parts = _parts(content)[1]
 
     def of(self, m: Mechanism) -> np.ndarray:
         """(N,) numbers of another. Raises MoreThanNumbers where it has other bytes besides."""
@@ -78,6 +80,24 @@ class _Numbers:
         if len(content) != len(self.rest) or not np.array_equal(content[self.rest], self.fixed):
             raise MoreThanNumbers(OTHER)
         return content[self.at].reshape(-1, 8).view(">f8")[:, 0].astype(float)
+
+    def of_changed(self, m: Mechanism) -> np.ndarray:
+        """(N,) the same of one that was changed, in which other things may be shared. Raises MoreThanNumbers."""
+        values, rest = _parts(_bytes(m))
+        if len(values) != len(self.at) // 8 or rest != self.parts:
+            raise MoreThanNumbers(ELSEWHERE)
+        return values
+
+
+def _parts(content: bytes) -> tuple[np.ndarray, list[Any]]:
+    """Numbers, and all else but where what comes again stands."""
+    values, rest = [], []
+    for code, value, _ in pickletools.genops(content):
+        if code.name == "BINFLOAT":
+            values.append(value)
+        elif value is not None and code.name not in SHARED:
+            rest.append(value)
+    return np.array(values), rest
 
 
 def _bytes(m: Mechanism) -> bytes:
@@ -100,6 +120,11 @@ def _known(m: Mechanism) -> Iterator[_Number]:
         for key, value in force.params.items():
             if isinstance(value, float):
                 yield _Number(force.name, key, value)
+    for body in m.bodies.values():
+        if body.name != "ground":
+            yield _Number(body.name, "mass", body.mass)
+            if "inertia" not in body.derived:
+                yield _Number(body.name, "inertia", body.inertia)
 
 
 def _moved(
@@ -112,9 +137,9 @@ def _moved(
         other = float(values[np.flatnonzero(values[:, place] != number.value)[0], place])
         try:
             work.change(number.name, **{number.key: other})
-            changed = numbers.of(work)
+            changed = numbers.of_changed(work)
             work.change(number.name, **{number.key: number.value})
-            back = numbers.of(work)
+            back = numbers.of_changed(work)
         except MechanismError:
             raise MoreThanNumbers(ELSEWHERE) from None
         if not np.array_equal(back, values[0]):
@@ -134,5 +159,5 @@ def _compare(first: Mechanism, changes: Changes, numbers: _Numbers, values: np.n
             designs.put(work, row)
         except MechanismError:
             continue  # that is its reason
-        if not np.array_equal(numbers.of(work), values[row]):
+        if not np.array_equal(numbers.of_changed(work), values[row]):
             raise MoreThanNumbers(ELSEWHERE)

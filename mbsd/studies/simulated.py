@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from mbsd.base.arguments import checked
-from mbsd.base.errors import ModelError
+from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.shown import shown
-from mbsd.dynamics.many.designs import Designs, designs_of
+from mbsd.base.users_function import described
+from mbsd.dynamics.many.designs import Built, Designs, designs_of
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.simulate_many import Simulations, asked_for, simulations
 from mbsd.mechanism import Mechanism
+from mbsd.model.mechanism import Model, connections
 from mbsd.studies.numbers_alone import MoreThanNumbers, differences
 
 FEWEST = 8
 """Mechanisms that go together: what is made ready for all costs as much as some of them."""
 FEW = "there are only a few points"
+INSTANT = 1e-9
+"""s"""
 Numbers = tuple[dict[str, float] | None, str | None]
 """Numbers by name, or the reason why there are none."""
 
@@ -45,24 +51,43 @@ class Simulated:
         return values
 
     def of_all(self, mechanisms: Sequence[Mechanism]) -> list[Numbers]:
-        """Numbers of each mechanism, or why it has none."""
-        try:
-            return _rows(self._run(self._together(mechanisms, FEWEST)))
-        except MoreThanNumbers:
-            return [row for m in mechanisms for row in _rows(self._run(Designs(m, 1, {}, {}, {})))]
+        """Numbers of each mechanism, or why it has none: the same whichever others are beside it."""
+        rows: dict[int, Numbers] = {
+            number: (None, f"build gives {shown(m)}; it must give a Mechanism")
+            for number, m in enumerate(mechanisms)
+            if not isinstance(m, Model)
+        }
+        for numbers in alike(mechanisms):
+            some = [mechanisms[number] for number in numbers]
+            rows |= dict(zip(numbers, self._measured(some, _designs(some, FEWEST)), strict=True))
+        return [rows[number] for number in range(len(mechanisms))]
 
     def way(self, mechanisms: Sequence[Mechanism]) -> str:
         """How mechanisms like these are simulated, in words."""
-        try:
-            whys = [why for why in self._run(self._together(mechanisms, 2)).alone if why is not None]
-        except MoreThanNumbers as why:
-            return f"one by one: {why}"
-        return f"one by one: {whys[0]}" if whys else "in one compiled loop"
+        runs = []
+        for numbers in alike(mechanisms):
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    runs.append(self._run(_designs([mechanisms[number] for number in numbers], 2)))
+            except MechanismError:
+                continue  # that is their reason
+        whys = [why for run in runs for why in run.alone if why is not None]
+        if not runs or len(whys) == sum(map(len, runs)):
+            return f"one by one: {whys[0] if whys else 'none starts'}"
+        notes = [run.note for run in runs if run.note is not None]
+        loop = "in one compiled loop" + (f", {notes[0]}" if notes else "")
+        return f"{loop}; some one by one: {whys[0]}" if whys else loop
 
-    def _together(self, mechanisms: Sequence[Mechanism], fewest: int) -> Designs:
-        if len(mechanisms) < fewest:
-            raise MoreThanNumbers(FEW)
-        return designs_of(mechanisms[0], differences(mechanisms), None, None)
+    def _measured(self, mechanisms: Sequence[Mechanism], designs: Designs) -> list[Numbers]:
+        try:
+            return _rows(self._run(designs))
+        except MechanismError as error:  # none of them starts, or there is not what is measured
+            if len(mechanisms) > 1:
+                return [row for m in mechanisms for row in self._measured([m], Built([m], FEW))]
+            if _starts(mechanisms[0]):
+                raise
+            return [(None, described(error))]
 
     def _run(self, designs: Designs) -> Simulations:
         times = None if self.times is None else np.array(self.times)
@@ -71,6 +96,35 @@ class Simulated:
             self.options,
         )  # fmt: skip
         return simulations(designs, self.measures, asked, 1, None)
+
+
+def _designs(mechanisms: Sequence[Mechanism], fewest: int) -> Designs:
+    """Mechanisms of the same things by their numbers, where these are known ones alone; else each as it was built."""
+    try:
+        if len(mechanisms) < fewest:
+            raise MoreThanNumbers(FEW)
+        return replace(designs_of(mechanisms[0], differences(mechanisms), None, None), exact=True)
+    except MoreThanNumbers as why:
+        return Built(mechanisms, str(why))
+
+
+def alike(mechanisms: Sequence[Mechanism]) -> list[list[int]]:
+    """Numbers of the mechanisms that have the same things by name."""
+    out: dict[Any, list[int]] = {}
+    for number, m in enumerate(mechanisms):
+        if not isinstance(m, Model):
+            continue
+        kinds = [tuple((name, entry.kind.name) for name, entry in table.items()) for table in connections(m)]  # pyright: ignore[reportAttributeAccessIssue]
+        out.setdefault((tuple(m.bodies), *kinds, tuple(m.traces)), []).append(number)
+    return list(out.values())
+
+
+def _starts(m: Mechanism) -> bool:
+    try:
+        m.simulate(INSTANT, steps=1)
+    except MechanismError:
+        return False
+    return True
 
 
 def _rows(many: Simulations) -> list[Numbers]:

@@ -14,6 +14,7 @@ import numpy as np
 
 ALIGNED = 8
 """Arrays begin at multiples of so many numbers: of 64 bytes."""
+PADDING = [np.zeros(count) for count in range(ALIGNED)]
 
 
 @dataclass
@@ -64,7 +65,7 @@ def content(arguments: tuple[Any, ...]) -> np.ndarray:
         if _numbers(leaf) and id(leaf) not in seen:
             seen.add(id(leaf))
             parts.append(leaf.ravel())
-            parts.append(np.zeros(-leaf.size % ALIGNED))
+            parts.append(PADDING[-leaf.size % ALIGNED])
     return np.concatenate(parts)
 
 
@@ -76,19 +77,21 @@ def kind_of(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
         if not isinstance(leaf, np.ndarray):
             out.append(leaf)
         elif _numbers(leaf):
-            out.append((leaf.shape, leaf.flags.writeable, seen.setdefault(id(leaf), len(seen))))
+            out += leaf.shape, leaf.flags.writeable, seen.setdefault(id(leaf), len(seen))
         else:
-            out.append((leaf.shape, leaf.tobytes()))
+            out += leaf.shape, leaf.tobytes()
     return tuple(out)
 
 
-def leaves(value: Any) -> Any:
+def leaves(value: Any) -> list[Any]:
     """Arrays and single numbers within named tuples, in order."""
-    if isinstance(value, tuple):
-        for part in value:
-            yield from leaves(part)
-    else:
-        yield value
+    out: list[Any] = []
+    for part in value:
+        if isinstance(part, tuple):
+            out += leaves(part)
+        else:
+            out.append(part)
+    return out
 
 
 def _numbers(leaf: Any) -> bool:

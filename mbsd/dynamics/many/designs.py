@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,16 +36,19 @@ class Designs:
     """(count, 1) degrees or (count, 3)."""
     velocities: dict[str, np.ndarray]
     """(count, 1) rad/s or (count, 3)."""
+    exact: bool = False
+    """Whether each has the digits of a simulation by itself, whichever others are beside it."""
 
     def copied(self) -> Any:
         """A mechanism of its own to be changed, row by row."""
         return copy.deepcopy(self.m)
 
-    def put(self, work: Any, row: int) -> None:
-        """Change ``work`` into the mechanism of a row. Raises ModelError for numbers that it refuses."""
+    def put(self, work: Any, row: int) -> Any:
+        """The mechanism of a row: ``work``, changed into it. Raises ModelError for numbers that it refuses."""
         for name, values in self.changes.items():
             work.change(name, **{key: _plain(column[row]) for key, column in values.items()})
         self.put_start(work, row)
+        return work
 
     def put_start(self, work: Any, row: int) -> None:
         """Only the start of it, as start_near and start_moving set it."""
@@ -55,6 +58,20 @@ class Designs:
         for name, values in self.velocities.items():
             *place, omega = values[row].tolist()
             work.velocities[name] = StartVelocity(omega, tuple(place) or None)
+
+
+class Built(Designs):
+    """Mechanisms that were built one by one, and may differ in anything."""
+
+    def __init__(self, mechanisms: Sequence[Model], why: str) -> None:
+        super().__init__(mechanisms[0], len(mechanisms), {}, {}, {}, exact=True)
+        self.mechanisms = mechanisms
+        self.why = why
+        """Why their numbers are not put into one of them."""
+
+    def put(self, work: Any, row: int) -> Any:
+        """The mechanism of a row."""
+        return self.mechanisms[row]
 
 
 def _plain(value: Any) -> Any:

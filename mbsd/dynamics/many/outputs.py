@@ -26,6 +26,11 @@ class Outputs:
     steps: np.ndarray
 
     @property
+    def shape(self) -> tuple[int, int]:
+        """Coordinates and rows of a simulation."""
+        return self.y.shape[-1], self.lam.shape[-1]
+
+    @property
     def arrays(self) -> tuple[np.ndarray, ...]:
         """In the order of the loop's arguments."""
         return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps

@@ -55,6 +55,8 @@ class Patches:
             else:
                 raise NotPatched(f"{', '.join(values)} of '{name}'")
         if self.mass is not None:
+            if designs.exact and self.ready.initial.v.any():
+                raise NotPatched("speeds at the start are found with the masses")
             columns += self._of_masses()
         self.place = np.array([place for place, _ in columns], np.int64)
         self.columns = np.array([values for _, values in columns]).reshape(len(columns), designs.count)
@@ -83,29 +85,34 @@ class Patches:
 
     def _of_force(self, name: str, values: dict[str, np.ndarray]) -> Iterator[Column]:
         m, loads = self.designs.m, self.dyn.loads
-        force = self._plain(name, values)
+        force, masses = self._plain(name, values), self.ready.packed.masses
         if force.kind.of_reactions or force.kind.oil or force.kind.chamber or "function" in force.params:
             raise NotPatched(f"force '{name}'")
+        places: list[int] = []
         term = number = 0
         for other in m.forces.values():
-            elements = (force if other.name == name else other).kind.elements(force if other.name == name else other)
-            for element in elements:
-                for addend in element.terms:
-                    if other.name == name:
-                        for c, value in enumerate((addend.a, addend.b, addend.c)):
-                            if isinstance(value, np.ndarray):
-                                yield self.base.layout.place(loads.number, term, c), value
-                    term += 1
-            masses = self.ready.packed.masses
-            for interaction in (force if other.name == name else other).kind.interactions(
-                force if other.name == name else other, masses
-            ):
-                if other.name == name:
+            own = force if other.name == name else other
+            terms = range(term, term + sum(len(element.terms) for element in own.kind.elements(own)))
+            if own is force:
+                places += [self.base.layout.place(loads.number, k, c) for k in terms for c in range(3)]
+            term = terms.stop
+            for interaction in own.kind.interactions(own, masses):
+                if own is force:
                     first = int(loads.interaction[number, 3]) + FRAME + interaction.calls_law
-                    for c, value in enumerate(interaction.numbers):
-                        if isinstance(value, np.ndarray):
-                            yield self.base.layout.place(loads.given, first + c), value
+                    places += [self.base.layout.place(loads.given, first + c) for c in range(len(interaction.numbers))]
                 number += 1
+        numbers = numbers_of_force(force, masses)
+        varying = [k for k, value in enumerate(numbers) if isinstance(value, np.ndarray)]
+        if self.designs.exact and varying:  # arrays may be rounded otherwise than single numbers
+            rows = np.array([self._row_of_force(force, values, row) for row in range(self.designs.count)], float)
+            yield from ((places[k], rows[:, k].copy()) for k in varying)
+            return
+        yield from ((places[k], numbers[k]) for k in varying)
+
+    def _row_of_force(self, force: Force, values: dict[str, np.ndarray], row: int) -> list[Any]:
+        params = {key: float(column[row]) for key, column in values.items()}
+        own = replace(force, params={**force.params, **params})
+        return numbers_of_force(own, self.ready.packed.masses)
 
     def _plain(self, name: str, values: dict[str, np.ndarray]) -> Force:
         """The force with arrays in place of numbers, if they are parameters that nothing else is made of."""
@@ -233,6 +240,13 @@ def coordinates_along(coordinates: list[Any], q: np.ndarray, v: np.ndarray) -> n
     return out
 
 
+def numbers_of_force(force: Force, masses: Any) -> list[Any]:
+    """All numbers of its elements and interactions, in the order in which they are packed."""
+    terms = (addend for element in force.kind.elements(force) for addend in element.terms)
+    out = [value for addend in terms for value in (addend.a, addend.b, addend.c)]
+    return out + [value for interaction in force.kind.interactions(force, masses) for value in interaction.numbers]
+
+
 def _same(a: Any, b: Any) -> bool:
     try:
         return bool(a == b)
@@ -249,7 +263,8 @@ def agrees(patches: Patches, row: int, fresh: np.ndarray, content_of: Callable[[
     mine[patches.place] = value[0]
     for first, end in _overwritten(patches.base):
         mine[first:end] = other[first:end]
-    close = np.abs(mine - other) <= ROUNDING * np.maximum(np.abs(other), 1.0)
+    rounding = 0.0 if patches.designs.exact else ROUNDING
+    close = np.abs(mine - other) <= rounding * np.maximum(np.abs(other), 1.0)
     return bool((close | (np.isnan(mine) & np.isnan(other)) | (mine == other)).all())
 
 

@@ -7,8 +7,8 @@ laws jump, and goes on after. What it cannot go on with it leaves to Python, by 
 from __future__ import annotations
 
 from mbsd.compiling.jit import internal, threaded
-from mbsd.dynamics.integrators.dop853.loop import advance
 from mbsd.dynamics.integrators.formulation import derivative
+from mbsd.dynamics.many.methods import advance
 from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, Output
 
 STOPPED, NEARLY_SINGULAR = -1, -3
@@ -64,12 +64,12 @@ def take_up(state, block, kept, counts):
 
 @threaded
 def run_rows(
-    dyn, scratch, state, settings, block, fresh, place, value, t, before, after, at_once, most, near, stop,
+    dyn, scratch, state, settings, method, block, fresh, place, value, t, before, after, at_once, most, near, stop,
     upto, kept, counts, y, a, lam, work, margin, status, steps,
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 
-    All arrays of numbers of dyn, scratch, state and settings stand in ``block`` (N,). Row r begins with row r of
+    ``method`` is the integrator's number (methods.py). All arrays of numbers of dyn, scratch, state and settings stand in ``block`` (N,). Row r begins with row r of
     ``fresh`` (R or 1, N) there, with ``value`` (R, k) at ``place`` (k,). Steps end at ``before`` (s) and go on from
     ``after``. ``at_once`` steps are taken between two looks at ``stop`` (1,), ``most`` altogether. Where ``near`` is
     above 0, a row ends where its margin falls below this part of the largest so far (runs/carried_steps.py).
@@ -109,10 +109,10 @@ def run_rows(
                     cross(state, before, after)
                 k = next_stop(before, state.clock[TIME])
                 if k == before.shape[0] or before[k] >= end:
-                    ended = advance(dyn, scratch, state, out, settings, end, left)
+                    ended = advance(dyn, scratch, state, out, settings, end, left, method)
                     break
                 taken = state.count[ACCEPTED]
-                ended = advance(dyn, scratch, state, out, settings, before[k], left)
+                ended = advance(dyn, scratch, state, out, settings, before[k], left, method)
                 left -= state.count[ACCEPTED] - taken
                 if ended != REACHED or left <= 0:
                     if ended == REACHED:

@@ -22,6 +22,7 @@ from mbsd.dynamics.many.designs import Designs, designs_of
 from mbsd.dynamics.many.done import Done, joined, numbers_of
 from mbsd.dynamics.many.early import windows_of
 from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.many.methods import PAUSED_ANYWHERE
 from mbsd.dynamics.many.quantities import Quantity, quantity_named
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, single_run
 from mbsd.dynamics.many.worker import TRIED, Measures, Work, Worker, simulated
@@ -164,6 +165,7 @@ def simulations(
     refuse_beyond_memory(f"{m.name}: {designs.count} simulations", 3 * width * designs.count, "Take fewer at once")
     if callable(measures):
         _refuse_no_numbers(designs, asked, measures)
+    pausing = asked.integrator in PAUSED_ANYWHERE
     work = Work(
         designs,
         asked,
@@ -171,7 +173,7 @@ def simulations(
         quantities,
         why,
         np.zeros(1, np.int64),
-        [len(grid)] if callable(measures) else windows_of(len(grid), measures, quantities),
+        [len(grid)] if callable(measures) or not pausing else windows_of(len(grid), measures, quantities),
         any(quantity.reactive for quantity in quantities.values()),
     )
     with warnings.catch_warnings():  # here, as threads share what is shown
@@ -224,8 +226,7 @@ def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], 
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            designs.put(model, 0)
-            given = measure(simulated(model, asked))
+            given = measure(simulated(designs.put(model, 0), asked))
     except Exception:
         return  # that is the reason of the first row
     numbers_of(given)
@@ -236,9 +237,8 @@ def _column_names(designs: Designs) -> list[str]:
     model, first = designs.copied(), None
     for row in range(-1, min(designs.count, TRIED)):
         try:
-            if row >= 0:
-                designs.put(model, row)
-            return list(columns(simulate(model, 1e-9, 1, None, "dop853", 1e-6, None, None, {})))
+            own = designs.put(model, row) if row >= 0 else designs.m
+            return list(columns(simulate(own, 1e-9, 1, None, "dop853", 1e-6, None, None, {})))
         except MechanismError as error:
             first = first or error
     assert first is not None
@@ -254,8 +254,7 @@ def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mappi
     for row in {0, designs.count // 2, designs.count - 1}:
         model = designs.copied()
         try:
-            designs.put(model, row)
-            run = single_run(model, asked)
+            run = single_run(designs.put(model, row), asked)
         except NotCompiled as why:
             return str(why)
         except Exception:

@@ -12,6 +12,7 @@ import numpy as np
 from mbsd.dynamics.embedding.coordinates import Coordinate
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.many.arguments import kind_of
+from mbsd.dynamics.many.methods import number_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.runs.carried_steps import NEAR, can_carry
@@ -93,7 +94,7 @@ class SingleRun:
 
 def single_run(m: Model, asked: Asked) -> SingleRun:
     """Prepare it as ``simulate`` does. Raises what ``simulate`` raises, and NotCompiled."""
-    if asked.integrator.name != "dop853":
+    if number_of(asked.integrator) is None:
         raise NotCompiled(f"method '{asked.integrator.name}' has no loop over many")
     if m.events:
         raise NotCompiled("events are functions of Python")

@@ -20,7 +20,7 @@ from mbsd.dynamics.many.designs import Designs
 from mbsd.equations.assembly import tabulate
 from mbsd.kinematics.pose.close import CLOSED
 from mbsd.kinematics.pose.initial import consistent, given_coordinates, given_velocities
-from mbsd.kinematics.pose.mobility import independent_rows
+from mbsd.kinematics.pose.mobility import RANK_TOLERANCE, independent_rows
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
@@ -79,10 +79,11 @@ class StartsAtOnce(Starts):
         targets = self._targets(rows)
         q[:, self.wanted] = targets
         q, worst = self._closed(q, targets)
-        if not (worst <= CLOSED).all():
-            return super().__call__(rows)
-        v = self._velocities(rows, q)
-        return super().__call__(rows) if v is None else (q, v, [None for _ in rows])
+        v, clear = self._velocities(rows, q)
+        reasons: list[str | None] = [None for _ in rows]
+        for k in np.flatnonzero(~(clear & (worst <= CLOSED))).tolist():  # each by itself, whichever are beside it
+            (q[k],), (v[k],), (reasons[k],) = super().__call__(rows[k : k + 1])
+        return q, v, reasons
 
     def _targets(self, rows: range) -> np.ndarray:
         out = np.zeros((len(rows), len(self.wanted)))
@@ -104,27 +105,24 @@ class StartsAtOnce(Starts):
     def _closed(self, q: np.ndarray, targets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         size = self.ready.packed.column_scale()
         held = self.wanted[self.held]
-        units = np.broadcast_to(np.eye(len(size))[held - 3], (len(q), len(held), len(size)))
-        worst = np.full(len(q), np.inf)
+        worst, left = np.full(len(q), np.inf), np.arange(len(q))
         for _ in range(STEPS):
-            phi, jac = self._jacobians(q)
-            worst = np.abs(phi).max(axis=1, initial=0.0)
-            if (worst <= EXACT).all():
+            phi, jac = self._jacobians(q[left])
+            worst[left] = np.abs(phi).max(axis=1, initial=0.0)
+            going = worst[left] > EXACT
+            left, phi, jac = left[going], phi[going], jac[going]
+            if not len(left):
                 break
-            off = (q[:, held] - targets[:, self.held]) / size[held - 3]
-            matrix = np.concatenate([jac * size, units], axis=1)
-            try:
-                step = np.linalg.solve(matrix, -np.concatenate([phi, off], axis=1)[..., None])[..., 0]
-            except np.linalg.LinAlgError:
-                return q, np.full(len(q), np.inf)
-            q[:, 3:] += step * size
+            units = np.broadcast_to(np.eye(len(size))[held - 3], (len(left), len(held), len(size)))
+            off = (q[left][:, held] - targets[left][:, self.held]) / size[held - 3]
+            q[left, 3:] += _solved(np.concatenate([jac * size, units], 1), -np.concatenate([phi, off], 1)) * size
         return q, worst
 
-    def _velocities(self, rows: range, q: np.ndarray) -> np.ndarray | None:
-        """(R, 3 nb), or None where what is given contradicts the joints or itself."""
-        v = np.zeros_like(q)
+    def _velocities(self, rows: range, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(R, 3 nb), and (R,) whether what is given contradicts neither the joints nor itself."""
+        v, clear = np.zeros_like(q), np.ones(len(q), bool)
         if not self.work.velocities and not self.nu.any():
-            return v
+            return v, clear
         packed, n = self.ready.packed, self.ready.packed.coordinates
         jac = self._jacobians(q)[1]
         own, values = [], []
@@ -138,16 +136,27 @@ class StartsAtOnce(Starts):
             own.append(matrix)
             values.append(wanted)
         everything = np.concatenate([jac, np.array(own)], axis=1)
-        if len(independent_rows(everything[0] * packed.column_scale())) < everything.shape[1]:
-            return None
+        sized = everything * packed.column_scale()
+        sized /= np.maximum(np.linalg.norm(sized, axis=-1, keepdims=True), 1e-300)
+        clear = np.linalg.svd(sized, compute_uv=False)[:, -1] > RANK_TOLERANCE
         wanted = np.concatenate([np.broadcast_to(self.nu * packed.row_scale(), jac.shape[:2]), np.array(values)], 1)
         root = np.sqrt(self.ready.dynamics.metric[3:])
         scaled = everything * root
         square = scaled @ scaled.transpose(0, 2, 1)
         for _ in range(2):  # the second takes off what rounding left
             left = wanted - (everything @ v[:, 3:, None])[..., 0]
-            v[:, 3:] += root * (scaled.transpose(0, 2, 1) @ np.linalg.solve(square, left[..., None]))[..., 0]
-        return v
+            v[:, 3:] += root * (scaled.transpose(0, 2, 1) @ _solved(square, left)[..., None])[..., 0]
+        return v, clear
+
+
+def _solved(matrices: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """(R, n) solutions, not numbers where a matrix (R, n, n) is singular."""
+    try:
+        return np.linalg.solve(matrices, right[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        if len(matrices) == 1:
+            return np.full(right.shape, np.nan)
+        return np.concatenate([_solved(matrices[k : k + 1], right[k : k + 1]) for k in range(len(matrices))])
 
 
 def starts_of(designs: Designs, base: Base) -> Starts:

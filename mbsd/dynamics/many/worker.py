@@ -12,10 +12,11 @@ import numpy as np
 from mbsd.base.users_function import described
 from mbsd.dynamics.many.arguments import content
 from mbsd.dynamics.many.base import Base, based_on
-from mbsd.dynamics.many.designs import Designs
+from mbsd.dynamics.many.designs import Built, Designs
 from mbsd.dynamics.many.done import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.many.early import STEPS, Known, window
 from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.many.methods import number_of
 from mbsd.dynamics.many.outputs import Outputs, Reacting, motions_of, room_for
 from mbsd.dynamics.many.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.many.quantities import Motions, Quantity
@@ -23,7 +24,7 @@ from mbsd.dynamics.many.reactions import Reactions
 from mbsd.dynamics.many.rows import NEARLY_SINGULAR, STOPPED, UNDERWAY, WAITING, run_rows
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, SingleRun, single_run
 from mbsd.dynamics.simulate import simulate
-from mbsd.dynamics.state import CHOOSE, PAUSED, REACHED, UNCLEAR
+from mbsd.dynamics.state import CHOOSE, NO_CONVERGENCE, NOT_FINITE, PAUSED, REACHED, UNCLEAR
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
 
@@ -43,6 +44,8 @@ LEFT = {
     NEARLY_SINGULAR: "it came near a singular pose",
     CHOOSE: "other coordinates became better on the way",
     UNCLEAR: "an output fell on a pose that coordinates do not tell clearly",
+    NOT_FINITE: "its numbers were no longer finite",
+    NO_CONVERGENCE: "the equations of a step had no solution",
     PAUSED: f"it took more than {MOST_STEPS} steps",
 }
 """Why a row left the loop, by its status."""
@@ -118,11 +121,13 @@ class Worker:
         return None
 
     def _run_of(self, row: int) -> SingleRun:
-        self.designs.put(self.model, row)
-        return single_run(self.model, self.work.asked)
+        return single_run(self.designs.put(self.model, row), self.work.asked)
 
     def _patches(self) -> Patches | None:
         """Numbers of rows that need not be prepared, if none need; some are prepared for comparison."""
+        if isinstance(self.designs, Built):
+            self.work.note = f"each is prepared anew: {self.designs.why}"
+            return None
         base, count = self._first_base(), self.designs.count
         if base is None:
             return None
@@ -163,34 +168,35 @@ class Worker:
         return self._measured(rows, lambda which: motions(out, which, reacting), out)
 
     def _prepared(self, rows: range) -> Done:
-        """Rows whose arrays are those that a single simulation prepares."""
-        runs: dict[int, SingleRun] = {}
-        blocks: list[np.ndarray] = []
+        """Rows whose arrays are those that a single simulation prepares; those of one kind at once."""
+        alike: dict[Any, dict[int, SingleRun]] = {}
         done: dict[int, Done] = {}
         for row in rows:
             try:
                 run = self._run_of(row)
-                if self.base is None:
-                    self.base = based_on(run)
-                elif run.kind != self.base.kind:
-                    raise NotCompiled("its tables are others")
-                runs[row] = run
-                blocks.append(content(run.arguments))
+                alike.setdefault(run.kind, {})[row] = run
             except NotCompiled as why:
                 done[row] = self._single(row, str(why))
             except Exception as error:
                 done[row] = failed(described(error))
-        if runs:
-            own, times = list(runs.values()), self.work.asked.times
-
-            def motions(out: Outputs, which: np.ndarray, reacting: Reacting | None = None) -> Motions:
-                return motions_of(own, out, which, None, None, reacting)
-
-            out = self._run(np.array(blocks), np.zeros(0, np.int64), np.zeros((1, 0)), motions)
-            reacting = self._reactions(None).of_runs(own, out, times) if self.work.reactive else None
-            together = self._measured(list(runs), lambda which: motions(out, which, reacting), out)
-            done |= {row: together.row(k) for k, row in enumerate(runs)}
+        for kind, runs in alike.items():
+            if self.base is None or self.base.kind != kind:
+                self.base, self.reactions = based_on(next(iter(runs.values()))), None
+            done |= self._of_one_kind(runs)
         return joined([done[row] for row in rows])
+
+    def _of_one_kind(self, runs: Mapping[int, SingleRun]) -> dict[int, Done]:
+        """Rows that share a block, by their numbers."""
+        own, times = list(runs.values()), self.work.asked.times
+
+        def motions(out: Outputs, which: np.ndarray, reacting: Reacting | None = None) -> Motions:
+            return motions_of(own, out, which, None, None, reacting)
+
+        fresh = np.array([content(run.arguments) for run in own])
+        out = self._run(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), motions)
+        reacting = self._reactions(None).of_runs(own, out, times) if self.work.reactive else None
+        together = self._measured(list(runs), lambda which: motions(out, which, reacting), out)
+        return {row: together.row(k) for k, row in enumerate(runs)}
 
     def _reactions(self, patches: Patches | None) -> Reactions:
         if self.reactions is None:
@@ -203,12 +209,13 @@ class Worker:
         assert self.base is not None
         run, ready, times = self.base.run, self.base.run.ready, self.work.asked.times
         count, whole = max(len(fresh), len(value)), len(times)
-        if self.room is None or len(self.room.status) < count:
-            self.room = room_for(count, whole, len(ready.initial.q), len(ready.packed.ws.phi))
+        shape = len(ready.initial.q), len(ready.packed.ws.phi)
+        if self.room is None or len(self.room.status) < count or self.room.shape != shape:
+            self.room = room_for(count, whole, *shape)
         out = Outputs(*(array[:count] for array in self.room.arrays))
         out.status[:] = WAITING
         run.forget()
-        stops, windows = ready.stops, self.work.windows
+        stops, windows, method = ready.stops, self.work.windows, number_of(self.work.asked.integrator)
         early = len(windows) > 1
         kept = np.zeros((count if early else 0, len(self.base.block) + 1))
         counts = np.zeros((len(kept), len(run.state.count)), np.int64)
@@ -217,7 +224,7 @@ class Worker:
         )
         for begin, upto in zip([0, *windows], windows, strict=False):
             run_rows(
-                *self.base.arguments, self.base.block, fresh, place, value, times, stops.before, stops.after,
+                *self.base.arguments, method, self.base.block, fresh, place, value, times, stops.before, stops.after,
                 min(run.steps_at_once, STEPS) if upto < whole else run.steps_at_once, MOST_STEPS, run.near,
                 self.work.stop, upto, kept, counts, *out.arrays,
             )  # fmt: skip
@@ -276,8 +283,7 @@ class Worker:
 
     def _simulated(self, row: int) -> dict[str, np.ndarray]:
         measures = self.work.measures
-        self.designs.put(self.model, row)
-        sol = simulated(self.model, self.work.asked)
+        sol = simulated(self.designs.put(self.model, row), self.work.asked)
         if not isinstance(measures, Mapping):
             return {name: np.array([value]) for name, value in numbers_of(measures(sol)).items()}
         along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}

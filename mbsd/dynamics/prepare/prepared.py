@@ -95,7 +95,11 @@ class PreparedDynamics:
         return state, run_state.output_for(times, len(self.initial.q), rows)
 
     def scratch(self, method: Integrator) -> Scratch:
-        """Scratch for one run. Raises ModelError where the method cannot simulate this mechanism."""
+        """Scratch for one run in reference coordinates."""
+        return scratch_for(self.dynamics, self.packed.ws, len(self.packed.motions), method.stages, method.matrices)
+
+    def refuse_method(self, method: Integrator) -> None:
+        """Raise ModelError where the method cannot simulate this mechanism."""
         refusal = method.why_refused(self.dynamics)
         if refusal is not None:
             raise ModelError(f"{self.packed.name}: {refusal}")
@@ -110,7 +114,6 @@ class PreparedDynamics:
                 f"begins, and the steps of '{method.name}' do not end there; take method='dop853', or damping= instead "
                 "of restitution="
             )
-        return scratch_for(self.dynamics, self.packed.ws, len(self.packed.motions), method.stages, method.matrices)
 
     def settings(
         self, method: Integrator, tolerance: float, step: float, duration: float, options: Mapping[str, float]

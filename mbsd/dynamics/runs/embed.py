@@ -127,27 +127,15 @@ def _at_start(ready: PreparedDynamics) -> Embedded | None:
 
 def embed(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) -> Embedded | None:
     """The best choice of coordinates at a consistent q, v (3 nb,), or None where there is none."""
-    return _embedded(ready, _best(ready, q, v, time))
-
-
-def _best(ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, time: float) -> tuple[Choice, float] | None:
-    """The same as a choice, and how fast bodies move under it."""
     best = None
     for choice in choices(ready.packed, q, _freedoms(ready)):
-        sensitivity = _sensitivity(ready, _made(ready, choice, _freedoms(ready)), q, v, time)
-        if sensitivity < POOR and (best is None or sensitivity < best[1]):
-            best = choice, sensitivity
-        if best is not None and best[1] <= GOOD:
+        made = _made(ready, choice, _freedoms(ready))
+        made.sensitivity = _sensitivity(ready, made, q, v, time)
+        if made.sensitivity < POOR and (best is None or made.sensitivity < best.sensitivity):
+            best = made
+        if best is not None and best.sensitivity <= GOOD:
             break
     return best
-
-
-def _embedded(ready: PreparedDynamics, best: tuple[Choice, float] | None) -> Embedded | None:
-    if best is None:
-        return None
-    made = _made(ready, best[0], _freedoms(ready))
-    made.sensitivity = best[1]
-    return made
 
 
 def _freedoms(ready: PreparedDynamics) -> int:

@@ -13,6 +13,7 @@ import numpy as np
 
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.reference.arrays import Scratch
 from mbsd.dynamics.state import Output, output_for
 
 AUTO, REFERENCE, INDEPENDENT = FORMULATIONS = "auto", "reference", "independent"
@@ -49,8 +50,13 @@ class Run:
         self.method = method
         self.tolerance = tolerance
         self.steps_at_once = steps_at_once(ready.packed.coordinates, method.matrices[0] > 0)
-        self.scratch = ready.scratch(method)
+        ready.refuse_method(method)
         self.settings = ready.settings(method, tolerance, step, duration, options)
+
+    @cached_property
+    def scratch(self) -> Scratch:
+        """In reference coordinates."""
+        return self.ready.scratch(self.method)
 
     @cached_property
     def nowhere(self) -> Output:

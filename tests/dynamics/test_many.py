@@ -341,14 +341,3 @@ def test_contacts_by_penalty_bounce_as_in_single_simulations(damping: dict[str, 
         sol = ball(masses[k], heights[k]).simulate(1.0, steps=30)
         assert many["y"][k] == sol.body("ball").y[-1]
         assert many["fast"][k] == sol.body("ball").vy.max()
-
-
-def test_starts_do_not_follow_from_which_rows_go_together() -> None:
-    rng, count = np.random.default_rng(5), 90
-    a, b, omega = rng.uniform(-180, 180, count), rng.uniform(-90, 90, count), rng.uniform(-3, 3, count)
-    asked = {"measure": {"x": final("P.x")}, "steps": 5}
-    whole = pendulum().simulate_many(0.5, start={"a": a, "b": b}, moving={"b": omega}, threads=1, **asked)
-    for threads in (3, 7):
-        again = pendulum().simulate_many(0.5, start={"a": a, "b": b}, moving={"b": omega}, threads=threads, **asked)
-        assert np.array_equal(whole["x"], again["x"])
-    assert whole.alone == [None] * count

@@ -9,7 +9,6 @@ from mbsd import Mechanism
 from mbsd.measures import final, first, samples
 from tests.dynamics.test_many import STEPS, door, pendulum
 
-
 METHODS = [
     ("rk4", {"step": 2e-3}),
     ("baumgarte", {"step": 2e-3, "alpha": 20.0}),

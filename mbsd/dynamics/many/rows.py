@@ -16,6 +16,9 @@ STOPPED, NEARLY_SINGULAR = -1, -3
 WAITING, UNDERWAY = -5, -6
 """Status of rows that have not begun, and of those that wait to be gone on with."""
 
+LOOKED_AT = 4000
+"""Steps between two looks at the pace."""
+
 
 @internal
 def next_stop(before, t):
@@ -69,12 +72,13 @@ def run_rows(
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 
-    ``method`` is the integrator's number (methods.py). All arrays of numbers of dyn, scratch, state and settings stand in ``block`` (N,). Row r begins with row r of
-    ``fresh`` (R or 1, N) there, with ``value`` (R, k) at ``place`` (k,). Steps end at ``before`` (s) and go on from
-    ``after``. ``at_once`` steps are taken between two looks at ``stop`` (1,), ``most`` altogether. Where ``near`` is
-    above 0, a row ends where its margin falls below this part of the largest so far (runs/carried_steps.py).
-    Rows whose status (R,) is WAITING begin, those UNDERWAY go on. With ``upto`` outputs, less than T, they are put
-    away in ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY.
+    ``method`` is the number of the integrator (methods.py). All arrays of numbers of dyn, scratch, state and
+    settings stand in ``block`` (N,). Row r begins with row r of ``fresh`` (R or 1, N) there, with ``value`` (R, k)
+    at ``place`` (k,). Steps end at ``before`` (s) and go on from ``after``. ``at_once`` steps are taken between two
+    looks at ``stop`` (1,), ``most`` altogether. Where ``near`` is above 0, a row ends where its margin falls below
+    this part of the largest so far (runs/carried_steps.py). Rows whose status (R,) is WAITING begin, those UNDERWAY
+    go on. With ``upto`` outputs, less than T, they are put away in ``kept`` (R, N + 1) and ``counts`` and are
+    UNDERWAY.
     """
     end = t[t.shape[0] - 1]
     whole = upto == t.shape[0]
@@ -100,7 +104,15 @@ def run_rows(
             if near > 0.0:
                 derivative(dyn, scratch, state.clock[TIME], state.y, scratch.stages[0], scratch.multipliers)
                 widest = scratch.report[0]
+        since = state.clock[TIME]
+        counted = state.count[ACCEPTED]
         while ended == PAUSED and stop[0] == 0 and state.count[ACCEPTED] < most:
+            gone = state.count[ACCEPTED] - counted
+            if gone >= LOOKED_AT:  # at this pace it would take more than is allowed
+                if (end - state.clock[TIME]) * gone > most * (state.clock[TIME] - since):
+                    break
+                since = state.clock[TIME]
+                counted = state.count[ACCEPTED]
             if not whole and state.count[NEXT] >= upto:
                 break
             left = at_once

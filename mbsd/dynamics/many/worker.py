@@ -46,7 +46,7 @@ LEFT = {
     UNCLEAR: "an output fell on a pose that coordinates do not tell clearly",
     NOT_FINITE: "its numbers were no longer finite",
     NO_CONVERGENCE: "the equations of a step had no solution",
-    PAUSED: f"it took more than {MOST_STEPS} steps",
+    PAUSED: f"it takes more than {MOST_STEPS} steps",
 }
 """Why a row left the loop, by its status."""
 STOP, SMALL = "stopped", "its steps became too small"

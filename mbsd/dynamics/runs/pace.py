@@ -1,7 +1,8 @@
 """How fast a run advances: steps between two looks at the keyboard, word of long runs, and an end to stuck ones.
 
 A run is examined when it would take many more steps at its present pace. It ends where a force is found that jumps, or
-one so stiff that the steps are far shorter than the motion needs (stuck.py), and where the end is out of reach.
+one so stiff that the steps are far shorter than the motion needs (stuck.py), where the motion grows without bound
+(runaway.py), and where the end is out of reach.
 Legitimate runs of many steps go on, with word of where they are. What is decided depends on steps alone, never on the
 clock.
 """
@@ -14,6 +15,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from mbsd.base.errors import SimulationError
+from mbsd.dynamics.runs.runaway import Growth, growth_of, runaway
 from mbsd.dynamics.runs.stuck import diagnosis
 from mbsd.dynamics.state import ACCEPTED, REJECTED, TIME, State
 
@@ -39,6 +41,7 @@ class Pace:
         self._began = time.monotonic()
         self._done = self._steps()
         self._checks, self._next = 0, 1
+        self._growth: Growth | None = None
 
     def note(self, current: Callable[[], State] | None = None, extra: int = 0) -> None:
         """After some steps: report progress, and look at the pace now and then.
@@ -68,7 +71,9 @@ class Pace:
         if self._checks < self._next:
             return
         self._next *= 2
-        cause = diagnosis(self.run, current() if current else self.state, advance, left)
+        state = current() if current else self.state
+        before, self._growth = self._growth, growth_of(self.run, state)
+        cause = runaway(self.run, state, before, self._growth) or diagnosis(self.run, state, advance, left)
         if cause is not None:
             raise SimulationError(
                 f"{self.run.ready.packed.name}: {self.run.method.name} no longer advances at t = {at:.6g} s: the last "

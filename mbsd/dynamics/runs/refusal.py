@@ -8,6 +8,7 @@ from mbsd.arrays.friction_along import REMEDY, jam
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.runaway import runaway_at
 from mbsd.dynamics.runs.stuck import jump
 from mbsd.equations.joint_friction import FAILED, X
 
@@ -37,6 +38,9 @@ def refusal(run: Run, status: int, state: run_state.State) -> SimulationError:
             "Take a smaller step, or method='dop853'; stiff springs and dampers ask for method='radau'."
         )
     short = f"steps below {state.clock[run_state.STEP]:.1e} s do not meet the tolerance {run.tolerance:g}"
+    growing = runaway_at(run, state)
+    if growing is not None:
+        return SimulationError(f"{where}: {short}; {growing}")
     jumping = jump(run, state, JUMP_STEP * run.settings.longest)
     if jumping is not None:
         return SimulationError(f"{where}: {short}; {jumping}")

@@ -59,7 +59,7 @@ class Stiffest(NamedTuple):
 def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
     """What keeps steps at h (s), with the remedy, or None if the run may go on; ``left`` steps are still to do."""
     cause = jump(run, state, h)
-    slope = _slope(run, state)
+    slope = slope_at(run, state)
     if cause is not None or slope is None:
         return cause
     if h > NEEDLESS * _own_time(run, state, slope):
@@ -79,7 +79,7 @@ def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
 
 def jump(run: Run, state: State, h: float) -> str | None:
     """The force that jumps within some steps of h (s), with the remedy, or None."""
-    slope = _slope(run, state)
+    slope = slope_at(run, state)
     cause = None if slope is None else _jumping(run, float(state.clock[TIME]), state.y, slope, h)
     if cause is None:
         return None
@@ -90,7 +90,7 @@ def jump(run: Run, state: State, h: float) -> str | None:
     )
 
 
-def _slope(run: Run, state: State) -> np.ndarray | None:
+def slope_at(run: Run, state: State) -> np.ndarray | None:
     """(2, 3 nb) d(state)/dt, or None where it is not finite."""
     slope, time = np.zeros_like(state.y), float(state.clock[TIME])
     derivative(run.ready.dynamics, run.scratch, time, state.y, slope, np.zeros_like(state.lam))
@@ -116,7 +116,7 @@ def _jumping(run: Run, time: float, y: np.ndarray, slope: np.ndarray, h: float) 
     largest = max(float(np.abs(run.ready.dynamics.weight * inverse).max()), 1e-300)
     best: tuple[Force, float] | None = None
     worst = 0.0
-    for force, loads in _each(run, times, states):
+    for force, loads in loads_by_force(run, times, states):
         effect = loads * inverse
         largest = max(largest, float(np.abs(effect).max()))
         wide, near = np.ptp(effect, axis=0), np.ptp(effect[close], axis=0)
@@ -142,7 +142,7 @@ def _stiffest(run: Run, time: float, y: np.ndarray, slope: np.ndarray) -> Stiffe
     states = np.concatenate([y + ways, y - ways])
     times = np.full(len(states), time)
     best = None
-    for force, loads in _each(run, times, states):
+    for force, loads in loads_by_force(run, times, states):
         change = 0.5 * (loads[: len(ways)] - loads[len(ways) :]) * inverse * per_size / DIFFERENCE
         rates = np.abs(change).max(axis=1)
         half = len(ways) // 2
@@ -152,7 +152,7 @@ def _stiffest(run: Run, time: float, y: np.ndarray, slope: np.ndarray) -> Stiffe
     return best
 
 
-def _each(run: Run, times: np.ndarray, states: np.ndarray) -> Iterator[tuple[Force, np.ndarray]]:
+def loads_by_force(run: Run, times: np.ndarray, states: np.ndarray) -> Iterator[tuple[Force, np.ndarray]]:
     """Each force and its loads (T, 3 nb) at times (T,) and states (T, 2, 3 nb).
 
     Friction of joints is that under the last normal forces.

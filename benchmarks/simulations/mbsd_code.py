@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 import mbsd
 from benchmarks.simulations import DURATION, LENGTH, MASS, OUTPUTS
+from mbsd.dynamics.many.measures import Measure
 from mbsd.measures import final, first
 
 
@@ -38,21 +40,26 @@ def study(values: np.ndarray) -> None:
     mbsd.study(build, points, measure, folder=None, processes=1, progress=False)
 
 
-def many(values: np.ndarray, measured: bool, tolerance: float = 1e-7) -> Any:
-    """All in the loop: with the measures of the study from as many outputs, or the final angle alone."""
+SHUT = math.radians(1.0)
+WHEN = {"time": first("door.theta", below=SHUT), "speed": first("door.theta", below=SHUT, give="door.omega")}
+END = {"angle": final("door.theta")}
+
+
+def study_in_loop(values: np.ndarray, processes: int = 1) -> Any:
+    """Each built by Python, all simulated in the loop up to the output at which they are shut."""
+    points = [dict(zip(("stiffness", "damping", "preload"), row, strict=True)) for row in values.tolist()]
+    measured = mbsd.simulated(WHEN, DURATION, steps=OUTPUTS)
+    return mbsd.study(build, points, measured, folder=None, processes=processes, progress=False)
+
+
+def many(values: np.ndarray, measures: Mapping[str, Measure], tolerance: float = 1e-7, threads: int = 1) -> Any:
+    """All in the loop: measures from as many outputs as in the study, or the final angle alone."""
     stiffness, damping, preload = values.T
-    shut = math.radians(1.0)
-    measures = {"angle": final("door.theta")}
-    if measured:
-        measures = {
-            "time": first("door.theta", below=shut),
-            "speed": first("door.theta", below=shut, give="door.omega"),
-        }
     return build(5.0, 10.0, 2.0).simulate_many(
         DURATION,
         vary={"closer": {"stiffness": stiffness, "damping": damping, "free_angle": -preload / stiffness}},
         measure=measures,
-        steps=OUTPUTS if measured else 1,
+        steps=1 if measures is END else OUTPUTS,
         tolerance=tolerance,
-        threads=1,
+        threads=threads,
     )

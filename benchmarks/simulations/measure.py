@@ -1,67 +1,112 @@
-"""Rows of many simulations: in turns on one core, processor time of a door, least of several."""
+"""Rows of many simulations: in turns, processor time and wall time of a door, on one thread and on two."""
 
 from __future__ import annotations
 
 import importlib.metadata
 import importlib.util
+import os
+import resource
 import time
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 import mbsd
 from benchmarks.rows import Bar, Row
 from benchmarks.simulations import OUTPUTS, PROBLEM, doors, exact, peers
-from benchmarks.simulations.mbsd_code import many, study
+from benchmarks.simulations.mbsd_code import END, WHEN, many, study, study_in_loop
 
 ROUNDS = 3
-FEW, LOT = 200, 8000
+FEW, LOT = 200, 100_000
+"""Doors of what takes a millisecond and more, and the number that is asked of mbsd."""
 BARS = {"study": 20.0, "peer": 5.0}
-STEPS = {"mujoco": (0.1, 0.02), "exudyn": (0.1, 0.02)}
+STEPS = (0.1, 0.02)
 TOLERANCES = (1e-4, 1e-7)
+SCIPY_TOLERANCES = (1e-6, 1e-9)
+BOTH = (1, 2)
+"""Threads, or processes where a code takes these."""
+
+
+class Case(NamedTuple):
+    """One code in one way."""
+
+    code: str
+    settings: str
+    threads: int
+    count: int
+    run: Callable[[np.ndarray], object]
+
+
+def cases() -> list[Case]:
+    """All of them; the study that makes each by itself is first, the loop with its measures second."""
+    out = [Case("mbsd", f"study, {OUTPUTS} outputs", 1, FEW, study)]
+    whole = {**WHEN, **END}
+    for n in BOTH:
+        out.append(
+            Case("mbsd", f"simulate_many, {OUTPUTS} outputs", n, LOT, lambda part, n=n: many(part, whole, threads=n))
+        )
+    for n in BOTH:
+        settings = "simulate_many, outputs until it is shut"
+        out.append(Case("mbsd", settings, n, LOT, lambda part, n=n: many(part, WHEN, threads=n)))
+        settings = "study with simulated, outputs until it is shut"
+        out.append(Case("mbsd", settings, n, LOT, lambda part, n=n: study_in_loop(part, n)))
+        for tolerance in TOLERANCES:
+            settings = f"simulate_many, the end alone, tolerance {tolerance:g}"
+            end = lambda part, n=n, tolerance=tolerance: many(part, END, tolerance, n)["angle"]  # noqa: E731
+            out.append(Case("mbsd", settings, n, LOT, end))
+        for name, count in (("mujoco", 5 * FEW), ("exudyn", 10 * FEW)):
+            if importlib.util.find_spec(name) is None:
+                continue
+            way = {"mujoco": "rollout", "exudyn": "ParameterVariation"}[name]
+            for step in STEPS:
+                run = lambda part, step=step, n=n, name=name: getattr(peers, name)(part, step, n)  # noqa: E731
+                out.append(Case(name, f"{way}, the end alone, step {step:g} s", n, count, run))
+    for tolerance in SCIPY_TOLERANCES:
+        run = lambda part, tolerance=tolerance: peers.scipy(part, tolerance)  # noqa: E731
+        out.append(Case("scipy", f"solve_ivp one by one, tolerance {tolerance:g}", 1, FEW, run))
+    return out
 
 
 def measured() -> tuple[list[Row], list[Bar]]:
-    """All rows, and both bars."""
-    values = doors(LOT)
-    runs: dict[tuple[str, str], tuple[int, Callable[[np.ndarray], object]]] = {
-        ("mbsd", f"study, {OUTPUTS} outputs"): (FEW, study),
-        ("mbsd", f"simulate_many, {OUTPUTS} outputs"): (LOT, lambda part: many(part, True)),
-    }
-    for tolerance in TOLERANCES:
-        runs["mbsd", f"simulate_many, the end alone, tolerance {tolerance:g}"] = (
-            LOT, lambda part, tolerance=tolerance: many(part, False, tolerance)["angle"]
-        )  # fmt: skip
-    for name in ("mujoco", "exudyn"):
-        if importlib.util.find_spec(name) is None:
-            continue
-        for step in STEPS[name]:
-            runs[name, f"the end alone, step {step:g} s"] = (
-                FEW, lambda part, step=step, name=name: getattr(peers, name)(part, step)
-            )  # fmt: skip
-    best, ends = dict.fromkeys(runs, np.inf), {}
+    """All rows, and both bars, by processor time."""
+    values, every = doors(LOT), cases()
+    wall, own, ends = np.full((2, len(every)), np.inf).tolist() + [[None] * len(every)]
     for _ in range(ROUNDS):
-        for key, (count, run) in runs.items():
-            part = values[:count]
-            started = time.process_time()
-            ends[key] = run(part)
-            best[key] = min(best[key], (time.process_time() - started) / count)
-    rows = []
-    for (code, settings), seconds in best.items():
-        end = ends[code, settings]
-        error = float(np.abs(end - exact(values[: len(end)])).max()) if isinstance(end, np.ndarray) else np.nan
-        version = mbsd.__version__ if code == "mbsd" else importlib.metadata.version(code)
-        rows.append(Row(PROBLEM, code, version, f"{settings}, {1 / seconds:.0f} a second and core", seconds, error))
-    return rows, _bars(rows)
+        for k, case in enumerate(every):
+            part = values[: case.count]
+            began, busy = time.perf_counter(), processor_time()
+            ends[k] = case.run(part)
+            wall[k] = min(wall[k], (time.perf_counter() - began) / case.count)
+            own[k] = min(own[k], (processor_time() - busy) / case.count)
+    rows = [_row(case, own[k], wall[k], ends[k], values) for k, case in enumerate(every)]
+    return rows, _bars(rows, every)
 
 
-def _bars(rows: list[Row]) -> list[Bar]:
-    by_study, in_loop = (row.seconds for row in rows[:2])
-    ratio = by_study / in_loop
+def processor_time() -> float:
+    """s of this process and of those it has waited for."""
+    return sum(
+        use.ru_utime + use.ru_stime for use in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    )
+
+
+def _row(case: Case, own: float, wall: float, end: object, values: np.ndarray) -> Row:
+    error = float(np.abs(end - exact(values[: len(end)])).max()) if isinstance(end, np.ndarray) else np.nan
+    version = mbsd.__version__ if case.code == "mbsd" else importlib.metadata.version(case.code)
+    threads = f"{case.threads} thread{'s' * (case.threads > 1)}"
+    settings = (
+        f"{case.settings}, {threads}: {1 / own:.0f} a second of a core, {1 / wall:.0f} by the clock at a load of "
+        f"{os.getloadavg()[0]:.1f}"
+    )
+    return Row(PROBLEM, case.code, version, settings, own, error)
+
+
+def _bars(rows: list[Row], every: list[Case]) -> list[Bar]:
+    ratio = rows[0].seconds / rows[1].seconds
     bars = [Bar(PROBLEM, BARS["study"], ratio, "study", f"{OUTPUTS} outputs", ratio >= BARS["study"])]
-    own = [row for row in rows if row.code == "mbsd" and not np.isnan(row.error)]
-    for peer in (row for row in rows if row.code != "mbsd"):
-        as_good = [row.seconds for row in own if row.error <= peer.error]
+    alone = [row for row, case in zip(rows, every, strict=True) if case.threads == 1 and not np.isnan(row.error)]
+    for peer in (row for row in alone if row.code != "mbsd"):
+        as_good = [row.seconds for row in alone if row.code == "mbsd" and row.error <= peer.error]
         if as_good:
             ratio = peer.seconds / min(as_good)
             words = f"the end alone, error {peer.error:.0e}"

@@ -1,4 +1,4 @@
-"""The doors by others: MuJoCo's rollout over models, Exudyn's solver for each, as its ParameterVariation calls it."""
+"""The doors by others, each by its own way to many: MuJoCo's rollout, Exudyn's ParameterVariation; scipy one by one."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from benchmarks.simulations import DURATION, INERTIA, LENGTH, MASS
 
 
-def mujoco(values: np.ndarray, step: float) -> np.ndarray:
-    """(n,) final angles; RK4 at a fixed ``step`` (s)."""
+def mujoco(values: np.ndarray, step: float, threads: int = 1) -> np.ndarray:
+    """(n,) final angles; RK4 at a fixed ``step`` (s), on ``threads`` of its rollout."""
     import mujoco as mj  # pyright: ignore[reportMissingImports]
     from mujoco import rollout  # pyright: ignore[reportMissingImports]
 
@@ -28,13 +28,44 @@ def mujoco(values: np.ndarray, step: float) -> np.ndarray:
         models.append(model)
     start = np.zeros((len(values), mj.mj_stateSize(base, mj.mjtState.mjSTATE_FULLPHYSICS)))
     start[:, 1] = np.pi / 2
-    states, _ = rollout.rollout(models, [mj.MjData(base)], start, nstep=round(DURATION / step))
+    data = [mj.MjData(base) for _ in range(threads)]
+    states, _ = rollout.rollout(models, data, start, nstep=round(DURATION / step))
     return states[:, -1, 1]
 
 
-def exudyn(values: np.ndarray, step: float) -> np.ndarray:
+def exudyn(values: np.ndarray, step: float, threads: int = 1) -> np.ndarray:
     """(n,) final angles; Runge-Kutta of order 4 at a fixed ``step`` (s), one degree of freedom, no links."""
-    return np.array([_exudyn_door(*row, step) for row in values])
+    from exudyn.processing import ParameterVariation  # pyright: ignore[reportMissingImports]
+
+    _DOORS.clear()
+    _DOORS.update(enumerate((*row, step) for row in values.tolist()))
+    _, ends = ParameterVariation(
+        _exudyn_case, {"case": list(_DOORS)}, useMultiProcessing=threads > 1, numberOfThreads=threads,
+        showProgress=False,
+    )  # fmt: skip
+    return np.array(ends)
+
+
+_DOORS: dict[int, tuple[float, float, float, float]] = {}
+"""Stiffness, damping, preload and step by the case; worker processes begin as copies of this one."""
+
+
+def _exudyn_case(parameters: dict[str, Any]) -> float:
+    return _exudyn_door(*_DOORS[int(parameters["case"])])
+
+
+def scipy(values: np.ndarray, tolerance: float) -> np.ndarray:
+    """(n,) final angles; DOP853 of solve_ivp, whose right side is Python."""
+    from scipy.integrate import solve_ivp
+
+    def end(stiffness: float, damping: float, preload: float) -> float:
+        def rates(_: float, y: np.ndarray) -> tuple[float, float]:
+            return y[1], -(stiffness * y[0] + preload + damping * y[1]) / INERTIA
+
+        run = solve_ivp(rates, (0.0, DURATION), (np.pi / 2, 0.0), "DOP853", rtol=tolerance, atol=tolerance)
+        return float(run.y[0, -1])
+
+    return np.array([end(*row) for row in values.tolist()])
 
 
 def _exudyn_door(stiffness: float, damping: float, preload: float, step: float) -> float:

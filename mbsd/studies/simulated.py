@@ -15,7 +15,8 @@ from mbsd.base.shown import shown
 from mbsd.base.users_function import described
 from mbsd.dynamics.many.designs import Built, Designs, designs_of
 from mbsd.dynamics.many.measures import Measure
-from mbsd.dynamics.many.simulate_many import Simulations, asked_for, simulations
+from mbsd.dynamics.many.simulate_many import Simulations, asked_for, checked_measures, quantities_of, simulations
+from mbsd.dynamics.many.single_run import Asked
 from mbsd.mechanism import Mechanism
 from mbsd.model.mechanism import Model, connections
 from mbsd.studies.numbers_alone import MoreThanNumbers, differences
@@ -89,13 +90,21 @@ class Simulated:
                 raise
             return [(None, described(error))]
 
-    def _run(self, designs: Designs) -> Simulations:
+    def refuse(self, m: Mechanism) -> None:
+        """Raise ModelError where no mechanism like this one can be simulated and measured so."""
+        asked = self._asked(m)
+        measures = checked_measures(m, self.measures, asked.times)
+        if isinstance(measures, Mapping) and _starts(m):
+            quantities_of(Built([m], FEW), measures)
+
+    def _asked(self, m: Model) -> Asked:
         times = None if self.times is None else np.array(self.times)
-        asked = asked_for(
-            designs.m, self.duration, self.steps, times, self.method, self.tolerance, self.step, self.formulation,
-            self.options,
-        )  # fmt: skip
-        return simulations(designs, self.measures, asked, 1, None)
+        return asked_for(
+            m, self.duration, self.steps, times, self.method, self.tolerance, self.step, self.formulation, self.options
+        )
+
+    def _run(self, designs: Designs) -> Simulations:
+        return simulations(designs, self.measures, self._asked(designs.m), 1, None)
 
 
 def _designs(mechanisms: Sequence[Mechanism], fewest: int) -> Designs:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -20,6 +21,7 @@ from mbsd.base.warn import warn
 from mbsd.dealing.connection import connected
 from mbsd.dependencies.recorder import Recorder
 from mbsd.mechanism import Mechanism
+from mbsd.model.mechanism import Model
 from mbsd.studies.dealt import Deals, by_cluster, by_here, by_processes
 from mbsd.studies.identity.content import Content, own_sources
 from mbsd.studies.identity.depends import StudyPlaces, loaded_inputs, root_of
@@ -92,6 +94,8 @@ def study(
         {} if store is None else {n: store.known[k] for n, k in enumerate(keys) if k in store.known}
     )
     todo = {number: point for number, point in enumerate(points) if number not in results}
+    if todo and isinstance(measure, Simulated):
+        _refuse_measure(build, measure, todo.values())
     if todo:
         names = {name for point in points for name in point}
         with (
@@ -123,6 +127,18 @@ def study(
     if save is not None:
         save_table(frame, save)
     return frame
+
+
+def _refuse_measure(build: Callable[..., Mechanism], measure: Simulated, points: Iterable[Point]) -> None:
+    """Raise ModelError for simulations and measures that cannot be, before any is made, by the first that is built."""
+    for point in itertools.islice(points, LOOKED_AT):
+        try:
+            m = build(**point)
+        except Exception:
+            continue  # that is the reason of the point
+        if isinstance(m, Model):
+            measure.refuse(m)
+            return
 
 
 def _way(build: Callable[..., Mechanism], measure: Simulated, points: Sequence[Point]) -> str:

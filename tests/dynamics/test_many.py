@@ -222,6 +222,7 @@ def test_a_function_of_solutions_measures_too() -> None:
         ({"vary": {"closer": [1.0]}}, "give its arguments"),
         ({"vary": None}, "nothing varies"),
         ({"start": {"dor": [1.0]}}, "did you mean 'door'"),
+        ({"moving": {"ground": [1.0]}}, "ground does not move"),
         ({"start": {"door": [[1.0, 2.0]]}}, "give \\(n,\\) or"),
         ({"measure": {"x": "door.theta"}}, "must be a measure"),
         ({"measure": {"x": final("door.thta")}}, "did you mean 'door.theta'"),

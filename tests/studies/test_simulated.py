@@ -206,3 +206,25 @@ def test_it_measures_a_mechanism_by_itself_and_refuses_what_is_no_measure() -> N
         simulated({"end": math.pi}, 0.5)  # pyright: ignore[reportArgumentType]
     with pytest.raises(ModelError, match="there is no quantity"):
         simulated({"end": final("leaf.thetta")}, 0.5)(door())
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        (simulated({"end": final("leaf.theta")}, -1.0), "duration is -1.0 s; it must be positive"),
+        (simulated({"end": final("leaf.theta")}, 1.0, method="dop835"), "did you mean 'dop853'"),
+        (simulated({"end": final("leaf.thetta")}, 1.0), "did you mean 'leaf.theta'"),
+        (simulated({"end": samples("leaf.theta", [0.33])}, 1.0, steps=10), "is no output"),
+        (simulated({"reason": final("leaf.theta")}, 1.0), "two columns 'reason'"),
+    ],
+)
+def test_what_cannot_be_measured_is_refused_before_anything_is_built_for_it(asked: Simulated, words: str) -> None:
+    built = []
+
+    def build(stiffness: float) -> Mechanism:
+        built.append(stiffness)
+        return door(stiffness)
+
+    with pytest.raises(ModelError, match=words):
+        _studied({"stiffness": np.linspace(1.0, 2.0, 50)}, asked, build)
+    assert len(built) == 1

@@ -18,6 +18,7 @@ import numpy as np
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
+from mbsd.model.body import Body
 from mbsd.model.mechanism import Model, Start, StartVelocity
 
 MOST = 100_000_000
@@ -136,8 +137,23 @@ def _refuse_unknown(designs: Designs) -> None:
         except ModelError as error:
             if "there is no" in str(error):
                 raise ModelError(str(error).replace(f"{work.name}: ", f"{work.name}: vary: ", 1)) from None
-    for name in (*designs.starts, *designs.velocities):
-        work.known_body(name)
+    for what, name in [
+        *(("start", name) for name in designs.starts),
+        *(("moving", name) for name in designs.velocities),
+    ]:
+        _refuse_held(work, what, work.known_body(name))
+
+
+def _refuse_held(m: Model, what: str, body: Body) -> None:
+    """Raise ModelError for the ground, and for a body whose angle a driver imposes: each row would be the same."""
+    if body.name == "ground":
+        raise ModelError(f"{m.name}: {what}: ground does not move; give other bodies")
+    for driver in m.drivers.values():
+        if driver.kind.name == "drive_angle" and {driver.i.body.name, driver.j.body.name} == {"ground", body.name}:
+            raise ModelError(
+                f"{m.name}: {what}: driver '{driver.name}' says where '{body.name}' is and how fast; start others, or "
+                "take a motor instead of the driver"
+            )
 
 
 def _named(m: Model, what: str, given: Any) -> Mapping[str, Any]:

@@ -158,8 +158,8 @@ def simulations(
 ) -> Simulations:
     """Measures of all designs; see :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
     m, grid = designs.m, asked.times
-    measures = _measures(m, measure, grid)
-    quantities = {} if callable(measures) else _quantities(designs, measures)
+    measures = checked_measures(m, measure, grid)
+    quantities = {} if callable(measures) else quantities_of(designs, measures)
     why = _why_single(designs, asked, measures, quantities)
     width = 1 if callable(measures) else sum(column[0].size for column in _empty(measures, 1).values())
     refuse_beyond_memory(f"{m.name}: {designs.count} simulations", 3 * width * designs.count, "Take fewer at once")
@@ -189,7 +189,7 @@ def _empty(measures: Mapping[str, Measure], count: int) -> dict[str, np.ndarray]
     return {column: np.full((count, *shape), np.nan) for column, shape in shapes.items()}
 
 
-def _measures(m: Model, measure: Any, grid: np.ndarray) -> Measures:
+def checked_measures(m: Model, measure: Any, grid: np.ndarray) -> Measures:
     """As given, checked."""
     if callable(measure):
         return measure
@@ -213,7 +213,7 @@ def _measures(m: Model, measure: Any, grid: np.ndarray) -> Measures:
     return dict(measure)
 
 
-def _quantities(designs: Designs, measures: Mapping[str, Measure]) -> dict[str, Quantity]:
+def quantities_of(designs: Designs, measures: Mapping[str, Measure]) -> dict[str, Quantity]:
     """By name, all that the measures read. Raises ModelError for one that there is not."""
     names = list(dict.fromkeys(name for each in measures.values() for name in each.quantities))
     known = _column_names(designs)

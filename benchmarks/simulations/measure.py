@@ -34,7 +34,7 @@ class Case(NamedTuple):
     code: str
     settings: str
     threads: int
-    count: int
+    doors: int
     run: Callable[[np.ndarray], object]
 
 
@@ -71,15 +71,16 @@ def cases() -> list[Case]:
 def measured() -> tuple[list[Row], list[Bar]]:
     """All rows, and both bars, by processor time."""
     values, every = doors(LOT), cases()
-    wall, own, ends = np.full((2, len(every)), np.inf).tolist() + [[None] * len(every)]
+    wall, own = np.full((2, len(every)), np.inf)
+    ends: list[object] = [None] * len(every)
     for _ in range(ROUNDS):
         for k, case in enumerate(every):
-            part = values[: case.count]
+            part = values[: case.doors]
             began, busy = time.perf_counter(), processor_time()
             ends[k] = case.run(part)
-            wall[k] = min(wall[k], (time.perf_counter() - began) / case.count)
-            own[k] = min(own[k], (processor_time() - busy) / case.count)
-    rows = [_row(case, own[k], wall[k], ends[k], values) for k, case in enumerate(every)]
+            wall[k] = min(wall[k], (time.perf_counter() - began) / case.doors)
+            own[k] = min(own[k], (processor_time() - busy) / case.doors)
+    rows = [_row(case, float(own[k]), float(wall[k]), ends[k], values) for k, case in enumerate(every)]
     return rows, _bars(rows, every)
 
 

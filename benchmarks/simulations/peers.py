@@ -30,7 +30,7 @@ def mujoco(values: np.ndarray, step: float, threads: int = 1) -> np.ndarray:
     start[:, 1] = np.pi / 2
     data = [mj.MjData(base) for _ in range(threads)]
     states, _ = rollout.rollout(models, data, start, nstep=round(DURATION / step))
-    return states[:, -1, 1]
+    return np.asarray(states)[:, -1, 1]
 
 
 def exudyn(values: np.ndarray, step: float, threads: int = 1) -> np.ndarray:

@@ -6,6 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -20,12 +21,15 @@ from mbsd.studies import work
 from mbsd.studies.answers import MOST, Numbered, answer_of, answered, inputs_of, own_result, reader
 from mbsd.studies.identity.content import own_sources
 from mbsd.studies.points import Point
+from mbsd.studies.simulated import Simulated
 from mbsd.studies.voice import VOICE
 from mbsd.studies.work import Order, Result
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "cloudpickle")
 """Those whose version decides what comes out, beside mbsd's own sources and Python."""
 LOCAL = Manner(target=0.5, largest=2000, patience=math.inf, copies=1, first_alone=True)
+TOGETHER = replace(LOCAL, target=2.0)
+"""Of simulations in one loop, which is made ready for each chunk: as much work as a hundred points."""
 FAR = Manner(
     target=2.0, largest=2000, patience=60.0, unknown=600.0, endless=True, times=20.0, grace=60.0, failures=1,
     threads=True, first_alone=True,
@@ -44,22 +48,27 @@ def identity() -> dict[str, str]:
     return versions(PACKAGES) | {"mbsd": own_sources()[:12]}
 
 
+def manner_of(measure: object) -> Manner:
+    """How points are handed to this machine."""
+    return TOGETHER if isinstance(measure, Simulated) else LOCAL
+
+
 def by_here(build: Callable[..., Any], measure: Callable[[Any], Any], recorder: Recorder | None) -> Deals:
     """Points for this process, one after the other."""
 
     def computed(points: Numbered, _: Mapping[str, bytes]) -> bytes:
         return answered(partial(work.chunk_of, build, measure, recorder), points)
 
-    return partial(_dealt, Here(), Kind(computed, (), own_result, OWN_MOST, inputs_of), LOCAL, None)
+    return partial(_dealt, Here(), Kind(computed, (), own_result, OWN_MOST, inputs_of), manner_of(measure), None)
 
 
-def by_processes(order: Order, count: int) -> Deals:
+def by_processes(order: Order, count: int, manner: Manner) -> Deals:
     """Points for processes of this machine. Raises ModelError if the extra that brings them is missing."""
     try:
         pool = Processes(count, work.begin, order)
     except ImportError as error:
         raise ModelError("study needs loky: install mbsd[study]") from error
-    return partial(_dealt, pool, Kind(answer_of, (order,), own_result, OWN_MOST, inputs_of, _ended), LOCAL, None)
+    return partial(_dealt, pool, Kind(answer_of, (order,), own_result, OWN_MOST, inputs_of, _ended), manner, None)
 
 
 def by_cluster(order: Order, client: Any, points: Sequence[Point]) -> Deals:

@@ -22,7 +22,7 @@ from mbsd.dealing.connection import connected
 from mbsd.dependencies.recorder import Recorder
 from mbsd.mechanism import Mechanism
 from mbsd.model.mechanism import Model
-from mbsd.studies.dealt import Deals, by_cluster, by_here, by_processes
+from mbsd.studies.dealt import Deals, by_cluster, by_here, by_processes, manner_of
 from mbsd.studies.identity.content import Content, own_sources
 from mbsd.studies.identity.depends import StudyPlaces, loaded_inputs, root_of
 from mbsd.studies.points import Point, points_of
@@ -197,4 +197,6 @@ def _deals(
         return by_here(build, measure, None if places is None else Recorder(places))
     root = None if places is None else str(places.root)
     order = Order(bytes_of(build, measure, content.modules), root, uuid4().hex)
-    return by_processes(order, min(count, todo)) if client is None else by_cluster(order, client, points)
+    if client is not None:
+        return by_cluster(order, client, points)
+    return by_processes(order, min(count, todo), manner_of(measure))

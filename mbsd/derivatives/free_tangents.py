@@ -11,13 +11,13 @@ stuck, whatever that is. Source: Haug, Ehle, Mech. Mach. Theory 17 (1982); Wehag
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from mbsd.derivatives.beside import accelerate_along, close, combine
 from mbsd.derivatives.linear_motion import NODES, carried
 from mbsd.derivatives.tangents import LOOSE, along_directions, refuse_large
-from mbsd.derivatives.terms import Along, Left, Terms, stacked
+from mbsd.derivatives.terms import Along, Change, Left, Terms
 from mbsd.derivatives.variants import TINY, Variants
 
 REACH = 1e-5
@@ -37,11 +37,13 @@ class Stretch:
     """Independent rows that hold."""
     dependent: list[tuple[int, int]]
     """Rows of sliding and of the gap whose normal force makes their friction."""
+    asked: np.ndarray
+    """(T,) whether tangents are wanted at a node."""
 
 
 @dataclass
 class Tangents:
-    """By P numbers: how a motion changes with them. (P, T, 3 nb), (P, T, m)."""
+    """By P numbers: how a motion changes with them at R times. (P, R, 3 nb), (P, R, m)."""
 
     q: np.ndarray
     v: np.ndarray
@@ -52,9 +54,18 @@ class Tangents:
         """All of it."""
         return self.q, self.v, self.a, self.lam
 
-    def take(self, rows: Any) -> Tangents:
-        """Some of the times."""
-        return Tangents(*(part[:, rows] for part in self.parts()))
+
+@dataclass
+class Carried:
+    """Tangents along some nodes."""
+
+    asked: Tangents
+    """Where they were asked for."""
+    q: np.ndarray
+    """(P, 3 nb) q' at the last node."""
+    v: np.ndarray
+    errors: np.ndarray
+    """(d,) what each step adds, as part of the largest."""
 
 
 def joined(parts: list[Tangents]) -> Tangents:
@@ -65,70 +76,70 @@ def joined(parts: list[Tangents]) -> Tangents:
 class FreeTangents:
     """Tangents along one stretch, from q' and v' (P, 3 nb) at its start.
 
-    ``own``: how the equations change with each number at the held motion.
+    ``own``: how the equations change with the numbers at the held motion, (P, T, ...) each.
     """
 
-    def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants], own: list[Left]) -> None:
+    def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants], own: Left) -> None:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
-        self.dependent, self.own = stretch.dependent, own
+        self.dependent, self.own, self.asked = stretch.dependent, own, stretch.asked
         packed = terms.packed
         refuse_large(terms, len(self.along.t))
-        self.compact = terms.rows(self.along)[2]
         self.scale = packed.column_scale()
-        self.jac = packed.spread(self.compact)
+        self.jac = packed.spread(terms.rows(self.along)[2])
         self.held = self.jac[:, self.rows]
 
-    def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[Tangents, np.ndarray]:
-        """Tangents at all nodes, and the error that each double step adds, as part of the largest."""
+    def carry(self, q: np.ndarray, v: np.ndarray) -> Carried:
+        """Tangents where they are asked for, and at the end."""
         count, first = len(self.along.t), 0
-        errors: list[np.ndarray] = []
-        parts: list[Tangents] = []
+        parts: list[Carried] = []
         while first < count - 1:
-            basis, last = self._basis(first)
-            made, error = _Piece(self, first, last, basis).carry(q, v)
-            errors.append(error)
-            q, v = made.q[:, -1], made.v[:, -1]
-            parts.append(made if first == 0 else made.take(slice(1, None)))
-            first = last
-        return joined(parts), np.concatenate(errors)
+            basis, inverse = self._basis(first)
+            parts.append(_Piece(self, first, basis, inverse).carry(q, v))
+            q, v = parts[-1].q, parts[-1].v
+            first += len(inverse) - 1
+        return Carried(joined([part.asked for part in parts]), q, v, np.concatenate([part.errors for part in parts]))
 
-    def _basis(self, first: int) -> tuple[np.ndarray, int]:
-        """Z (f, n) at node ``first``, and the last node, whole double steps away, to which it serves."""
-        scaled = self.held[first] * self.scale
+    def _basis(self, first: int) -> tuple[np.ndarray, np.ndarray]:
+        """Z (f, n) at node ``first``, and inverses of [J; Z] from there to the last node, whole steps away, it serves."""
+        scaled, count = self.held[first] * self.scale, len(self.along.t) - first
         if not len(scaled):
-            return np.diag(1.0 / self.scale), len(self.along.t) - 1
+            return np.diag(1.0 / self.scale), np.broadcast_to(np.diag(self.scale), (count, *2 * self.scale.shape))
         size = np.abs(scaled).max(axis=1, keepdims=True)
         _, singular, right = np.linalg.svd(scaled / size)
         rank = int((singular > LOOSE * singular.max(initial=0.0)).sum())
-        basis = right[rank:] / self.scale
-        rows = self.held[first:] * self.scale
-        rows = rows / np.maximum(np.linalg.norm(rows, axis=2, keepdims=True), 1e-300)
-        square = np.concatenate([rows, np.broadcast_to(right[rank:], (len(rows), *right[rank:].shape))], axis=1)
+        square = np.empty((count, len(self.scale), len(self.scale)))
+        square[:, rank:] = right[rank:]
+        np.multiply(self.held[first:], self.scale, out=square[:, :rank])
+        norms = np.maximum(np.sqrt(np.einsum("trn,trn->tr", square[:, :rank], square[:, :rank])), 1e-300)
+        square[:, :rank] /= norms[..., None]
         # of unit rows: its smallest singular value falls as motions turn away from the basis
         inverse = np.linalg.inv(square)
-        far = np.abs(inverse).max(axis=(1, 2)) > WORST * np.abs(inverse[0]).max()
-        beyond = int(np.argmax(far)) if far.any() else len(far)
-        last = min(first + max(NODES, (beyond - 1) // NODES * NODES), len(self.along.t) - 1)
-        return basis, last
+        size = np.abs(inverse).max(axis=(1, 2))
+        far = size > WORST * size[0]
+        beyond = int(np.argmax(far)) if far.any() else count
+        last = min(max(NODES, (beyond - 1) // NODES * NODES), count - 1)
+        inverse = inverse[: last + 1] * self.scale[:, None]
+        inverse[:, :, :rank] /= norms[: last + 1, None]
+        return right[rank:] / self.scale, inverse
 
 
 class _Piece:
     """Nodes with one Z."""
 
-    def __init__(self, whole: FreeTangents, first: int, last: int, basis: np.ndarray) -> None:
-        at = slice(first, last + 1)
+    def __init__(self, whole: FreeTangents, first: int, basis: np.ndarray, inverse: np.ndarray) -> None:
+        at = slice(first, first + len(inverse))
         self.terms, self.every, self.rows, self.dependent = whole.terms, whole.every, whole.rows, whole.dependent
         self.along, self.basis = whole.along.take(at), basis
-        self.own = [own.each(lambda part: part[at]) for own in whole.own]
+        self.own = whole.own.each(lambda part: part[:, at])
+        asked = whole.asked[at].copy()
+        asked[0] &= first == 0
+        self.asked = np.flatnonzero(asked)
         self.jac, self.held = whole.jac[at], whole.held[at]
-        count, n = len(self.along.t), self.jac.shape[2]
-        square = np.concatenate([self.held, np.broadcast_to(basis, (count, *basis.shape))], axis=1)
-        self.inverse = np.linalg.inv(square)
-        self.fixed, self.free = self.inverse[:, :, : len(self.rows)], self.inverse[:, :, len(self.rows) :]
-        self.f, self.n = len(basis), n
+        self.fixed = np.ascontiguousarray(inverse[:, :, : len(self.rows)])
+        self.free = np.ascontiguousarray(inverse[:, :, len(self.rows) :])
+        self.f, self.n = len(basis), inverse.shape[1]
         self.inertia, self._scale = self.terms.inertia[3:], 1.0 / whole.scale
         self.effort = self._efforts(whole)
-        self.mass = np.einsum("tnf,n,tng->tfg", self.free, self.inertia, self.free)
 
     def _efforts(self, whole: FreeTangents) -> np.ndarray | None:
         """(T, n, r) E of the rows that hold, where that is more than J^T: with friction in them; else None."""
@@ -150,24 +161,22 @@ class _Piece:
 
     # -- derivatives ------------------------------------------------------------------------------------------------
 
-    def carry(self, q: np.ndarray, v: np.ndarray) -> tuple[Tangents, np.ndarray]:
+    def carry(self, q: np.ndarray, v: np.ndarray) -> Carried:
         """See :meth:`FreeTangents.carry`."""
-        f, numbers, count = self.f, len(self.own), len(self.along.t)
-        free = np.moveaxis(self.free, 2, 0)  # (f, T, n)
-        position, velocity, given = self._by_numbers(q)
-        turned = self._speeds(np.concatenate([free, position]))
-        none = np.zeros_like(free)
-        positions = np.concatenate([free, none, position])
-        velocities = np.concatenate([turned[:f], free, velocity + turned[f:]])
+        f, numbers, count = self.f, len(self.every), len(self.along.t)
+        positions, velocities = np.zeros((2, 2 * f + numbers, count, 3 + self.n))
+        positions[:f, :, 3:] = velocities[f : 2 * f, :, 3:] = np.moveaxis(self.free, 2, 0)
+        self._by_numbers(q, positions[2 * f :])
+        self._speeds(positions, velocities)
         change = self._change(positions, velocities)
         bend, load = change.acceleration, change.load
-        bend[2 * f :] += given.acceleration
-        load[2 * f :] += given.load
+        bend[2 * f :] += self.own.acceleration
+        load[2 * f :] += self.own.load
         rubbed = [self._rubbed(variants) for variants in self.every]
         for p, part in enumerate(rubbed):
             if part is not None:
                 load[2 * f + p, :, 3:] -= np.einsum("tmn,tm->tn", self.jac, part)
-        a, lam = self._accelerations(bend[..., self.rows], load[..., 3:])
+        a, lam = self._accelerations(bend, load)
         for p, part in enumerate(rubbed):
             if part is not None:
                 lam[2 * f + p] += part
@@ -179,12 +188,13 @@ class _Piece:
         right[:, f:] = bent[2 * f :].transpose(1, 2, 0)
         begun = np.concatenate([self.basis @ q[:, 3:].T, self.basis @ v[:, 3:].T])
         y, error = carried(self.along.t, matrix, right, begun, self._slight())
-
-        def total(part: np.ndarray) -> np.ndarray:
-            return part[2 * f :] + np.einsum("tkp,ktn->ptn", y, part[: 2 * f])
-
-        out = Tangents(_wide(total(positions)), _wide(total(velocities)), _wide(total(a)), total(lam))
-        return out, error
+        at = np.append(self.asked, count - 1)
+        parts = [np.zeros((numbers, len(at), part.shape[2])) for part in (positions, velocities, a, lam)]
+        for out, part in zip(parts, (positions, velocities, a, lam), strict=True):
+            combine(y, at, part, out)
+        parts[2] = _wide(parts[2])
+        asked = Tangents(*(part[:, :-1] for part in parts))
+        return Carried(asked, parts[0][:, -1], parts[1][:, -1], error)
 
     def _slight(self) -> np.ndarray:
         """(2 f, P) changes of s and s' that are rounding where the number changes by all of itself."""
@@ -192,51 +202,45 @@ class _Piece:
         numbers = np.array([abs(variants.step) / TINY for variants in self.every])
         return SLIGHT * np.repeat([1.0, fastest], self.f)[:, None] / numbers
 
-    def _change(self, q: np.ndarray, v: np.ndarray) -> Left:
-        """Along directions (D, T, n)."""
-        return along_directions(self.terms, self.along, _wide(q), _wide(v), REACH)
+    def _change(self, q: np.ndarray, v: np.ndarray) -> Change:
+        """Along directions (D, T, 3 nb)."""
+        return along_directions(self.terms, self.along, q, v, REACH)
 
-    def _speeds(self, q: np.ndarray) -> np.ndarray:
-        """(D, T, n) v' that belongs to q' alone: Z v' = 0."""
-        out = np.zeros_like(q)
-        some = q.any(axis=(1, 2))
-        if some.any() and len(self.rows):
-            change = self._change(q[some], np.zeros_like(q[some]))
-            out[some] = -np.einsum("tnr,dtr->dtn", self.fixed, change.velocity[..., self.rows])
-        return out
+    def _by_numbers(self, begun: np.ndarray, out: np.ndarray) -> None:
+        """Fill out (P, T, 3 nb) with q' by numbers with s at zero; ``begun`` (P, 3 nb) is q' at the first node."""
+        held = np.zeros(self.own.position.shape)
+        held[..., self.rows] = (begun[:, 3:] @ self.held[0].T + self.own.position[:, 0, self.rows])[:, None]
+        # of what sticks: where it stuck changes too
+        close(self.fixed, self.rows, self.own.position - held, out)
+
+    def _speeds(self, positions: np.ndarray, out: np.ndarray) -> None:
+        """Fill out (2 f + P, T, 3 nb) with v' that belongs to positions, and for P to the numbers: Z v' = 0."""
+        f = self.f
+        some = [*range(f), *range(2 * f, len(out))]
+        opened = self._change(positions[some], np.zeros_like(positions[some])).velocity
+        opened[f:] += self.own.velocity
+        made = np.zeros_like(positions[some])
+        close(self.fixed, self.rows, opened, made)
+        out[some] = made
 
     def _accelerations(self, bend: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """a' (D, T, n) and lam' (D, T, m) where the equations change by ``bend`` (D, T, r) and ``load`` (D, T, n)."""
-        lam = np.zeros((*load.shape[:2], self.jac.shape[1]))
-        if self.effort is not None:
-            r = len(self.rows)
-            matrix = np.zeros((load.shape[1], self.n + r, self.n + r))
-            matrix[:, : self.n, : self.n] = np.diag(self.inertia)
-            matrix[:, : self.n, self.n :] = self.effort
-            matrix[:, self.n :, : self.n] = self.held
-            right = np.concatenate([load, -bend], axis=2).transpose(1, 2, 0)
-            solved = np.linalg.solve(matrix, right).transpose(2, 0, 1)
-            lam[..., self.rows] = solved[..., self.n :]
-            for way, gap in self.dependent:
-                lam[..., way] = _ratio(self.along, way, gap) * lam[..., gap]
-            return solved[..., : self.n], lam
-        fixed = -np.einsum("tnr,dtr->dtn", self.fixed, bend)
-        wanted = np.einsum("tnf,dtn->tfd", self.free, load - self.inertia * fixed)
-        a = fixed + np.einsum("tnf,tfd->dtn", self.free, np.linalg.solve(self.mass, wanted))
-        lam[..., self.rows] = np.einsum("tnr,dtn->dtr", self.fixed, load - self.inertia * a)
-        return a, lam
-
-    def _by_numbers(self, begun: np.ndarray) -> tuple[np.ndarray, np.ndarray, Left]:
-        """q', v' (P, T, n) by numbers with s and s' at zero, and how the equations change with the numbers alone.
-
-        ``begun`` (P, 3 nb) is q' at the first node.
-        """
-        own = stacked(self.own, np.stack)
-        position = own.position[..., self.rows]
-        opened = begun[:, 3:] @ self.held[0].T + position[:, 0]  # of what sticks: where it stuck changes too
-        q = np.einsum("tnr,ptr->ptn", self.fixed, opened[:, None] - position)
-        v = -np.einsum("tnr,ptr->ptn", self.fixed, own.velocity[..., self.rows])
-        return q, v, own
+        """a' (D, T, n) and lam' (D, T, m) where the equations change by ``bend`` (D, T, m) and ``load`` (D, T, 3 nb)."""
+        lam, a = np.zeros((*load.shape[:2], self.jac.shape[1])), np.empty((*load.shape[:2], self.n))
+        if self.effort is None:
+            scratch = np.zeros((self.f + 1, max(1, self.f)))
+            accelerate_along(self.fixed, self.free, self.inertia, self.rows, bend, load, scratch, a, lam)
+            return a, lam
+        r = len(self.rows)
+        matrix = np.zeros((load.shape[1], self.n + r, self.n + r))
+        matrix[:, : self.n, : self.n] = np.diag(self.inertia)
+        matrix[:, : self.n, self.n :] = self.effort
+        matrix[:, self.n :, : self.n] = self.held
+        right = np.concatenate([load[..., 3:], -bend[..., self.rows]], axis=2).transpose(1, 2, 0)
+        solved = np.linalg.solve(matrix, right).transpose(2, 0, 1)
+        lam[..., self.rows] = solved[..., self.n :]
+        for way, gap in self.dependent:
+            lam[..., way] = _ratio(self.along, way, gap) * lam[..., gap]
+        return np.ascontiguousarray(solved[..., : self.n]), lam
 
     def _rubbed(self, variants: Variants) -> np.ndarray | None:
         """(T, m) how the friction of sliding contacts changes with their coefficients; None where it does not."""

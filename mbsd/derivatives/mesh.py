@@ -1,4 +1,4 @@
-"""Nodes at which tangents of a simulation are found: double steps of five nodes between outputs and events."""
+"""Nodes at which tangents of a simulation are found: steps of five nodes between outputs and events."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from mbsd.derivatives.linear_motion import NODES
+from mbsd.derivatives.linear_motion import NODES, PLACES
 
 SAME = 1e-9
 """Part of their length within which two gaps between outputs are equal."""
@@ -15,9 +15,9 @@ ROUNDING = 1e-12
 
 
 def first_edges(grid: np.ndarray, met: np.ndarray, longest: float) -> np.ndarray:
-    """(d + 1,) edges of double steps from outputs ``grid`` and times of events that were ``met`` (s).
+    """(d + 1,) edges of steps from outputs ``grid`` and times of events that were ``met`` (s).
 
-    None is longer than ``longest`` (s). Two equal gaps of outputs make one double step, whose middle is an output.
+    None is longer than ``longest`` (s). Two equal gaps of outputs make one step, whose middle is an output.
     """
     times = np.unique(np.concatenate([grid, met]))
     times = times[np.concatenate([[True], np.diff(times) > ROUNDING * (times[-1] - times[0])])]
@@ -37,7 +37,7 @@ def first_edges(grid: np.ndarray, met: np.ndarray, longest: float) -> np.ndarray
 
 
 def refined(edges: np.ndarray, errors: np.ndarray, enough: float) -> np.ndarray:
-    """Edges of shorter double steps where these add more than their share of ``enough``."""
+    """Edges of shorter steps where these add more than their share of ``enough``."""
     share = enough / len(errors)
     out = [edges[:1]]
     for (a, b), error in zip(pairwise(edges), errors, strict=True):
@@ -48,7 +48,7 @@ def refined(edges: np.ndarray, errors: np.ndarray, enough: float) -> np.ndarray:
 
 def nodes_of(edges: np.ndarray, grid: np.ndarray, met: np.ndarray) -> np.ndarray:
     """Times of all nodes (s) but those of events; outputs to the bit."""
-    inner = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(NODES) / NODES
+    inner = edges[:-1, None] + np.diff(edges)[:, None] * PLACES[:NODES]
     nodes = np.append(inner.ravel(), edges[-1])
     slack = 10 * SAME * float(np.diff(edges).min())
     at = np.clip(np.searchsorted(nodes, grid), 1, len(nodes) - 1)

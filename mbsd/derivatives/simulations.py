@@ -1,7 +1,7 @@
 """A simulation and how it changes with numbers of its mechanism: tangents along it, with jumps at events.
 
-The motion is simulated once more at the nodes of the tangents, the outputs and the middles between them, in stretches
-from event to event.
+The motion is simulated once more at the nodes of the tangents, the outputs and places between them, in stretches from
+event to event.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from mbsd.derivatives.linear_motion import NODES
 from mbsd.derivatives.mesh import first_edges, nodes_of, refined
 from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.sweeps import along_of, displaced
-from mbsd.derivatives.tangents import Tangent, combined
-from mbsd.derivatives.terms import Along, Left, terms_of
-from mbsd.derivatives.variants import SECOND, TINY, Variants, Variation, models_of
-from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.derivatives.tangents import Tangent, by_number
+from mbsd.derivatives.terms import Along, stacked, terms_of
+from mbsd.derivatives.variants import SECOND, TINY, Variation, models_of
+from mbsd.dynamics.prepare.prepare import prepare_dynamics, started
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import take_decided
@@ -31,16 +31,14 @@ from mbsd.model.contact import ContactKind
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
 
-ENOUGH = 1e-4
-"""Error of tangents of fourth order, as part of the largest, beyond which nodes come closer; the result is better."""
-SHARE = 0.5
-"""Part of it that one double step adds at most where the motion is smooth, so that the sixth order holds."""
+ENOUGH = 1e-5
+"""Error of tangents, as part of the largest, beyond which nodes come closer."""
 MOST = 6
 """So often at most."""
 MOST_STEPS = 20_000
-"""Double steps at most."""
+"""Steps at most."""
 STEPS_OF_METHOD = 0.5
-"""Double steps of the tangents for one of the integrator, at least."""
+"""Steps of the tangents for one of the integrator, at least."""
 
 Simulate = Callable[[np.ndarray], Solution]
 """Simulates at given times (T,), with rows before and after events."""
@@ -70,10 +68,10 @@ class SimulationTangents:
         for turn in range(MOST):
             nodes = nodes_of(edges, reached, met)
             whole = simulated(nodes if len(reached) == len(grid) else np.append(nodes, grid[-1]))
-            made, errors = self._made(whole)
+            rows = self._outputs(whole, grid)
+            made, errors = self._made(whole, rows)
             error = float(errors.sum())
-            smooth = error <= 5 * ENOUGH and errors.max() <= SHARE * ENOUGH
-            if error <= ENOUGH or smooth or len(errors) != len(edges) - 1 or turn == MOST - 1:
+            if error <= ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
                 break
             finer = refined(edges, errors, ENOUGH)
             if len(finer) > MOST_STEPS:
@@ -81,10 +79,8 @@ class SimulationTangents:
             edges = finer
         self.error = error
         """Estimate of the largest error of the tangents, as part of the largest."""
-        rows = self._outputs(whole, grid)
         self.sol = taken(whole, rows)
         self.along = along_of(self.sol)
-        made = made.take(rows)
         if self.redundant:
             made.lam[:] = np.nan  # joints that repeat others share their loads in many ways
         if self.ends is not None:  # the last output is the event that ended it, wherever that is
@@ -115,43 +111,42 @@ class SimulationTangents:
 
     # -- nodes -----------------------------------------------------------------------------------------------------
 
-    def _made(self, whole: Solution) -> tuple[Tangents, np.ndarray]:
-        """Tangents at all rows of the simulation, and the error that each double step adds."""
+    def _made(self, whole: Solution, rows: np.ndarray) -> tuple[Tangents, np.ndarray]:
+        """Tangents at some rows of the simulation, and the error that each step adds."""
         along = along_of(whole)
         along.held = whole.held
+        asked = np.zeros(len(whole.t), bool)
+        asked[rows] = True
         edges = [0, *(np.flatnonzero(np.diff(whole.t) <= 0.0) + 1).tolist(), len(whole.t)]
         q, v = self._begun()
         parts: list[Tangents] = []
         errors: list[np.ndarray] = []
         self.ends = None
         jumps: list[Jump] = jumps_of(self, whole, along, edges)
-        own = [self._by_number(variants, along) for variants in self.variants]
+        compact = self.terms.rows(along)[2]
+        own = stacked([by_number(self.terms, along, variants, compact) for variants in self.variants], np.stack)
         for k, (a, b) in enumerate(pairwise(edges)):
-            stretch = self._stretch(along.take(slice(a, b)))
+            at = slice(a, b)
+            stretch = self._stretch(along.take(at), asked[at])
             if (b - a) % NODES != 1:
                 raise SimulationError(
                     f"{self.m.name}: derivatives: events from t = {whole.t[a]:.9g} s on come at other times when they "
                     "are simulated again; take a smaller tolerance"
                 )
-            here = [left.each(lambda part, at=slice(a, b): part[at]) for left in own]
-            made, error = FreeTangents(self.terms, stretch, self.variants, here).carry(q, v)
-            errors.append(error)
-            parts.append(made)
+            here = own.each(lambda part, at=at: part[:, at])
+            made = FreeTangents(self.terms, stretch, self.variants, here).carry(q, v)
+            errors.append(made.errors)
+            parts.append(made.asked)
+            q, v = made.q, made.v
             if k < len(jumps):
-                q, v, times_moved = jumps[k].across(made.q[:, -1], made.v[:, -1])
+                q, v, times_moved = jumps[k].across(q, v)
                 if jumps[k].ends:
                     self.ends = times_moved
         return joined(parts), np.concatenate(errors)
 
-    @staticmethod
-    def _by_number(variants: Variants, along: Along) -> Left:
-        """How the equations change with a number at the held motion."""
-        left = [variant.terms.left(along) for variant in variants.variants]
-        return combined(left, variants.weights / variants.step)
-
-    def _stretch(self, along: Along) -> Stretch:
+    def _stretch(self, along: Along, asked: np.ndarray) -> Stretch:
         assert along.held is not None
-        return Stretch(along, self.stretch_rows(along, 0), self._sliding(along.held[0], along.lam))
+        return Stretch(along, self.stretch_rows(along, 0), self._sliding(along.held[0], along.lam), asked)
 
     def stretch_rows(self, along: Along, k: int) -> np.ndarray:
         """Independent rows among those that hold at node k."""
@@ -188,10 +183,10 @@ class SimulationTangents:
 
     def _closed(self, m: Model, packed: Packed) -> tuple[np.ndarray, np.ndarray]:
         """The start of a variant, whose phases its packing takes."""
-        ready = prepare_dynamics(m, *self.span)
-        take_decided(packed, ready.packed)
-        packed.specials.callbacks += ready.packed.specials.callbacks  # some of these numbers are their addresses
-        return ready.initial.q, ready.initial.v
+        decided, initial = started(m, *self.span)
+        take_decided(packed, decided)
+        packed.specials.callbacks += decided.specials.callbacks  # some of these numbers are their addresses
+        return initial.q, initial.v
 
     def _begun(self) -> tuple[np.ndarray, np.ndarray]:
         """(P, 3 nb) q' and v' at the start."""

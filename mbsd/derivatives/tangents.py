@@ -11,21 +11,22 @@ changes too. Source: Haug 1989, ch. 3; Golub, Pereyra, SIAM J. Numer. Anal. 10 (
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.terms import Along, Left, Terms, stacked
-from mbsd.derivatives.variants import FOURTH, STEP, Variants
+from mbsd.derivatives.beside import differ, displace
+from mbsd.derivatives.terms import Along, Change, Left, Terms, stacked
+from mbsd.derivatives.variants import FOURTH, STEP, Variant, Variants
 from mbsd.model.output_times import refuse_beyond_memory
 
 REACH = 1e-4
 """How far a difference along a direction goes: sizes, rad, and parts of the fastest speed."""
 LOOSE = 1e-9
 """Part of the largest singular value below which one is zero."""
-AT_ONCE = 6_000_000
-"""Numbers of Jacobians that are held at once."""
+AT_ONCE = 100_000
+"""Numbers of Jacobians that are made at once: as many as stay near the processor."""
 OPENED = 1e-6
 """Part of a change that no motion can follow, where redundant joints no longer fit."""
 
@@ -121,7 +122,7 @@ def tangent(terms: Terms, along: Along, inverse: Inverse, variants: Variants) ->
     if inverse.redundant:
         along = along.take(slice(None))
         along.spread = inverse.spread(along.lam)
-    own = _by_number(terms, along, variants)
+    own = by_number(terms, along, variants, inverse.compact)
     still = np.zeros_like(along.q)
     slight = OPENED * terms.packed.size / max(abs(variants.step) / STEP, 1e-300)
     q = inverse.solved(-own.position, name, slight)
@@ -134,15 +135,23 @@ def tangent(terms: Terms, along: Along, inverse: Inverse, variants: Variants) ->
     return Tangent(q, v, a, inverse.multipliers(load, share))
 
 
-def _by_number(terms: Terms, along: Along, variants: Variants) -> Left:
-    parts = []
-    for variant in variants.variants:
-        own = along
-        if along.approached is not None:
-            own = along.take(slice(None))
-            own.approached = variant.terms.approaches(along)
-        parts.append(variant.terms.left(own))
-    return combined(parts, variants.weights / variants.step)
+def by_number(terms: Terms, along: Along, variants: Variants, compact: np.ndarray) -> Left:
+    """How the equations change with a number at the held motion, whose compact J is (T, m, 6)."""
+    weights = variants.weights / variants.step
+    if along.spread is None and all(variant.same_places for variant in variants.variants):
+        rows = np.zeros((len(along.t), len(terms.packed.ws.phi)))
+        pushed = [_pushed(variant.terms, _as_met(along, variant), compact) for variant in variants.variants]
+        return Left(rows, rows, rows, np.sum([w * part for w, part in zip(weights, pushed, strict=True)], axis=0), None)
+    return combined([variant.terms.left(_as_met(along, variant)) for variant in variants.variants], weights)
+
+
+def _pushed(terms: Terms, along: Along, compact: np.ndarray) -> np.ndarray:
+    return terms.forces(along, compact) + (terms.weight - terms.inertia * along.a)
+
+
+def _as_met(along: Along, variant: Variant) -> Along:
+    """The motion, with contacts as a variant meets them."""
+    return along if along.approached is None else replace(along, approached=variant.terms.approaches(along))
 
 
 def combined(parts: list[Left], weights: np.ndarray) -> Left:
@@ -162,12 +171,9 @@ def along_direction(
     step = steps_along(terms, along, q, v, reach)
     offsets, weights = order
     if along.approached is None:
-        many = along.tiled(len(offsets))
-        shifts = (offsets[:, None] * step).ravel()[:, None]
-        tiled = [np.concatenate([part] * len(offsets)) for part in (q, v)]
-        left = terms.left(
-            many.moved(many.q + shifts * tiled[0], many.v + shifts * tiled[1]),
-        )
+        shifts, width = offsets[:, None, None] * step[:, None], q.shape[1]
+        moved_q, moved_v = along.q + shifts * q, along.v + shifts * v
+        left = terms.left(along, moved_q.reshape(-1, width), moved_v.reshape(-1, width))
         shape = len(offsets), len(along.t), -1
         parts = [left.each(lambda part, k=k: part.reshape(shape)[k]) for k in range(len(offsets))]
     else:
@@ -179,31 +185,38 @@ def along_direction(
     return combined(parts, weights[:, None, None] / step[:, None])
 
 
-def along_directions(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: float) -> Left:
-    """The same along D directions (D, T, 3 nb) at once, by central differences of second order; (D, T, ...) each."""
-    directions, count = len(q), len(along.t)
-    at_once = max(1, AT_ONCE // (count * max(1, 6 * len(terms.packed.ws.phi))))
-    if directions > at_once:
-        parts = [
-            along_directions(terms, along, q[k : k + at_once], v[k : k + at_once], reach)
-            for k in range(0, directions, at_once)
-        ]
-        return stacked(parts, np.concatenate)
-    step = np.stack([steps_along(terms, along, dq, dv, reach) for dq, dv in zip(q, v, strict=True)])[..., None]
-    many = along.tiled(2 * directions)
-    shift_q, shift_v = ((step * part).reshape(directions * count, -1) for part in (q, v))
-    moved = many.moved(many.q + np.concatenate([shift_q, -shift_q]), many.v + np.concatenate([shift_v, -shift_v]))
+def along_directions(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: float) -> Change:
+    """The same along D directions (D, T, 3 nb) at once, by central differences of second order."""
+    packed, (directions, count, width) = terms.packed, q.shape
+    rows = len(packed.ws.phi)
+    out = Change(*(np.zeros((directions, count, size)) for size in (rows, rows, width)))
+    some = np.flatnonzero(q.any(axis=(1, 2)) | v.any(axis=(1, 2)))
+    at_once = max(1, AT_ONCE // (2 * count * max(1, 6 * rows)))
+    scale, fastest = _scales(terms, along)
+    for first in range(0, len(some), at_once):
+        at = some[first : first + at_once]
+        steps, (beside_q, beside_v) = np.empty((len(at), count)), np.empty((2, 2, len(at), count, width))
+        displace(along.q, along.v, q[at], v[at], scale, fastest, reach, beside_q, beside_v, steps)
+        beside = along.tiled(2 * len(at)).moved(beside_q.reshape(-1, width), beside_v.reshape(-1, width))
+        _, gamma, compact = terms.rows(beside)
+        parts = [np.empty((len(at), count, size)) for size in (rows, rows, width)]
+        differ(
+            packed.system.row_body, steps, beside.v, along.a, along.lam, compact, gamma, terms.forces(beside, compact),
+            *parts,
+        )  # fmt: skip
+        for total, part in zip(out, parts, strict=True):
+            total[at] = part
+    return out
 
-    def difference(part: np.ndarray) -> np.ndarray:
-        ahead, behind = part.reshape(2, directions, count, -1)
-        return (ahead - behind) / (2 * step)
 
-    return terms.left(moved).each(difference)
+def _scales(terms: Terms, along: Along) -> tuple[np.ndarray, float]:
+    """(3 nb,) sizes of coordinates, and the fastest speed in them."""
+    scale = np.concatenate([np.ones(3), terms.packed.column_scale()])
+    return scale, float(np.abs(along.v / scale).max(initial=0.0)) or 1.0
 
 
 def steps_along(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: float) -> np.ndarray:
     """(T,) steps of the direction q, v (T, 3 nb) that go as far as ``reach``."""
-    scale = np.concatenate([np.ones(3), terms.packed.column_scale()])
-    fastest = float(np.abs(along.v / scale).max(initial=0.0)) or 1.0
+    scale, fastest = _scales(terms, along)
     far = np.maximum(np.abs(q / scale).max(axis=1), np.abs(v / scale).max(axis=1) / fastest)
     return reach / np.where(far > 0.0, far, 1.0)

@@ -21,9 +21,10 @@ from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed
-from mbsd.arrays.reactions import generalised, times_compact
+from mbsd.arrays.reactions import times_compact
 from mbsd.dynamics.rows.joint_sticks import standing
 from mbsd.equations.laws import Laws
+from mbsd.equations.left_over import leave
 from mbsd.equations.loads import Loads
 
 
@@ -87,6 +88,16 @@ class Left(NamedTuple):
         )  # fmt: skip
 
 
+class Change(NamedTuple):
+    """How it changes along D directions of the motion."""
+
+    velocity: np.ndarray
+    """(D, T, m)"""
+    acceleration: np.ndarray
+    load: np.ndarray
+    """(D, T, 3 nb)"""
+
+
 def stacked(lefts: Sequence[Left], of: Callable[[list[np.ndarray]], np.ndarray]) -> Left:
     """What ``of`` makes of each part of all of them."""
     spread = [left.spread for left in lefts if left.spread is not None]
@@ -108,26 +119,33 @@ class Terms:
     weight: np.ndarray
     """(3 nb,)"""
 
-    def left(self, along: Along) -> Left:
-        """Along a motion."""
+    def left(self, along: Along, q: np.ndarray | None = None, v: np.ndarray | None = None) -> Left:
+        """Along a motion; or at states q, v (D T, 3 nb) beside it, where a, lam and all else are those of the motion."""
         packed = self.packed
+        beside = along if q is None or v is None else along.tiled(len(q) // len(along.t)).moved(q, v)
         drives = packed.drives(along.t)
-        phi, gamma, compact = self.rows(along, drives)
-        rate = times_compact(packed, compact, along.v)
-        rate[:, packed.driver_rows : packed.contact_rows] -= drives[:, 1:, 1]
-        bend = times_compact(packed, compact, along.a) - gamma
-        load = self.applied(along) + self.weight - self.inertia * along.a
-        load -= generalised(packed, compact, along.lam)
+        phi, bend, compact = self.rows(beside, np.tile(drives, (len(beside.t) // len(along.t), 1, 1)))
+        rate, load = np.empty_like(phi), self.forces(beside, compact)
+        leave(
+            packed.system.row_body, packed.driver_rows, self.inertia, self.weight, drives, compact,
+            np.ascontiguousarray(beside.v), np.ascontiguousarray(along.a), np.ascontiguousarray(along.lam),
+            rate, bend, load,
+        )  # fmt: skip
+        spread = None if along.spread is None else times_compact(packed, compact, beside.spread)
+        return Left(phi, rate, bend, load, spread)
+
+    def forces(self, along: Along, compact: np.ndarray) -> np.ndarray:
+        """(T, 3 nb) Q + F, where compact J (T, m, 6) is known."""
+        load = np.ascontiguousarray(self.applied(along))
         if self.loads is not None and len(self.loads.friction):
             load += self.friction(along, compact, along.lam)
-        spread = None if along.spread is None else times_compact(packed, compact, along.spread)
-        return Left(phi, rate, bend, load, spread)
+        return load
 
     def rows(self, along: Along, drives: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Phi and gamma (T, m), compact J (T, m, 6)."""
         packed, count, rows = self.packed, len(along.t), len(self.packed.ws.phi)
         phi, gamma = np.zeros((2, count, rows))
-        compact = np.zeros((count, rows, 6))
+        compact = np.empty((count, rows, 6))
         q, v = np.ascontiguousarray(along.q), np.ascontiguousarray(along.v)
         tabulate_along(packed, packed.drives(along.t) if drives is None else drives, q, v, phi, compact, gamma)
         return phi, gamma, compact

@@ -29,7 +29,7 @@ from mbsd.dynamics.rows.switches import Switches, friction_rows
 from mbsd.dynamics.start.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
-from mbsd.kinematics.pose.initial import consistent
+from mbsd.kinematics.pose.initial import Initial, consistent
 from mbsd.kinematics.pose.mobility import joint_mobility, rows_at
 from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
@@ -62,7 +62,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     refuse_bad_laws(packed, start, end)
     inertia, lifted, metric = _inertias(packed)
     large = packed.coordinates > MANY_COORDINATES
-    initial = (consistent_large if large else consistent)(m, packed, start, _inverse(metric))
+    initial = _initial(m, packed, start, metric)
     kept, mobility = independent_large(packed, start, initial.q) if large else _rows(packed, initial.q)
     still = _still(packed, mobility) & (not m.events)  # their actions may release a joint
     per_size = 1.0 / np.concatenate([np.ones(3), packed.column_scale()])
@@ -124,6 +124,18 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     if packed.states:
         take_start_states(ready)
     return ready
+
+
+def started(m: Model, start: float, end: float) -> tuple[Packed, Initial]:
+    """A model that was prepared before, with other numbers: as arrays without contacts, and its start alone."""
+    packed = pack(m)
+    packed.settle_laws(start, end)
+    return packed, _initial(m, packed, start, _inertias(packed)[2])
+
+
+def _initial(m: Model, packed: Packed, start: float, metric: np.ndarray) -> Initial:
+    large = packed.coordinates > MANY_COORDINATES
+    return (consistent_large if large else consistent)(m, packed, start, _inverse(metric))
 
 
 _SEQUENCES: Kept[Schur] = Kept()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], n
         raise ModelError(
             f"{m.name}: of is {shown(given)}; give names of quantities, or labels and quantities: {{'x': 'P.x'}}"
         )
-    known = list(columns(sol))
+    known = list(columns(taken(sol, np.arange(1))))
     return {str(label): _function(m, str(label), each, sol, known) for label, each in of.items()}
 
 
@@ -36,6 +37,14 @@ def needs_models(of: Any) -> bool:
     """Whether a function of the user may ask the mechanism of a solution."""
     given = of.values() if isinstance(of, Mapping) else of if isinstance(of, list | tuple) else [of]
     return any(callable(each) for each in given)
+
+
+def needs_reactions(m: Model, of: Any) -> bool:
+    """Whether anything may ask for the reactions of joints."""
+    given = of.values() if isinstance(of, Mapping) else of if isinstance(of, list | tuple) else [of]
+    names = [[each] if isinstance(each, str) else getattr(each, "quantities", [""]) for each in given]
+    things = {name.rpartition(".")[0] for own in names for name in own}
+    return not things <= {*m.bodies, *m.traces, *m.drivers} or bool(things & {*m.joints})
 
 
 def _function(m: Model, label: str, given: Any, sol: Solution, known: list[str]) -> Callable[[Solution], np.ndarray]:
@@ -91,3 +100,11 @@ def _numbers(m: Model, label: str, given: Callable[[Solution], Any], sol: Soluti
     if isinstance(value, str) or value is None or not np.isfinite(out).all():
         raise ModelError(f"{m.name}: '{label}' gives {shown(value)}; it must give a number, or an array of them")
     return out
+
+
+def taken(sol: Solution, rows: np.ndarray) -> Solution:
+    """Some rows of a solution."""
+    keys = ("t", "q", "v", "a", "wrench", "lam", "drives", "work", "held", "law_times", "approached", "states")
+    parts = {key: getattr(sol, key)[rows] for key in keys if getattr(sol, key) is not None}
+    margin = sol.margin if callable(sol.margin) else sol.margin[rows]
+    return replace(sol, margin=margin, between=None, **parts)

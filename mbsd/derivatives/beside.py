@@ -8,41 +8,43 @@ from mbsd.compiling.jit import kernel
 
 
 @kernel
-def displace(q, v, directions_q, directions_v, scale, fastest, reach, out_q, out_v, steps):
-    """Fill out_q, out_v (2, D, T, 3 nb) with the states ahead of and behind q, v (T, 3 nb) along D directions.
+def displace(q, v, directions_q, directions_v, some, scale, fastest, reach, out_q, out_v, steps):
+    """Fill out_q, out_v (2, S, T, 3 nb) with states ahead of and behind q, v (T, 3 nb) along ``some`` (S,) directions.
 
-    They go as far as ``reach``, in parts of ``scale`` (3 nb,) and of the speed ``fastest``; steps (D, T) take by how
-    many times the directions.
+    Directions are (D, T, 3 nb). States go as far as ``reach``, in parts of ``scale`` (3 nb,) and of the speed
+    ``fastest``; steps (S, T) take by how many times the directions.
     """
-    for d in range(directions_q.shape[0]):
+    for d in range(some.shape[0]):
+        own = some[d]
         for k in range(q.shape[0]):
             far = 0.0
             for c in range(3, q.shape[1]):
-                far = max(far, abs(directions_q[d, k, c]) / scale[c])
-                far = max(far, abs(directions_v[d, k, c]) / scale[c] / fastest)
+                far = max(far, abs(directions_q[own, k, c]) / scale[c])
+                far = max(far, abs(directions_v[own, k, c]) / scale[c] / fastest)
             step = reach / far if far > 0.0 else reach
             steps[d, k] = step
             for c in range(q.shape[1]):
-                out_q[0, d, k, c] = q[k, c] + step * directions_q[d, k, c]
-                out_q[1, d, k, c] = q[k, c] - step * directions_q[d, k, c]
-                out_v[0, d, k, c] = v[k, c] + step * directions_v[d, k, c]
-                out_v[1, d, k, c] = v[k, c] - step * directions_v[d, k, c]
+                out_q[0, d, k, c] = q[k, c] + step * directions_q[own, k, c]
+                out_q[1, d, k, c] = q[k, c] - step * directions_q[own, k, c]
+                out_v[0, d, k, c] = v[k, c] + step * directions_v[own, k, c]
+                out_v[1, d, k, c] = v[k, c] - step * directions_v[own, k, c]
 
 
 @kernel
-def differ(row_body, steps, v, a, lam, compact, gamma, force, velocity, acceleration, load):
-    """Fill velocity, acceleration (D, T, m) and load (D, T, 3 nb) with changes of J v - nu, J a - gamma and Q - J^T lam.
+def differ(row_body, steps, some, v, a, lam, compact, gamma, force, velocity, acceleration, load):
+    """Fill ``some`` of velocity, acceleration (D, T, m), load (D, T, 3 nb): of J v - nu, J a - gamma, Q - J^T lam.
 
     v, gamma, force and compact J are of the states of ``displace``, one after the other; a and lam (T, ...) are held.
     """
     times = a.shape[0]
     behind = steps.shape[0] * times
     for d in range(steps.shape[0]):
+        own = some[d]
         for k in range(times):
             s = d * times + k
             half = 0.5 / steps[d, k]
             for c in range(load.shape[2]):
-                load[d, k, c] = half * (force[s, c] - force[behind + s, c])
+                load[own, k, c] = half * (force[s, c] - force[behind + s, c])
             for r in range(row_body.shape[0]):
                 rate = 0.0
                 bend = gamma[behind + s, r] - gamma[s, r]
@@ -55,9 +57,9 @@ def differ(row_body, steps, v, a, lam, compact, gamma, force, velocity, accelera
                             change = entry - compact[behind + s, r, 3 * side + c]
                             rate += entry * v[s, at + c] - (entry - change) * v[behind + s, at + c]
                             bend += change * a[k, at + c]
-                            load[d, k, at + c] -= change * push
-                velocity[d, k, r] = half * rate
-                acceleration[d, k, r] = half * bend
+                            load[own, k, at + c] -= change * push
+                velocity[own, k, r] = half * rate
+                acceleration[own, k, r] = half * bend
 
 
 @kernel
@@ -105,9 +107,10 @@ def accelerate_along(fixed, free, inertia, rows, bend, load, mass, a, lam):
 
 
 @kernel
-def close(fixed, rows, open_, out):
-    """Fill out (D, T, 3 + n) with x of J x = -open_ (D, T, m), J in ``rows``, whose part along the basis is zero."""
-    for d in range(open_.shape[0]):
+def close(fixed, rows, some, open_, out):
+    """Fill ``some`` of out (D, T, 3 + n) with x of J x = -open_ (D, T, m), J in ``rows``, with none of the basis."""
+    for i in range(some.shape[0]):
+        d = some[i]
         for k in range(fixed.shape[0]):
             for c in range(fixed.shape[1]):
                 value = 0.0
@@ -118,7 +121,7 @@ def close(fixed, rows, open_, out):
 
 @kernel
 def combine(y, at, parts, out):
-    """Fill out (P, R, n) with parts (2 f + P, T, n) at nodes ``at`` (R,): those of P, and y (T, 2 f, P) of the first."""
+    """Fill out (P, R, n) with parts (2 f + P, T, n) at nodes ``at`` (R,): those of P, and y (T, 2 f, P) others."""
     first = y.shape[1]
     for i in range(at.shape[0]):
         k = at[i]

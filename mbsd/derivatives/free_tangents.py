@@ -16,7 +16,7 @@ import numpy as np
 
 from mbsd.derivatives.beside import accelerate_along, close, combine
 from mbsd.derivatives.linear_motion import NODES, carried
-from mbsd.derivatives.tangents import LOOSE, along_directions, refuse_large
+from mbsd.derivatives.tangents import LOOSE, along_directions, differences, refuse_large
 from mbsd.derivatives.terms import Along, Change, Left, Terms
 from mbsd.derivatives.variants import TINY, Variants
 
@@ -100,7 +100,7 @@ class FreeTangents:
         return Carried(joined([part.asked for part in parts]), q, v, np.concatenate([part.errors for part in parts]))
 
     def _basis(self, first: int) -> tuple[np.ndarray, np.ndarray]:
-        """Z (f, n) at node ``first``, and inverses of [J; Z] from there to the last node, whole steps away, it serves."""
+        """Z (f, n) at node ``first``, and inverses of [J; Z] up to the last node, whole steps on, that it serves."""
         scaled, count = self.held[first] * self.scale, len(self.along.t) - first
         if not len(scaled):
             return np.diag(1.0 / self.scale), np.broadcast_to(np.diag(self.scale), (count, *2 * self.scale.shape))
@@ -166,9 +166,8 @@ class _Piece:
         f, numbers, count = self.f, len(self.every), len(self.along.t)
         positions, velocities = np.zeros((2, 2 * f + numbers, count, 3 + self.n))
         positions[:f, :, 3:] = velocities[f : 2 * f, :, 3:] = np.moveaxis(self.free, 2, 0)
-        self._by_numbers(q, positions[2 * f :])
-        self._speeds(positions, velocities)
-        change = self._change(positions, velocities)
+        self._speeds(positions, velocities, self._by_numbers(q, positions[2 * f :]))
+        change = along_directions(self.terms, self.along, positions, velocities, REACH)
         bend, load = change.acceleration, change.load
         bend[2 * f :] += self.own.acceleration
         load[2 * f :] += self.own.load
@@ -202,29 +201,29 @@ class _Piece:
         numbers = np.array([abs(variants.step) / TINY for variants in self.every])
         return SLIGHT * np.repeat([1.0, fastest], self.f)[:, None] / numbers
 
-    def _change(self, q: np.ndarray, v: np.ndarray) -> Change:
-        """Along directions (D, T, 3 nb)."""
-        return along_directions(self.terms, self.along, q, v, REACH)
+    def _by_numbers(self, begun: np.ndarray, out: np.ndarray) -> np.ndarray:
+        """Fill out (P, T, 3 nb) with q' by numbers with s at zero; ``begun`` (P, 3 nb) is q' at the first node.
 
-    def _by_numbers(self, begun: np.ndarray, out: np.ndarray) -> None:
-        """Fill out (P, T, 3 nb) with q' by numbers with s at zero; ``begun`` (P, 3 nb) is q' at the first node."""
-        held = np.zeros(self.own.position.shape)
-        held[..., self.rows] = (begun[:, 3:] @ self.held[0].T + self.own.position[:, 0, self.rows])[:, None]
+        Returns the numbers that change places or speeds.
+        """
+        position, first = self.own.position, np.zeros((len(out), 1, self.jac.shape[1]))
+        first[:, 0, self.rows] = begun[:, 3:] @ self.held[0].T + position[:, 0, self.rows]
+        some = np.flatnonzero(first.any(axis=(1, 2)) | position.any(axis=(1, 2)) | self.own.velocity.any(axis=(1, 2)))
         # of what sticks: where it stuck changes too
-        close(self.fixed, self.rows, self.own.position - held, out)
+        close(self.fixed, self.rows, some, position - first, out)
+        return some
 
-    def _speeds(self, positions: np.ndarray, out: np.ndarray) -> None:
-        """Fill out (2 f + P, T, 3 nb) with v' that belongs to positions, and for P to the numbers: Z v' = 0."""
-        f = self.f
-        some = [*range(f), *range(2 * f, len(out))]
-        opened = self._change(positions[some], np.zeros_like(positions[some])).velocity
-        opened[f:] += self.own.velocity
-        made = np.zeros_like(positions[some])
-        close(self.fixed, self.rows, opened, made)
-        out[some] = made
+    def _speeds(self, positions: np.ndarray, out: np.ndarray, numbers: np.ndarray) -> None:
+        """Fill out (2 f + P, T, 3 nb) with v' that belongs to positions, and to ``numbers``: Z v' = 0."""
+        some, rows = np.concatenate([np.arange(self.f), 2 * self.f + numbers]), self.jac.shape[1]
+        change = Change(*(np.zeros((len(out), len(self.along.t), size)) for size in (rows, rows, 3 + self.n)))
+        still = np.zeros_like(positions)
+        differences(self.terms, self.along, positions, still, REACH, some, change, forces=False)
+        change.velocity[2 * self.f :] += self.own.velocity
+        close(self.fixed, self.rows, some, change.velocity, out)
 
     def _accelerations(self, bend: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """a' (D, T, n) and lam' (D, T, m) where the equations change by ``bend`` (D, T, m) and ``load`` (D, T, 3 nb)."""
+        """a' (D, T, n), lam' (D, T, m) where the equations change by ``bend`` (D, T, m) and ``load`` (D, T, 3 nb)."""
         lam, a = np.zeros((*load.shape[:2], self.jac.shape[1])), np.empty((*load.shape[:2], self.n))
         if self.effort is None:
             scratch = np.zeros((self.f + 1, max(1, self.f)))

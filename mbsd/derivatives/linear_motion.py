@@ -15,7 +15,7 @@ from mbsd.compiling.jit import kernel
 NODES = 4
 """Nodes of a step, without its end."""
 PLACES = np.array([0.0, 0.5 - np.sqrt(21.0) / 14, 0.5, 0.5 + np.sqrt(21.0) / 14, 1.0])
-"""Of the nodes, as parts of a step."""
+"""Nodes, as parts of a step."""
 _POWERS = np.linalg.inv(np.vander(PLACES, increasing=True))
 """(power, node) of the polynomials that are 1 at a node and 0 at the others."""
 WEIGHTS = (PLACES[1:, None] ** np.arange(1, 6) / np.arange(1, 6)) @ _POWERS

@@ -10,28 +10,60 @@ from mbsd.derivatives.linear_motion import NODES, PLACES
 
 SAME = 1e-9
 """Part of their length within which two gaps between outputs are equal."""
+EVENLY = np.linalg.inv(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, NODES + 1), NODES))[[2, NODES]]
+"""(2, 5) what makes Legendre's second and fourth coefficients of values at even times."""
+SMOOTH = 2.5e-8
+"""What Legendre's eighth coefficient of the motion itself may be in a step."""
+MOST_LONGER = 2.5
+"""So many times as long as where it is not smooth."""
 ROUNDING = 1e-12
 """Part of the duration below which two times are one."""
 
 
-def first_edges(grid: np.ndarray, met: np.ndarray, longest: float) -> np.ndarray:
+def longest_steps(t: np.ndarray, motion: np.ndarray, longest: float) -> np.ndarray:
+    """(T - 1,) how long steps may be between the times of a motion (T, k): ``longest`` (s), more where it is smooth.
+
+    ``motion`` has parts of its largest values. Five times with equal gaps tell how fast Legendre's coefficients fall.
+    """
+    gaps, windows = np.diff(t), len(t) - NODES
+    out = np.full(len(gaps), longest)
+    if windows < 1:
+        return out
+    at = np.arange(windows)[:, None] + np.arange(NODES + 1)
+    second, fourth = (np.abs(np.einsum("n,wnk->wk", row, motion[at])).max(axis=1) for row in EVENLY)
+    fall = np.minimum(fourth / np.maximum(second, 1e-300), 1.0)
+    step = (t[NODES:] - t[:windows]) * (SMOOTH / np.maximum(fourth * fall**2, 1e-300)) ** (1 / 9)
+    around = gaps[at[:, :NODES]]
+    even = (np.ptp(around, axis=1) <= 1e-6 * around.max(axis=1)) & (around.min(axis=1) > 0.0)
+    smooth = np.pad(np.where(even, step, 0.0), NODES - 1, mode="edge")
+    least = np.min([smooth[k : k + len(gaps)] for k in range(NODES)], axis=0)
+    return np.clip(least, longest, MOST_LONGER * longest)
+
+
+def first_edges(grid: np.ndarray, met: np.ndarray, t: np.ndarray, longest: np.ndarray) -> np.ndarray:
     """(d + 1,) edges of steps from outputs ``grid`` and times of events that were ``met`` (s).
 
-    None is longer than ``longest`` (s). Two equal gaps of outputs make one step, whose middle is an output.
+    None is longer than ``longest`` (T - 1,) (s) between times t (T,). Two equal gaps of outputs make one step, whose
+    middle is an output.
     """
     times = np.unique(np.concatenate([grid, met]))
     times = times[np.concatenate([[True], np.diff(times) > ROUNDING * (times[-1] - times[0])])]
-    events = set(met.tolist())
+    gaps, middles = np.diff(times), 0.5 * (times[1:] + times[:-1])
+    allowed = longest[np.clip(np.searchsorted(t, middles) - 1, 0, len(longest) - 1)]
+    parts = np.maximum(1, np.ceil(gaps / allowed - SAME)).astype(int)
+    event = np.isin(times[1:-1], met)
+    pair = (
+        (np.abs(np.diff(gaps)) <= SAME * gaps[:-1]) & (2 * gaps[:-1] <= np.minimum(allowed[:-1], allowed[1:])) & ~event
+    )
     edges, k = [float(times[0])], 0
-    while k + 1 < len(times):
-        gap = times[k + 1] - times[k]
-        pair = k + 2 < len(times) and abs(times[k + 2] - times[k + 1] - gap) <= SAME * gap
-        if pair and 2 * gap <= longest and not any(abs(times[k + 1] - event) < SAME * gap for event in events):
-            k += 2
-            edges.append(float(times[k]))
-            continue
-        parts = max(1, int(np.ceil(gap / longest - SAME)))
-        edges += np.linspace(times[k], times[k + 1], parts + 1)[1:].tolist()
+    while k < len(gaps):
+        if k < len(pair) and pair[k]:
+            k += 1
+            edges.append(float(times[k + 1]))
+        elif parts[k] == 1:
+            edges.append(float(times[k + 1]))
+        else:
+            edges += np.linspace(times[k], times[k + 1], parts[k] + 1)[1:].tolist()
         k += 1
     return np.array(edges)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import names_in, no_such
-from mbsd.derivatives.asked import Wanted, needs_models, wanted
+from mbsd.derivatives.asked import Wanted, needs_models, needs_reactions, wanted
 from mbsd.derivatives.numbers import Number, numbers_named
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.sweeps import SweepTangents
@@ -29,8 +29,8 @@ class Tangents(Protocol):
 
     sol: Solution
 
-    def moved(self, k: int) -> list[Solution]:
-        """The motion at other values of number k."""
+    def moved(self, k: int, reactions: bool = True) -> list[Solution]:
+        """The motion at other values of number k; without ``reactions`` those of joints are left out."""
         ...
 
     def weights(self, k: int) -> np.ndarray:
@@ -88,15 +88,16 @@ class Sensitivities:
 
 
 def slopes_of(
-    tangents: Tangents, numbers: Sequence[Number], functions: Wanted, models: bool = False
+    tangents: Tangents, numbers: Sequence[Number], functions: Wanted, models: bool = False, reactions: bool = True
 ) -> dict[str, np.ndarray]:
     """By label, derivatives (..., P) by all numbers of what functions of a solution give.
 
-    With ``models`` the solutions have mechanisms with the other numbers, for functions that ask them.
+    With ``models`` the solutions have mechanisms with the other numbers, for functions that ask them; without
+    ``reactions`` those of joints are left out.
     """
     columns: dict[str, list[np.ndarray]] = {label: [] for label in functions}
     for k, number in enumerate(numbers):
-        moved, weights = tangents.moved(k), tangents.weights(k)
+        moved, weights = tangents.moved(k, reactions), tangents.weights(k)
         if models:
             moved = [replace(sol, mechanism=m) for sol, m in zip(moved, tangents.models(k, number), strict=True)]
         for label, function in functions.items():
@@ -135,7 +136,7 @@ def sensitivities(
         tangents.sol.t,
         tuple(number.name for number in numbers),
         {label: np.asarray(function(tangents.sol)) for label, function in functions.items()},
-        slopes_of(tangents, numbers, functions, needs_models(of)),
+        slopes_of(tangents, numbers, functions, needs_models(of), needs_reactions(m, of)),
         tangents.sol,
     )
 

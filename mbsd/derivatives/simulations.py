@@ -7,17 +7,17 @@ event to event.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError, SimulationError
+from mbsd.derivatives.asked import taken
 from mbsd.derivatives.free_tangents import FreeTangents, Stretch, Tangents, joined
 from mbsd.derivatives.jumps import Jump, jumps_of
 from mbsd.derivatives.linear_motion import NODES
-from mbsd.derivatives.mesh import first_edges, nodes_of, refined
+from mbsd.derivatives.mesh import first_edges, longest_steps, nodes_of, refined
 from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.sweeps import along_of, displaced
 from mbsd.derivatives.tangents import Tangent, by_number
@@ -31,8 +31,10 @@ from mbsd.model.contact import ContactKind
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
 
-ENOUGH = 1e-5
+ENOUGH = 1.2e-5
 """Error of tangents, as part of the largest, beyond which nodes come closer."""
+AIMED = 2e-6
+"""What they then come to."""
 MOST = 6
 """So often at most."""
 MOST_STEPS = 20_000
@@ -64,7 +66,7 @@ class SimulationTangents:
         reached = grid[grid <= first.t[-1]]
         met = np.append(first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]])
         longest = (first.t[-1] - first.t[0]) / max(1.0, STEPS_OF_METHOD * first.stats.steps)
-        edges = first_edges(reached, met, longest)
+        edges = first_edges(reached, met, first.t, longest_steps(first.t, _parts(first), longest))
         for turn in range(MOST):
             nodes = nodes_of(edges, reached, met)
             whole = simulated(nodes if len(reached) == len(grid) else np.append(nodes, grid[-1]))
@@ -73,7 +75,7 @@ class SimulationTangents:
             error = float(errors.sum())
             if error <= ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
                 break
-            finer = refined(edges, errors, ENOUGH)
+            finer = refined(edges, errors, AIMED)
             if len(finer) > MOST_STEPS:
                 break
             edges = finer
@@ -88,17 +90,14 @@ class SimulationTangents:
             made.v[:, -1] += self.along.a[-1] * self.ends[:, None]
         self.tangents = [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
 
-    def moved(self, k: int) -> list[Solution]:
+    def moved(self, k: int, reactions: bool = True) -> list[Solution]:
         """The simulation at other values of number k, along its tangent: one for each variant."""
         out = []
         for variant in self.variants[k].variants:
-            h = variant.offset * self.variants[k].step
-            sol = displaced(self.sol, self.along, self.tangents[k], variant, h)
+            h, t = variant.offset * self.variants[k].step, self.sol.t
             if self.ends is not None:
-                t = self.sol.t.copy()
-                t[-1] += h * self.ends[k]
-                sol = replace(sol, t=t)
-            out.append(replace(sol, work=None))
+                t = np.append(t[:-1], t[-1] + h * self.ends[k])
+            out.append(displaced(self.sol, self.along, self.tangents[k], variant, h, reactions, t=t, work=None))
         return out
 
     def weights(self, k: int) -> np.ndarray:
@@ -206,12 +205,11 @@ class SimulationTangents:
         return np.append(rows, len(whole.t) - 1) if ended and rows[-1] < len(whole.t) - 1 else rows
 
 
-def taken(sol: Solution, rows: np.ndarray) -> Solution:
-    """Some rows of a solution."""
-    keys = ("t", "q", "v", "a", "wrench", "lam", "drives", "work", "held", "law_times", "approached", "states")
-    parts = {key: getattr(sol, key)[rows] for key in keys if getattr(sol, key) is not None}
-    margin = sol.margin if callable(sol.margin) else sol.margin[rows]
-    return replace(sol, margin=margin, between=None, **parts)
+def _parts(sol: Solution) -> np.ndarray:
+    """(T, 2 n) speeds and accelerations, as parts of their largest."""
+    motion = np.concatenate([part.reshape(len(sol.t), -1)[:, 3:] for part in (sol.v, sol.a)], axis=1)
+    largest = np.abs(motion).max(axis=0)
+    return motion / np.where(largest > 1e-9 * largest.max(initial=1e-300), largest, np.inf)
 
 
 def _refuse(sol: Solution) -> None:

@@ -54,10 +54,11 @@ class SweepTangents:
             self.variants.append(variants)
             self.tangents.append(tangent_of)
 
-    def moved(self, k: int) -> list[Solution]:
+    def moved(self, k: int, reactions: bool = True) -> list[Solution]:
         """The sweep at other values of number k, along its tangent: one for each variant."""
+        step = self.variants[k].step
         return [
-            displaced(self.sol, self.along, self.tangents[k], variant, variant.offset * self.variants[k].step)
+            displaced(self.sol, self.along, self.tangents[k], variant, variant.offset * step, reactions)
             for variant in self.variants[k].variants
         ]
 
@@ -83,17 +84,18 @@ class SweepTangents:
         return variants.slope(states)
 
 
-def displaced(sol: Solution, along: Along, tangent_of: Tangent, variant: Variant, h: float) -> Solution:
-    """The motion as its tangent has it at another value of a number, h away."""
+def displaced(
+    sol: Solution, along: Along, tangent_of: Tangent, variant: Variant, h: float, reactions: bool, **more: Any
+) -> Solution:
+    """The motion as its tangent has it at another value of a number, h away; without ``reactions`` those are NaN."""
     packed, shape = variant.terms.packed, (len(sol.t), -1, 3)
     q, v, a = along.q + h * tangent_of.q, along.v + h * tangent_of.v, along.a + h * tangent_of.a
     lam = along.lam + h * tangent_of.lam
-    moved = Along(along.t, q, v, a, lam)
-    compact = variant.terms.rows(moved)[2]
     states = None if along.states is None or tangent_of.states is None else along.states + h * tangent_of.states
-    more: dict[str, Any] = {}
+    moved, drives = Along(along.t, q, v, a, lam), packed.drives(along.t)
     if along.approached is not None:
         more["approached"] = variant.terms.approaches(moved)
+    wrench = np.broadcast_to(np.nan, sol.wrench.shape)
     return replace(
         sol,
         packed=packed,
@@ -101,8 +103,8 @@ def displaced(sol: Solution, along: Along, tangent_of: Tangent, variant: Variant
         v=v.reshape(shape),
         a=a.reshape(shape),
         lam=lam,
-        wrench=wrenches(packed, compact, q, lam),
-        drives=packed.drives(along.t),
+        wrench=wrenches(packed, variant.terms.rows(moved, drives)[2], q, lam) if reactions else wrench,
+        drives=drives,
         traces=variant.traces,
         states=states,
         span=sol.span or (float(sol.t[0]), float(sol.t[-1])),

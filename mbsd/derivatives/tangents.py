@@ -187,26 +187,28 @@ def along_direction(
 
 def along_directions(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: float) -> Change:
     """The same along D directions (D, T, 3 nb) at once, by central differences of second order."""
-    packed, (directions, count, width) = terms.packed, q.shape
-    rows = len(packed.ws.phi)
-    out = Change(*(np.zeros((directions, count, size)) for size in (rows, rows, width)))
-    some = np.flatnonzero(q.any(axis=(1, 2)) | v.any(axis=(1, 2)))
+    out = Change(*(np.zeros((len(q), len(along.t), size)) for size in (*[len(terms.packed.ws.phi)] * 2, q.shape[2])))
+    differences(terms, along, q, v, reach, np.flatnonzero(q.any(axis=(1, 2)) | v.any(axis=(1, 2))), out)
+    return out
+
+
+def differences(
+    terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: float, some: np.ndarray, out: Change,
+    forces: bool = True,
+) -> None:  # fmt: skip
+    """Fill what belongs to directions ``some`` of D, (D, T, 3 nb), in ``out``; without ``forces`` as if none acted."""
+    packed, (_, count, width) = terms.packed, q.shape
+    rows, drives = len(packed.ws.phi), packed.drives(along.t)
     at_once = max(1, AT_ONCE // (2 * count * max(1, 6 * rows)))
     scale, fastest = _scales(terms, along)
     for first in range(0, len(some), at_once):
         at = some[first : first + at_once]
         steps, (beside_q, beside_v) = np.empty((len(at), count)), np.empty((2, 2, len(at), count, width))
-        displace(along.q, along.v, q[at], v[at], scale, fastest, reach, beside_q, beside_v, steps)
-        beside = along.tiled(2 * len(at)).moved(beside_q.reshape(-1, width), beside_v.reshape(-1, width))
-        _, gamma, compact = terms.rows(beside)
-        parts = [np.empty((len(at), count, size)) for size in (rows, rows, width)]
-        differ(
-            packed.system.row_body, steps, beside.v, along.a, along.lam, compact, gamma, terms.forces(beside, compact),
-            *parts,
-        )  # fmt: skip
-        for total, part in zip(out, parts, strict=True):
-            total[at] = part
-    return out
+        displace(along.q, along.v, q, v, at, scale, fastest, reach, beside_q, beside_v, steps)
+        beside = along.beside(beside_q.reshape(-1, width), beside_v.reshape(-1, width), terms.rough)
+        _, gamma, compact = terms.rows(beside, np.concatenate([drives] * (2 * len(at))))
+        force = terms.forces(beside, compact) if forces else np.zeros_like(beside.q)
+        differ(packed.system.row_body, steps, at, beside.v, along.a, along.lam, compact, gamma, force, *out)
 
 
 def _scales(terms: Terms, along: Along) -> tuple[np.ndarray, float]:

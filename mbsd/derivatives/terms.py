@@ -61,6 +61,14 @@ class Along:
         parts = {key: np.concatenate([part] * times) for key, part in self.__dict__.items() if part is not None}
         return replace(self, **parts)
 
+    def beside(self, q: np.ndarray, v: np.ndarray, whole: bool) -> Along:
+        """The motion at states q, v (D T, 3 nb), D times one after the other; a, lam and what holds if ``whole``."""
+        times = len(q) // len(self.t)
+        if whole:
+            return self.tiled(times).moved(q, v)
+        met = [None if part is None else np.concatenate([part] * times) for part in (self.states, self.approached)]
+        return Along(np.tile(self.t, times), q, v, self.a, self.lam, *met)
+
     def take(self, at: slice | np.ndarray) -> Along:
         """Some of its times."""
         return replace(self, **{key: part[at] for key, part in self.__dict__.items() if part is not None})
@@ -119,10 +127,15 @@ class Terms:
     weight: np.ndarray
     """(3 nb,)"""
 
+    @property
+    def rough(self) -> bool:
+        """Whether joints have friction."""
+        return self.loads is not None and len(self.loads.friction) > 0
+
     def left(self, along: Along, q: np.ndarray | None = None, v: np.ndarray | None = None) -> Left:
-        """Along a motion; or at states q, v (D T, 3 nb) beside it, where a, lam and all else are those of the motion."""
+        """Along a motion; or at states q, v (D T, 3 nb) beside it, with a, lam and all else of the motion."""
         packed = self.packed
-        beside = along if q is None or v is None else along.tiled(len(q) // len(along.t)).moved(q, v)
+        beside = along if q is None or v is None else along.beside(q, v, self.rough or along.spread is not None)
         drives = packed.drives(along.t)
         phi, bend, compact = self.rows(beside, np.tile(drives, (len(beside.t) // len(along.t), 1, 1)))
         rate, load = np.empty_like(phi), self.forces(beside, compact)
@@ -131,13 +144,13 @@ class Terms:
             np.ascontiguousarray(beside.v), np.ascontiguousarray(along.a), np.ascontiguousarray(along.lam),
             rate, bend, load,
         )  # fmt: skip
-        spread = None if along.spread is None else times_compact(packed, compact, beside.spread)
+        spread = None if beside.spread is None else times_compact(packed, compact, beside.spread)
         return Left(phi, rate, bend, load, spread)
 
     def forces(self, along: Along, compact: np.ndarray) -> np.ndarray:
         """(T, 3 nb) Q + F, where compact J (T, m, 6) is known."""
         load = np.ascontiguousarray(self.applied(along))
-        if self.loads is not None and len(self.loads.friction):
+        if self.rough:
             load += self.friction(along, compact, along.lam)
         return load
 
@@ -160,7 +173,7 @@ class Terms:
     def friction(self, along: Along, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
         """(T, 3 nb) friction of joints under multipliers lam (T, m)."""
         out = np.zeros_like(along.q)
-        if self.loads is None or not len(self.loads.friction):
+        if self.loads is None or not self.rough:
             return out
         if along.held is None:
             return friction_along(self.packed, self.loads, along.q, along.v, compact, lam)

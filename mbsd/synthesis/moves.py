@@ -12,7 +12,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.users_function import described
-from mbsd.derivatives.asked import needs_models, wanted
+from mbsd.derivatives.asked import needs_models, needs_reactions, wanted
 from mbsd.derivatives.numbers import Number, number_named, with_values
 from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, slopes_of
 from mbsd.derivatives.sweeps import SweepTangents
@@ -87,7 +87,8 @@ class Moves:
                     f"{self.m.name}: optimise: {label} gives {value.size} numbers; it must give one: take a measure, "
                     "such as largest(...), of it"
                 )
-        slopes = slopes_of(tangents, numbers, functions, needs_models(asked)) if functions else {}
+        more = needs_models(asked), needs_reactions(model, asked)
+        slopes = slopes_of(tangents, numbers, functions, *more) if functions else {}
         out = []
         for label, known in own.items():
             if known is not None:

@@ -45,12 +45,11 @@ def sag(p: Params) -> tuple[float, float]:
 
 
 def road(p: Params) -> Curve:
-    """A bump, 1 - cos, in a level road."""
+    """A bump, 1 - cos, in a level road; it bends less tightly than the wheel, which touches at one point."""
     height, length = p.bump
-    x = np.linspace(0.0, length, 61)
-    y = height / 2 * (1 - np.cos(2 * pi * x / length))
-    places, heights = np.concatenate([[-0.2], x, [length + 0.2]]), np.concatenate([[0.0], y, [0.0]])
-    return curve(p.before + places, heights)
+    x = np.linspace(-0.2, length + 0.2, 101)
+    y = height / 2 * (1 - np.cos(2 * pi * np.clip(x / length, 0.0, 1.0)))
+    return curve(p.before + x, y, kind="spline")
 
 
 def build(p: Params) -> Mechanism:

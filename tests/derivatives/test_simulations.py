@@ -11,6 +11,7 @@ import pytest
 from mbsd import Mechanism, ModelError
 from mbsd.measures import final
 from mbsd.testing.derivatives import check_derivatives
+from mechanisms.quarter_car import mechanism as quarter_car
 
 GRAVITY = 9.80665
 
@@ -84,6 +85,25 @@ def test_a_ball_that_bounces_has_those_of_its_formula_across_impacts() -> None:
 def test_a_four_bar_agrees_with_differences_of_simulations() -> None:
     numbers = ["a.length", "b.mass", "D.x", "spring.stiffness", "spring.free_length", "a.moving.omega", "P.x"]
     check_derivatives(four_bar(), ["c.theta", "b.omega", "A.fx", "spring.effort", "P.x"], numbers, 0.6, 30, 1e-5, 2e-4)
+
+
+def test_tangents_of_a_smooth_simulation_are_as_exact_as_it_is() -> None:
+    """Against a finer mesh of tangents: a fast four-bar, whose spring whips its crank round."""
+    m = four_bar()
+    numbers, of = ["a.length", "b.mass", "spring.stiffness", "a.moving.omega"], ["a.theta", "c.omega", "A.fx"]
+    given = m.sensitivities(of, numbers, 0.6, 60)
+    fine = m.sensitivities(of, numbers, times=np.linspace(0.0, 0.6, 601), tolerance=1e-12)
+    for label in of:
+        scale = np.abs(fine[label]).max(axis=0)
+        assert (np.abs(given[label] - fine[label][::10]).max(axis=0) < 2e-6 * scale).all(), label
+
+
+def test_a_wheel_on_a_bump_agrees_with_differences_where_its_road_is_wider_than_the_wheel() -> None:
+    """The engine that keeps the speed works against the slip of the tyre, which settles within 0.5 ms."""
+    m = quarter_car.build(quarter_car.Params())
+    radius = 1.0 / float(np.abs(quarter_car.road(quarter_car.Params())(np.linspace(0.2, 1.2, 20001))[:, 2]).max())
+    assert radius > quarter_car.Params().radius
+    check_derivatives(m, ["engine.effort", "wheel.omega", "body.y"], ["body.mass"], 0.9, 45, tolerance=1e-4, step=1e-2)
 
 
 @pytest.mark.parametrize("number", ["end.restitution", "end.at", "rod.length", "rod.mass", "spring.stiffness"])

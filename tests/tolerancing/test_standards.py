@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import pytest
 
 from mbsd import ModelError
 from mbsd.tolerancing.dimensions.standards import (
+    ABOVE,
+    BELOW,
     GRADES,
     STEPS,
     deviations,
@@ -16,13 +19,31 @@ from mbsd.tolerancing.dimensions.standards import (
     standard_tolerance,
 )
 
-GENERAL = [(0.0005, "f", 0.05), (0.003, "m", 0.1), (0.00301, "c", 0.3), (0.006, "v", 0.5), (0.030, "m", 0.2),
-           (0.0301, "m", 0.3), (0.120, "f", 0.15), (0.121, "f", 0.2), (0.4, "c", 1.2), (1.0, "v", 4.0), (2.0, "f", 0.5),
-           (2.1, "m", 2.0), (4.0, "v", 8.0)]  # fmt: skip
+MIDDLES = (2.0, 5.0, 18.0, 75.0, 260.0, 700.0, 1500.0, 3000.0)
+PUBLISHED = {
+    "f": (0.05, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, None),
+    "m": (0.1, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2, 2.0),
+    "c": (0.2, 0.3, 0.5, 0.8, 1.2, 2.0, 3.0, 4.0),
+    "v": (None, 0.5, 1.0, 1.5, 2.5, 4.0, 6.0, 8.0),
+}
+"""ISO 2768-1:1989, table 1 (mm), as several public transcriptions have it, read independently of ours."""
+ENDS = [(0.0005, "f", 0.05), (0.003, "m", 0.1), (0.00301, "c", 0.3), (0.006, "v", 0.5), (0.030, "m", 0.2),
+        (0.0301, "m", 0.3), (0.120, "f", 0.15), (0.121, "f", 0.2), (2.0, "f", 0.5), (2.1, "m", 2.0),
+        (4.0, "v", 8.0)]  # fmt: skip
 
 
-@pytest.mark.parametrize(("size", "name", "deviation"), GENERAL)
-def test_general_tolerances_are_those_of_iso_2768(size: float, name: str, deviation: float) -> None:
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_general_tolerances_are_those_of_iso_2768(name: str) -> None:
+    for middle, deviation in zip(MIDDLES, PUBLISHED[name], strict=True):
+        if deviation is None:
+            with pytest.raises(ModelError, match="has no deviation"):
+                general_tolerance(middle * 1e-3, name)
+        else:
+            assert general_tolerance(middle * 1e-3, name) == pytest.approx(deviation * 1e-3)
+
+
+@pytest.mark.parametrize(("size", "name", "deviation"), ENDS)
+def test_a_step_of_general_tolerances_includes_its_upper_end(size: float, name: str, deviation: float) -> None:
     assert general_tolerance(size, name) == pytest.approx(deviation * 1e-3)
 
 
@@ -42,18 +63,57 @@ def test_grades_are_those_of_iso_286() -> None:
     assert standard_tolerance(0.500, 6) == pytest.approx(40e-6)
 
 
-@pytest.mark.parametrize("grade", range(6, 12))
-def test_grades_follow_the_formula_of_the_standard(grade: int) -> None:
-    """i = 0.45 D^(1/3) + 0.001 D (um) at the geometric mean D (mm) of a step, times 10, 16, 25, 40, 64, 100.
+FACTORS = {5: 7, 6: 10, 7: 16, 8: 25, 9: 40, 10: 64, 11: 100, 12: 160, 13: 250, 14: 400, 15: 640, 16: 1000}
+MEANS = [math.sqrt(low * high) for low, high in pairwise((1.0, *STEPS))]
+"""Geometric means (mm) of the steps, of which the first counts from 1 mm."""
 
-    The values are rounded, most in the smallest step, which is left out.
+
+def unit(mean: float) -> float:
+    """The standard's unit of tolerance i (um) at the geometric mean of a step (mm)."""
+    return 0.45 * mean ** (1 / 3) + 0.001 * mean
+
+
+@pytest.mark.parametrize("grade", FACTORS)
+def test_grades_follow_the_formula_of_the_standard(grade: int) -> None:
+    """i = 0.45 D^(1/3) + 0.001 D times 7, 10, 16, 25, 40, 64, 100 and so on, rounded (ISO 286-1:1988, annex A).
+
+    Up to 3 mm values are rounded up more than beyond, and so is IT6 up to 6 mm.
     """
-    factor = (10, 16, 25, 40, 64, 100)[grade - 6]
-    low = STEPS[0]
-    for high, value in zip(STEPS[1:], GRADES[grade][1:], strict=True):
-        mean = math.sqrt(low * high)
-        assert value == pytest.approx(factor * (0.45 * mean ** (1 / 3) + 0.001 * mean), rel=0.12)
-        low = high
+    for k, (mean, value) in enumerate(zip(MEANS, GRADES[grade], strict=True)):
+        exact = FACTORS[grade] * unit(mean)
+        near = 0.155 if k == 0 else 0.092 if k == 1 and grade == 6 else 0.065 if value < 10 else 0.045
+        assert value == pytest.approx(exact, rel=near), (grade, STEPS[k])
+
+
+@pytest.mark.parametrize("grade", range(1, 5))
+def test_fine_grades_are_a_geometric_series_up_to_it5(grade: int) -> None:
+    """IT1 is 0.8 + 0.020 D um; IT2 to IT4 lie between it and IT5 in equal ratios, rounded."""
+    for k, (mean, value) in enumerate(zip(MEANS, GRADES[grade], strict=True)):
+        first = 0.8 + 0.020 * mean
+        exact = first * (7 * unit(mean) / first) ** ((grade - 1) / 4)
+        assert value == pytest.approx(exact, rel=0.23), (grade, STEPS[k])
+
+
+@pytest.mark.parametrize("grade", range(11, 17))
+def test_five_grades_coarser_is_ten_times_as_much(grade: int) -> None:
+    """The standard's rule for the rounded values: IT15 is 10 IT10, IT16 is 10 IT11. IT11 of 3 to 6 mm alone is 75."""
+    tenfold = [10 * value for value in GRADES[grade - 5]]
+    if grade == 11:
+        assert (tenfold[1], GRADES[11][1]) == (80, 75)
+        tenfold[1] = 75
+    assert list(GRADES[grade]) == tenfold
+
+
+def test_zones_follow_the_formulas_of_the_standard() -> None:
+    """d 16 D^0.44, e 11 D^0.41, f 5.5 D^0.41, g 2.5 D^0.34, n 5 D^0.34; m is IT7 - IT6, p IT7 and 0 to 5 um more."""
+    formulas = {"d": (16, 0.44), "e": (11, 0.41), "f": (5.5, 0.41), "g": (2.5, 0.34), "n": (5, 0.34)}
+    for letter, (factor, power) in formulas.items():
+        for mean, value in zip(MEANS, (BELOW | ABOVE)[letter], strict=True):
+            room = 2.3 if letter == "n" and mean < 2 else 1.25 if value < 60 else 0.045 * value
+            assert abs(value - factor * mean**power) < room, (letter, mean)
+    seventh, sixth = GRADES[7], GRADES[6]
+    assert list(ABOVE["m"][1:]) == [a - b for a, b in zip(seventh[1:], sixth[1:], strict=True)]
+    assert all(0 <= p - it7 <= 5 for p, it7 in zip(ABOVE["p"][1:], seventh[1:], strict=True))
 
 
 @pytest.mark.parametrize(

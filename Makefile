@@ -236,6 +236,9 @@ export-%: install always ## tables, drawings, STEP, USD, MuJoCo, URDF, FMI, Mode
 study-%: install always ## a grid of its Params solved, as a table (study.csv): OVER="crank=0.03:0.05:5; speed=6,12"
 	@$(MBSD) study -- "$$MECHANISM"
 
+tolerances-%: install always ## how far results stray as its parts do, by its tolerances.py; what to tighten
+	@$(MBSD) tolerances -- "$$MECHANISM"
+
 import: install ## a mechanism of Linkage, PMKS, pylinkage or Ondsel, or a DXF sketch: FILE=walker.linkage2 AS=walker
 	@$(MBSD) import -- "$$FILE"
 

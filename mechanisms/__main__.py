@@ -15,6 +15,7 @@ STAGES = {
     "clearance": ("mechanisms.stages.clearance.stage", "prove that no two parts touch over the motion: clearance.json"),
     "print": ("mechanisms.stages.print.stage", "lay out what is to be printed, cut and bought: 3MF, STL, DXF, lists"),
     "shot": ("mechanisms.stages.shot.stage", "check the scene's description: shot.json"),
+    "tolerances": ("mechanisms.stages.tolerances.stage", "how parts as they are made stray: tolerances/"),
 }
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -85,13 +86,37 @@ def tolerances(
     part done. Raises ModelError for names that do not exist, tolerances that pass 0, limits the wrong way, results that
     are no number, and what the machine as given raises.
     """
+    options = {"n": n, "seed": seed, "duration": duration, "steps": steps, "way": way, "sobol": sobol}
+    options |= {"corners": corners, "confidence": confidence, "threads": threads, "progress": progress}
+    return asked(machine, sizes, result, limits, **options)()
+
+
+@checked
+def asked(
+    machine: Any,
+    sizes: Any,
+    result: Any = None,
+    limits: Any = None,
+    *,
+    n: int = 10_000,
+    seed: int = 0,
+    duration: float | None = None,
+    steps: int = 360,
+    way: str = "auto",
+    sobol: bool = False,
+    corners: bool | None = None,
+    confidence: float = 0.95,
+    threads: int | None = None,
+    progress: Any = None,
+) -> Callable[[], Tolerances]:
+    """:func:`tolerances` with everything looked at and the machine as given solved; what it returns does the rest."""
     task = function_task(machine, sizes, result, duration, steps) if not isinstance(machine, Model) else None
     owner = task.owner if task else machine.name
     n = whole_number(f"{owner}: tolerances: n", n, 2)
     if n > MOST:
         raise ModelError(f"{owner}: tolerances: n is {n}; take {MOST} at most")
     seed = whole_number(f"{owner}: tolerances: seed", seed, 0)
-    asked = limits_given(owner, limits)
+    within_limits = limits_given(owner, limits)
     if not 0.0 < finite_number(f"{owner}: tolerances: confidence", confidence) < 1.0:
         raise ModelError(f"{owner}: tolerances: confidence is {confidence:g}; it must be between 0 and 1, such as 0.95")
     if progress is not None and not callable(progress):
@@ -99,7 +124,9 @@ def tolerances(
     if task is None:
         task = task_of(machine, sizes, result, duration, steps, way, threads)
     _refuse_corners(owner, corners, len(task.dimensions))
-    return _carried_out(task, n, seed, asked, sobol, corners, confidence, progress)
+    width = sum(len(dimension.columns) for dimension in task.dimensions)
+    refuse_beyond_memory(f"{owner}: tolerances: {n} machines", 5 * n * (1 + width), "Take fewer")
+    return partial(_carried_out, task, n, seed, within_limits, sobol, corners, confidence, progress)
 
 
 def _carried_out(
@@ -121,7 +148,6 @@ def _carried_out(
     corner, corners_failed = None, 0
     if corners if corners is not None else 2 ** len(dimensions) <= n:
         corner, corners_failed = vertex_worst(run, middle, slope, dimensions)
-    refuse_beyond_memory(f"{task.owner}: tolerances: {n} machines", 5 * n * (1 + len(slope)), "Take fewer")
     x = drawn(dimensions, n, seed)
     run = _Run(task.machines, progress, n)
     values = run(x)

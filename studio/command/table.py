@@ -137,6 +137,8 @@ COMMANDS: dict[str, Command] = {
         Command("study", "a grid of its Params solved, as a table (study.csv)",
                 (Stage("mechanisms", "study", ("over",)),),
                 example="mbsd study four_bar --over 'crank=0.03:0.05:5; speed=6,12'"),
+        Command("tolerances", "how far results stray as its parts do, by its tolerances.py; what to tighten",
+                (Stage("mechanisms", "tolerances"),), example="mbsd tolerances slider_crank"),
         Command("list", "the mechanisms and what is made of them",
                 (Stage("mechanisms", "list", ("names", "json")),), of=""),
     )

@@ -16,12 +16,11 @@ from typing import TYPE_CHECKING
 from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
 from mechanisms.stages.loading.recording import recording
+from mechanisms.stages.parts.current import current_parts
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.body_colours import body_colours, main_material
-from shared import contract
 from shared.stage import console
 from shared.stage.errors import UserError
-from shared.stage.face import to_run
 from shared.stage.files import sources_hash, whole_file
 from shared.stage.paths import ROOT, Out, mechanism_file
 from shared.stage.stages import Stage, key_of, versions
@@ -47,7 +46,7 @@ def run(name: str, view: str = "") -> None:
     """Draw the films of one view unless they already stand for the same inputs. Raises UserError."""
     out = Out(name)
     films = films_of(view)
-    parts = parts_of(out)
+    parts = current_parts(out, "animate")
     stale = [words for words in films if not _fresh(out, parts, words)]
     if not stale:
         console.say("animate", f"{name}: nothing to do")
@@ -81,19 +80,6 @@ def films_of(view: str) -> list[str]:
             raise UserError(f"VIEW={view!r}: 'each' and 'skeleton' stand alone")
         return list(QUANTITIES) if words == ["each"] else words
     return [",".join(word for word in QUANTITIES if word in words)]
-
-
-def parts_of(out: Out) -> Parts | None:
-    """The parts that are there, unless what they follow from has changed since, which is said."""
-    from mechanisms.stages.parts.stage import are_current
-
-    if not out.parts.is_file():
-        return None
-    if are_current(out.name):
-        return contract.read_parts(out.parts, out.name)
-    remedy = to_run("parts", out.name)
-    console.say("animate", f"{out.name}: the parts are of an older state, so their masses do not count; {remedy}")
-    return None
 
 
 def solve(name: str, parts: Parts | None) -> Solution:

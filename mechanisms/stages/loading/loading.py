@@ -1,4 +1,4 @@
-"""Loads one of the three files of a mechanism; an error in it is reported with file and line."""
+"""Loads one of the files of a mechanism; an error in it is reported with file and line."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from shared.stage.paths import (
     shown_file,
 )
 
-File = Literal["mechanism", "parts", "shot"]
+File = Literal["mechanism", "parts", "shot", "tolerances"]
 _RUNNING: ContextVar[str | None] = ContextVar("running", default=None)
 """The mechanism or variant whose author's code runs."""
 
@@ -48,6 +48,7 @@ REQUIRED: dict[File, dict[str, str]] = {
     "mechanism": {"Params": "a frozen dataclass of the lengths", "build": "def build(p: Params) -> Mechanism"},
     "parts": {"parts": "def parts(p: Params) -> dict[str, list[Solid]]"},
     "shot": {"shot": "shot = Shot(...)"},
+    "tolerances": {"tolerances": "def tolerances(p: Params) -> dict[str, dict], as docs/tolerances.md shows"},
 }
 
 
@@ -61,7 +62,7 @@ def load(name: str, file: File) -> ModuleType:
     if not path.is_file():
         raise UserError(
             f"{owner}: {shown_file(name, file)} is missing; a mechanism has mechanism.py, and where it "
-            "needs them, parts.py and shot.py"
+            "needs them, parts.py, shot.py and tolerances.py"
         )
     importlib.invalidate_caches()
     with author_code(name):

@@ -57,7 +57,7 @@ def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
 
     motion: Any = getattr(module, "motion", None)
     try:
-        with loading.author_code(name), _model_warnings_said():
+        with loading.author_code(name), model_warnings_said():
             solution = motion(m, p) if motion else _natural(name, module, m)
     except MechanismError as error:
         raise UserError(str(error)) from error
@@ -161,7 +161,7 @@ def _tell_long_steps(name: str, module: Any, solution: Solution) -> None:
 
 
 @contextmanager
-def _model_warnings_said() -> Iterator[None]:
+def model_warnings_said() -> Iterator[None]:
     """Say what the solver warns of in a line each, without the place in this file where it was called."""
     from mbsd import ModelWarning
 

@@ -36,7 +36,7 @@ def finite_number(what: str, value: object) -> float:
         raise ModelError(f"{what} is {shown(value)}; it must be a number")
     if value != value or value in (math.inf, -math.inf):
         raise ModelError(f"{what} is {value}; it must be finite")
-    if not -LARGEST <= value <= LARGEST:
+    if not -LARGEST <= (value if isinstance(value, int) else float(value)) <= LARGEST:
         raise ModelError(f"{what} is {shown(value)}; it must be finite and not beyond {LARGEST:g}")
     return float(value)
 

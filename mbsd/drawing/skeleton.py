@@ -14,6 +14,7 @@ from mbsd.base.shown import shown
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.carriers import GROUND, at_place, on_body
 from mbsd.drawing.inks import body_inks
+from mbsd.drawing.literal import literal
 from mbsd.drawing.look import AXIS_X, AXIS_Y, FAINT, INK, QUIET
 from mbsd.drawing.names import place_names
 from mbsd.drawing.pose import Pose
@@ -40,6 +41,7 @@ SMALLEST = 1e-12
 """A unit (m) below this is the rounding of one single place."""
 
 
+@literal
 def draw(m: Model, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Picture:
     """Draw ``m`` in ``pose`` into ``ax``, or into a figure of its own."""
     try:

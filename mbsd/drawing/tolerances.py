@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
+from mbsd.drawing.literal import literal
 from mbsd.drawing.look import FAINT, INK, PALETTE, QUIET, WRONG
 from mbsd.pictures.picture import Picture
 
@@ -23,6 +24,7 @@ FAR = 1.5
 GOOD, LATER = PALETTE[0], PALETTE[3]
 
 
+@literal
 def draw_tolerances(t: Any, axes: Any = None) -> Picture:
     """Draw into two ``axes``, or a figure of its own. Raises ModelError without matplotlib, or for other axes."""
     own = axes is None

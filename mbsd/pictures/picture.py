@@ -46,7 +46,10 @@ class Picture:
         import matplotlib as mpl
 
         buffer = io.BytesIO()
-        with mpl.rc_context({"svg.hashsalt": "mbsd", "svg.fonttype": "path"}):
+        settings: dict[Any, Any] = {"svg.hashsalt": "mbsd", "svg.fonttype": "path"}
+        if self.own:
+            settings["text.parse_math"] = False  # of names at ticks, which are made now
+        with mpl.rc_context(settings):
             self.figure.savefig(buffer, format=suffix, dpi=DPI, metadata=_UNDATED[suffix])
         return buffer.getvalue()
 

@@ -53,6 +53,7 @@ RC: dict[Any, Any] = {
     "ytick.labelsize": 9.0,
     "xtick.major.size": 3.5,
     "ytick.major.size": 0.0,
+    "text.parse_math": False,  # names are no formulas
 }
 
 

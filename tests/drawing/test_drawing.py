@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from mbsd import Mechanism, ModelError, constant_rate
+from mbsd import Mechanism, ModelError, constant_rate, tolerances
 from mbsd.drawing import look
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.pose import pose_of, start_pose
@@ -26,6 +27,7 @@ from mbsd.drawing.strokes import ROLES, Recorder, moved, strokes_of
 from mbsd.drawing.symbols.outline import hull, rounded
 from mbsd.drawing.symbols.place import free_side
 from mbsd.drawing.symbols.wheels import draw_gear_pair
+from mbsd.measures import largest
 from mbsd.model.force import ForceKind
 from mbsd.model.joint import JointKind
 from mbsd.testing import force_kinds, joint_kinds
@@ -219,6 +221,22 @@ def test_a_notebook_shows_it_and_files_have_equal_bytes(tmp_path: Path) -> None:
         four_bar().topology().save(tmp_path / "x.png")
     four_bar().topology().save(tmp_path / "x.svg")
     assert (tmp_path / "x.svg").read_text() == four_bar().topology().text
+
+
+def test_names_with_dollar_signs_are_no_formulas(tmp_path: Path) -> None:
+    m = Mechanism("$m_{$")
+    first, second = m.bar("$x_{$", 0.04), m.bar("b$y^{}}$", 0.12)
+    m.revolute("$A_{$", m.ground.at(0, 0), first.start)
+    m.revolute("$B", first.end, second.start)
+    picture = m.draw()
+    written = {text.get_text() for text in picture.ax.texts}
+    assert {"$x_{$", "b$y^{}}$", "$A_{$"} <= written
+    picture.save(tmp_path / "drawn.svg")
+    sizes = {"$x_{$": 1e-4, "b$y^{}}$": 1e-4}
+    m.drive_angle("one", first, constant_rate(1.0))
+    m.drive_angle("two", second, constant_rate(1.0))
+    tolerances(m, sizes, largest("b$y^{}}$.x"), n=20, steps=4).plot().save(tmp_path / "strays.svg")
+    assert rcParams["text.parse_math"]
 
 
 def test_axes_of_the_user_are_used_and_shown_by_the_user() -> None:

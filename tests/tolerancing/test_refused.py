@@ -45,6 +45,7 @@ def _nothing_runs(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"B": {"x": 1e-5, "play": 1e-5}}, "give Clearance"),
         ({"A": {"y": "m"}}, "by the size of a length"),
         ({"A": {"z": 1e-5}}, "no number 'z'"),
+        ({"P": {"z": 1e-5}}, "'P': there is no coordinate 'z'"),
         ({"crank": 1e-5, "coupler": {"length": 1e-5}, "P": {"x": 1e-5}, "D": None}, "'D.x' is None"),
     ],
 )

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, Tolerances, constant_rate, tolerances
-from mbsd.measures import largest, samples
+from mbsd.measures import final, largest, samples
 from tests.tolerancing.linkages import SIZES, four_bar, rocker_angle, switch
 
 
@@ -173,3 +173,21 @@ def test_machines_without_a_number_are_counted() -> None:
 def test_what_a_function_raises_of_the_machine_itself_is_raised() -> None:
     with pytest.raises(ModelError, match="did you mean 'rocker'"):
         tolerances(four_bar(), {"coupler": 1e-4}, lambda sol: sol.body("rockr").theta[0], n=5, way="sweep")
+
+
+def test_diameters_and_radii_have_the_grade_of_their_size() -> None:
+    m = Mechanism("train", gravity=None)
+    rotor, wheel = m.body("rotor", mass=5.0, inertia=0.02), m.body("wheel", mass=8.0, inertia=0.05)
+    m.revolute("front", m.ground.at(0, 0), rotor.origin)
+    m.revolute("rear", m.ground.at(0, 0), wheel.origin)
+    m.shaft("shaft", rotor, wheel, length=0.4, diameter=0.02, bore=0.01)
+    m.start_moving(rotor=1.0)
+    sizes = {"shaft": {"diameter": "IT7", "bore": "IT7", "length": "m"}}
+    t = tolerances(m, sizes, final("wheel.theta"), duration=0.005, steps=5, n=20)
+    assert [row.high for row in t.rows] == pytest.approx([21e-6 / 2, 15e-6 / 2, 0.5e-3])
+
+
+@pytest.mark.filterwarnings("error")
+def test_numbers_of_single_precision_are_numbers() -> None:
+    t = tolerances(lambda a=1.0: a, {"a": np.float32(0.5)}, limits=(np.float32(0.0), None), n=20)
+    assert t.rows[0].high == 0.5

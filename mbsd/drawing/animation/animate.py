@@ -17,6 +17,7 @@ from mbsd.drawing.animation.encoders import ffmpeg, held, write_gif, write_mp4
 from mbsd.drawing.animation.picture.page import Page
 from mbsd.drawing.animation.scene import scene_of
 from mbsd.drawing.animation.words import EVERYTHING, QUANTITIES
+from mbsd.drawing.literal import literal
 from mbsd.pictures.animation import Animation
 from mbsd.results.solution import Solution
 
@@ -27,6 +28,7 @@ LONG_ENOUGH = 6.0
 """Seconds that an MP4 of a motion that repeats lasts at least, by whole rounds."""
 
 
+@literal
 def animate(
     sol: Solution,
     path: str | os.PathLike[str],

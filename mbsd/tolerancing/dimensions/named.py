@@ -26,6 +26,8 @@ from mbsd.tolerancing.dimensions.spreads import spread_of
 
 PIN, PLAY = "revolute", "play"
 AXES = ("x", "y")
+SIZES = ("length", "radius", "diameter", "bore")
+"""Parts of the names of arguments that are sizes, by which classes and grades go."""
 
 
 def dimensions_of(m: Model, sizes: Any) -> list[Dimension]:
@@ -110,6 +112,8 @@ def _named(m: Model, name: Any, key: str, value: Any) -> Dimension:
     if key in AXES and (name in m.traces or name in m.joints):
         return _coordinate(m, name, key, value)
     known = _arguments(m, name)
+    if known is None and name in m.traces:
+        raise ModelError(f"{m.name}: tolerances: '{name}': {no_such('coordinate', key, AXES)}")
     if known is None:
         every = [*(other for table in connections(m) for other in table), *m.bodies, *m.traces]
         raise ModelError(
@@ -126,7 +130,7 @@ def _named(m: Model, name: Any, key: str, value: Any) -> Dimension:
         )
     kind = "length" if key == "length" and name in _lengths(m) else "argument"
     label = name if kind == "length" else f"{name}.{key}"
-    length = nominal if "length" in key else None
+    length = nominal if any(word in key for word in SIZES) else None
     return _size(m.name, label, value, Column(kind, name, key, float(nominal)), length)
 
 

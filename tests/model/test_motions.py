@@ -78,6 +78,36 @@ def test_function_without_derivatives_gets_them_from_a_fit() -> None:
     np.testing.assert_allclose(fitted[:, 2], -4 * np.sin(2 * t), atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("span", "part", "begin", "rise", "size"),
+    [
+        (0.2352, 5.1e-5, 0.1476, 4.305, 0.2034),
+        (0.3485, 7.8e-5, 0.2226, 4.0e-4, 0.1552),
+        (24.16, 8.9e-5, 5.897, 0.01049, 0.1261),
+        (6.069, 7.8e-5, 2.768, 0.7582, 6.008),
+        (0.1521, 8.9e-5, 0.09839, 8.947, 1.94),
+    ],
+)
+def test_a_rise_of_less_than_a_ten_thousandth_of_the_span_is_fitted(
+    span: float, part: float, begin: float, rise: float, size: float
+) -> None:
+    """Where f is steep, the rounding of times bounds f, of which the slope elsewhere says nothing."""
+    short, omega = part * span, 1.3 / span
+
+    def law(t: float) -> float:
+        u = min(max((t - begin) / short, 0.0), 1.0)
+        return size * math.sin(omega * t) + rise * (u - math.sin(2 * math.pi * u) / (2 * math.pi))
+
+    t = np.concatenate([np.linspace(0.0, span, 301), np.linspace(begin, begin + short, 101)])
+    u = np.clip((t - begin) / short, 0.0, 1.0)
+    fitted = function(law).over(0.0, span)(t)
+    np.testing.assert_allclose(fitted[:, 0], [law(time) for time in t], rtol=0, atol=1e-6 * (size + rise))
+    slopes = size * omega * np.cos(omega * t) + rise / short * (1 - np.cos(2 * np.pi * u))
+    np.testing.assert_allclose(fitted[:, 1], slopes, rtol=0, atol=1e-5 * rise / short)
+    bends = rise / short**2 * 2 * np.pi * np.sin(2 * np.pi * u) - size * omega**2 * np.sin(omega * t)
+    np.testing.assert_allclose(fitted[:, 2], bends, rtol=0, atol=1e-3 * rise / short**2)
+
+
 @pytest.mark.parametrize("law", [lambda t: 2 * math.pi * t, lambda t: 0.7, lambda t: 0.0, lambda t: 1e-6 * t * t + 3.0])
 def test_straight_lines_and_constants_are_smooth_laws(law) -> None:
     values = function(law).over(0.0, 2.0)(np.array([0.0, 0.4, 2.0]))

@@ -30,7 +30,8 @@ BEND_OF_LAST = 1344.0
 """T_8'' at the ends."""
 BEND_TOLERANCE, VALUE_TOLERANCE = 1e-8, 1e-11
 """Tolerances of f'' of a driver's law, of f of a load's law, relative to what is usual nearby."""
-ROUNDING = 8 * np.finfo(float).eps
+EPSILON = float(np.finfo(float).eps)
+ROUNDING = 8 * EPSILON
 LOOSER = 16.0
 """A law may be this many tolerances off between the nodes."""
 USUAL = 0.9
@@ -128,7 +129,11 @@ class Tree:
             scale = np.maximum.reduce([bend, above[:, 0], np.full(len(bend), max(usual, self.faint))])
             if len(begin) == first_count << depth:
                 self._look_for_scatter(depth, begin, tail)
-            rounding = ROUNDING * above[:, 1] + self.shift + 2 * self.scatter
+            steepness = np.abs(np.diff(values, axis=1)).max(axis=1) * DEGREE / width
+            shift = np.full(len(begin), self.shift)
+            if not self.load:  # which does not jump
+                shift = np.maximum(shift, EPSILON * steepness * np.maximum(np.abs(begin), np.abs(end)))
+            rounding = ROUNDING * above[:, 1] + shift + 2 * self.scatter
             if self.load:
                 allowed = np.full(len(begin), self.tolerance * self.size)
             else:
@@ -136,8 +141,7 @@ class Tree:
             enough = np.maximum(allowed, rounding)
             met = (tail <= enough) & ~self._missed(begin, end, coefficients, LOOSER * enough)
             if met.any():
-                steep = np.abs(np.diff(values[met])).max(axis=1) * DEGREE / width[met]
-                self.steepest = max(self.steepest, float(steep.max()))
+                self.steepest = max(self.steepest, float(steepness[met].max()))
             if not self.load:
                 self._refuse_jumps(begin[~met], width[~met], values[~met])
             narrow = width <= finest(*self.span)

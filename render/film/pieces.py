@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 
 from render.film.scene import PieceSpec, SurfaceSpec
-from render.film.section import is_gone, planes_of
+from render.film.section import WHOLE, cuts_of
 from shared.contract import Motion, Parts, Piece
 from shared.contract.materials import MATERIALS
 from shared.contract.shot import Shot, Surface
@@ -30,7 +30,7 @@ def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = 
 
     Raises UserError for a material that is not known, and for a section that cuts nothing.
     """
-    cuts = planes_of(parts, shot.section, folder, motion)
+    cuts = cuts_of(parts, shot.section, folder, motion)
     return [
         PieceSpec(
             body=body,
@@ -39,10 +39,11 @@ def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = 
             sha256=piece.stl_sha256,
             surface=_surface(parts.mechanism, shot, body, name, piece),
             turns_about=(piece.rolls.x, piece.rolls.y) if piece.rolls else None,
-            cut=cuts.get((body, name), ()),
+            cut=cuts.get((body, name), WHOLE).planes,
+            fixed=cuts.get((body, name), WHOLE).fixed,
         )
         for body, name, piece in _pieces(parts)
-        if (body, name) not in cuts or not is_gone(piece, cuts[body, name], folder)
+        if not cuts.get((body, name), WHOLE).gone
     ]
 
 

@@ -44,6 +44,8 @@ class PieceSpec(msgspec.Struct, kw_only=True, frozen=True):
     """x, y of the axis (m) about which it turns against its body; the States have its pose as ``body/name``."""
     cut: tuple[Plane, ...] = ()
     """Planes of the body's frame beyond all of which a section has cut it away."""
+    fixed: bool = False
+    """Whether these are planes of the world instead, through which the piece moves."""
 
 
 class TrailSpec(msgspec.Struct, kw_only=True, frozen=True):

@@ -2,20 +2,23 @@
 
 Bodies of a planar machine turn about the normal of its plane alone, so a plane across that normal cuts each of them in
 the same way at every moment. Other planes cut what stands still, as in a model of an engine in a museum; bodies that
-are named are cut as they stand at the start of the motion, and carry their cut with them.
+are named are cut as they stand at the start of the motion, and carry their cut with them. Planes that are fixed stay
+where they are instead: what moves through them has another cut at every moment, what moves along them has the same.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from render.film.scene import Plane
-from render.film.solids import read_corners
+from render.film.solids import prism, read_corners
 from shared.contract import Motion, Parts, Piece
 from shared.contract.shot import Section
 from shared.stage.errors import UserError
@@ -23,7 +26,10 @@ from shared.stage.errors import UserError
 Array = NDArray[np.float64]
 Key = tuple[str, str]
 """Body and piece."""
-WAYS: dict[str, tuple[float, float, float]] = {
+Normal = tuple[float, float, float]
+Pose = tuple[float, float, float]
+"""x, y (m) and theta (rad) of a body."""
+WAYS: dict[str, Normal] = {
     "front": (0.0, 0.0, 1.0),
     "right": (1.0, 0.0, 0.0),
     "left": (-1.0, 0.0, 0.0),
@@ -31,6 +37,22 @@ WAYS: dict[str, tuple[float, float, float]] = {
     "below": (0.0, -1.0, 0.0),
 }
 """From the machine's inside to where a side of a Section is, in the axes of the motion."""
+STILL = 1e-9
+"""Bodies that move less than this along a plane's normal (m), and turn less (rad), have the same cut all the time."""
+
+
+@dataclass(frozen=True)
+class Cut:
+    """How a piece is cut: beyond all ``planes`` of its body's frame, or where ``fixed`` of the world; ``gone`` is one
+    of which nothing is ever left.
+    """
+
+    planes: tuple[Plane, ...] = ()
+    fixed: bool = False
+    gone: bool = False
+
+
+WHOLE = Cut()
 
 
 def section_of(section: Section | float) -> Section:
@@ -38,63 +60,92 @@ def section_of(section: Section | float) -> Section:
     return section if isinstance(section, Section) else Section(front=section)
 
 
-def planes_of(
-    parts: Parts, asked: Section | float, folder: Path, motion: Motion | None
-) -> dict[Key, tuple[Plane, ...]]:
-    """The planes beyond all of which a piece is cut away, in its body's frame, for each piece that is cut at all.
+def cuts_of(parts: Parts, asked: Section | float, folder: Path, motion: Motion | None) -> dict[Key, Cut]:
+    """How each piece is cut that is cut at all; ``motion`` is asked where bodies stand and what they go through.
 
-    ``motion`` is asked where bodies stand that are named. Raises UserError for a section that cuts no piece open.
+    Raises UserError for a section that cuts no piece open.
     """
     section = section_of(asked)
     depths = {side: getattr(section, side) for side in WAYS if getattr(section, side)}
     if not depths:
         return {}
-    solids = [_Solid(key, piece, folder, _pose(motion, key[0])) for key, piece in _cut(parts, section, depths)]
+    moves = section.fixed and set(depths) != {"front"}
+    solids = [
+        _Solid(key, piece, folder, _poses(motion, key[0], moves)) for key, piece in _cut(parts, section, depths, moves)
+    ]
     planes = [_plane(WAYS[side], part, solids) for side, part in depths.items()]
-    out = {solid.key: solid.own(planes) for solid in solids if all(solid.reach(n)[1] > d for n, d in planes)}
-    opened = [solid for solid in solids if solid.key in out and not solid.is_beyond(planes)]
-    if not opened:
+    out = {solid.key: solid.cut(planes) for solid in solids if all(solid.reach(n)[1] > d for n, d in planes)}
+    if all(cut.gone for cut in out.values()):
         raise UserError(_nothing(parts.mechanism, asked, solids, depths))
     return out
 
 
-def is_gone(piece: Piece, planes: tuple[Plane, ...], folder: Path) -> bool:
-    """Whether all of a piece is beyond its planes."""
-    corners = read_corners(folder / piece.stl) if any(x or y for x, y, _, _ in planes) else _heights(piece)
-    return all(bool((corners @ np.array(plane[:3]) >= plane[3]).all()) for plane in planes)
+def in_body(plane: Plane, pose: Pose) -> Plane:
+    """A plane of the world in the frame of a body that stands there."""
+    (x, y, z, place), (u, v, theta) = plane, pose
+    c, s = math.cos(theta), math.sin(theta)
+    return c * x + s * y, c * y - s * x, z, place - x * u - y * v
 
 
 class _Solid:
-    """A piece where it stands at the start of the motion."""
+    """A piece in some poses of its body (n, 3): where it stands at the start of the motion, or all of it."""
 
-    def __init__(self, key: Key, piece: Piece, folder: Path, pose: tuple[float, float, float]) -> None:
-        self.key, self._piece, self._file = key, piece, folder / piece.stl
-        self._x, self._y, self._theta = pose
+    def __init__(self, key: Key, piece: Piece, folder: Path, poses: Array) -> None:
+        self.key, self._piece, self._file, self._poses = key, piece, folder / piece.stl, poses
+        self._reach: dict[Normal, tuple[float, float]] = {}
 
-    def reach(self, normal: tuple[float, float, float]) -> tuple[float, float]:
+    def reach(self, normal: Normal) -> tuple[float, float]:
         """Least and largest place along a normal of the world (m)."""
         if normal == WAYS["front"]:
             return self._piece.z_range
-        (x, y, z, _) = self._in_body(normal, 0.0)
-        along = read_corners(self._file) @ np.array([x, y, z]) + normal[0] * self._x + normal[1] * self._y
-        return float(along.min()), float(along.max())
+        if normal not in self._reach:
+            self._reach[normal] = self._swept(normal)
+        return self._reach[normal]
 
-    def is_beyond(self, planes: list[tuple[tuple[float, float, float], float]]) -> bool:
-        """Whether all of it is beyond all planes."""
-        return all(self.reach(normal)[0] >= place for normal, place in planes)
+    def cut(self, planes: list[tuple[Normal, float]]) -> Cut:
+        """By these planes of the world, each a normal and how far along it."""
+        gone = all(self.reach(normal)[0] >= place for normal, place in planes)
+        world = tuple((*normal, place) for normal, place in planes)
+        if self._goes_through(planes):
+            return Cut(world, True, gone)
+        u, v, theta = (float(value) for value in self._poses[0])
+        return Cut(tuple(in_body(plane, (u, v, theta)) for plane in world), False, gone)
 
-    def own(self, planes: list[tuple[tuple[float, float, float], float]]) -> tuple[Plane, ...]:
-        """The planes in the frame of its body."""
-        return tuple(self._in_body(normal, place) for normal, place in planes)
+    def _swept(self, normal: Normal) -> tuple[float, float]:
+        (u, v, theta), (x, y, _) = self._poses.T, normal
+        c, s = np.cos(theta), np.sin(theta)
+        least, most = self._extents(np.stack([c * x + s * y, c * y - s * x], axis=1))
+        along = u * x + v * y
+        return float((along + least).min()), float((along + most).max())
 
-    def _in_body(self, normal: tuple[float, float, float], place: float) -> Plane:
-        x, y, z = normal
-        c, s = math.cos(self._theta), math.sin(self._theta)
-        return c * x + s * y, c * y - s * x, z, place - x * self._x - y * self._y
+    def _extents(self, ways: Array) -> tuple[Array, Array]:
+        """Least and largest place (n,) of its outline along ways (n, 2) of its body (m)."""
+        rolls = self._piece.rolls
+        if rolls is not None and len(self._poses) > 1:  # it turns against its body
+            centre = np.array([rolls.x, rolls.y])
+            radius = float(np.linalg.norm(self._outline - centre, axis=1).max())
+            return ways @ centre - radius, ways @ centre + radius
+        along = ways @ self._outline.T
+        return along.min(axis=1), along.max(axis=1)
+
+    @cached_property
+    def _outline(self) -> Array:
+        """Corners (n, 2) of its convex outline in the plane of the motion (m)."""
+        corners = prism(read_corners(self._file))[:, :2]
+        return corners[: len(corners) // 2]
+
+    def _goes_through(self, planes: list[tuple[Normal, float]]) -> bool:
+        """Whether its cut is another one at other moments."""
+        u, v, theta = self._poses.T
+        if len(self._poses) == 1 or all(normal == WAYS["front"] for normal, _ in planes):
+            return False
+        turns = np.ptp(theta) > STILL or self._piece.rolls is not None
+        return turns or any(np.ptp(u * x + v * y) > STILL for (x, y, _), _ in planes)
 
 
-def _cut(parts: Parts, section: Section, depths: dict[str, float]) -> Iterator[tuple[Key, Piece]]:
-    """The pieces that are cut: those that are named; else all from the front, and from other sides what stands still.
+def _cut(parts: Parts, section: Section, depths: dict[str, float], moves: bool) -> Iterator[tuple[Key, Piece]]:
+    """The pieces that are cut: those that are named; else all from the front, or by planes through which bodies move,
+    and from other sides what stands still.
 
     Raises UserError where nothing stands still.
     """
@@ -102,35 +153,31 @@ def _cut(parts: Parts, section: Section, depths: dict[str, float]) -> Iterator[t
     if section.only:
         named = [(key, piece) for key, piece in every if {key[0], "/".join(key)} & set(section.only)]
         return iter(named)
-    if set(depths) == {"front"}:
+    if moves or set(depths) == {"front"}:
         return iter(every)
     still = [(key, piece) for key, piece in every if key[0] == "ground"]
     if not still:
         raise UserError(
             f"{parts.mechanism}: shot.section cuts from {' and '.join(depths)}, which is what stands still, and ground "
-            f"has no solids; name bodies in section.only: {', '.join(parts.bodies)}"
+            f"has no solids; name bodies in section.only: {', '.join(parts.bodies)}, or say fixed=True"
         )
     return iter(still)
 
 
-def _plane(
-    normal: tuple[float, float, float], part: float, solids: list[_Solid]
-) -> tuple[tuple[float, float, float], float]:
+def _plane(normal: Normal, part: float, solids: list[_Solid]) -> tuple[Normal, float]:
     """A plane with this normal, beyond which the ``part`` of the reach of all pieces is."""
     reaches = [solid.reach(normal) for solid in solids]
     low, high = min(low for low, _ in reaches), max(high for _, high in reaches)
     return normal, high - part * (high - low)
 
 
-def _pose(motion: Motion | None, body: str) -> tuple[float, float, float]:
+def _poses(motion: Motion | None, body: str, whole: bool) -> Array:
+    """Where a body stands (n, 3): at the start, or over the ``whole`` motion."""
     if motion is None or body not in motion.bodies:
-        return 0.0, 0.0, 0.0
+        return np.zeros((1, 3))
     moved = motion.bodies[body]
-    return moved.x[0], moved.y[0], moved.theta[0]
-
-
-def _heights(piece: Piece) -> Array:
-    return np.array([[0.0, 0.0, height] for height in piece.z_range])
+    poses = np.stack([np.asarray(part, float) for part in (moved.x, moved.y, moved.theta)], axis=1)
+    return poses if whole else poses[:1]
 
 
 def _nothing(mechanism: str, asked: Section | float, solids: list[_Solid], depths: dict[str, float]) -> str:

@@ -19,9 +19,12 @@ def run(name: str) -> None:
         say("glb", f"{out.name}: nothing to do")
         return
     from render.glb.build import glb
+    from render.glb.cut import said_of
 
     film = read_film(out)
     write_bytes(out.glb, glb(film))
+    if said := said_of(film):
+        say("glb", said)
     stage.done()
     seconds = film.motion.time[-1] - film.motion.time[0]
     say("glb", f"{out.name}: {out.glb}: {seconds:.4g} s, {out.glb.stat().st_size / 1e6:.1f} MB")

@@ -19,7 +19,7 @@ from render.film.scene import PieceSpec
 from render.film.solids import read_triangles
 from render.glb.animation import Animation
 from render.glb.belts import add_belt
-from render.glb.cut import cut_open, cut_surface
+from render.glb.cut import faces_of, pieces_of
 from render.glb.document import INDICES, VERTICES, Document
 from render.glb.materials import CLEARCOAT, Paints
 from render.glb.mesh import smooth
@@ -41,7 +41,7 @@ def turn(up: Vector) -> Quaternion:
 
 def glb(film: Film) -> bytes:
     """The file's bytes, the same each time."""
-    return _content(film, film.scene.pieces)
+    return _content(film, pieces_of(film))
 
 
 def tubes(film: Film) -> bytes:
@@ -66,7 +66,10 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec]) -> tuple[Document, Animati
     for piece in pieces:
         if piece.body not in nodes:
             nodes[piece.body] = document.add("nodes", {"name": piece.body, "children": []})
-        node: dict[str, Any] = {"name": f"{piece.body}/{piece.name}", "mesh": mesh_of(document, piece, paints)}
+        node: dict[str, Any] = {
+            "name": f"{piece.body}/{piece.name}",
+            "mesh": mesh_of(document, piece, paints, film.studio.radius),
+        }
         if piece.turns_about is not None:
             node["translation"] = [*piece.turns_about, 0.0]
         child = children[piece.body, piece.name] = document.add("nodes", node)
@@ -96,13 +99,10 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec]) -> tuple[Document, Animati
     return document, animation
 
 
-def mesh_of(document: Document, piece: PieceSpec, paints: Paints) -> int:
-    """The number of a piece's mesh in the document, as far as a section leaves it."""
+def mesh_of(document: Document, piece: PieceSpec, paints: Paints, radius: float) -> int:
+    """The number of a piece's mesh in the document, as far as a section leaves it in a machine of this radius (m)."""
     triangles = read_triangles(Path(piece.stl))
-    faces = [(triangles, piece.surface)]
-    if piece.cut:
-        rest, cut = cut_open(triangles, piece)
-        faces = [(rest, piece.surface), (cut, cut_surface(piece.surface))]
+    faces = faces_of(triangles, piece, radius) if piece.cut else [(triangles, piece.surface)]
     primitives = [_primitive(document, part, piece, paints.of(surface)) for part, surface in faces if len(part)]
     return document.add("meshes", {"name": f"{piece.body}/{piece.name}", "primitives": primitives})
 

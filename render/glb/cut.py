@@ -1,23 +1,68 @@
-"""Solids that a section cuts open, for files of other programs: closed again, with the cut faces for themselves."""
+"""Solids that a section cuts open, for files of other programs: closed again, with hatched cut faces.
+
+Hatches are triangles of two materials, not a texture: every viewer shows them, and a stage stays one file.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.scene import PieceSpec, SurfaceSpec
+from render.film.film import Film
+from render.film.hatches import LIGHT, MATT, Hatch, dark_of, hatch_of, light_of
+from render.film.scene import PieceSpec, Plane, SurfaceSpec
+from render.film.section import in_body
+from render.film.solids import read_corners
+from render.glb.stripes import along_rim, striped
 from shared.stage.errors import UserError
 
 Array = NDArray[np.float64]
 LEVEL = 1e-9
 """Corners this near (m) to a plane are on it."""
+PART = "cut as they stand at the start, for meshes of a file cannot be cut anew at every moment"
 
 
-def cut_open(triangles: Array, piece: PieceSpec) -> tuple[Array, Array]:
-    """Triangles (n, 3, 3) (m) of what a piece's section leaves: those of its surface, and those of the cut.
+def pieces_of(film: Film) -> list[PieceSpec]:
+    """The film's pieces as files of meshes have them: those that go through fixed planes are cut as they start."""
+    return [piece for each in film.scene.pieces if (piece := _at_start(film, each)) is not None]
+
+
+def said_of(film: Film) -> str:
+    """Which bodies are so cut, in words; empty where none is."""
+    bodies = dict.fromkeys(piece.body for piece in film.scene.pieces if piece.fixed)
+    return f"{film.motion.mechanism}: {', '.join(bodies)}: {PART}" if bodies else ""
+
+
+def faces_of(triangles: Array, piece: PieceSpec, radius: float) -> list[tuple[Array, SurfaceSpec]]:
+    """Triangles (n, 3, 3) (m) of what a piece's section leaves, with their surfaces: its own, and the light and dark
+    stripes of its cut faces, as wide as a machine of this ``radius`` (m) has them.
+
+    Raises UserError where manifold3d is missing, or the piece is not closed.
+    """
+    rest, caps = cut_open(triangles, piece)
+    hatches = [_hatch(piece, plane, radius) for plane in piece.cut]
+    for k, (plane, hatch) in enumerate(zip(piece.cut, hatches, strict=True)):
+        rest = along_rim(rest, plane, hatch, LIGHT, LEVEL)
+        caps = [cap if j == k else along_rim(cap, plane, hatch, LIGHT, LEVEL) for j, cap in enumerate(caps)]
+    light, dark = zip(*(striped(cap, hatch, LIGHT) for cap, hatch in zip(caps, hatches, strict=True)), strict=True)
+    tones = (light_of(piece.surface.colour), dark_of(piece.surface.colour))
+    surfaces = [SurfaceSpec(colour=tone, finish="plastic", roughness=MATT) for tone in tones]
+    return [(rest, piece.surface), (np.concatenate(light), surfaces[0]), (np.concatenate(dark), surfaces[1])]
+
+
+def _hatch(piece: PieceSpec, plane: Plane, radius: float) -> Hatch:
+    """Stripes of a piece in a plane, their period in m."""
+    hatch = hatch_of(f"{piece.body}/{piece.name}", plane)
+    return Hatch(hatch.way, radius * hatch.period)
+
+
+def cut_open(triangles: Array, piece: PieceSpec) -> tuple[Array, list[Array]]:
+    """Triangles (n, 3, 3) (m) of what a piece's section leaves: of its surface, and of the cut along each plane.
 
     Raises UserError where manifold3d is missing, or the piece is not closed.
     """
@@ -34,10 +79,17 @@ def cut_open(triangles: Array, piece: PieceSpec) -> tuple[Array, Array]:
         )
     rest = _rest(solid, piece, corners).to_mesh64()
     kept = np.asarray(rest.vert_properties)[:, :3][np.asarray(rest.tri_verts)]
-    is_cut = np.zeros(len(kept), bool)
-    for *normal, place in piece.cut:
-        is_cut |= (np.abs(kept @ np.array(normal) - place) < LEVEL).all(axis=1)
-    return kept[~is_cut], kept[is_cut]
+    return _sorted(kept, piece.cut)
+
+
+def _sorted(kept: Array, planes: Sequence[tuple[float, ...]]) -> tuple[Array, list[Array]]:
+    """Triangles on no plane, and those on each."""
+    left, caps = np.ones(len(kept), bool), []
+    for *normal, place in planes:
+        on_it = left & (np.abs(kept @ np.array(normal) - place) < LEVEL).all(axis=1)
+        caps.append(kept[on_it])
+        left &= ~on_it
+    return kept[left], caps
 
 
 def _rest(solid: Any, piece: PieceSpec, corners: Array) -> Any:
@@ -54,7 +106,14 @@ def _rest(solid: Any, piece: PieceSpec, corners: Array) -> Any:
     return solid - wedge
 
 
-def cut_surface(surface: SurfaceSpec) -> SurfaceSpec:
-    """The surface of a cut face: a light tone of the piece's, matt; other programs draw no hatches."""
-    red, green, blue = (0.5 * part + 0.32 for part in surface.colour)
-    return msgspec.structs.replace(surface, colour=(red, green, blue), finish="plastic", roughness=0.7)
+def _at_start(film: Film, piece: PieceSpec) -> PieceSpec | None:
+    """A piece cut where it stands at the start of the motion; None if nothing of it is left there."""
+    if not piece.fixed:
+        return piece
+    pose = film.poses.body(piece.body, film.clock.moment(0))
+    planes = tuple(in_body(plane, pose) for plane in piece.cut)
+    heights = [read_corners(Path(piece.stl)) @ np.array(plane[:3]) - plane[3] for plane in planes]
+    if all((height >= 0).all() for height in heights):
+        return None
+    passes = all((height > 0).any() for height in heights)
+    return msgspec.structs.replace(piece, cut=planes if passes else (), fixed=False)

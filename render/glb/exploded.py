@@ -59,7 +59,9 @@ def exploded_glb(film: Film) -> bytes:
             bodies[piece.body] = _body(document, film, piece.body)
         place = [*(piece.turns_about or (0.0, 0.0)), 0.0]
         name = f"{piece.body}/{piece.name}"
-        node = document.add("nodes", {"name": name, "mesh": mesh_of(document, piece, paints), "translation": place})
+        node = document.add(
+            "nodes", {"name": name, "mesh": mesh_of(document, piece, paints, film.studio.radius), "translation": place}
+        )
         document.json["nodes"][bodies[piece.body]]["children"].append(node)
         height = columns[piece.body, piece.name]
         if height.any():

@@ -27,11 +27,14 @@ def run(name: str, form: str = "usd") -> None:
         )
     out = Out(name)
     _refuse_without_usd(out.name)
+    from render.glb.cut import said_of
     from render.usd.scene import stage_of
 
     film = read_film(out)
     path = out.folder / "export" / f"{out.name}{FORMATS[form]}"
     write_bytes(path, content(stage_of(film), out.name, form))
+    if said := said_of(film):
+        say("export", said)
     seconds = film.motion.time[-1] - film.motion.time[0]
     say("export", f"{out.name}: {path}: {seconds:.4g} s, {path.stat().st_size / 1e6:.1f} MB")
 

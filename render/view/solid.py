@@ -9,8 +9,8 @@ solid   looks {dark, light}: see looks.py; reach: away from the camera (m); size
         machine, along the normal of its plane)}]; turns is null, or
         {x, y, angle (T,)} of a roller about a point of its body (m, rad)
         section: part that the page shows cut away at first; sawn: whether the shot has other planes than one from the
-        front, those of pieces then: cut [(x, y, z, m)] a normal and how far along it each plane is, in the body, and
-        gone: whether all of it is away
+        front, those of pieces then: cut [(x, y, z, m)] a normal and how far along it each plane is, in the body, or
+        where fixed in the world, and gone: whether all of it is always away
         heights {joints, points, bodies: {name: m}}: of what floats over them
         tubes: bytes of a GLB with springs, ropes and belts and their motion, or null
 """
@@ -30,7 +30,7 @@ from render.film.framing import axes, in_studio, studio
 from render.film.pieces import piece_specs
 from render.film.poses import Moment
 from render.film.scene import PieceSpec, SurfaceSpec
-from render.film.section import is_gone, planes_of, section_of
+from render.film.section import cuts_of, section_of
 from render.glb.build import tubes
 from render.glb.materials import CLEAR, METALLIC, TONE
 from render.view.loads import arcs_of, arrows_of
@@ -107,11 +107,10 @@ def sawn_of(film: Film) -> dict[tuple[str, str], dict[str, Any]]:
     section = section_of(film.shot.section)
     if section == Section(front=section.front):
         return {}
-    planes = planes_of(film.parts, section, film.folder, film.motion)
-    pieces = {key: film.parts.bodies[key[0]].pieces[key[1]] for key in planes}
+    cuts = cuts_of(film.parts, section, film.folder, film.motion)
     return {
-        key: {"cut": [list(plane) for plane in cut], "gone": is_gone(pieces[key], cut, film.folder)}
-        for key, cut in planes.items()
+        key: {"cut": [list(plane) for plane in cut.planes], "fixed": cut.fixed, "gone": cut.gone}
+        for key, cut in cuts.items()
     }
 
 

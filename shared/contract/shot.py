@@ -157,6 +157,9 @@ class Section(_Strict, frozen=True):
     only: tuple[str, ...] = ()
     """Bodies, or pieces as "body/piece", that are cut; () is all of them from the front alone, and from other sides
     what stands still. What moves is cut as it stands at the start."""
+    fixed: bool = False
+    """Whether planes stay where they are while bodies move through them, so that each moment has a cut of its own: all
+    bodies are cut then, or those of ``only``, and parts are those of their reach over the whole motion."""
 
 
 class Shot(_Strict, frozen=True):

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from render.blender.job import Job
-from render.blender.scene import arcs, arrows, coded, labels, pieces, studio, trail, tubes
+from render.blender.scene import arcs, arrows, coded, labels, passing, pieces, studio, trail, tubes
 from render.film.framing import SENSOR
 from render.film.scene import State
 from shared.contract.mount import Z
@@ -80,6 +80,7 @@ def build(job: Job) -> BuiltScene:
     if job.drawn:
         meshes = [thing for thing in scene.objects if thing.type == "MESH" and thing not in trails]
         coded.number(meshes, [*trails, *texts], job.scene.studio.radius)
+    passing.cut_in_passing(scene, job.scene, solids, painted=job.flat is None and not job.drawn)
     _animate(job, bodies, camera, texts)
     _lift(job, solids)
     drawn = (job.scene.arrows or job.scene.arcs) and job.flat is None

@@ -4,13 +4,13 @@
 # bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
-import zlib
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from render.blender.scene.materials import hatched
+from render.film.hatches import hatch_of
 from render.film.scene import Plane, SurfaceSpec
 
 CUT = "cut"
@@ -89,6 +89,6 @@ def hatch(mesh: Any, surface: SurfaceSpec, name: str, radius: float, planes: Seq
     paints = np.zeros(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("material_index", paints)
     for k, plane in enumerate(planes, 1):
-        mesh.materials.append(hatched(surface, f"{name} cut {k}", radius, zlib.crc32(name.encode()) % 4, plane[:3]))
+        mesh.materials.append(hatched(surface, f"{name} cut {k}", radius, hatch_of(name, plane)))
         paints = np.where(faces == k, len(mesh.materials) - 1, paints)
     mesh.polygons.foreach_set("material_index", paints.astype(np.int32))

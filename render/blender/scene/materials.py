@@ -9,16 +9,13 @@ from collections.abc import Callable
 from typing import Any
 
 from render.blender.scene.nodes import Graph
+from render.film.hatches import LIGHT, MATT, Hatch, dark_of, light_of
 from render.film.scene import Colour, SurfaceSpec
 
 BARE: Colour = (0.62, 0.63, 0.65)
 IRON: Colour = (0.36, 0.355, 0.35)
 LAYER = 0.0004
 """Height (m) of a printed layer, twice what printers make, so that pixels can show it."""
-
-
-STRIPE = 0.05
-"""Width of a light and a dark stripe of a cut face, as a part of the machine's radius."""
 WORN = ("anodised", "cast")
 """Finishes whose chamfers are rubbed."""
 EDGE = "edge"
@@ -44,24 +41,25 @@ def flat(colour: tuple[float, float, float], name: str) -> Any:
     return made
 
 
-def hatched(surface: SurfaceSpec, name: str, radius: float, way: int, normal: Colour = (0.0, 0.0, 1.0)) -> Any:
-    """A cut face: stripes in light and dark of the surface's colour; their slope and width follow ``way``, 0 .. 3.
+def hatched(surface: SurfaceSpec, name: str, radius: float, hatch: Hatch, fixed: bool = False) -> Any:
+    """A cut face with stripes in light and dark of the surface's colour.
 
-    ``normal`` is the unit normal of the face, along z or across it.
+    Stripes are of the body's frame; of a ``fixed`` plane they lie as the world does and go along with the body.
     """
     made, graph = new_material(name)
-    place = graph.add("SeparateXYZ", Vector=graph.add("TexCoord").outputs["Object"])
-    x, y, z = (place.outputs[axis] for axis in "XYZ")
-    if not normal[2]:  # in a face that stands up, along it and z
-        x, y = graph.math("SUBTRACT", graph.math("MULTIPLY", y, normal[0]), graph.math("MULTIPLY", x, normal[1])), z
-    along = graph.math("SUBTRACT" if way % 2 else "ADD", x, y)
-    period = radius * (STRIPE + way // 2 * STRIPE / 3)
-    stripe = graph.math("GREATER_THAN", graph.math("FRACT", graph.math("DIVIDE", along, period)), 0.55)
-    light: Colour = tuple(0.5 * part + 0.32 for part in surface.colour)  # type: ignore[assignment]
-    dark: Colour = tuple(0.3 * part + 0.015 for part in surface.colour)  # type: ignore[assignment]
-    graph.add(
-        "OutputMaterial", Surface=_principled(graph, Base_Color=_mixed(graph, stripe, light, dark), Roughness=0.7)
-    )
+    place = graph.add("TexCoord").outputs["Object"]
+    if fixed:
+        here, body = graph.add("NewGeometry").outputs["Position"], graph.add("ObjectInfo").outputs["Location"]
+        place = graph.vector("SUBTRACT", here, body)
+    parts = graph.add("SeparateXYZ", Vector=place).outputs
+    along: Any = 0.0
+    for axis, weight in zip("XYZ", hatch.way, strict=True):
+        if weight:
+            along = graph.math("ADD", along, graph.math("MULTIPLY", parts[axis], weight))
+    stripe = graph.math("FRACT", graph.math("DIVIDE", along, radius * hatch.period))
+    light, dark = light_of(surface.colour), dark_of(surface.colour)
+    colour = _mixed(graph, graph.math("GREATER_THAN", stripe, LIGHT), light, dark)
+    graph.add("OutputMaterial", Surface=_principled(graph, Base_Color=colour, Roughness=MATT))
     return made
 
 

@@ -50,7 +50,7 @@ def build(
         solid.parent = bodies[carrier]
         if solids is not None:
             solids[name] = solid
-        if piece.cut:
+        if piece.cut and not piece.fixed:
             cut_open(solid.data, piece.cut, SHARP)
         if piece.turns_about is not None:
             x, y = piece.turns_about
@@ -66,7 +66,7 @@ def build(
         solid.data.materials.append(paint)
         if only_flat is None:
             _fill_engraving(solid.data, piece.surface, inks)
-            if piece.cut:
+            if piece.cut and not piece.fixed:
                 hatch(solid.data, piece.surface, name, radius, piece.cut)
     return bodies
 

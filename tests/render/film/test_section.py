@@ -15,7 +15,7 @@ import pytest
 from render.film.film import Film
 from render.film.pieces import piece_specs
 from render.film.scene import PieceSpec
-from render.film.section import planes_of
+from render.film.section import Cut, cuts_of
 from render.film.solids import read_triangles
 from render.glb.build import glb
 from render.glb.cut import cut_open
@@ -119,7 +119,7 @@ def test_the_glb_is_cut_open_and_closed_again(out_root: Path) -> None:
     assert cut
     for spec in cut:
         triangles = read_triangles(Path(spec.stl))
-        rest, caps = cut_open(triangles, spec)
+        rest, [caps] = cut_open(triangles, spec)
         both = np.concatenate([rest, caps])
         assert both[..., 2].max() == pytest.approx(spec.cut[0][3])
         assert both[..., 2].min() == pytest.approx(triangles[..., 2].min())
@@ -130,7 +130,7 @@ def test_the_glb_is_cut_open_and_closed_again(out_root: Path) -> None:
         assert area[2] > 0
     content = glb(Film(read_motion(out.motion), parts, Shot(section=0.3), out.parts_folder))
     document = json.loads(content[20 : 20 + int.from_bytes(content[12:16], "little")])
-    assert sum(len(mesh["primitives"]) == 2 for mesh in document["meshes"]) == len(cut)
+    assert sum(len(mesh["primitives"]) == 3 for mesh in document["meshes"]) == len(cut)
 
 
 def volume(triangles: np.ndarray) -> float:
@@ -139,18 +139,23 @@ def volume(triangles: np.ndarray) -> float:
 
 
 def test_a_section_that_cuts_nothing_is_refused_with_where_pieces_are() -> None:
-    pieces = {"low": SimpleNamespace(z_range=(0.0, 1.0), stl=""), "high": SimpleNamespace(z_range=(2.0, 3.0), stl="")}
+    pieces = {
+        "low": SimpleNamespace(z_range=(0.0, 1.0), stl="", rolls=None),
+        "high": SimpleNamespace(z_range=(2.0, 3.0), stl="", rolls=None),
+    }
     parts: Any = SimpleNamespace(mechanism="press", bodies={"ground": SimpleNamespace(pieces=pieces)})
     with pytest.raises(UserError, match=r"press: shot.section = 0.5 cuts no piece open; .* are at 0\.17, 0\.83"):
-        planes_of(parts, 0.5, Path(), None)
+        cuts_of(parts, 0.5, Path(), None)
     with pytest.raises(UserError, match=r"press: shot.section = front=0.5 cuts .* at 0\.17, 0\.83 from front"):
-        planes_of(parts, Section(front=0.5), Path(), None)
-    assert planes_of(parts, 0.25, Path(), None) == {("ground", "high"): ((0.0, 0.0, 1.0, pytest.approx(2.25)),)}
-    assert planes_of(parts, 0.0, Path(), None) == {}
+        cuts_of(parts, Section(front=0.5), Path(), None)
+    assert cuts_of(parts, 0.25, Path(), None) == {
+        ("ground", "high"): Cut(((0.0, 0.0, 1.0, pytest.approx(2.25)),))  # pyright: ignore[reportArgumentType]
+    }
+    assert cuts_of(parts, 0.0, Path(), None) == {}
     del parts.bodies["ground"]
     parts.bodies["arm"] = SimpleNamespace(pieces=pieces)
     with pytest.raises(UserError, match=r"ground has no solids; name bodies in section.only: arm"):
-        planes_of(parts, Section(right=0.5), Path(), None)
+        cuts_of(parts, Section(right=0.5), Path(), None)
 
 
 def specs_of(out: Out, section: Section) -> dict[tuple[str, str], PieceSpec]:
@@ -187,7 +192,8 @@ def test_a_quarter_goes_from_the_glb_and_the_rest_is_closed(out_root: Path) -> N
     out = film_fixture.write()
     spec = specs_of(out, Section(right=0.5, above=0.5))["ground", "base"]
     triangles = read_triangles(Path(spec.stl))
-    rest, caps = cut_open(triangles, spec)
+    rest, [right, above] = cut_open(triangles, spec)
+    caps = np.concatenate([right, above])
     assert volume(np.concatenate([rest, caps])) == pytest.approx(0.75 * volume(triangles))
     faces = np.cross(caps[:, 1] - caps[:, 0], caps[:, 2] - caps[:, 0])
     areas = faces.sum(axis=0) / 2

@@ -21,7 +21,7 @@ export class Section {
     this.planes = { 1: [this.plane], 2: [this.plane, new Plane()] };
     this.normal = new Vector3();
     this.place = new Vector3();
-    /** Pieces that the shot cuts: mesh, own material, the one of all like it, planes of the mesh and of the world. */
+    /** Pieces that the shot cuts: mesh, own material, the one of all like it, planes of the mesh (or of the machine, where fixed) and of the world. */
     this.sawn = [];
     this.on = "";
   }
@@ -35,7 +35,7 @@ export class Section {
     const axes = AXES[side] ?? [], on = !cut ? "" : side === "film" ? side : `${axes.length}`;
     if (cut) axes.forEach((axis, k) => this.lay(this.planes[axes.length][k], parts, axis, cut, machine, eye));
     if (this.parts !== parts || this.on !== on || (on === "film" && this.dressed !== parts.dressed)) this.change(parts, on);
-    for (const { mesh, own, planes } of this.sawn) planes.forEach((plane, k) => plane.copy(own[k]).applyMatrix4(mesh.matrixWorld));
+    for (const { mesh, own, planes, fixed } of this.sawn) planes.forEach((plane, k) => plane.copy(own[k]).applyMatrix4((fixed ? machine : mesh).matrixWorld));
   }
 
   /** Lay a plane across an axis of the machine, so that what is on the eye's side goes. */
@@ -64,16 +64,16 @@ export class Section {
     if (on === "film") parts.solid.pieces.forEach((piece, k) => this.saw(piece, parts.meshes[k], k));
   }
 
-  /** Cut a piece as the film does: by planes that go with it. */
-  saw({ cut, gone, at }, mesh, k) {
+  /** Cut a piece as the film does: by planes that go with it, or, where they are fixed, stay in the machine's frame. */
+  saw({ cut, gone, at: corner, fixed }, mesh, k) {
     mesh.visible = !gone;
     if (!cut?.length || gone) return;
-    const common = mesh.material, material = common.clone();
+    const common = mesh.material, material = common.clone(), at = fixed ? [0, 0, 0] : corner;
     const own = cut.map(([x, y, z, place]) => new Plane(new Vector3(-x, -y, -z), place - (x * at[0] + y * at[1] + z * at[2])));
     const planes = own.map((plane) => plane.clone());
     opened(material, k, planes);
     mesh.material = material;
-    this.sawn.push({ mesh, own, planes, material, common });
+    this.sawn.push({ mesh, own, planes, material, common, fixed });
   }
 }
 

@@ -1,0 +1,92 @@
+"""Solids that move through planes which stand still: Blender cuts them anew at every moment, also in a saved scene.
+
+What is beyond all planes is a box, for sides of a section are along axes; it is taken from each solid by a boolean
+modifier, which leaves the box's faces, with their paint, as the cut faces.
+"""
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from render.blender.scene.cut import WELDED
+from render.blender.scene.materials import hatched
+from render.film.hatches import hatch_of
+from render.film.scene import PieceSpec, Plane, Scene, StudioSpec
+from shared.stage.errors import UserError
+
+BEYOND = 4.0
+"""How far a box reaches beyond all that moves, in radii."""
+
+
+def cut_in_passing(scene: Any, spec: Scene, solids: dict[str, Any], painted: bool) -> None:
+    """Cut the ``solids`` (by ``body/piece``) of pieces whose planes are fixed; ``painted`` hatches the cut faces.
+
+    Raises UserError for one that is not closed.
+    """
+    reach = math.hypot(*spec.studio.centre) + BEYOND * spec.studio.radius
+    for piece in spec.pieces:
+        name = f"{piece.body}/{piece.name}"
+        if piece.fixed and name in solids:
+            _close(solids[name], name)
+            paints = _paints(piece, name, spec.studio) if painted else []
+            _take_away(solids[name], _box(scene, f"{name} cut", piece.cut, reach, paints), painted)
+
+
+def _paints(piece: PieceSpec, name: str, studio: StudioSpec) -> list[Any]:
+    return [
+        hatched(piece.surface, f"{name} cut {k}", studio.radius, hatch_of(name, plane), fixed=True)
+        for k, plane in enumerate(piece.cut, 1)
+    ]
+
+
+def _take_away(solid: Any, box: Any, painted: bool) -> None:
+    cut = solid.modifiers.new("section", "BOOLEAN")
+    cut.operation, cut.solver, cut.object = "DIFFERENCE", "MANIFOLD", box
+    cut.material_mode = "TRANSFER" if painted else "INDEX"
+    solid.cycles.use_deform_motion = False  # its triangles are others in every frame
+
+
+def _box(scene: Any, name: str, planes: Sequence[Plane], reach: float, paints: list[Any]) -> Any:
+    """What is beyond all planes: its k-th face is that along the k-th plane."""
+    import bmesh
+    import bpy
+
+    low, high = [-reach] * 3, [reach] * 3
+    for *normal, place in planes:
+        axis = max(range(3), key=lambda axis: abs(normal[axis]))
+        ends = low if normal[axis] > 0 else high
+        ends[axis] = place * normal[axis]
+    made, mesh = bmesh.new(), bpy.data.meshes.new(name)
+    bmesh.ops.create_cube(made, size=1.0)
+    for corner in made.verts:
+        corner.co = [high[axis] if corner.co[axis] > 0 else low[axis] for axis in range(3)]
+    made.normal_update()
+    for face in made.faces:
+        turned = [sum(a * b for a, b in zip(face.normal, plane[:3], strict=True)) for plane in planes]
+        face.material_index = turned.index(min(turned)) if paints else 0
+    made.to_mesh(mesh)
+    made.free()
+    for paint in paints:
+        mesh.materials.append(paint)
+    box = bpy.data.objects.new(name, mesh)
+    box.hide_render = box.hide_viewport = True
+    scene.collection.objects.link(box)
+    return box
+
+
+def _close(solid: Any, name: str) -> None:
+    """Weld corners that are one, as those of an STL may not be. Raises UserError if the solid is open nevertheless."""
+    import bmesh
+
+    mesh = bmesh.new()
+    mesh.from_mesh(solid.data)
+    if any(not edge.is_manifold for edge in mesh.edges):
+        bmesh.ops.remove_doubles(mesh, verts=mesh.verts[:], dist=WELDED)
+        if any(not edge.is_manifold for edge in mesh.edges):
+            raise UserError(f"piece {name} is not closed, so no section can cut it; make the parts again")
+        mesh.to_mesh(solid.data)
+    mesh.free()

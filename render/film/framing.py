@@ -81,10 +81,12 @@ def fit(
     margin: float,
     empty: Empty = (0.0, 0.0),
     aspect: float = ASPECT,
+    aside: float = 0.0,
 ) -> tuple[Array, float]:
     """The closest camera position (3,) that has all ``points`` (n, 3) in the frame, and its distance to their middle.
 
-    ``empty`` are the parts of the frame's height that stay empty at its top and at its bottom beside the margin.
+    ``empty`` are the parts of the frame's height that stay empty at its top and at its bottom beside the margin,
+    ``aside`` is that of its width at its right.
     Each side of the frame is a plane through the camera: |u - cu| <= t (w - cw) for a point at (u, v, w) in camera
     axes. The tightest planes of two opposite sides fix cu, or cv, and bound cw; the smaller cw holds both.
     """
@@ -92,11 +94,13 @@ def fit(
     room = 1 - 2 * margin
     tu, tv = (half * room for half in half_field(lens, aspect))
     upper, lower = (tv - 2 * _cut(part, margin, lens, aspect) for part in empty)
-    cu, wu = _between(u, w, tu, tu)
+    right = tu - 2 * min(aside, room / 2) * half_field(lens, aspect)[0]
+    cu, wu = _between(u, w, tu, right)
     cv, wv = _between(v, w, lower, upper)
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
     depth = min(wu, wv, float(w.min()) - NEAREST * size)
-    position = np.array([cu, cv + (upper - lower) / 2 * depth, depth]) @ axes(azimuth, elevation)
+    across, up = cu + (right - tu) / 2 * depth, cv + (upper - lower) / 2 * depth
+    position = np.array([across, up, depth]) @ axes(azimuth, elevation)
     return position, float((w.min() + w.max()) / 2 - depth)
 
 

@@ -32,10 +32,12 @@ class View:
     margin: float
     empty: Empty = (0.0, 0.0)
     aspect: float = ASPECT
+    aside: float = 0.0
+    """Part of the width that stays empty at the right."""
 
     def stand(self, points: Array) -> tuple[Array, float]:
         """The closest place (3,) of a camera that holds points (n, 3), and its distance (m) to their middle."""
-        return fit(points, self.azimuth, self.elevation, self.lens, self.margin, self.empty, self.aspect)
+        return fit(points, self.azimuth, self.elevation, self.lens, self.margin, self.empty, self.aspect, self.aside)
 
     def filled(self, points: Array, position: Array) -> tuple[float, float]:
         """Parts of the picture's width and height that points (n, 3) take, seen from ``position`` (3,)."""
@@ -62,7 +64,7 @@ def held(view: View, machine: Array, around: Array, drawn: Array, few: Array | N
     def suffices(part: float) -> bool:
         position, _ = view.stand(np.concatenate([few, arrows, middle + part * (rest - middle)]))
         across, up = view.filled(few, position)
-        return max(across, up / left) >= most
+        return max(across / (1 - view.aside), up / left) >= most
 
     low, high = 0.0, 1.0
     if suffices(high):

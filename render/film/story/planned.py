@@ -50,7 +50,7 @@ def planned(
     """
     scenery = replace(scenery_of(film, forces, reasons, preset), cut=cut)
     if seconds:
-        return Story(film.motion.mechanism, scenery.fps, scenery.step, [loop(scenery, seconds)], scenery.curves)
+        return _made(scenery, [loop(scenery, seconds)])
     most = BUDGET * min(film.clock.frames, film.clock.moving + 1) * (2 / scenery.step)
     story = _story(scenery)
     for turning, scale in WAYS[1:]:
@@ -94,7 +94,12 @@ def _story(scenery: Scenery) -> Story:
             f"{scenery.film.motion.mechanism}: shot.story.shots = {', '.join(names)} leaves nothing to show: this "
             "machine has no such shots; add motion or last"
         )
-    return Story(scenery.film.motion.mechanism, scenery.fps, scenery.step, shots, scenery.curves)
+    return _made(scenery, shots)
+
+
+def _made(scenery: Scenery, shots: Sequence[Shot]) -> Story:
+    mechanism, fps, step = scenery.film.motion.mechanism, scenery.fps, scenery.step
+    return Story(mechanism, fps, step, shots, scenery.curves, scenery.at_side)
 
 
 SHOTS: dict[str, Callable[[Scenery], Shot | None]] = {

@@ -25,6 +25,10 @@ from render.film.story.words import rate_words
 from shared.contract.shot import Story as Wishes
 
 Array = NDArray[np.float64]
+WIDE = 1.5
+"""Aspect of a picture from which on there may be room for the strip beside the machine."""
+LARGER = 1.08
+"""The strip stands there where that makes the machine so many times larger."""
 MARGIN = 0.05
 """Empty part of the picture at each side at most: strip and captions stand apart already."""
 
@@ -118,13 +122,27 @@ class Scenery:
         """Have the stand that is asked for without any words be this one."""
         self.kept[0.0, 0.0, True, False] = stand
 
+    @cached_property
+    def at_side(self) -> bool:
+        """Whether the strip stands beside the machine, as is better for one that is tall in a wide picture."""
+        if not self.curves or self.film.aspect < WIDE:
+            return False
+        under, beside = (self._held(0.0, 0.0, True, False, side) for side in (False, True))
+        return LARGER * beside.distance < under.distance
+
     def _stand(self, azimuth: float, elevation: float, strip: bool, arrows: bool) -> Stand:
+        strip = strip and bool(self.curves)
+        return self._held(azimuth, elevation, strip, arrows, strip and self.at_side)
+
+    def _held(self, azimuth: float, elevation: float, strip: bool, arrows: bool, side: bool) -> Stand:
+        """The stand with room for a strip under the machine, or at its ``side``."""
         film = self.forces if arrows and self.forces is not None else self.film
         at = angles(film.shot.camera, film.parts.mount, film.aspect)
         turned = at[0] + np.radians(azimuth), min(at[1] + np.radians(elevation), np.radians(85))
-        empty = layout.above(film.aspect), layout.below(film.aspect, strip and bool(self.curves))
-        camera = film.shot.camera
-        view = View(float(turned[0]), float(turned[1]), camera.lens, min(camera.margin, MARGIN), empty, film.aspect)
+        empty = layout.above(film.aspect), layout.below(film.aspect, strip and not side)
+        camera, aside = film.shot.camera, layout.beside(film.aspect) if side else 0.0
+        margin = min(camera.margin, MARGIN)
+        view = View(float(turned[0]), float(turned[1]), camera.lens, margin, empty, film.aspect, aside)
         return cameras.raised(cameras.stand(film.subject, self.up, view), self.up, self.top)
 
     def camera(self, stand: Stand, at: float) -> CameraPose:

@@ -34,6 +34,8 @@ class Story:
     shots: Sequence[Shot]
     curves: Sequence[Curve] = ()
     """Those of the strip."""
+    at_side: bool = False
+    """Whether the strip stands beside the machine."""
 
     @cached_property
     def placed(self) -> list[Placed]:
@@ -98,7 +100,7 @@ class Story:
                 seconds.append((placed.first + k) / self.fps)
                 moments.append(placed.shot.model(k / self.fps))
         if not anew:
-            return TimeMap.through(seconds, [min(max(moment, start), end) for moment in moments], closes=False)
+            return TimeMap.through(*_held(seconds, moments, start, end), closes=False)
         return TimeMap.through(*_folded(seconds, moments, start, end), closes=False)
 
     @cached_property
@@ -122,6 +124,19 @@ class Story:
 
     def _second(self, placed: Placed, frame: int, step: int) -> float:
         return (frame - placed.first) // step * step / self.fps
+
+
+def _held(seconds: list[float], moments: list[float], start: float, end: float) -> tuple[list[float], list[float]]:
+    """Moments held within ``start`` .. ``end``, as in the picture; where a shot begins it anew, the film cuts."""
+    out_seconds, out_moments = [], []
+    for k, (second, moment) in enumerate(zip(seconds, moments, strict=True)):
+        moment = min(max(moment, start), end)
+        if k and second > seconds[k - 1] and moment < out_moments[-1]:
+            out_seconds.append(second)
+            out_moments.append(out_moments[-1])
+        out_seconds.append(second)
+        out_moments.append(moment)
+    return out_seconds, out_moments
 
 
 def _folded(seconds: list[float], moments: list[float], start: float, end: float) -> tuple[list[float], list[float]]:

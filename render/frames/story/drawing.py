@@ -45,7 +45,9 @@ class Drawing:
     """Names of pictures beside or over each other: whether at the right, the upper edge of the picture (in parts of the
     height), words, colour of the curves."""
     below: int = 0
-    """Pixels that the strip takes below the words."""
+    """Pixels that the strip takes below the words, ..."""
+    right: int = 0
+    """... and at the right of numbers."""
     _kept: tuple[Over, Any] | None = None
 
     @property
@@ -61,7 +63,7 @@ class Drawing:
             page.paste(layer, (0, 0), layer)
         if over.strip > 0 and self.strip is not None:
             strip = self.strip.drawn(over.now)
-            page.paste(strip, (0, self.high - strip.height), _faded(strip, over.strip))
+            page.paste(strip, self.strip.place, _faded(strip, over.strip))
         if over.dark > 0:
             from PIL import Image
 
@@ -94,7 +96,8 @@ class Drawing:
         times = 3 if self.wide * self.high <= 1e6 else 2 if self.wide * self.high <= 2.5e6 else 1
         fine = Drawing(times * self.wide, times * self.high, self.name, self.said, self.facts, None)
         fine.heads = self.heads
-        fine.below = times * (self.strip.tall if over.strip > 0 and self.strip else 0)
+        if over.strip > 0 and self.strip:
+            fine.below, fine.right = (0, times * self.strip.across) if self.strip.side else (times * self.strip.tall, 0)
         layer = fine._drawn(over)
         return layer.reduce(times) if layer is not None and times > 1 else layer
 
@@ -184,12 +187,12 @@ class Drawing:
             wide, high = size * width_of(note.words, True) + 1.1 * size, 1.6 * size
             x = note.x * self.wide + note.dx * (wide / 2 + 1.2 * size)
             y = note.y * self.high + note.dy * (high / 2 + 1.2 * size)
-            x = min(max(x, edge + wide / 2), self.wide - edge - wide / 2)
+            x = min(max(x, edge + wide / 2), self.wide - self.right - edge - wide / 2)
             y = min(max(y, edge + 2.2 * size + high / 2), low - high / 2)
             if _on_arrow((x - wide / 2, y - high / 2, x + wide / 2, y + high / 2), note, self.wide, self.high):
                 away = note.dx if abs(note.dx) > LEANS else 1.0 if x < self.wide / 2 else -1.0
                 x += math.copysign(wide / 2 + 1.1 * size, away)
-                x = min(max(x, edge + wide / 2), self.wide - edge - wide / 2)
+                x = min(max(x, edge + wide / 2), self.wide - self.right - edge - wide / 2)
             for _ in range(6):
                 box = (x - wide / 2, y - high / 2, x + wide / 2, y + high / 2)
                 if not any(_overlap(box, other) for other in taken):

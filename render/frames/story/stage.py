@@ -73,7 +73,7 @@ def _with_sound(silent: Path, telling: Telling, preset: Preset, film: Path) -> N
 
     story, clock = telling.story, telling.film.clock
     waves = wav_of(film)
-    write_bytes(waves, wav(sound_of(telling.film, story.time_map(clock.start, clock.end))))
+    write_bytes(waves, wav(sound_of(telling.film, story.time_map(clock.start, clock.end, clock.repeats))))
     mux(silent, waves, story.total, preset, story.fps, film)
 
 

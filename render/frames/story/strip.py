@@ -1,4 +1,4 @@
-"""The strip under a story: a panel for each curve, with a playhead at the time of the frame and marks of events."""
+"""The strip under a story, or beside a tall machine: a panel a curve, with a playhead and marks of events."""
 
 from __future__ import annotations
 
@@ -37,6 +37,8 @@ class Strip:
     high: int
     others: Sequence[Curve] = ()
     """Curves of another variant, each drawn thinner over that of the same place."""
+    side: bool = False
+    """Whether its panels stand over each other at the right edge of the picture, instead of in a row under it."""
 
     @cached_property
     def unit(self) -> int:
@@ -44,9 +46,27 @@ class Strip:
         return min(self.wide, self.high)
 
     @cached_property
+    def across(self) -> int:
+        """Pixels of its width."""
+        return round(layout.SIDE * self.unit) if self.side else self.wide
+
+    @cached_property
     def tall(self) -> int:
         """Pixels of its height."""
+        if self.side:
+            return round(len(self.shown) * self._each + 0.6 * layout.EDGE * self.unit)
         return round(layout.STRIP * self.unit)
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """Its upper left corner in the picture (pixels)."""
+        return self.wide - self.across, 0 if self.side else self.high - self.tall
+
+    @property
+    def _each(self) -> float:
+        """Height of a panel that stands over others, with its name (pixels)."""
+        room = self.high - (layout.UNDER + 0.6 * layout.EDGE) * self.unit
+        return min(layout.PANEL * self.unit, room / max(len(self.shown), 1))
 
     @cached_property
     def shown(self) -> list[Curve]:
@@ -57,8 +77,12 @@ class Strip:
     def panels(self) -> list[tuple[float, float, float, float]]:
         """Left, upper, right and lower edge of each plot (pixels of the strip)."""
         edge, gap = layout.EDGE * self.unit, 0.05 * self.unit
+        top = 1.75 * layout.SMALL * self.unit
+        if self.side:
+            rows = [k * self._each for k in range(len(self.shown))]
+            return [(edge, row + top, self.across - edge, row + self._each - 0.2 * edge) for row in rows]
         each = (self.wide - 2 * edge - gap * (len(self.shown) - 1)) / max(len(self.shown), 1)
-        top, low = 1.75 * layout.SMALL * self.unit, self.tall - 0.6 * layout.EDGE * self.unit
+        low = self.tall - 0.6 * layout.EDGE * self.unit
         return [(edge + k * (each + gap), top, edge + k * (each + gap) + each, low) for k in range(len(self.shown))]
 
     def drawn(self, time: float) -> Any:
@@ -68,7 +92,7 @@ class Strip:
         page = self._still.copy()
         span = self.end - self.start
         inside = self.start + (time - self.start) % span if self.repeats else min(max(time, self.start), self.end)
-        head = Image.new("RGBA", (FINE * self.wide, FINE * self.tall), (0, 0, 0, 0))
+        head = Image.new("RGBA", (FINE * self.across, FINE * self.tall), (0, 0, 0, 0))
         fine = ImageDraw.Draw(head)
         for k, panel in enumerate(self.panels):
             x = panel[0] + (inside - self.start) / span * (panel[2] - panel[0])
@@ -98,8 +122,12 @@ class Strip:
         size = layout.SMALL * self.unit
         letters = font(FINE * size, True)
         words = self._words(k, value, bare)
-        draw.text((FINE * right, FINE * 0.45 * size), words, fill=ink, font=letters, anchor="ra")
+        draw.text((FINE * right, FINE * self._name_height(k)), words, fill=ink, font=letters, anchor="ra")
         return self._room(k, bare)
+
+    def _name_height(self, k: int) -> float:
+        """Where the words over a panel begin (pixels)."""
+        return self.panels[k][1] - 1.3 * layout.SMALL * self.unit
 
     def _words(self, k: int, value: float, bare: bool) -> str:
         words = self._writers[k](value)
@@ -132,7 +160,7 @@ class Strip:
         """Everything that does not move."""
         from PIL import Image, ImageDraw
 
-        fine = Image.new("RGBA", (FINE * self.wide, FINE * self.tall), (0, 0, 0, 0))
+        fine = Image.new("RGBA", (FINE * self.across, FINE * self.tall), (0, 0, 0, 0))
         draw = ImageDraw.Draw(fine)
         for k, (curve, panel, span) in enumerate(zip(self.shown, self.panels, self._ranges, strict=True)):
             self._axes(draw, panel, span)
@@ -144,9 +172,9 @@ class Strip:
             room = panel[2] - panel[0] - self._room(k) - (self._room(k, True) if self.others else 0.0)
             name = plain(curve.name)
             fit = min(size, max(0.6 * size, room / max(width_of(name, True), 1e-9)))
-            at = (FINE * panel[0], FINE * 0.45 * size)
+            at = (FINE * panel[0], FINE * self._name_height(k))
             draw.text(at, name, fill=(*readable(curve.colour), 255), font=font(FINE * fit, True), anchor="la")
-        page = Image.new("RGBA", (self.wide, self.tall), (*CARD, round(255 * CARD_ALPHA)))
+        page = Image.new("RGBA", (self.across, self.tall), (*CARD, round(255 * CARD_ALPHA)))
         page.alpha_composite(fine.reduce(FINE))
         return page
 

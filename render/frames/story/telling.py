@@ -164,7 +164,7 @@ def strip_of(film: Film, story: Story, preset: Preset) -> Strip | None:
     times = sorted({at for at, _ in marks(film.motion)})
     return Strip(
         curves=story.curves, marks=times if len(times) <= MARKS else (), start=film.clock.start, end=film.clock.end,
-        repeats=film.clock.repeats, wide=preset.width, high=preset.height,
+        repeats=film.clock.repeats, wide=preset.width, high=preset.height, side=story.at_side,
     )  # fmt: skip
 
 

@@ -99,6 +99,26 @@ def test_sound_follows_the_times_of_the_story(out_root) -> None:
     assert np.abs(rates[still[2:-2]]).max() < 1e-9
 
 
+def test_sound_of_a_motion_that_ends_stands_where_the_picture_does(out_root) -> None:
+    """Also past the end, where what follows an event would go beyond it: there the picture is held."""
+    telling = made()
+    motion = telling.film.motion
+    motion.period = None
+    film = Film(motion, telling.film.parts, telling.film.shot, telling.film.folder, 16 / 9)
+    at = motion.time[-1] - 0.01 * (motion.time[-1] - motion.time[0])
+    story = planned(film, None, [Reason(at, "event", "bell")], PRESETS["draft"])
+    heard = story.time_map(film.clock.start, film.clock.end, anew=False)
+    seconds = (np.arange(story.total) + 0.5) / story.fps
+    shown = np.array([min(max(story.model_time(float(s)), film.clock.start), film.clock.end) for s in seconds])
+    moments, rates = heard.at(seconds)
+    anew = np.abs(moments - shown) > 0.1 * (film.clock.end - film.clock.start)
+    assert anew.sum() <= 3, "frames in which the motion begins anew"
+    assert np.abs(moments - shown)[~anew].max() < film.clock.rate / story.fps
+    assert np.all(rates >= 0)
+    (reason,) = (placed for placed in story.placed if placed.shot.name == "reason")
+    assert moments[reason.end - 2] == pytest.approx(film.clock.end)
+
+
 def period_of(telling: Telling) -> float:
     period = telling.film.motion.period
     assert period is not None

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -78,6 +79,26 @@ class Setting:
         """Film seconds at which moments (n,) of the motion are shown, and the index of each."""
         film, index = self.map.when(np.asarray(times, float))
         return np.minimum(film, self.seconds), index
+
+    def continued(self, way: Array) -> Array:
+        """A way or phase (M + 1,) that goes on, at the speed around it, where the film jumps to another moment.
+
+        Else a jump would be heard as a burst of all that lies between.
+        """
+        steps, at = np.diff(way), np.flatnonzero(self.jumps)
+        if not len(at):
+            return way
+        steps[at] = 0.0
+        before, after = steps[np.maximum(at - 1, 0)], steps[np.minimum(at + 1, len(steps) - 1)]
+        steps[at] = (before + after) / 2
+        return way[0] + np.concatenate([[0.0], np.cumsum(steps)])
+
+    @cached_property
+    def jumps(self) -> NDArray[np.bool_]:
+        """(M,) whether the film jumps to another moment between two values."""
+        step = self.seconds / self.steps
+        passed = step * (self.rate[:-1] + self.rate[1:]) / 2
+        return np.abs(np.diff(self.model) - passed) > step * np.abs(np.diff(self.rate)) + 1e-9 * np.ptp(self.time)
 
     def closed(self, phase: Array) -> Array:
         """A phase (M + 1,) in cycles, so stretched that a film that loops has a whole number of them."""
@@ -174,10 +195,20 @@ class Setting:
 
     @cached_property
     def fade(self) -> Array:
-        """(M + 1,) 0 where the film cuts to another moment, 1 away from there: for waves, whose phase jumps."""
-        cuts = self.map.cuts
+        """(M + 1,) 0 where the film cuts to another moment, 1 away from there: tones of two moments have two pitches.
+
+        Where a period begins anew nothing changes.
+        """
+        cuts = self._cuts
         if not cuts:
             return np.ones_like(self.at)
         away = np.abs(self.at[:, None] - np.array(cuts))
         away = np.minimum(away, self.seconds - away).min(axis=1)
         return np.clip(away / FADE, 0.0, 1.0)
+
+    @property
+    def _cuts(self) -> list[float]:
+        clock, pieces = self.film.clock, self.map.pieces
+        whole = clock.end - clock.start if clock.repeats else np.inf
+        jumps = {b.film[0]: abs(b.model[0] - a.model[1]) for a, b in pairwise(pieces)}
+        return [cut for cut in self.map.cuts if abs(jumps.get(cut, 0.0) - whole) > 1e-6 * whole or cut not in jumps]

@@ -35,7 +35,7 @@ def play(setting: Setting, desk: Desk) -> None:
 def _blows(setting: Setting, desk: Desk, force: ForceMotion) -> None:
     acting = force.actions[-1]
     size = np.hypot(acting.fx, acting.fy)
-    rate = np.gradient(setting.series(size), setting.at)
+    rate = np.gradient(setting.continued(setting.series(size)), setting.at)
     steepest = float(rate.max())
     if steepest <= 0:
         return

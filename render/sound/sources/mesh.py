@@ -43,7 +43,7 @@ def play(setting: Setting, desk: Desk) -> None:
 
 
 def _pair(setting: Setting, desk: Desk, joint: JointMotion, shape: Shape) -> None:
-    phase = setting.closed(teeth_passed(setting, shape))
+    phase = setting.closed(setting.continued(teeth_passed(setting, shape)))
     frequency = np.abs(np.gradient(phase, setting.at))
     places = joint.acts or joint
     side = setting.side(np.asarray(places.x), np.asarray(places.y))

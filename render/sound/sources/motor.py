@@ -62,7 +62,7 @@ def _takes(setting: Setting, power: list[float]) -> bool:
 
 def _motor(setting: Setting, desk: Desk, value: Array, effort: Array, turns: bool, bodies: tuple[str, str]) -> None:
     screw = math.tau if turns else max(float(np.ptp(value)) / 100, 1e-9)
-    way = setting.series(value) / screw
+    way = setting.continued(setting.series(value) / screw)
     speed = np.abs(np.gradient(way, setting.at))
     fastest = float(np.quantile(speed, 0.98))
     if fastest < 1e-9:

@@ -37,6 +37,8 @@ WAYS: dict[str, Normal] = {
     "below": (0.0, -1.0, 0.0),
 }
 """From the machine's inside to where a side of a Section is, in the axes of the motion."""
+ASIDE = 32.0
+"""Azimuth (degrees) from which on a face that looks to the side is seen well."""
 STILL = 1e-9
 """Bodies that move less than this along a plane's normal (m), and turn less (rad), have the same cut all the time."""
 
@@ -78,6 +80,12 @@ def cuts_of(parts: Parts, asked: Section | float, folder: Path, motion: Motion |
     if all(cut.gone for cut in out.values()):
         raise UserError(_nothing(parts.mechanism, asked, solids, depths))
     return out
+
+
+def seen_from(section: Section | float, azimuth: float) -> float:
+    """The azimuth (degrees) from which the cut faces are seen of a machine that is looked at from another one."""
+    asked = section_of(section)
+    return max(azimuth, ASIDE) if asked.right else min(azimuth, -ASIDE) if asked.left else azimuth
 
 
 def in_body(plane: Plane, pose: Pose) -> Plane:

@@ -87,8 +87,18 @@ def test_films_are_heard_under_their_pictures(out_root: Path) -> None:
     title = card.number(30)
     assert read_clip(target).packets[-30:] == read_clip(path).packets
     assert read_clip(target).frames == 2 * title + 40
+    assert shown_at(target) == [k / 30 for k in range(2 * title + 40)], "also where a film with sound begins"
     before = target.read_bytes()
     assert showreel.run(TINY, "pendulum,four_bar").read_bytes() == before
+
+
+def shown_at(path: Path) -> list[float]:
+    """Seconds at which the pictures of a film are shown."""
+    command = [encode.ffmpeg(), "-v", "error", "-i", str(path), "-map", "0:v:0", "-c", "copy", "-f", "framehash", "-"]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    ticks = int(re.findall(r"#tb 0: 1/(\d+)", said)[0])
+    rows = [line.split(",") for line in said.splitlines() if not line.startswith("#")]
+    return sorted(int(row[2]) / ticks for row in rows)
 
 
 def test_what_is_missing_or_damaged_is_named(out_root: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,8 +10,10 @@ from functools import cached_property
 import msgspec
 import numpy as np
 
+from render.film.camera import angles
 from render.film.film import Film
 from render.film.inputs import refuse_missing
+from render.film.section import seen_from
 from render.film.story.planned import planned
 from render.film.story.reason import Reason
 from render.film.story.story import Story
@@ -134,9 +137,10 @@ def _cut_open(shot: Shot, film: Film) -> Film | None:
     """The same film as the shot cuts it open; None where it does not. Raises UserError for one that opens no piece."""
     if not shot.section:
         return None
-    made = Film(
-        film.motion, film.parts, msgspec.structs.replace(film.shot, section=shot.section), film.folder, film.aspect
-    )
+    usual = math.degrees(angles(shot.camera, film.parts.mount, film.aspect)[0])
+    camera = msgspec.structs.replace(shot.camera, azimuth=seen_from(shot.section, usual))
+    opened = msgspec.structs.replace(film.shot, section=shot.section, camera=camera)
+    made = Film(film.motion, film.parts, opened, film.folder, film.aspect)
     assert made.scene  # refused now, not after the first picture
     return made
 

@@ -176,6 +176,8 @@ def test_a_shot_with_a_section_has_a_shot_of_it(out_root) -> None:
     (placed,) = (each for each in story.placed if each.shot.name == "section")
     for frame in range(story.total):
         assert story.picture(frame).cut == (placed.first <= frame < placed.end)
+        if story.picture(frame).cut:
+            assert 19 < np.degrees(story.picture(frame).camera.azimuth) < 41, "its face looks to the right"
     assert cut is not None
     assert any(piece.cut for piece in cut.scene.pieces)
     assert not any(piece.cut for piece in telling.film.scene.pieces)

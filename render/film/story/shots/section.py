@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
+from render.film.camera import angles
+from render.film.film import Film
 from render.film.story.cameras import between
 from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
 from render.film.story.ramp import Ramp, eased
@@ -12,7 +16,8 @@ from shared.stage.errors import UserError
 SECONDS, MOVES = 4.8, 4.0
 """Seconds of the shot, and of its move."""
 BEGIN, END = (-12.0, 4.0), (8.0, -2.0)
-"""Azimuth and elevation (degrees) beside those of the shot; what is cut from the left is seen the other way round."""
+"""Azimuth and elevation (degrees) beside those of the cut film, from which its faces are seen; what is cut from the
+left is seen the other way round."""
 
 
 def section(scenery: Scenery) -> Shot | None:
@@ -27,7 +32,8 @@ def section(scenery: Scenery) -> Shot | None:
     clock, move = scenery.film.clock, scenery.moving(MOVES)
     begin = clock.start if clock.repeats else max(clock.start, _busy(scenery) - clock.rate * move / 2)
     ramp = Ramp(begin, ((0.75 * move, clock.rate, clock.rate), (0.25 * move, clock.rate, 0.0)))
-    first, last = (scenery.stand(_side(scenery) * azimuth, high, strip=False) for azimuth, high in (BEGIN, END))
+    side, turn = _side(scenery), _turn(scenery, scenery.cut)
+    first, last = (scenery.stand(turn + side * azimuth, high, strip=False) for azimuth, high in (BEGIN, END))
 
     def picture(s: float) -> Picture:
         stand = between(first, last, eased(s / move))
@@ -46,6 +52,12 @@ def section(scenery: Scenery) -> Shot | None:
 def _busy(scenery: Scenery) -> float:
     """When what the story is about happens (s)."""
     return scenery.reasons[0].time if scenery.reasons else scenery.film.clock.start
+
+
+def _turn(scenery: Scenery, cut: Film) -> float:
+    """Degrees from the azimuth of the story to that of the film that is cut open, with its light."""
+    here, there = (angles(film.shot.camera, film.parts.mount, film.aspect)[0] for film in (scenery.film, cut))
+    return math.degrees(there - here)
 
 
 def _side(scenery: Scenery) -> float:

@@ -12,7 +12,8 @@ from itertools import pairwise
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.base.errors import ModelError, SimulationError
+from mbsd.base.errors import ModelError, ModelWarning, SimulationError
+from mbsd.base.warn import warn
 from mbsd.derivatives.asked import taken
 from mbsd.derivatives.free_tangents import FreeTangents, Stretch, Tangents, joined
 from mbsd.derivatives.jumps import Jump, jumps_of
@@ -37,6 +38,8 @@ AIMED = 2e-6
 """What they then come to."""
 MOST = 6
 """So often at most."""
+DOUBTFUL = 1e-3
+"""Error that is warned of."""
 MOST_STEPS = 20_000
 """Steps at most."""
 STEPS_OF_METHOD = 0.5
@@ -81,6 +84,13 @@ class SimulationTangents:
             edges = finer
         self.error = error
         """Estimate of the largest error of the tangents, as part of the largest."""
+        if error > DOUBTFUL:
+            warn(
+                f"{m.name}: derivatives along this simulation are known to {error:.1g} of the largest at best, however "
+                "close their nodes are. A force that jumps, or a curve that bends more tightly than the wheel on it, "
+                "does that: smooth it, or take differences of whole simulations",
+                ModelWarning,
+            )
         self.sol = taken(whole, rows)
         self.along = along_of(self.sol)
         if self.redundant:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError
-from mbsd.measures import final
+from mbsd import Mechanism, ModelError, ModelWarning, curve
+from mbsd.measures import final, largest
 from mbsd.testing.derivatives import check_derivatives
 from mechanisms.quarter_car import mechanism as quarter_car
 
@@ -104,6 +104,16 @@ def test_a_wheel_on_a_bump_agrees_with_differences_where_its_road_is_wider_than_
     radius = 1.0 / float(np.abs(quarter_car.road(quarter_car.Params())(np.linspace(0.2, 1.2, 20001))[:, 2]).max())
     assert radius > quarter_car.Params().radius
     check_derivatives(m, ["engine.effort", "wheel.omega", "body.y"], ["body.mass"], 0.9, 45, tolerance=1e-4, step=1e-2)
+
+
+def test_a_road_that_bends_more_tightly_than_the_wheel_is_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its foot jumps where two places of the road are as near, and the tyre's force with it."""
+    x = np.linspace(0.0, 0.4, 61)
+    tight = curve([0.3, *(0.5 + x), 1.1], [0.0, *(0.025 * (1 - np.cos(5 * math.pi * x))), 0.0])
+    monkeypatch.setattr(quarter_car, "road", lambda p: tight)
+    m = quarter_car.build(quarter_car.Params())
+    with pytest.warns(ModelWarning, match=r"quarter_car: derivatives along this simulation are known to .* at best"):
+        m.sensitivities({"effort": largest("engine.effort")}, "body.mass", quarter_car.DURATION, steps=100)
 
 
 @pytest.mark.parametrize("number", ["end.restitution", "end.at", "rod.length", "rod.mass", "spring.stiffness"])

@@ -29,7 +29,7 @@ PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "cloudpickle")
 """Those whose version decides what comes out, beside mbsd's own sources and Python."""
 LOCAL = Manner(target=0.5, largest=2000, patience=math.inf, copies=1, first_alone=True)
 TOGETHER = replace(LOCAL, target=2.0)
-"""Of simulations in one loop, which is made ready for each chunk: as much work as a hundred points."""
+"""Simulations in one loop, which is made ready for each chunk: as much work as a hundred points."""
 FAR = Manner(
     target=2.0, largest=2000, patience=60.0, unknown=600.0, endless=True, times=20.0, grace=60.0, failures=1,
     threads=True, first_alone=True,

@@ -126,6 +126,13 @@ def test_pieces_are_cut_as_the_film_cuts_them(page: Any) -> None:
     assert sawn["after"]
 
 
+def test_planes_that_are_fixed_stay_while_a_piece_moves_through_them(page: Any) -> None:
+    first, later = page[1]["fixed"]
+    for seen in (first, later):
+        assert seen["plane"] == pytest.approx([-1, 0, 0, 0.08], abs=1e-6)
+    assert np.abs(np.array(first["mesh"]) - later["mesh"]).max() > 0.01
+
+
 def test_scrubbing_keys_and_playing_move_the_machine(page: Any) -> None:
     out, seen, _ = page
     motion = read_motion(out.motion)

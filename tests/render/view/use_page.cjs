@@ -75,6 +75,25 @@ const box = (page, name) => page.evaluate((one) => {
   await page.evaluate(() => window.mbsd.app.store.set({ cut: 0, cutSide: "front" }));
   await frame(page);
   seen.sawn.after = await page.evaluate(() => window.mbsd.app.stage.solid.parts.meshes.every((mesh) => mesh.visible && !mesh.material.clippingPlanes));
+  await page.evaluate(() => {
+    const { app } = window.mbsd, { pieces } = app.payload.solid, last = pieces.length - 1;
+    pieces.slice(0, -1).forEach((piece) => { delete piece.cut; });
+    Object.assign(pieces[last], { cut: [[1, 0, 0, 0.08]], gone: false, fixed: true });
+    app.store.set({ cutSide: "film", cut: 1 });
+  });
+  seen.fixed = [];
+  for (const time of [0, 0.31]) {
+    await page.evaluate((now) => window.mbsd.app.store.set({ time: now }), time);
+    await frame(page);
+    seen.fixed.push(await page.evaluate(() => {
+      const { section, machine } = window.mbsd.app.stage.solid, { mesh, planes } = section.sawn[0], back = machine.matrixWorld.clone().invert();
+      const one = planes[0].clone().applyMatrix4(back);
+      return { plane: [...one.normal.toArray(), one.constant], mesh: [...mesh.matrixWorld.elements] };
+    }));
+  }
+  await page.screenshot({ path: path.join(folder, "fixed.png") });
+  await page.evaluate(() => window.mbsd.app.store.set({ cut: 0, cutSide: "front", time: 0 }));
+  await frame(page);
   seen.whole = await page.evaluate(() => window.mbsd.app.stage.solid.parts.materials.every((material) => !material.clippingPlanes?.length));
   await page.evaluate(() => window.mbsd.app.store.set({ view: "2d" }));
   await frame(page);

@@ -10,7 +10,7 @@ from render.film.time_map import TimeMap
 from render.sound.setting import CONTROL, RATE, Setting
 from render.sound.sound import sound_of
 from render.sound.sources.mesh import crossings, teeth_passed
-from tests.render.sound.heard import filmed, gears
+from tests.render.sound.heard import ball, filmed, gears
 from tests.render.test_kinds import four_bar
 
 CUT = 1.5
@@ -70,3 +70,23 @@ def test_a_period_that_begins_anew_has_no_gap_and_a_cut_has_one() -> None:
     assert anew.fade[0] == 0.0
     cut = Setting(film, cut_map(film, (0.0, 0.9), (0.0, 1.0)))
     assert cut.fade[at] < 0.1
+
+
+def test_impacts_are_heard_in_the_frame_that_shows_them_through_ramps_and_cuts() -> None:
+    """Slower and slower into the first bounce, on at another rate, and a cut back before it."""
+    film = filmed(ball())
+    first = next(event.time for event in film.motion.events if event.what == "impact")
+    seconds = [0.0, 0.3, 0.6, 1.2, 1.8, 1.8, 2.4]
+    moments = [first - 0.14, first - 0.05, first - 0.02, first + 0.01, first + 0.1, first - 0.06, first + 0.06]
+    heard = TimeMap.through(seconds, moments, closes=False)
+    times = heard.when(np.array([first]))[0]
+    assert times == pytest.approx([1.0, 2.1])
+    sound = np.abs(sound_of(film, heard)).max(axis=0)
+    for time in times:
+        at = round(time * RATE)
+        before, blow = sound[at - 2400 : at - 240], sound[at - 240 : at + 1600]
+        onset = int(np.argmax(blow > max(0.2 * blow.max(), 2 * before.max()))) - 240
+        assert abs(onset) < RATE / 1000, (time, onset)
+        shown = [heard.at(np.array([k / 30]))[0][0] for k in (int(time * 30), int(time * 30) + 1)]
+        assert shown[0] <= first + 1e-9
+        assert first <= shown[1] + 1e-9

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from mechanisms.stages.loading import loading, variants
 from mechanisms.stages.solve import solving
+from shared.stage import console
 from shared.stage.errors import UserError
 from shared.stage.paths import NAME, shown_file
 from shared.stage.suggestions import did_you_mean
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 TAKEN = ("sizes", "result", "limits", "n", "seed", "duration", "steps", "way", "sobol", "corners", "confidence")
 """Arguments of mbsd.tolerances that a result may give."""
+USUAL = 10_000
+"""Machines where nothing is said."""
 FORM = 'def tolerances(p): return {"far_end": {"sizes": {"crank": 5e-5}, "result": largest("slider.x")}}'
 
 
@@ -66,9 +69,22 @@ def _ready(name: str, file: str, result: str, m: Mechanism, options: dict[str, A
 
     try:
         with loading.author_code(name), solving.model_warnings_said():
-            return ready(copy.deepcopy(m), **options)
+            return ready(copy.deepcopy(m), **options, progress=_progress(f"{name}: {result}", options.get("n", USUAL)))
     except MechanismError as error:
         raise UserError(f"{file}: '{result}': {error}") from error
+
+
+def _progress(what: str, n: int) -> Callable[[float], None]:
+    """Says now and then how many machines are solved, where that takes long."""
+    bar: list[console.Shown] = []
+
+    def progress(part: float) -> None:
+        if not bar:
+            bar.append(console.Shown("tolerances", what, n, "machines"))
+        bar[0].count = round(part * n) - 1
+        bar[0].advance()
+
+    return progress
 
 
 def _shown(given: Any) -> str:

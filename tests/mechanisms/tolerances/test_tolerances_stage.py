@@ -167,3 +167,15 @@ def test_the_duration_of_mechanism_py_holds_where_nothing_else_is_said(monkeypat
     monkeypatch.setattr(mechanism, "DURATION", -1.0)
     with pytest.raises(UserError, match=r"'end_of_stroke': slider_crank: duration is -1"):
         asked("slider_crank", m, Params())
+
+
+def test_what_takes_long_says_how_far_it_is(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(author, "tolerances", lambda p: {"far": GOOD | {"way": "sweep", "steps": 4, "n": 130}})
+    monkeypatch.setattr("shared.stage.console.SHORTEST", 0.0)
+    m = build(Params())
+    give_masses(m, None)
+    asked("slider_crank", m, Params())["far"]()
+    said = capsys.readouterr().out
+    assert all(f"far: {count} of 130 machines" in said for count in (64, 128))

@@ -21,6 +21,8 @@ DIGITS = 9
 BLENDER = Path(__file__).parents[1] / "blender"
 LETTERS = Path(__file__).parents[1] / "letters.py"
 """The font of what Blender's side writes."""
+HATCHES = Path(__file__).parents[1] / "film" / "hatches.py"
+"""Stripes of its cut faces."""
 BLENDER_SOURCES = ("job.py", "scene", "worker")
 """What runs in Blender; the other files of the room start it, and decide nothing that is seen."""
 
@@ -45,7 +47,7 @@ def frame_key(scene: str, states: Sequence[State]) -> str:
 
 
 def _sources() -> str:
-    return sources_hash(*(BLENDER / name for name in BLENDER_SOURCES), LETTERS)
+    return sources_hash(*(BLENDER / name for name in BLENDER_SOURCES), LETTERS, HATCHES)
 
 
 def _rounded(value: Any) -> Any:

@@ -117,7 +117,7 @@ def test_an_edit_of_what_blender_runs_changes_every_key(
 def test_blenders_side_takes_nothing_from_outside_that_no_key_holds():
     numbers, telling = {"SENSOR", "MILLIMETRE", "Z", "studio"}, {"picture_file", "errors", "files", "signals"}
     blender = [f"render.blender.{part}" for part in ("job", "scene", "worker")]
-    inside = (*blender, "render.film.scene", "render.letters", "render.looks.look")
+    inside = (*blender, "render.film.scene", "render.letters", "render.film.hatches", "render.looks.look")
     places = [render_keys.BLENDER / name for name in render_keys.BLENDER_SOURCES]
     for file in [file for place in places for file in (place.rglob("*.py") if place.is_dir() else [place])]:
         for node in ast.walk(ast.parse(file.read_text())):

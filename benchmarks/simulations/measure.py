@@ -14,7 +14,7 @@ import numpy as np
 
 import mbsd
 from benchmarks.rows import Bar, Row
-from benchmarks.simulations import OUTPUTS, PROBLEM, doors, exact, peers
+from benchmarks.simulations import OUTPUTS, PROBLEM, doors, exact, peers, stops
 from benchmarks.simulations.mbsd_code import END, WHEN, many, study, study_in_loop
 
 ROUNDS = 3
@@ -69,7 +69,7 @@ def cases() -> list[Case]:
 
 
 def measured() -> tuple[list[Row], list[Bar]]:
-    """All rows, and both bars, by processor time."""
+    """All rows, and all bars, by processor time."""
     values, every = doors(LOT), cases()
     wall, own = np.full((2, len(every)), np.inf)
     ends: list[object] = [None] * len(every)
@@ -81,7 +81,8 @@ def measured() -> tuple[list[Row], list[Bar]]:
             wall[k] = min(wall[k], (time.perf_counter() - began) / case.doors)
             own[k] = min(own[k], (processor_time() - busy) / case.doors)
     rows = [_row(case, float(own[k]), float(wall[k]), ends[k], values) for k, case in enumerate(every)]
-    return rows, _bars(rows, every)
+    stopped, bars = stops.measured()
+    return rows + stopped, _bars(rows, every) + bars
 
 
 def processor_time() -> float:

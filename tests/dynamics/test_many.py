@@ -134,13 +134,18 @@ def test_threads_change_no_digit() -> None:
 
 
 def test_what_is_left_to_events_is_simulated_by_itself_and_says_so() -> None:
+    def ended() -> Mechanism:
+        m = barrier(stops=True)
+        m.event("late", lambda t, moment: t - 0.3)
+        return m
+
     damping = np.array([0.2, 0.5])
-    many = barrier(stops=True).simulate_many(
+    many = ended().simulate_many(
         0.5, vary={"spring": {"damping": damping}}, measure={"angle": final("rocker.theta")}, steps=STEPS
     )
-    assert "one by one ('end" in many.way
+    assert "one by one (events" in many.way
     for k in range(2):
-        m = barrier(stops=True)
+        m = ended()
         m.change("spring", damping=float(damping[k]))
         assert many["angle"][k] == m.simulate(0.5, steps=STEPS).body("rocker").theta[-1]
 

@@ -1,15 +1,17 @@
 """The compiled loop over simulations: each from its numbers to its last output, by the steps of a single one.
 
 Between steps it does what Python does for a single simulation (prepare/stops.py, runs/): it ends steps where loads or
-laws jump, and goes on after. What it cannot go on with it leaves to Python, by the status of the row.
+laws jump, meets contacts (contacts/), and goes on after. What it cannot go on with it leaves to Python, by the status
+of the row.
 """
 
 from __future__ import annotations
 
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.integrators.formulation import derivative
-from mbsd.dynamics.many.methods import advance
-from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, Output
+from mbsd.dynamics.many.contacts.steps import go_on
+from mbsd.dynamics.many.through import through
+from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, TIME, Output
 
 STOPPED, NEARLY_SINGULAR = -1, -3
 """Status of rows that were not computed because all was stopped, and of those that came near a singular pose."""
@@ -18,31 +20,6 @@ WAITING, UNDERWAY = -5, -6
 
 LOOKED_AT = 4000
 """Steps between two looks at the pace."""
-
-
-@internal
-def next_stop(before, t):
-    """The first stop after the time t; as many as there are if there is none."""
-    low = 0
-    high = before.shape[0]
-    while low < high:
-        middle = (low + high) // 2
-        if before[middle] <= t:
-            low = middle + 1
-        else:
-            high = middle
-    return low
-
-
-@internal
-def cross(state, before, after):
-    """Go on after the jump right before which the state stands, if it stands there."""
-    t = state.clock[TIME]
-    k = next_stop(before, t) - 1
-    if k >= 0 and before[k] == t and t < after[k]:
-        state.clock[TIME] = after[k]
-        state.clock[STEP] = 0.0
-        state.count[STARTED] = 0
 
 
 @internal
@@ -67,18 +44,17 @@ def take_up(state, block, kept, counts):
 
 @threaded
 def run_rows(
-    dyn, scratch, state, settings, method, block, fresh, place, value, t, before, after, at_once, most, near, stop,
-    upto, kept, counts, y, a, lam, work, margin, status, steps,
+    dyn, scratch, state, settings, contacts, method, block, fresh, place, value, t, before, after, at_once, most, near,
+    stop, upto, kept, counts, y, a, lam, work, margin, status, steps,
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 
-    ``method`` is the number of the integrator (methods.py). All arrays of numbers of dyn, scratch, state and
-    settings stand in ``block`` (N,). Row r begins with row r of ``fresh`` (R or 1, N) there, with ``value`` (R, k)
-    at ``place`` (k,). Steps end at ``before`` (s) and go on from ``after``. ``at_once`` steps are taken between two
-    looks at ``stop`` (1,), ``most`` altogether. Where ``near`` is above 0, a row ends where its margin falls below
-    this part of the largest so far (runs/carried_steps.py). Rows whose status (R,) is WAITING begin, those UNDERWAY
-    go on. With ``upto`` outputs, less than T, they are put away in ``kept`` (R, N + 1) and ``counts`` and are
-    UNDERWAY.
+    ``method`` is the number of the integrator (methods.py). All arrays of numbers of the arguments before it stand in
+    ``block`` (N,). Row r begins with row r of ``fresh`` (R or 1, N) there, with ``value`` (R, k) at ``place`` (k,).
+    Steps end at ``before`` (s) and go on from ``after``. ``at_once`` steps are taken between two looks at ``stop``
+    (1,), ``most`` altogether. Where ``near`` is above 0, a row ends where its margin falls below this part of the
+    largest so far (runs/carried_steps.py). Rows whose status (R,) is WAITING begin, those UNDERWAY go on. With
+    ``upto`` outputs, less than T, they are put away in ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY.
     """
     end = t[t.shape[0] - 1]
     whole = upto == t.shape[0]
@@ -115,21 +91,10 @@ def run_rows(
                 counted = state.count[ACCEPTED]
             if not whole and state.count[NEXT] >= upto:
                 break
-            left = at_once
-            while True:
-                if state.clock[TIME] < end:
-                    cross(state, before, after)
-                k = next_stop(before, state.clock[TIME])
-                if k == before.shape[0] or before[k] >= end:
-                    ended = advance(dyn, scratch, state, out, settings, end, left, method)
-                    break
-                taken = state.count[ACCEPTED]
-                ended = advance(dyn, scratch, state, out, settings, before[k], left, method)
-                left -= state.count[ACCEPTED] - taken
-                if ended != REACHED or left <= 0:
-                    if ended == REACHED:
-                        ended = PAUSED
-                    break
+            if contacts.place.shape[0] > 0:
+                ended = go_on(dyn, scratch, state, settings, contacts, out, end, at_once, before, after)
+            else:
+                ended = through(dyn, scratch, state, out, settings, end, at_once, before, after, method)
             if near > 0.0 and ended != REACHED:
                 widest = max(widest, scratch.report[0])
                 if not scratch.report[0] > near * widest:

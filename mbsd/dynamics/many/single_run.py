@@ -12,7 +12,9 @@ import numpy as np
 from mbsd.dynamics.embedding.coordinates import Coordinate
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.many.arguments import kind_of
-from mbsd.dynamics.many.methods import number_of
+from mbsd.dynamics.many.contacts.arrays import Contacts
+from mbsd.dynamics.many.contacts.made import contacts_of, why_not
+from mbsd.dynamics.many.methods import USUAL, number_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.runs.carried_steps import NEAR, can_carry
@@ -21,6 +23,7 @@ from mbsd.dynamics.runs.independent_steps import IndependentSteps
 from mbsd.dynamics.runs.run import REFERENCE, Run
 from mbsd.dynamics.runs.to_end import independent_steps
 from mbsd.dynamics.state import State
+from mbsd.kinematics.limits.joints import limits_of
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
 
@@ -68,6 +71,11 @@ class SingleRun:
         return kind_of(self.arguments), stops.before.tobytes(), stops.after.tobytes(), self.steps_at_once, self.near
 
     @property
+    def counts_turns(self) -> bool:
+        """Whether what it starts with decides of which whole turn limits of angles are."""
+        return bool(self.ready.switches.contacts) and any(limit.angular for limit in limits_of(self.ready.packed))
+
+    @property
     def failed(self) -> bool:
         """Whether a function of the user failed in this thread."""
         return any(callback.failed for callback in self.ready.packed.specials.callbacks)
@@ -85,11 +93,16 @@ class SingleRun:
 
     @property
     def arguments(self) -> tuple[Any, ...]:
-        """dyn, scratch, state and settings of the integrator's loop."""
+        """dyn, scratch, state and settings of the integrator's loop, and contacts."""
         if self.independent is not None:
             own = self.independent
-            return own.arrays, own.scratch, own.own, own.settings
-        return self.ready.dynamics, self.run.scratch, self.state, self.run.settings
+            return own.arrays, own.scratch, own.own, own.settings, self.contacts
+        return self.ready.dynamics, self.run.scratch, self.state, self.run.settings, self.contacts
+
+    @cached_property
+    def contacts(self) -> Contacts:
+        """Contacts without friction, which the loop meets."""
+        return contacts_of(self.ready, self.state if self.independent is None else self.independent.own)
 
 
 def single_run(m: Model, asked: Asked) -> SingleRun:
@@ -101,6 +114,8 @@ def single_run(m: Model, asked: Asked) -> SingleRun:
     times = asked.times
     ready = prepare_dynamics(m, float(times[0]), float(times[-1]), contacts=True)
     _refuse(m, ready)
+    if ready.switches.contacts and number_of(asked.integrator) != USUAL:
+        raise NotCompiled(f"stops and contacts are met in the loop of 'dop853' alone, not of '{asked.integrator.name}'")
     longest = asked.step or float(np.diff(times).max())
     run = Run(
         ready, asked.integrator, asked.tolerance, longest, float(times[-1] - times[0]), asked.options, asked.formulation
@@ -117,9 +132,9 @@ def single_run(m: Model, asked: Asked) -> SingleRun:
 def _refuse(m: Model, ready: PreparedDynamics) -> None:
     """Raise NotCompiled for what Python decides between steps, and what it looks at after a simulation."""
     packed = ready.packed
-    stopping = [*(contact.name for contact in ready.switches.contacts), *(stick.name for stick in ready.sticks)]
-    if stopping:
-        raise NotCompiled(f"'{stopping[0]}' opens, closes or sticks by events")
+    why = why_not(ready)
+    if why is not None:
+        raise NotCompiled(why)
     if ready.following:
         raise NotCompiled("points on curves that cross themselves, or wheels that may meet, are followed step by step")
     if ready.switches.spare or ready.dropped:

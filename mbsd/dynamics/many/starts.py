@@ -10,10 +10,12 @@ Else, and where that does not close, a row's start is found as that of a single 
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mbsd.arrays.packing import pack
 from mbsd.base.users_function import described
 from mbsd.dynamics.many.base import Base
 from mbsd.dynamics.many.designs import Designs
@@ -40,6 +42,16 @@ class Starts:
         self.designs, self.ready = designs, base.run.ready
         self.work: Any = designs.copied()
 
+    @cached_property
+    def _bare(self) -> Packed:
+        """The mechanism without the rows of contacts, which hold no start."""
+        ready = self.ready
+        if not ready.switches.contacts:
+            return ready.packed
+        packed = pack(self.work)
+        packed.settle_laws(ready.start, ready.end)
+        return packed
+
     def __call__(self, rows: range) -> Started:
         """Those of some rows."""
         ready = self.ready
@@ -48,7 +60,7 @@ class Starts:
         for k, row in enumerate(rows):
             try:
                 self.designs.put_start(self.work, row)
-                initial = consistent(self.work, ready.packed, ready.start, ready.dynamics.metric)
+                initial = consistent(self.work, self._bare, ready.start, ready.dynamics.metric)
                 q[k], v[k] = initial.q, initial.v
                 reasons.append("; ".join(initial.velocities) or None)
             except Exception as error:

@@ -12,6 +12,7 @@ import numpy as np
 from mbsd.base.users_function import described
 from mbsd.dynamics.many.arguments import content
 from mbsd.dynamics.many.base import Base, based_on
+from mbsd.dynamics.many.contacts.steps import NOT_SOLVED
 from mbsd.dynamics.many.designs import Built, Designs
 from mbsd.dynamics.many.done import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.many.early import STEPS, Known, window
@@ -41,6 +42,7 @@ OTHER, FAILED = -2, -4
 LEFT = {
     OTHER: "its start is that of another branch",
     FAILED: "a function of the user failed in one of them",
+    NOT_SOLVED: "what a contact did there is decided by single simulations",
     NEARLY_SINGULAR: "it came near a singular pose",
     CHOOSE: "other coordinates became better on the way",
     UNCLEAR: "an output fell on a pose that coordinates do not tell clearly",
@@ -130,6 +132,9 @@ class Worker:
             return None
         base, count = self._first_base(), self.designs.count
         if base is None:
+            return None
+        if self.designs.starts and base.run.counts_turns:
+            self.work.note = "each is prepared anew: limits of angles are counted from the turn of its start"
             return None
         try:
             patches = Patches(self.designs, base)

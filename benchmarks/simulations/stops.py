@@ -1,0 +1,87 @@
+"""A four-bar under a motor's curve that strikes a stop and comes to rest there: m.simulate_many, and a study."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+import numpy as np
+
+import mbsd
+from benchmarks.rows import Bar, Row
+from mbsd.measures import final, largest, smallest
+
+PROBLEM = "many four-bars between stops, 2 s each"
+DURATION = 2.0
+ROUNDS = 4
+FEW, LOT = 20, 1000
+LEAST = 20.0
+
+
+def build(damping: float) -> mbsd.Mechanism:
+    """One of them."""
+    m = mbsd.Mechanism("barrier")
+    a, b, c = m.bar("crank", 0.1, mass=0.3), m.bar("coupler", 0.38, mass=0.5), m.bar("rocker", 0.3, mass=2.0)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    pivot = m.revolute("D", m.ground.at(0.4, 0.02), c.start)
+    m.motor("motor", m.ground, a, mbsd.curve([-10, 0, 20, 40], [6.0, 5.0, 2.0, 0.0]))
+    m.torsion_spring("spring", m.ground, c, 3.0, damping, free_angle=1.8)
+    m.stop("end", pivot, lower=math.radians(85), upper=math.radians(125), restitution=0.3)
+    m.start_near(crank=0, coupler=45, rocker=90)
+    return m
+
+
+def study(values: np.ndarray, outputs: int) -> np.ndarray:
+    """(n, 3) angle at the end, largest force, fastest rebound, each built, simulated and measured by Python."""
+
+    def measure(m: mbsd.Mechanism) -> dict[str, float]:
+        sol = m.simulate(DURATION, steps=outputs)
+        return {
+            "angle": float(sol.body("rocker").theta[-1]),
+            "force": float(sol.joint("D").fy.max()),
+            "back": float(sol.body("rocker").omega.min()),
+        }
+
+    points = [{"damping": value} for value in values.tolist()]
+    made = mbsd.study(build, points, measure, folder=None, processes=1, progress=False)
+    return np.column_stack([made["angle"], made["force"], made["back"]])
+
+
+def many(values: np.ndarray, outputs: int) -> np.ndarray:
+    """The same in the compiled loop."""
+    measures: dict[str, Any] = {
+        "angle": final("rocker.theta"),
+        "force": largest("D.fy"),
+        "back": smallest("rocker.omega"),
+    }
+    made = build(0.4).simulate_many(
+        DURATION, vary={"spring": {"damping": values}}, measure=measures, steps=outputs, threads=1
+    )
+    return np.column_stack([made["angle"], made["force"], made["back"]])
+
+
+def measured() -> tuple[list[Row], list[Bar]]:
+    """Rows with few and many outputs, and their bars; error: largest difference from the study's numbers."""
+    values = np.linspace(0.1, 0.8, LOT)
+    some = values[:: LOT // FEW]
+    rows, bars = [], []
+    for outputs in (20, 200):
+        best = [np.inf, np.inf]
+        error = np.nan
+        for _ in range(ROUNDS):
+            started = time.process_time()
+            alone = study(some, outputs)
+            middle = time.process_time()
+            together = many(values, outputs)
+            ended = time.process_time()
+            best = [min(best[0], (middle - started) / len(some)), min(best[1], (ended - middle) / LOT)]
+            error = float(np.abs(together[:: LOT // FEW] - alone).max())
+        for name, seconds, off in (("study", best[0], np.nan), ("simulate_many", best[1], error)):
+            words = f"{name}, {outputs} outputs, {1 / seconds:.0f} a second and core"
+            rows.append(Row(PROBLEM, "mbsd", mbsd.__version__, words, seconds, off))
+        ratio = best[0] / best[1]
+        bars.append(Bar(PROBLEM, LEAST, ratio, "study", f"{outputs} outputs", ratio >= LEAST))
+    return rows, bars

@@ -1,0 +1,297 @@
+"""Which contact closes or opens first within a step, and when: events/crossing.py and EventSteps, compiled."""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import apart, internal
+from mbsd.dynamics.events.crossing import HALVINGS
+from mbsd.dynamics.many.contacts.arrays import (
+    BEYOND,
+    CLOSED,
+    FAILURE,
+    LENGTH,
+    LOAD,
+    NEAR,
+    PARTS,
+    REST,
+    ROW,
+    SKIPPED,
+    START,
+    WHERE,
+)
+from mbsd.dynamics.many.contacts.dips import first_dip
+from mbsd.dynamics.many.contacts.within import (
+    along,
+    at_state,
+    beyond_time,
+    measure_gaps,
+    of_motion,
+    on_quintic,
+    sample,
+    stand_at,
+)
+from mbsd.dynamics.reference.acceleration import derivative
+
+ROUNDING = 1e-10
+"""Rounding of forces, as part of the largest."""
+CLOSE = 1e-14
+MOST_ROOTS = 80
+SAMPLES = 6
+
+
+@internal
+def still_of(contacts, k):
+    """Values of contact k above minus this are rounding."""
+    return ROUNDING * contacts.clock[LOAD] if contacts.number[k, CLOSED] > 0.0 else contacts.number[k, NEAR]
+
+
+@internal
+def next_part(a, fa, b, fb, c, fc):
+    """Where between a and b the root is looked for next: Chandrupatla 1997, Adv. Eng. Softw. 28, 145."""
+    if fb == fc or fa == fc:
+        return 0.5
+    xi = (a - b) / (c - b)
+    phi = (fa - fb) / (fc - fb)
+    if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi:
+        return fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+    return 0.5
+
+
+@apart
+def quintic_root(dyn, scratch, contacts, k, level, left, right, at_left, at_right):
+    """Part of the step between ``left`` and ``right`` where the quintic of contact k passes ``level``."""
+    a = right
+    fa = at_right - level
+    b = left
+    fb = at_left - level
+    c = a
+    fc = fa
+    part = fa / (fa - fb)
+    for _ in range(MOST_ROOTS):
+        part = min(max(part, 1e-9), 1.0 - 1e-9)
+        x = a + part * (b - a)
+        f = on_quintic(dyn, scratch, contacts, k, x) - level
+        if (f > 0.0) == (fa > 0.0):
+            c = a
+            fc = fa
+        else:
+            c = b
+            fc = fb
+            b = a
+            fb = fa
+        a = x
+        fa = f
+        if f == 0.0 or abs(b - a) <= CLOSE:
+            break
+        part = next_part(a, fa, b, fb, c, fc)
+    return a
+
+
+@apart
+def _root(dyn, scratch, contacts, k, i, still, zero):
+    """Between two parts of the step, and a part where it is negative; the first counts as zero up to ``zero``."""
+    left = PARTS[i]
+    right = PARTS[i + 1]
+    at_left = contacts.samples[i, k]
+    at_right = contacts.samples[i + 1, k]
+    level = min(0.0, max(at_left, -still))
+    negative = right
+    if at_left <= zero:
+        start = left
+        positive = -1.0
+        for _ in range(HALVINGS):
+            middle = 0.5 * (start + right)
+            value = on_quintic(dyn, scratch, contacts, k, middle)
+            if value - level > 0.0:
+                positive = middle
+                at_left = value
+                break
+            right = middle
+            at_right = value
+        if positive < 0.0:
+            return start, negative
+        left = positive
+    return quintic_root(dyn, scratch, contacts, k, level, left, right, at_left, at_right), negative
+
+
+@apart
+def _leaves(dyn, scratch, contacts, k):
+    """Whether a gap rises away from zero at the begin of the step, by its rates and its second derivative."""
+    row = contacts.place[k, ROW]
+    rest = -contacts.number[k, REST]
+    t = stand_at(contacts, 1.0)
+    measure_gaps(dyn, scratch, t, contacts.pose[0])
+    if not along(dyn, scratch, row, contacts.pose[1]) > rest:
+        return False
+    t = stand_at(contacts, 0.0)
+    derivative(dyn, scratch, t, contacts.pose, contacts.rates, contacts.lam)
+    if not along(dyn, scratch, row, contacts.pose[1]) > rest:
+        return False
+    return along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row] > 0.0
+
+
+@apart
+def _falls(dyn, scratch, contacts, k, until):
+    """Where samples of contact k show a fall through zero before ``until``, and a part where it is negative; -1, -1."""
+    still = still_of(contacts, k)
+    first = 0
+    while first < SAMPLES - 1 and not contacts.samples[first + 1, k] < -still:
+        first += 1
+    if first == SAMPLES - 1 or PARTS[first] >= until:
+        return -1.0, -1.0
+    where, negative = _root(dyn, scratch, contacts, k, first, still, still)
+    if where == 0.0 and contacts.number[k, CLOSED] == 0.0 and _leaves(dyn, scratch, contacts, k):
+        opened = 0
+        while opened < SAMPLES and not contacts.samples[opened, k] > still:
+            opened += 1
+        while opened < SAMPLES - 1 and not contacts.samples[opened + 1, k] < -still:
+            opened += 1
+        if opened >= SAMPLES - 1:
+            return -1.0, -1.0
+        where, negative = _root(dyn, scratch, contacts, k, opened, still, still)
+    return where, negative
+
+
+@apart
+def _met_of(dyn, own, scratch, settings, contacts, out, before, after, k, until):
+    """Where contact k first falls through zero, and a part where it is negative; -1, -1 where it does not."""
+    where, negative = _falls(dyn, scratch, contacts, k, until)
+    count = SAMPLES
+    if where >= 0.0:
+        count = 0
+        while count < SAMPLES and PARTS[count] <= where:
+            count += 1
+    above, below = first_dip(dyn, own, scratch, settings, contacts, out, before, after, k, count, still_of(contacts, k))
+    if below >= 0.0:
+        high = on_quintic(dyn, scratch, contacts, k, above)
+        low = on_quintic(dyn, scratch, contacts, k, below)
+        where = 0.5 * (above + below)
+        negative = below
+        if high > 0.0 > low:
+            where = quintic_root(dyn, scratch, contacts, k, 0.0, above, below, high, low)
+    return where, negative
+
+
+@apart
+def first_met(dyn, own, scratch, state, settings, contacts, out, before, after):
+    """The contact that closes or opens first within the step to ``state``; -1: none.
+
+    WHERE and BEYOND of the clock are set.
+    """
+    count = contacts.place.shape[0]
+    sample(dyn, scratch, contacts)
+    for k in range(count):
+        contacts.chosen[SKIPPED, k] = 0
+    for _ in range(count):
+        best = -1
+        for k in range(count):
+            if contacts.chosen[SKIPPED, k] != 0:
+                continue
+            until = 2.0 if best < 0 else contacts.clock[BEYOND]
+            where, negative = _met_of(dyn, own, scratch, settings, contacts, out, before, after, k, until)
+            if where >= 0.0 and (best < 0 or where < contacts.clock[WHERE]):
+                best = k
+                contacts.clock[WHERE] = where
+                contacts.clock[BEYOND] = negative
+        if best < 0 or contacts.clock[WHERE] == 0.0:
+            return best
+        if contacts.clock[BEYOND] == 1.0:
+            value = at_state(dyn, scratch, contacts, state, best)
+        else:
+            t = beyond_time(contacts)
+            value = of_motion(dyn, own, scratch, settings, contacts, out, before, after, best, t)
+        if value < -still_of(contacts, best):
+            return best
+        if contacts.clock[FAILURE] != 0.0:
+            return -1
+        contacts.chosen[SKIPPED, best] = 1  # the quintic falls below zero, the motion does not
+    return -1
+
+
+@apart
+def _near_root(dyn, own, scratch, settings, contacts, out, before, after, k, first, reach):
+    """The root (s) within ``reach`` of ``first`` by secants, the first along the quintic; NaN where they leave it."""
+    h = contacts.clock[LENGTH]
+    part = (first - contacts.clock[START]) / h
+    beside = 1e-4
+    rise = on_quintic(dyn, scratch, contacts, k, part + beside) - on_quintic(dyn, scratch, contacts, k, part - beside)
+    slope = rise / (2.0 * beside * h)
+    t = first
+    f = of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, t)
+    least = 1e-15 + 8.9e-16 * abs(t)
+    for _ in range(6):
+        if not slope < 0.0:
+            break
+        ahead = -f / slope
+        if abs(ahead) <= least:
+            return t
+        following = t + ahead
+        if not abs(following - first) <= reach:
+            break
+        value = of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, following)
+        if abs(ahead) > 1e3 * least:
+            slope = (value - f) / ahead
+        t = following
+        f = value
+    return first + 2.0 * reach
+
+
+@apart
+def event_time(dyn, own, scratch, settings, contacts, out, before, after, k):
+    """When (s) what contact k met happens, of the motion itself: as exactly as that is known."""
+    start = contacts.clock[START]
+    first = start + contacts.clock[LENGTH] * contacts.clock[WHERE]
+    if not first > start:
+        return start
+    high = beyond_time(contacts)
+    reach = min(1e-3 * (high - start), 0.5 * (first - start))
+    near = _near_root(dyn, own, scratch, settings, contacts, out, before, after, k, first, reach)
+    if near <= first + reach:
+        return near
+    low = start
+    at_low = of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, first - reach)
+    if at_low > 0.0:
+        low = first - reach
+    at_high = of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, first + reach)
+    if first + reach < high and at_high < 0.0:
+        high = first + reach
+    else:
+        at_high = of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, high)
+    if low == start:
+        at_low = of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, low)
+    if not at_low > 0.0 or not at_high < 0.0:
+        return first  # it left zero at the start of the step: the quintic's root stands
+    return _true_root(dyn, own, scratch, settings, contacts, out, before, after, k, low, at_low, high, at_high)
+
+
+@apart
+def _true_root(dyn, own, scratch, settings, contacts, out, before, after, k, low, at_low, high, at_high):
+    """The root (s) between two times."""
+    a = high
+    fa = at_high
+    b = low
+    fb = at_low
+    c = a
+    fc = fa
+    part = 0.5
+    least = 1e-15 + 8.9e-16 * abs(high)
+    for _ in range(MOST_ROOTS):
+        edge = 0.5 * least / abs(b - a)
+        if edge > 0.5:
+            break
+        part = min(max(part, edge), 1.0 - edge)
+        x = a + part * (b - a)
+        f = of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, x)
+        if (f > 0.0) == (fa > 0.0):
+            c = a
+            fc = fa
+        else:
+            c = b
+            fc = fb
+            b = a
+            fb = fa
+        a = x
+        fa = f
+        if f == 0.0:
+            break
+        part = next_part(a, fa, b, fb, c, fc)
+    return a if abs(fa) <= abs(fb) else b

@@ -1,0 +1,129 @@
+"""Where a gap or a normal force falls below zero for a moment, between parts of a step: events/dips.py, compiled."""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import apart, internal
+from mbsd.dynamics.events.dips import AT_END, INSIDE, NARROWEST, NEAR, SLACK, UNSURE
+from mbsd.dynamics.many.contacts.arrays import LENGTH, MOST_LOOKS, PARTS, START
+from mbsd.dynamics.many.contacts.within import of_motion, on_quintic
+
+A, FA, B, FB, FALLS, RISES = range(6)
+"""Columns of Contacts.intervals: both ends and the values there, slopes of the lines from the left and the right."""
+
+
+@internal
+def _lowest(piece):
+    """Where the two lines of an interval meet, and their value there."""
+    falls = piece[FALLS]
+    rises = piece[RISES]
+    if falls >= 0.0 or rises <= 0.0:
+        return piece[A], piece[FA]
+    x = (piece[FB] - piece[FA] + falls * piece[A] - rises * piece[B]) / (falls - rises)
+    x = min(max(x, piece[A]), piece[B])
+    return x, max(piece[FA] + falls * (x - piece[A]), piece[FB] + rises * (x - piece[B]))
+
+
+@internal
+def _put(piece, a, fa, b, fb, falls, rises):
+    piece[A] = a
+    piece[FA] = fa
+    piece[B] = b
+    piece[FB] = fb
+    piece[FALLS] = falls
+    piece[RISES] = rises
+
+
+@apart
+def _interval(dyn, scratch, contacts, k, i, count, level):
+    """Fill intervals[0] with the i-th; returns whether the scalar may fall below ``level`` there."""
+    a = PARTS[i]
+    b = PARTS[i + 1]
+    fa = contacts.samples[i, k]
+    fb = contacts.samples[i + 1, k]
+    left = (fa - contacts.samples[i - 1, k]) / (a - PARTS[i - 1]) if i > 0 else 0.0
+    right = (contacts.samples[i + 2, k] - fb) / (PARTS[i + 2] - b) if i + 2 < count else 0.0
+    if (i > 0 and left >= 0.0) or (i + 2 < count and right <= 0.0):
+        return False
+    level += NEAR * max(fa - level, fb - level, 0.0)
+    if i > 0 and fa + left * (b - a) >= level:
+        return False
+    if i + 2 < count and fb - right * (b - a) >= level:
+        return False
+    near = AT_END * (b - a)
+    falls = (on_quintic(dyn, scratch, contacts, k, a + near) - fa) / near
+    rises = (fb - on_quintic(dyn, scratch, contacts, k, b - near)) / near
+    if i > 0:
+        falls = min(falls, left)
+    if i + 2 < count:
+        rises = max(rises, right)
+    _put(contacts.intervals[0], a, fa, b, fb, falls, rises)
+    return True
+
+
+@apart
+def _searched(dyn, own, scratch, settings, contacts, out, before, after, k, level, truly):
+    """Parts above and below ``level`` from intervals[0] on; the second is -1 if there is none below."""
+    pieces = contacts.intervals
+    waiting = 1
+    looks = 0
+    while waiting > 0 and looks < MOST_LOOKS:
+        waiting -= 1
+        piece = pieces[waiting]
+        a = piece[A]
+        fa = piece[FA]
+        b = piece[B]
+        fb = piece[FB]
+        falls = piece[FALLS]
+        rises = piece[RISES]
+        x, least = _lowest(piece)
+        width = b - a
+        if least >= level + SLACK * max(fa - level, fb - level, 0.0) or width < NARROWEST:
+            continue
+        x = min(max(x, a + INSIDE * width), b - INSIDE * width)
+        if truly:
+            t = contacts.clock[START] + contacts.clock[LENGTH] * x
+            fx = of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, t)
+        else:
+            fx = on_quintic(dyn, scratch, contacts, k, x)
+        looks += 1
+        if fx < level:
+            return a, x
+        left = (fx - fa) / (x - a)
+        right = (fb - fx) / (b - x)
+        _put(pieces[waiting], x, fx, b, fb, max(left, falls), rises)
+        _put(pieces[waiting + 1], a, fa, x, fx, falls, min(right, rises))
+        waiting += 2
+    return 0.0, -1.0
+
+
+@apart
+def first_dip(dyn, own, scratch, settings, contacts, out, before, after, k, count, still):
+    """Parts between which contact k first falls below -``still`` among the first ``count`` samples; -1: it does not."""
+    low = contacts.samples[0, k]
+    high = low
+    for i in range(1, count):
+        low = min(low, contacts.samples[i, k])
+        high = max(high, contacts.samples[i, k])
+    for i in range(count - 1):
+        if i == 0 and min(contacts.samples[0, k], contacts.samples[1, k]) <= still:
+            continue  # it has just left zero
+        if not _interval(dyn, scratch, contacts, k, i, count, -still):
+            continue
+        kept_falls = contacts.intervals[0, FALLS]
+        kept_rises = contacts.intervals[0, RISES]
+        level = UNSURE * (high - low) - still
+        above, below = _searched(dyn, own, scratch, settings, contacts, out, before, after, k, level, False)
+        if below < 0.0:
+            continue
+        if on_quintic(dyn, scratch, contacts, k, below) < -still:
+            t = contacts.clock[START] + contacts.clock[LENGTH] * below
+            if of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, t) < -still:
+                return above, below
+        _put(
+            contacts.intervals[0], PARTS[i], contacts.samples[i, k], PARTS[i + 1], contacts.samples[i + 1, k],
+            kept_falls, kept_rises,
+        )  # fmt: skip
+        above, below = _searched(dyn, own, scratch, settings, contacts, out, before, after, k, -still, True)
+        if below >= 0.0:
+            return above, below
+    return 0.0, -1.0

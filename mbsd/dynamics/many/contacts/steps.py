@@ -1,0 +1,199 @@
+"""Steps of a row with contacts: one by one, back to the start of the step where one closes or opens, and on from there.
+
+EventSteps, compiled: the same steps, decided in the same way. What it cannot do it leaves to single simulations.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.alternatives import alternatives
+from mbsd.compiling.jit import inlined, internal, lazy
+from mbsd.dynamics.embedding.arrays import Embedding
+from mbsd.dynamics.many.contacts.arrays import (
+    AT_ONCE,
+    BEGUN,
+    CLOSED,
+    FAILURE,
+    HELD,
+    LOAD,
+    MET,
+    ROW,
+    SCALE,
+    WHEN,
+)
+from mbsd.dynamics.many.contacts.crossing import event_time, first_met
+from mbsd.dynamics.many.contacts.jumps import hold_rows, resolve
+from mbsd.dynamics.many.contacts.within import copy_state, fit, measure_gaps
+from mbsd.dynamics.many.methods import USUAL
+from mbsd.dynamics.many.through import NO_LIMIT, cross, through
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.reference.arrays import Dynamics
+from mbsd.dynamics.state import EVALUATIONS, NEXT, PAUSED, POWER, REACHED, STARTED, STEP, TIME
+from mbsd.equations.system import System
+
+NOT_SOLVED = -7
+"""Status of rows with an event that is left to single simulations."""
+INSIDE = 1e-6
+"""A contact that starts deeper than this part of the size (rad) inside is refused."""
+AT_ONE_TIME, MOST = 500, 20_000
+"""Events that may happen without time going on, and altogether."""
+
+
+@internal
+def _make_valid(dyn, scratch, state):
+    if state.count[STARTED] == 0:
+        state.clock[POWER] = derivative(dyn, scratch, state.clock[TIME], state.y, state.dy, state.lam)
+        state.count[EVALUATIONS] += 1
+        state.count[STARTED] = 1
+
+
+@internal
+def _restart(dyn, scratch, contacts, state):
+    """Forget the derivative, which belongs to the motion before."""
+    state.count[STARTED] = 0
+    state.clock[STEP] = 0.0
+    _make_valid(dyn, scratch, state)
+    load = 1e-300
+    for c in range(3, dyn.weight.shape[0]):
+        load = max(load, abs(dyn.weight[c]))
+    for r in range(state.lam.shape[0]):
+        load = max(load, abs(state.lam[r]))
+    contacts.clock[LOAD] = load
+
+
+@internal
+def _begin(dyn, scratch, contacts, state):
+    """What is closed at the start, and impacts of velocities that contacts forbid; whether that can be."""
+    contacts.clock[BEGUN] = 1.0
+    measure_gaps(dyn, scratch, state.clock[TIME], state.y[0])
+    for k in range(contacts.place.shape[0]):
+        contacts.number[k, CLOSED] = 0.0
+        contacts.number[k, HELD] = 0.0
+        if scratch.ws.phi[contacts.place[k, ROW]] * contacts.number[k, SCALE] < -INSIDE:
+            return False
+    if not resolve(dyn, scratch, contacts, state, -1):
+        return False
+    _restart(dyn, scratch, contacts, state)
+    return True
+
+
+@internal
+def _counted(contacts, t):
+    """Count an event at a time (s); whether there are not too many."""
+    contacts.clock[AT_ONCE] = contacts.clock[AT_ONCE] + 1.0 if contacts.clock[WHEN] == t else 1.0
+    contacts.clock[WHEN] = t
+    contacts.clock[MET] += 1.0
+    return contacts.clock[AT_ONCE] <= AT_ONE_TIME and contacts.clock[MET] <= MOST
+
+
+@internal
+def _go_to(own, scratch, state, settings, contacts, out, t, before, after):
+    """Bring the state to the time t (s) within its step, at which contacts.trial often stands already."""
+    following = contacts.before.count[NEXT]
+    outputs = following < out.t.shape[0] and out.t[following] <= t
+    if contacts.clock[FAILURE] == 0.0 and contacts.trial.clock[TIME] == t and not outputs:
+        copy_state(state, contacts.trial)
+        state.count[NEXT] = following
+        return
+    copy_state(state, contacts.before)
+    if contacts.clock[FAILURE] == 0.0 and t > state.clock[TIME]:
+        contacts.clock[FAILURE] = through(own, scratch, state, out, settings, t, NO_LIMIT, before, after, USUAL)
+
+
+@inlined
+def _open(dyn, contacts):
+    """The mechanism without its contacts: a fifth less to do in steps in which all are open."""
+    system = dyn.system
+    bare = System(
+        system.mass,
+        system.inertia,
+        system.gravity,
+        system.marker_body,
+        system.marker_arm,
+        system.marker_axis,
+        system.moving,
+        system.directed,
+        system.point,
+        system.angle,
+        system.slot,
+        system.along,
+        system.distance,
+        contacts.special,
+        system.address,
+        system.numbers,
+        system.driven,
+        system.row_body,
+        system.angle_offset,
+        system.distance_length,
+    )
+    return Dynamics(
+        bare,
+        dyn.laws,
+        dyn.loads,
+        contacts.schur,
+        dyn.sliding,
+        dyn.inertia,
+        dyn.inverse,
+        dyn.metric,
+        dyn.weight,
+        dyn.passes,
+        dyn.baumgarte,
+        dyn.per_size,
+    )
+
+
+@internal
+def _any_held(contacts):
+    held = False
+    for k in range(contacts.place.shape[0]):
+        held = held or contacts.number[k, CLOSED] > 0.0
+    return held
+
+
+@lazy(int)
+def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
+    hold_rows(dyn, contacts)
+    if contacts.clock[BEGUN] == 0.0 and not _begin(dyn, scratch, contacts, state):
+        return NOT_SOLVED
+    for _ in range(steps):
+        own = dyn if _any_held(contacts) else _open(dyn, contacts)
+        cross(state, before, after)
+        _make_valid(own, scratch, state)
+        copy_state(contacts.before, state)
+        status = through(own, scratch, state, out, settings, end, 1, before, after, USUAL)
+        if status != REACHED and status != PAUSED:
+            return status
+        met = -1
+        contacts.clock[FAILURE] = 0.0
+        if state.clock[TIME] > contacts.before.clock[TIME]:
+            fit(contacts, state)
+            contacts.trial.clock[TIME] = -math.inf
+            met = first_met(dyn, own, scratch, state, settings, contacts, out, before, after)
+        if met >= 0:
+            t = event_time(dyn, own, scratch, settings, contacts, out, before, after, met)
+            _go_to(own, scratch, state, settings, contacts, out, t, before, after)
+        if contacts.clock[FAILURE] != 0.0:
+            return NOT_SOLVED
+        if met < 0:
+            if status == REACHED and state.clock[TIME] >= end:
+                return REACHED
+            continue
+        if not _counted(contacts, state.clock[TIME]) or not resolve(dyn, scratch, contacts, state, met):
+            return NOT_SOLVED
+        _restart(dyn, scratch, contacts, state)
+    return PAUSED
+
+
+@inlined
+def _meet(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
+    return _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after)
+
+
+@inlined
+def _none(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
+    return NOT_SOLVED
+
+
+go_on = alternatives({Dynamics: _meet, Embedding: _none})
+"""Go on to ``end`` (s), ``steps`` steps at most, meeting contacts; returns a status of ``advance``, or NOT_SOLVED."""

@@ -1,0 +1,146 @@
+"""Gaps and normal forces within a step: on its quintic, which shows where to look, and of the motion itself.
+
+The quintic is that of events/dense.py; the motion itself is found by going on from the start of the step.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import apart, internal
+from mbsd.dynamics.many.contacts.arrays import BEYOND, CLOSED, FAILURE, LENGTH, PARTS, ROW, START, VALUE
+from mbsd.dynamics.many.methods import USUAL
+from mbsd.dynamics.many.through import NO_LIMIT, through
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.state import NEXT, REACHED, TIME
+from mbsd.equations.assembly import position
+from mbsd.equations.laws import evaluate_laws
+
+
+@internal
+def copy_state(target, source):
+    """Make ``target`` the state ``source``."""
+    for part in range(2):
+        for c in range(source.y.shape[1]):
+            target.y[part, c] = source.y[part, c]
+            target.dy[part, c] = source.dy[part, c]
+            target.memory[part, c] = source.memory[part, c]
+    for r in range(source.lam.shape[0]):
+        target.lam[r] = source.lam[r]
+    for i in range(source.clock.shape[0]):
+        target.clock[i] = source.clock[i]
+        target.count[i] = source.count[i]
+
+
+@internal
+def fit(contacts, state):
+    """The quintic from contacts.before to ``state``."""
+    before = contacts.before
+    start = before.clock[TIME]
+    h = state.clock[TIME] - start
+    contacts.clock[START] = start
+    contacts.clock[LENGTH] = h
+    for c in range(state.y.shape[1]):
+        q0 = before.y[0, c]
+        v0 = h * before.y[1, c]
+        a0 = h * h * before.dy[1, c]
+        rise = state.y[0, c] - q0 - v0 - a0 / 2
+        slope = h * state.y[1, c] - v0 - a0
+        bend = h * h * state.dy[1, c] - a0
+        contacts.quintic[0, c] = q0
+        contacts.quintic[1, c] = v0
+        contacts.quintic[2, c] = a0 / 2
+        contacts.quintic[3, c] = 10 * rise - 4 * slope + bend / 2
+        contacts.quintic[4, c] = -15 * rise + 7 * slope - bend
+        contacts.quintic[5, c] = 6 * rise - 3 * slope + bend / 2
+
+
+@internal
+def stand_at(contacts, x):
+    """Fill contacts.pose at the part x of the step; returns the time (s)."""
+    k = contacts.quintic
+    h = contacts.clock[LENGTH]
+    for c in range(k.shape[1]):
+        contacts.pose[0, c] = k[0, c] + x * (k[1, c] + x * (k[2, c] + x * (k[3, c] + x * (k[4, c] + x * k[5, c]))))
+        rate = k[1, c] + x * (2 * k[2, c] + x * (3 * k[3, c] + x * (4 * k[4, c] + x * 5 * k[5, c])))
+        contacts.pose[1, c] = rate / h
+    return contacts.clock[START] + h * x
+
+
+@apart
+def measure_gaps(dyn, scratch, t, q):
+    """Fill scratch.ws.phi and scratch.ws.jac at q (3 nb,) and t (s)."""
+    if scratch.drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
+    position(dyn.system, q, scratch.drive, scratch.ws)
+
+
+@internal
+def read(dyn, scratch, contacts, t, y, forces):
+    """Fill vector[VALUE] at a state y (2, 3 nb): gaps of open contacts and, with ``forces``, forces of others."""
+    if forces:
+        derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
+    else:
+        measure_gaps(dyn, scratch, t, y[0])
+    for k in range(contacts.place.shape[0]):
+        row = contacts.place[k, ROW]
+        contacts.vector[VALUE, k] = -contacts.lam[row] if contacts.number[k, CLOSED] > 0.0 else scratch.ws.phi[row]
+
+
+@apart
+def sample(dyn, scratch, contacts):
+    """Fill contacts.samples."""
+    forces = False
+    for k in range(contacts.place.shape[0]):
+        forces = forces or contacts.number[k, CLOSED] > 0.0
+    for i in range(PARTS.shape[0]):
+        t = stand_at(contacts, PARTS[i])
+        read(dyn, scratch, contacts, t, contacts.pose, forces)
+        for k in range(contacts.place.shape[0]):
+            contacts.samples[i, k] = contacts.vector[VALUE, k]
+
+
+@apart
+def on_quintic(dyn, scratch, contacts, k, x):
+    """Gap or normal force of contact k at the part x of the step, on the quintic."""
+    t = stand_at(contacts, x)
+    read(dyn, scratch, contacts, t, contacts.pose, contacts.number[k, CLOSED] > 0.0)
+    return contacts.vector[VALUE, k]
+
+
+@internal
+def at_state(dyn, scratch, contacts, state, k):
+    """The same of a state."""
+    read(dyn, scratch, contacts, state.clock[TIME], state.y, contacts.number[k, CLOSED] > 0.0)
+    return contacts.vector[VALUE, k]
+
+
+@apart
+def of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, t):
+    """The same at a time (s) within the step, by the motion itself; not a number where it gets nowhere."""
+    trial = contacts.trial
+    copy_state(trial, contacts.before)
+    if t > trial.clock[TIME]:
+        trial.count[NEXT] = out.t.shape[0]
+        status = through(own, scratch, trial, out, settings, t, NO_LIMIT, before, after, USUAL)
+        if status != REACHED:
+            contacts.clock[FAILURE] = status
+            return math.nan
+    return at_state(dyn, scratch, contacts, trial, k)
+
+
+@internal
+def along(dyn, scratch, row, u):
+    """Row of J times u (3 nb,), where scratch.ws.jac is."""
+    out = 0.0
+    for side in range(2):
+        at = 3 * dyn.system.row_body[row, side]
+        for c in range(3):
+            out += scratch.ws.jac[row, 3 * side + c] * u[at + c]
+    return out
+
+
+@internal
+def beyond_time(contacts):
+    """(s) where what was met is beyond zero."""
+    return contacts.clock[START] + contacts.clock[LENGTH] * contacts.clock[BEYOND]

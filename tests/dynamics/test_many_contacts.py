@@ -1,0 +1,155 @@
+"""Stops and contacts in the compiled loop over simulations: what single simulations of the same rows give."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, curve
+from mbsd.measures import final, largest, samples, smallest
+
+STEPS = 40
+
+
+def barrier() -> Mechanism:
+    m = Mechanism("barrier")
+    a, b, c = m.bar("crank", 0.1, mass=0.3), m.bar("coupler", 0.38, mass=0.5), m.bar("rocker", 0.3, mass=2.0)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    pivot = m.revolute("D", m.ground.at(0.4, 0.02), c.start)
+    m.motor("motor", m.ground, a, curve([-10, 0, 20, 40], [6.0, 5.0, 2.0, 0.0]))
+    m.torsion_spring("spring", m.ground, c, 3.0, 0.4, free_angle=1.8)
+    m.stop("end", pivot, lower=math.radians(85), upper=math.radians(125), restitution=0.3)
+    m.start_near(crank=0, coupler=45, rocker=90)
+    return m
+
+
+def ball() -> Mechanism:
+    m = Mechanism("ball", gravity=(0, -9.81))
+    ball = m.body("ball", mass=0.2, inertia=1e-4)
+    m.rigid_contact("floor", m.ground.at(0, 0), ball.origin, radius=0.05, restitution=0.6)
+    m.spring("band", m.ground.at(0, 0.3), ball.origin, 1.0, 0.0, free_length=0.2)
+    m.start_near(ball=(0.01, 0.5, 0))
+    return m
+
+
+def bumpers() -> Mechanism:
+    m = Mechanism("bumpers", gravity=None)
+    carts = [m.body(f"c{k}", mass=0.5) for k in range(4)]
+    for k, cart in enumerate(carts):
+        m.prismatic(f"rail{k}", m.ground.origin, cart.origin)
+    for k in range(3):
+        m.coordinate_stop(f"s{k}", carts[k].origin, carts[k + 1].origin, 0.1, restitution=0.9)
+    m.coordinate_stop("wall", m.ground.origin, carts[3].origin, 1.0, upper=True, restitution=0.8)
+    m.start_near(c0=(-0.5, 0, 0), c1=(0, 0, 0), c2=(0.1, 0, 0), c3=(0.2, 0, 0))
+    m.start_moving(c0=(2.0, 0, 0), c1=(0, 0, 0), c2=(0, 0, 0), c3=(0, 0, 0))
+    return m
+
+
+def box() -> Mechanism:
+    m = Mechanism("box", gravity=(0, -9.81))
+    box = m.body("box", mass=1.0, inertia=0.01)
+    for name, x in (("left", -0.1), ("right", 0.1)):
+        m.rigid_contact(name, m.ground.at(0, 0), box.at(x, -0.1), restitution=0.4)
+    m.start_near(box=(0, 0.5, 10))
+    return m
+
+
+def limited() -> Mechanism:
+    m = Mechanism("limited")
+    arm, fore = m.bar("arm", 0.5, mass=1.0), m.bar("fore", 0.4, mass=0.5)
+    m.revolute("shoulder", m.ground.at(0, 0), arm.start)
+    m.revolute("elbow", arm.end, fore.start, limits=(math.radians(-10), math.radians(140)))
+    slide = m.body("slide", mass=0.3)
+    m.prismatic("rail", m.ground.at(1.0, -0.2), slide.origin, limits=(-0.1, 0.2))
+    m.spring("tie", fore.end, slide.origin, 30.0, 0.5, free_length=0.2)
+    m.start_near(arm=0, fore=30, slide=(1.0, -0.2, 0))
+    return m
+
+
+def massless() -> Mechanism:
+    m = Mechanism("massless")
+    link, bob = m.bar("link", 0.4), m.body("bob", mass=1.0, inertia=0.01)
+    m.revolute("pin", m.ground.at(0, 0), link.start)
+    m.revolute("end", link.end, bob.origin)
+    m.angle_stop("stop", m.ground.origin, link.start, math.radians(-80), restitution=0.5)
+    m.start_near(link=0, bob=(0.4, 0, 0))
+    return m
+
+
+CASES: dict[str, tuple[Callable[[], Mechanism], float, Mapping[str, Any], str]] = {
+    "barrier": (barrier, 0.6, {"spring": {"damping": [0.2, 0.5, 0.9]}}, "rocker"),
+    "rebound": (barrier, 0.4, {"end upper": {"restitution": [0.0, 0.5, 0.8]}}, "rocker"),
+    "ball": (ball, 4.0, {"band": {"stiffness": [0.5, 1.0, 30.0]}}, "ball"),
+    "bumpers": (bumpers, 2.0, {"c1": {"mass": [0.5, 0.6, 0.4]}}, "c3"),
+    "box": (box, 1.5, {"box": {"inertia": [0.008, 0.01, 0.012]}}, "box"),
+    "limited": (limited, 2.0, {"tie": {"stiffness": [10.0, 30.0, 60.0]}}, "fore"),
+    "massless": (massless, 1.5, {"bob": {"inertia": [0.01, 0.02]}}, "link"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_contacts_are_met_as_by_single_simulations(case: str) -> None:
+    build, duration, vary, body = CASES[case]
+    times = np.linspace(0.0, duration, STEPS + 1)
+    joint = next(iter(build().joints), None)
+    measures: dict[str, Any] = {f"{part}": samples(f"{body}.{part}", times.tolist()) for part in ("x", "y", "theta")}
+    measures |= {"omega": final(f"{body}.omega"), "e": smallest("kinetic"), "w": final("work")}
+    if joint is not None:
+        measures["f"] = largest(f"{joint}.fy")
+    many = build().simulate_many(duration, vary=vary, measure=measures, steps=STEPS)
+    assert many.alone == [None] * len(many), many.way
+    (name, values), *_ = vary.items()
+    met = 0
+    for k in range(len(many)):
+        m = build()
+        m.change(name, **{key: column[k] for key, column in values.items()})
+        sol = m.simulate(duration, steps=STEPS)
+        met += len(sol.events)
+        own = sol.body(body)
+        for part in ("x", "y", "theta"):
+            np.testing.assert_allclose(many[part][k], getattr(own, part), atol=2e-9, err_msg=f"{case} {k} {part}")
+        np.testing.assert_allclose(many["omega"][k], own.omega[-1], atol=1e-7)
+        if joint is not None:
+            np.testing.assert_allclose(many["f"][k], sol.joint(joint).fy.max(), rtol=1e-6)
+    assert met >= len(many)
+
+
+def test_a_ball_comes_to_rest_from_any_height() -> None:
+    heights = [0.3, 0.5, 0.8]
+    start = {"ball": [(0.01, height, 0.0) for height in heights]}
+    many = ball().simulate_many(6.0, start=start, measure={"y": final("ball.y"), "v": final("ball.vy")}, steps=60)
+    assert many.alone == [None] * 3, many.way
+    for k, height in enumerate(heights):
+        m = ball()
+        m.start_near(ball=(0.01, height, 0))
+        sol = m.simulate(6.0, steps=60)
+        assert [event.what for event in sol.events].count("closes") >= 1
+        np.testing.assert_allclose(many["y"][k], sol.body("ball").y[-1], atol=1e-10)
+        np.testing.assert_allclose(many["v"][k], sol.body("ball").vy[-1], atol=1e-10)
+
+
+def test_rows_that_start_inside_or_jam_say_so_and_do_not_stop_others() -> None:
+    m = Mechanism("pushed", gravity=None)
+    arm = m.bar("arm", 0.5, mass=1.0)
+    m.revolute("pivot", m.ground.origin, arm.start)
+    m.angle_stop("stop", m.ground.origin, arm.start, 0.5, upper=True, restitution=0.5)
+    m.torsion_spring("spring", m.ground, arm, 2.0, 0.1)
+    m.start_near(arm=0)
+    many = m.simulate_many(0.5, start={"arm": [-30.0, 60.0, 10.0]}, measure={"a": largest("arm.theta")}, steps=20)
+    assert many.good.tolist() == [True, False, True]
+    assert "'stop' starts" in str(many.reason[1])
+    assert np.isnan(many["a"]).tolist() == [False, True, False]
+    assert many["a"][0] <= 0.5 + 1e-9
+
+
+def test_contacts_with_friction_are_left_to_single_simulations() -> None:
+    m = ball()
+    m.change("floor", friction=0.3)
+    many = m.simulate_many(0.2, vary={"band": {"stiffness": [1.0, 2.0]}}, measure={"y": final("ball.y")}, steps=4)
+    assert "'floor' has friction" in many.way

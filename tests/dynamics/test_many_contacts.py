@@ -60,6 +60,16 @@ def box() -> Mechanism:
     return m
 
 
+def plank() -> Mechanism:
+    """It comes to rest on three points of a line, the middle one alone carrying at times."""
+    m = Mechanism("plank", gravity=(0, -9.81))
+    plank = m.body("plank", mass=1.0, inertia=0.02)
+    for name, x in (("left", -0.1), ("middle", 0.0), ("right", 0.1)):
+        m.rigid_contact(name, m.ground.at(0, 0), plank.at(x, -0.1), restitution=0.4)
+    m.start_near(plank=(0, 0.5, 10))
+    return m
+
+
 def limited() -> Mechanism:
     m = Mechanism("limited")
     arm, fore = m.bar("arm", 0.5, mass=1.0), m.bar("fore", 0.4, mass=0.5)
@@ -87,6 +97,7 @@ CASES: dict[str, tuple[Callable[[], Mechanism], float, Mapping[str, Any], str]] 
     "rebound": (barrier, 0.4, {"end upper": {"restitution": [0.0, 0.5, 0.8]}}, "rocker"),
     "ball": (ball, 4.0, {"band": {"stiffness": [0.5, 1.0, 30.0]}}, "ball"),
     "bumpers": (bumpers, 2.0, {"c1": {"mass": [0.5, 0.6, 0.4]}}, "c3"),
+    "plank": (plank, 1.3, {"plank": {"mass": [0.9, 1.0]}}, "plank"),
     "box": (box, 1.5, {"box": {"inertia": [0.008, 0.01, 0.012]}}, "box"),
     "limited": (limited, 2.0, {"tie": {"stiffness": [10.0, 30.0, 60.0]}}, "fore"),
     "massless": (massless, 1.5, {"bob": {"inertia": [0.01, 0.02]}}, "link"),

@@ -14,7 +14,7 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.base.users_function import described
 from mbsd.dynamics.events.laws.compliance import Compliance
-from mbsd.dynamics.events.laws.impact import impacts
+from mbsd.dynamics.events.laws.impact import CREEP, impacts
 from mbsd.dynamics.events.laws.independent import independent
 from mbsd.dynamics.events.laws.stick_slip import Case, Verdict, decide
 from mbsd.dynamics.events.moment import Moment
@@ -106,15 +106,19 @@ class Jumps:
         """What contacts and joints do, once those that hold are at rest: a rebound too slow to count ends here.
 
         Its rate must not go on into accelerations: they would turn bodies that two contacts hold, and make these slide
-        against each other.
+        against each other. Nor may a contact that carries nothing close as slowly: it would do so again and again.
         """
         verdict = decide(at, case)
         for _ in case.closed:
-            holding = [decision.contact for decision in verdict.contacts if decision.normal > 0.0]
-            gaps = [contact.gap for contact in holding]
-            if not (np.abs(at.rates(gaps, case.v)) > self.still[gaps]).any():
+            holding = {decision.contact.name for decision in verdict.contacts if decision.normal > 0.0}
+            closed = np.array([contact.gap for contact in case.closed], np.int64)
+            holds = np.array([contact.name in holding for contact in case.closed])
+            rates, still = at.rates(closed, case.v), self.still[closed]
+            creeping = ~holds & (rates < -CREEP * still)
+            if not (creeping.any() or (np.abs(rates) > still)[holds].any()):
                 break
-            ways = np.array([contact.way for contact in holding if contact.way is not None], np.int64)
+            gaps = closed[holds | creeping]
+            ways = np.array([c.way for c in case.closed if c.name in holding and c.way is not None], np.int64)
             resting = ways[np.abs(at.rates(ways, case.v)) <= self.still[ways]]
             sticking = [stick.way for stick in self.sticks if stick.state == STICKS]
             self.state.y[1] = case.v = at.stopped([*gaps, *resting, *sticking], case.v)

@@ -27,6 +27,8 @@ from mbsd.dynamics.rows.switches import RunContact
 
 ROUNDS = 200
 """After so many, all closed contacts are solved at once without rebound."""
+CREEP = 1e-6
+"""Part of the rates that count as zero, beyond which a contact that carries nothing still closes."""
 
 
 @dataclass

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.laws.impact import ROUNDS
+from mbsd.dynamics.events.laws.impact import CREEP, ROUNDS
 from mbsd.dynamics.events.laws.independent import DEPENDENT
 from mbsd.dynamics.many.contacts.arrays import (
     BLOCK,
@@ -254,13 +254,15 @@ def resolve(dyn, scratch, contacts, state, met):
 
 @internal
 def _moving(dyn, scratch, contacts, v):
-    """Whether contacts that hold still move; then chosen[KEPT] are those that are to be stopped."""
+    """Whether contacts that hold still move, or others creep; then chosen[KEPT] are those that are to be stopped."""
     moving = False
     _find_rates(dyn, scratch, contacts, v)
     for k in range(contacts.place.shape[0]):
         holds = contacts.vector[NORMAL, k] > 0.0
-        contacts.chosen[TAKING, k] = 1 if holds else 0
-        moving = moving or (holds and abs(contacts.vector[RATE, k]) > contacts.number[k, REST])
+        rate, rest = contacts.vector[RATE, k], contacts.number[k, REST]
+        creeps = contacts.chosen[STAYING, k] != 0 and not holds and rate < -CREEP * rest
+        contacts.chosen[TAKING, k] = 1 if holds or creeps else 0
+        moving = moving or creeps or (holds and abs(rate) > rest)
     if moving:
         _keep_independent(contacts, contacts.chosen[TAKING])
     return moving

@@ -14,6 +14,7 @@ import math
 from mbsd.compiling.jit import inlined, lazy
 from mbsd.dynamics.integrators.dop853.dense import interpolant, interpolate
 from mbsd.dynamics.integrators.formulation import derivative
+from mbsd.dynamics.integrators.root_search import narrowed, next_part
 from mbsd.dynamics.integrators.step_size import allowed
 from mbsd.dynamics.state import EVALUATIONS, TIME
 from mbsd.equations.interactions.switching import (
@@ -197,28 +198,14 @@ def crossing(dyn, scratch, state, settings, h, reached, work):
             switch[0, CUTS] = 0.0
             return 1.0
         looking = False
-        if (f > 0.0) == (fa > 0.0):
-            c = a
-            fc = fa
-        else:
-            c = b
-            fc = fb
-            b = a
-            fb = fa
-        a = x
-        fa = f
+        a, fa, b, fb, c, fc = narrowed(a, fa, b, fb, x, f)
         if abs(f) <= 0.9 * aim:
             landing = a
             break
         if abs(b - a) * h <= ROUNDING * abs(t):
             landing = a if fa > 0.0 else b
             break
-        xi = (a - b) / (c - b)
-        phi = (fa - fb) / (fc - fb)
-        part = 0.5
-        if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi:
-            part = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-        part = min(max(part, 1e-9), 1.0 - 1e-9)
+        part = min(max(next_part(a, fa, b, fb, c, fc), 1e-9), 1.0 - 1e-9)
     switch[0, RATE] = abs((fa - fc) / ((a - c) * h))
     if not 0.0 < landing < 1.0 or landing * h < max(settings.smallest, ROUNDING * abs(t)):
         switch[0, FREE] = 1.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.crossing import HALVINGS
+from mbsd.dynamics.integrators.root_search import narrowed, next_part
 from mbsd.dynamics.many.contacts.arrays import (
     BEYOND,
     CLOSED,
@@ -44,18 +45,6 @@ def still_of(contacts, k):
     return ROUNDING * contacts.clock[LOAD] if contacts.number[k, CLOSED] > 0.0 else contacts.number[k, NEAR]
 
 
-@internal
-def next_part(a, fa, b, fb, c, fc):
-    """Where between a and b the root is looked for next: Chandrupatla 1997, Adv. Eng. Softw. 28, 145."""
-    if fb == fc or fa == fc:
-        return 0.5
-    xi = (a - b) / (c - b)
-    phi = (fa - fb) / (fc - fb)
-    if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi:
-        return fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-    return 0.5
-
-
 @apart
 def quintic_root(dyn, scratch, contacts, k, level, left, right, at_left, at_right):
     """Part of the step between ``left`` and ``right`` where the quintic of contact k passes ``level``."""
@@ -70,16 +59,7 @@ def quintic_root(dyn, scratch, contacts, k, level, left, right, at_left, at_righ
         part = min(max(part, 1e-9), 1.0 - 1e-9)
         x = a + part * (b - a)
         f = on_quintic(dyn, scratch, contacts, k, x) - level
-        if (f > 0.0) == (fa > 0.0):
-            c = a
-            fc = fa
-        else:
-            c = b
-            fc = fb
-            b = a
-            fb = fa
-        a = x
-        fa = f
+        a, fa, b, fb, c, fc = narrowed(a, fa, b, fb, x, f)
         if f == 0.0 or abs(b - a) <= CLOSE:
             break
         part = next_part(a, fa, b, fb, c, fc)
@@ -281,16 +261,7 @@ def _true_root(dyn, own, scratch, settings, contacts, out, before, after, k, low
         part = min(max(part, edge), 1.0 - edge)
         x = a + part * (b - a)
         f = of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, x)
-        if (f > 0.0) == (fa > 0.0):
-            c = a
-            fc = fa
-        else:
-            c = b
-            fc = fb
-            b = a
-            fb = fa
-        a = x
-        fa = f
+        a, fa, b, fb, c, fc = narrowed(a, fa, b, fb, x, f)
         if f == 0.0:
             break
         part = next_part(a, fa, b, fb, c, fc)

@@ -149,7 +149,7 @@ def _refuse_held(m: Model, what: str, body: Body) -> None:
     if body.name == "ground":
         raise ModelError(f"{m.name}: {what}: ground does not move; give other bodies")
     for driver in m.drivers.values():
-        if driver.kind.name == "drive_angle" and {driver.i.body.name, driver.j.body.name} == {"ground", body.name}:
+        if "angle" in driver.kind.constraints and {driver.i.body.name, driver.j.body.name} == {"ground", body.name}:
             raise ModelError(
                 f"{m.name}: {what}: driver '{driver.name}' says where '{body.name}' is and how fast; start others, or "
                 "take a motor instead of the driver"

@@ -13,13 +13,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from mbsd.dynamics.events.bounds import HALVINGS
 from mbsd.dynamics.events.dips import first_dip
 from mbsd.dynamics.events.monitors import Monitor, Samples
 from mbsd.model.event import Event
 
 PARTS = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
-HALVINGS = 40
-"""How close to a bounce its return is looked for: this many halvings of a part of a step."""
 
 
 def first_crossing(

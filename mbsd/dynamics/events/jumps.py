@@ -13,8 +13,9 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.users_function import described
+from mbsd.dynamics.events.bounds import CREEP
 from mbsd.dynamics.events.laws.compliance import Compliance
-from mbsd.dynamics.events.laws.impact import CREEP, impacts
+from mbsd.dynamics.events.laws.impact import impacts
 from mbsd.dynamics.events.laws.independent import independent
 from mbsd.dynamics.events.laws.stick_slip import Case, Verdict, decide
 from mbsd.dynamics.events.moment import Moment

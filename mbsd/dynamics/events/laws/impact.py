@@ -21,14 +21,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.dynamics.events.bounds import ROUNDS
 from mbsd.dynamics.events.laws.complementarity import complementarity
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.rows.switches import RunContact
-
-ROUNDS = 200
-"""After so many, all closed contacts are solved at once without rebound."""
-CREEP = 1e-6
-"""Part of the rates that count as zero, beyond which a contact that carries nothing still closes."""
 
 
 @dataclass

@@ -10,10 +10,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mbsd.dynamics.events.bounds import DEPENDENT
 from mbsd.dynamics.events.laws.compliance import Compliance
-
-DEPENDENT = 1e-9
-"""Part of its compliance that the rows before must leave of a row."""
 
 
 def independent(at: Compliance, rows: Sequence[int]) -> list[int]:

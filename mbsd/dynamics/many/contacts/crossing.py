@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.crossing import HALVINGS
+from mbsd.dynamics.events.bounds import HALVINGS
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
 from mbsd.dynamics.many.contacts.arrays import (
     BEYOND,

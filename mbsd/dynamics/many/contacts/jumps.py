@@ -8,8 +8,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.laws.impact import CREEP, ROUNDS
-from mbsd.dynamics.events.laws.independent import DEPENDENT
+from mbsd.dynamics.events.bounds import CREEP, DEPENDENT, ROUNDS
 from mbsd.dynamics.many.contacts.arrays import (
     BLOCK,
     CLOSED,

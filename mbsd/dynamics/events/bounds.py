@@ -1,0 +1,12 @@
+"""Bounds of the search for events and of impacts, for single simulations and for the compiled loop over many."""
+
+from __future__ import annotations
+
+HALVINGS = 40
+"""How close to a bounce its return is looked for: this many halvings of a part of a step."""
+ROUNDS = 200
+"""Rounds of an impact; after so many, all closed contacts are solved at once without rebound."""
+CREEP = 1e-6
+"""Part of the rates that count as zero, beyond which a contact that carries nothing still closes."""
+DEPENDENT = 1e-9
+"""Part of its compliance that the rows before must leave of a row."""

@@ -84,16 +84,11 @@ def films_of(view: str) -> list[str]:
 
 def solve(name: str, parts: Parts | None) -> Solution:
     """The motion; says which masses are those of the parts, and which are estimated. Raises UserError."""
-    from mechanisms.stages.solve.masses import give_masses
+    from mechanisms.stages.solve.masses import give_masses_aloud
 
     module, p = loading.load(name, "mechanism"), loading.params(name)
     m = solving.build(name, module, p)
-    sources, sentences = give_masses(m, parts)
-    of_parts = [body for body, source in sources.items() if source == "parts"]
-    if of_parts:
-        sentences = [f"masses of the parts: {', '.join(of_parts)}", *sentences]
-    for sentence in sentences:
-        console.say("animate", f"{name}: {sentence}")
+    give_masses_aloud("animate", name, m, parts)
     return solving.motion_of(name, module, m, p)
 
 

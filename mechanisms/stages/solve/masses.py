@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from shared.contract.quantity import written
+from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean
 
@@ -52,6 +53,16 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
     if rods:
         sentences.append(f"rods have no mass in the motion, because distance joints have none: {_some(rods)}")
     return source, sentences
+
+
+def give_masses_aloud(stage: str, name: str, m: Mechanism, parts: Parts | None) -> None:
+    """:func:`give_masses` of the mechanism ``name``; its sentences are said in the name of ``stage``."""
+    sources, sentences = give_masses(m, parts)
+    of_parts = [body for body, source in sources.items() if source == "parts"]
+    if of_parts:
+        sentences = [f"masses of the parts: {', '.join(of_parts)}", *sentences]
+    for sentence in sentences:
+        say(stage, f"{name}: {sentence}")
 
 
 def bodies_of(parts: Parts) -> dict[str, BodyParts]:

@@ -98,15 +98,10 @@ def _found(name: str, parts: Parts | None) -> tuple[dict[str, Tolerances], Input
 
 
 def _built(name: str, parts: Parts | None) -> Mechanism:
-    from mechanisms.stages.solve.masses import give_masses
+    from mechanisms.stages.solve.masses import give_masses_aloud
 
     m = solving.build(name, loading.load(name, "mechanism"), loading.params(name))
-    sources, sentences = give_masses(m, parts)
-    of_parts = [body for body, source in sources.items() if source == "parts"]
-    if of_parts:
-        sentences = [f"masses of the parts: {', '.join(of_parts)}", *sentences]
-    for words in sentences:
-        console.say("tolerances", f"{name}: {words}")
+    give_masses_aloud("tolerances", name, m, parts)
     return m
 
 

@@ -27,9 +27,8 @@ from mbsd.dynamics.many.contacts.jumps import hold_rows, resolve
 from mbsd.dynamics.many.contacts.within import copy_state, fit, measure_gaps
 from mbsd.dynamics.many.methods import USUAL
 from mbsd.dynamics.many.through import NO_LIMIT, cross, through
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.dynamics.state import EVALUATIONS, NEXT, PAUSED, POWER, REACHED, STARTED, STEP, TIME
+from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, begin
 from mbsd.equations.system import System
 
 NOT_SOLVED = -7
@@ -41,19 +40,11 @@ AT_ONE_TIME, MOST = 500, 20_000
 
 
 @internal
-def _make_valid(dyn, scratch, state):
-    if state.count[STARTED] == 0:
-        state.clock[POWER] = derivative(dyn, scratch, state.clock[TIME], state.y, state.dy, state.lam)
-        state.count[EVALUATIONS] += 1
-        state.count[STARTED] = 1
-
-
-@internal
 def _restart(dyn, scratch, contacts, state):
     """Forget the derivative, which belongs to the motion before."""
     state.count[STARTED] = 0
     state.clock[STEP] = 0.0
-    _make_valid(dyn, scratch, state)
+    begin(dyn, scratch, state)
     load = 1e-300
     for c in range(3, dyn.weight.shape[0]):
         load = max(load, abs(dyn.weight[c]))
@@ -63,7 +54,7 @@ def _restart(dyn, scratch, contacts, state):
 
 
 @internal
-def _begin(dyn, scratch, contacts, state):
+def _close_at_start(dyn, scratch, contacts, state):
     """What is closed at the start, and impacts of velocities that contacts forbid; whether that can be."""
     contacts.clock[BEGUN] = 1.0
     measure_gaps(dyn, scratch, state.clock[TIME], state.y[0])
@@ -154,12 +145,12 @@ def _any_held(contacts):
 @lazy(int)
 def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
     hold_rows(dyn, contacts)
-    if contacts.clock[BEGUN] == 0.0 and not _begin(dyn, scratch, contacts, state):
+    if contacts.clock[BEGUN] == 0.0 and not _close_at_start(dyn, scratch, contacts, state):
         return NOT_SOLVED
     for _ in range(steps):
         own = dyn if _any_held(contacts) else _open(dyn, contacts)
         cross(state, before, after)
-        _make_valid(own, scratch, state)
+        begin(own, scratch, state)
         copy_state(contacts.before, state)
         status = through(own, scratch, state, out, settings, end, 1, before, after, USUAL)
         if status != REACHED and status != PAUSED:

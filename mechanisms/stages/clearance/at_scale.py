@@ -1,4 +1,6 @@
-"""The motion of a model at a scale: that of the machine, geometrically similar; angles and times stay."""
+"""The motion of a model at a scale: that of the machine, geometrically similar; angles and times stay. And what a
+refusal of its parts adds.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +8,13 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from shared.shapes.fit import Fit
+
 if TYPE_CHECKING:
     from shared.contract import Motion
     from shared.contract.loads import Shape
     from shared.contract.motion import BodyMotion, JointMotion
+    from shared.stage.scale import Scale
 
 LENGTHS = ("x", "y", "vx", "vy", "ax", "ay")
 """Series of a body that are lengths and their rates."""
@@ -44,3 +49,13 @@ def _shape(shape: Shape, ratio: float) -> Shape:
 
 def _times(values: list[float], ratio: float) -> list[float]:
     return [value * ratio for value in values]
+
+
+def what_shrinks(scale: Scale) -> str:
+    """The end of a refusal of parts at ``scale``: why a parts.py that fits its machine need not fit the model."""
+    running = Fit().running
+    return (
+        f"what a parts.py gives in millimetres, clearances too, shrinks with the machine: Fit(running="
+        f"{running / scale.ratio:.3g}) leaves {running:g} mm at {scale}; without a parts.py pins and fits are chosen "
+        "for the scale"
+    )

@@ -75,13 +75,18 @@ def run(name: str, scale: str = "") -> None:
     if stage.is_fresh():
         say("clearance", f"{out.title}: nothing to do")
         return
-    from mechanisms.stages.clearance.at_scale import at_scale
+    from mechanisms.stages.clearance.at_scale import at_scale, what_shrinks
     from mechanisms.stages.clearance.pieces import read_pieces
 
     reach = REACH if at is None else min(max(REACH * at.ratio, REACH_OF_MODELS), REACH)
     motion = motion if at is None else at_scale(motion, at.ratio)
     pieces = read_pieces(parts, out.parts_folder)
-    checked = check(parts, motion, pieces, stage.key, reach=reach, title=out.title)
+    try:
+        checked = check(parts, motion, pieces, stage.key, reach=reach, title=out.title)
+    except UserError as error:
+        if at is None or at.ratio >= 1:
+            raise
+        raise UserError(f"{error}; {what_shrinks(at)}") from error
     write_clearance(out.clearance, checked)
     stage.done()
     say("clearance", _summary(checked, out.title))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from mbsd import Mechanism
 from mechanisms.stages.automatic.automatic import Automatic, automatic
 from mechanisms.stages.automatic.layout.printed import LEAST
 from mechanisms.stages.automatic.layout.sizes import STANDARD
-from mechanisms.stages.clearance.at_scale import at_scale
+from mechanisms.stages.clearance.at_scale import at_scale, what_shrinks
 from mechanisms.stages.loading.wished_scale import scaling
 from mechanisms.stages.solve.motion_file import to_motion
 from shared.shapes.bodies import Bodies
@@ -124,3 +126,11 @@ def test_a_model_moves_as_its_machine() -> None:
         assert np.allclose(small.bodies[name].vx, np.array(body.vx) / 4, rtol=1e-15)
         assert small.bodies[name].theta == body.theta
     assert np.allclose(small.joints["C"].x, np.array(motion.joints["C"].x) / 4, rtol=1e-15)
+
+
+def test_a_refusal_of_a_model_says_which_fit_would_do() -> None:
+    """The fit that it names leaves at the scale what the default leaves in the machine."""
+    half = scale_of("1:2")
+    assert half is not None
+    named = float(re.search(r"Fit\(running=([0-9.]+)\)", what_shrinks(half))[1])  # type: ignore[index]
+    assert named * half.ratio == pytest.approx(Fit().running)

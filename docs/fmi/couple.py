@@ -54,6 +54,12 @@ def coupled(mechanism: Path, crank: str, duration: float, step: float) -> list[t
     """Time (s), speed of the crank (rad/s) and current (A) after each step."""
     with tempfile.TemporaryDirectory() as folder:
         motor, machine = Unit(motor_unit(Path(folder))), Unit(mechanism)
+    driven = [name.removesuffix(".rate") for name in machine.references if name.endswith(".rate")]
+    if driven:
+        raise SystemExit(
+            f"error: {mechanism}: driver '{driven[0]}' imposes a motion, whatever torque acts on '{crank}'; "
+            "leave it out of build() and export again"
+        )
     rows = []
     for k in range(round(duration / step)):
         motor.set("speed", machine.get(f"{crank}.omega"))

@@ -78,3 +78,10 @@ def test_the_coupled_units_converge_to_the_equation_of_both(tmp_path: Path) -> N
     assert errors[2] < 4e-3
     for coarse, fine in pairwise(errors):
         assert 1.6 < coarse / fine < 2.8, "of first order in the step, as both wait for the other"
+
+
+def test_a_crank_whose_driver_imposes_its_motion_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "four.fmu"
+    file.write_bytes(fmu(four_bar(True).sweep(1.0, steps=40))[0])
+    with pytest.raises(SystemExit, match=r"driver 'motor' imposes a motion, whatever torque acts on 'crank'"):
+        example().coupled(file, "crank", 0.01, 1e-3)

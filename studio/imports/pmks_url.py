@@ -23,8 +23,10 @@ SPEED = 1.0
 
 
 def is_pmks_url(text: str) -> bool:
-    """Whether a text is such an address, or its query alone."""
+    """Whether a text is such an address, if only the beginning of one, or its query alone."""
     first = text.strip()
+    if "\n" not in first and (urlparse(first).hostname or "").endswith("pmksplus.com"):
+        return True
     return "\n" not in first and first.count("..") >= 2 and re.search(r"\.Y?[RP]\w", first) is not None
 
 
@@ -35,7 +37,9 @@ def read(text: str, name: str) -> Sketch:
     try:
         return _read(query, name)
     except (ValueError, IndexError, KeyError) as error:
-        raise UserError(f"{name}: this is no address of PMKS+ that can be read ({error})") from error
+        raise UserError(
+            f"{name}: this is no address of PMKS+ that can be read ({error}); copy all of it, in quotes"
+        ) from error
 
 
 def _read(query: str, name: str) -> Sketch:

@@ -74,6 +74,11 @@ def test_an_address_of_pmks_plus_is_read(address: str) -> None:
     assert m.sweep(steps=36).body("ab").omega == pytest.approx(1.0)
 
 
+def test_an_address_that_is_cut_off_is_refused_as_one() -> None:
+    with pytest.raises(UserError, match=r"no address of PMKS\+ that can be read .*; copy all of it, in quotes"):
+        read("https://app.pmksplus.com/?0P.TY.K,0.101.MA,A,0mv")
+
+
 def test_pylinkage_is_read() -> None:
     _, m, names = built(SAMPLES / "four_bar_mechanism.json")
     p = names["Params"]()

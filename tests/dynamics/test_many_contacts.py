@@ -115,6 +115,8 @@ def test_contacts_are_met_as_by_single_simulations(case: str) -> None:
         measures["f"] = largest(f"{joint}.fy")
     many = build().simulate_many(duration, vary=vary, measure=measures, steps=STEPS)
     assert many.alone == [None] * len(many), many.way
+    if case == "rebound":
+        assert "anew" not in many.way
     (name, values), *_ = vary.items()
     met = 0
     for k in range(len(many)):
@@ -159,8 +161,21 @@ def test_rows_that_start_inside_or_jam_say_so_and_do_not_stop_others() -> None:
     assert many["a"][0] <= 0.5 + 1e-9
 
 
-def test_contacts_with_friction_are_left_to_single_simulations() -> None:
-    m = ball()
-    m.change("floor", friction=0.3)
-    many = m.simulate_many(0.2, vary={"band": {"stiffness": [1.0, 2.0]}}, measure={"y": final("ball.y")}, steps=4)
-    assert "'floor' has friction" in many.way
+def test_friction_of_contacts_is_met_as_by_single_simulations() -> None:
+    def rough(friction: float = 0.2) -> Mechanism:
+        m = ball()
+        m.change("floor", friction=friction)
+        m.start_moving(ball=(1.0, 0, 30))
+        return m
+
+    frictions = [0.0, 0.2, 0.6]
+    many = rough().simulate_many(
+        2.0, vary={"floor": {"friction": frictions}}, measure={"x": final("ball.x"), "spin": final("ball.omega")},
+        steps=20,
+    )  # fmt: skip
+    assert many.alone == [None] * 3, many.way
+    for k, friction in enumerate(frictions):
+        sol = rough(friction).simulate(2.0, steps=20)
+        assert any(event.what == "impact" for event in sol.events)
+        np.testing.assert_allclose(many["x"][k], sol.body("ball").x[-1], atol=2e-9)
+        np.testing.assert_allclose(many["spin"][k], sol.body("ball").omega[-1], atol=1e-7)

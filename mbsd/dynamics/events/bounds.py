@@ -10,3 +10,5 @@ CREEP = 1e-6
 """Part of the rates that count as zero, beyond which a contact that carries nothing still closes."""
 DEPENDENT = 1e-9
 """Part of its compliance that the rows before must leave of a row."""
+AT_LIMIT = 1e-10
+"""Part of the limit of friction: closer to it a contact slides."""

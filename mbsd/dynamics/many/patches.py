@@ -1,8 +1,8 @@
 """Numbers that vary, put straight into the block of a prepared run: nothing is prepared anew for a row.
 
-Known are numbers of forces that are plain parameters of them, masses and moments of inertia, poses and velocities at
-the start. What a row then differs by is found for all rows at once. Some rows are prepared in full, too, and all
-numbers of their blocks compared: where any differs, all rows are prepared one by one.
+Known are numbers of forces that are plain parameters of them, restitution and friction of contacts, masses and moments
+of inertia, poses and velocities at the start. What a row then differs by is found for all rows at once. Some rows are
+prepared in full, too, and all numbers of their blocks compared: where any differs, all rows are prepared one by one.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from mbsd.base.errors import MechanismError
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE
 from mbsd.dynamics.many.base import Base
+from mbsd.dynamics.many.contact_numbers import contact_columns
 from mbsd.dynamics.many.designs import Designs
 from mbsd.dynamics.many.starts import Starts, starts_of
 from mbsd.dynamics.prepare.mass_ratio import USUAL
@@ -52,6 +53,11 @@ class Patches:
                 columns += self._of_force(name, values)
             elif name in m.bodies and set(values) <= {"mass", "inertia"}:
                 self._take_masses(name, values)
+            elif name in m.contacts:
+                of_contact = contact_columns(designs, base, name, values)
+                if of_contact is None:
+                    raise NotPatched(f"{', '.join(values)} of '{name}'")
+                columns += of_contact
             else:
                 raise NotPatched(f"{', '.join(values)} of '{name}'")
         if self.mass is not None:

@@ -91,7 +91,7 @@ def run_rows(
                 counted = state.count[ACCEPTED]
             if not whole and state.count[NEXT] >= upto:
                 break
-            if contacts.place.shape[0] > 0:
+            if contacts.place.shape[0] > 0 or contacts.wheels.markers.shape[0] > 0:
                 ended = go_on(dyn, scratch, state, settings, contacts, out, end, at_once, before, after)
             else:
                 ended = through(dyn, scratch, state, out, settings, end, at_once, before, after, method)

@@ -101,7 +101,7 @@ class SingleRun:
 
     @cached_property
     def contacts(self) -> Contacts:
-        """Contacts without friction, which the loop meets."""
+        """Contacts and joints that stick, which the loop meets, and wheels that it looks at step by step."""
         return contacts_of(self.ready, self.state if self.independent is None else self.independent.own)
 
 
@@ -114,8 +114,11 @@ def single_run(m: Model, asked: Asked) -> SingleRun:
     times = asked.times
     ready = prepare_dynamics(m, float(times[0]), float(times[-1]), contacts=True)
     _refuse(m, ready)
-    if ready.switches.contacts and number_of(asked.integrator) != USUAL:
-        raise NotCompiled(f"stops and contacts are met in the loop of 'dop853' alone, not of '{asked.integrator.name}'")
+    if number_of(asked.integrator) != USUAL and (ready.switches.contacts or ready.sticks or ready.following):
+        raise NotCompiled(
+            "stops, contacts, joints that stick and wheels that may meet are met by 'dop853' alone, not by "
+            f"'{asked.integrator.name}'"
+        )
     longest = asked.step or float(np.diff(times).max())
     run = Run(
         ready, asked.integrator, asked.tolerance, longest, float(times[-1] - times[0]), asked.options, asked.formulation
@@ -135,8 +138,8 @@ def _refuse(m: Model, ready: PreparedDynamics) -> None:
     why = why_not(ready)
     if why is not None:
         raise NotCompiled(why)
-    if ready.following:
-        raise NotCompiled("points on curves that cross themselves, or wheels that may meet, are followed step by step")
+    if ready.following.rows:
+        raise NotCompiled("points on curves that cross themselves are followed step by step")
     if ready.switches.spare or ready.dropped:
         raise NotCompiled("joints repeat others, of which a set is chosen anew on the way")
     for force in packed.forces:

@@ -44,9 +44,9 @@ class Starts:
 
     @cached_property
     def _bare(self) -> Packed:
-        """The mechanism without the rows of contacts, which hold no start."""
+        """The mechanism without the rows of contacts and of joints that stick, which hold no start."""
         ready = self.ready
-        if not ready.switches.contacts:
+        if not ready.switches.contacts and not ready.sticks:
             return ready.packed
         packed = pack(self.work)
         packed.settle_laws(ready.start, ready.end)

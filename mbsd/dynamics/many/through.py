@@ -24,6 +24,21 @@ def next_stop(before, t):
 
 
 @internal
+def copy_state(target, source):
+    """Make ``target`` the state ``source``."""
+    for part in range(2):
+        for c in range(source.y.shape[1]):
+            target.y[part, c] = source.y[part, c]
+            target.dy[part, c] = source.dy[part, c]
+            target.memory[part, c] = source.memory[part, c]
+    for r in range(source.lam.shape[0]):
+        target.lam[r] = source.lam[r]
+    for i in range(source.clock.shape[0]):
+        target.clock[i] = source.clock[i]
+        target.count[i] = source.count[i]
+
+
+@internal
 def cross(state, before, after):
     """Go on after the jump right before which the state stands, if it stands there."""
     t = state.clock[TIME]

@@ -42,7 +42,7 @@ OTHER, FAILED = -2, -4
 LEFT = {
     OTHER: "its start is that of another branch",
     FAILED: "a function of the user failed in one of them",
-    NOT_SOLVED: "what a contact did there is decided by single simulations",
+    NOT_SOLVED: "what happened at an event there is decided by single simulations",
     NEARLY_SINGULAR: "it came near a singular pose",
     CHOOSE: "other coordinates became better on the way",
     UNCLEAR: "an output fell on a pose that coordinates do not tell clearly",

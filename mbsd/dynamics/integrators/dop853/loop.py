@@ -116,9 +116,8 @@ def sum_step(y, k, h, settings, trial):
             scale = allowed(settings, y, trial, part, c)
             fifth += (e5 / scale) ** 2
             third += (e3 / scale) ** 2
-    if fifth > 0.0 or third > 0.0:
-        return h * fifth / math.sqrt((fifth + 0.01 * third) * max(2 * (n3 - 3), 1))
-    return 0.0
+    both = (fifth + 0.01 * third) * max(2 * (n3 - 3), 1)
+    return h * fifth / math.sqrt(both) if both > 0.0 else 0.0  # squares of what rests may be too small for a number
 
 
 @inlined

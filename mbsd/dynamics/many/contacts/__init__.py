@@ -1,1 +1,1 @@
-"""Contacts without friction in the compiled loop: when one closes or opens within a step, and what changes then."""
+"""Contacts in the compiled loop: when one closes, opens, slips or comes to rest in a step, and what changes then."""

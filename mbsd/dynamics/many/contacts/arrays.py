@@ -1,4 +1,8 @@
-"""Arrays of the contacts of a run, as the compiled loop reads and overwrites them; none where there are no contacts."""
+"""Rows of J that events switch, as arrays that the compiled loop reads and overwrites; empty where there are none.
+
+A row is the gap of a contact, its way if it has friction, the angle of a one-way clutch, or the way of a joint that
+sticks.
+"""
 
 from __future__ import annotations
 
@@ -6,33 +10,106 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-ROW, BLOCK, SIDE = 0, 1, 2
-"""Columns of Contacts.place: the row of the gap in J, its block and its place there in Schur.rows."""
-NEAR, REST, SETTLE, RESTITUTION, SCALE, CLOSED, HELD = 0, 1, 2, 3, 4, 5, 6
-"""Columns of Contacts.number: gap and rate that count as zero, slowest rebound, coefficient of restitution, what makes
-the gap dimensionless; whether it is closed now, and whether its row holds."""
+from mbsd.dynamics.reference.sliding import Sliding
+
+ROW, BLOCK, SIDE, KIND, RELATIVE, FRICTION = range(6)
+"""Columns of Contacts.place: the row in J, its block and its place there in Schur.rows; GAP, CLUTCH, WAY or SLIDE; its
+row in Workspace.relative; the joint's row in Loads.friction, -1 of what is no joint that sticks."""
+GAP, CLUTCH, WAY, SLIDE = range(4)
+NEAR, REST, SETTLE, RESTITUTION, SCALE, CLOSED, HELD, SIGN = range(8)
+"""Columns of Contacts.number: gap (rate of a clutch, way or slide) and rate that count as zero, slowest rebound,
+coefficient of restitution, what makes the gap dimensionless; whether it is closed (way, slide: sticks) now, and whether
+its row holds; direction in which a way or slide goes, 0 where it does not."""
 VALUE, RATE, NORMAL, GIVEN, FREE, ALONE, PUSH, SHIFT = range(8)
 """Rows of Contacts.vector."""
-SKIPPED, TOUCHING, STAYING, TAKING, KEPT = range(5)
+SKIPPED, TOUCHING, STAYING, TAKING, KEPT, RESTING = range(6)
 """Rows of Contacts.chosen."""
-BEGUN, WHEN, AT_ONCE, MET, LOAD, START, LENGTH, WHERE, BEYOND, FAILURE = range(10)
+BEGUN, WHEN, AT_ONCE, MET, LOAD, START, LENGTH, WHERE, BEYOND, FAILURE, SHARING = range(11)
 """Entries of Contacts.clock: whether the run has begun; time of the last event (s), events at that time, events so far;
 the largest load; the step's start and length (s); where in it something was met, and a part where it is beyond; the
-status with which a step to some time within it failed."""
+status with which a step to some time within it failed; whether joints at rest share their friction."""
 PARTS = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
 """Parts of a step at which gaps and normal forces are looked at, as events/crossing.py does."""
 MOST_LOOKS = 80
+KINETIC, STATIC, FORCED, BROKEN, GUESS, NEXT_SIGN, BESIDE = range(7)
+"""Columns of Friction.number: coefficients while it slides and while it sticks; the direction in which what was met
+lets it leave its place, 0 where it came to rest, NO_SIGN else; the same once static friction has broken; that in which
+it is taken to slide, and what comes out; friction that may act beside that of the normal force."""
+NO_SIGN = 2.0
+
+
+class Friction(NamedTuple):
+    """f contacts with friction; their ways are the last f rows of Contacts."""
+
+    gap: Any
+    """(f,) int, the row of Contacts that is its gap."""
+    number: Any
+    """(f, 7)"""
+    compliance: Any
+    """(c, c) of rows of Contacts, where contacts that slide push with their friction."""
+    velocity: Any
+    """(3 nb,)"""
+    order: Any
+    """(c,) int, rows of Contacts in the order of the search: each contact's gap, then its way; joints last."""
+    none: Sliding
+    """No contact with friction, as while all are open."""
+
+
+HALF, SHORTEST = 0, 1
+"""Entries of Wheels.bounds: the part of their way to each other that centres may go in a step, and the part of the
+longest step below which no step is divided."""
+
+
+class Wheels(NamedTuple):
+    """Pairs of wheels that may run into each other; see kinematics/limits/free_wheels.py."""
+
+    markers: Any
+    """(k, 2) int, at their centres."""
+    near: Any
+    """(k,) distance below which the centres have met (m)."""
+    bounds: Any
+    """(2,)"""
+    before: Any
+    """mbsd.dynamics.state.State: where a step began."""
+
+
+LIMIT, FORCE, UNSHARED, PREVIOUS, LEFT = range(5)
+"""Rows of Sticks.vector: limits of friction; normal forces and friction; friction before it is shared, and as it was
+shared last; accelerations that friction leaves."""
+NOW, LAST, FOUND = range(3)
+"""Rows of Sticks.normal: normal forces used now, their last error, those that the multipliers give."""
+
+
+class Sticks(NamedTuple):
+    """What joints with friction add, for c rows, f joints with friction and n = c + 2 k unknowns, k of them joints."""
+
+    vector: Any
+    """(5, c)"""
+    normal: Any
+    """(3, f)"""
+    borne: Any
+    """(c, m) multipliers of joints and drivers by a unit impulse of each row."""
+    lam: Any
+    """(2, m)"""
+    load: Any
+    """(2, 3 nb) without and with friction of joints."""
+    small: Any
+    """(c, c)"""
+    tableau: Any
+    """(n, 2 n + 2) of Lemke's method."""
+    basis: Any
+    """(2, n) int: of the tableau, and rows of its ratio test."""
 
 
 class Contacts(NamedTuple):
-    """c contacts."""
+    """c rows: gaps of contacts and clutches, ways of contacts with friction, then ways of joints that stick."""
 
     place: Any
-    """(c, 3) int"""
+    """(c, 6) int"""
     number: Any
-    """(c, 7)"""
+    """(c, 8)"""
     clock: Any
-    """(10,)"""
+    """(11,)"""
     before: Any
     """mbsd.dynamics.state.State: where the step began."""
     trial: Any
@@ -48,24 +125,29 @@ class Contacts(NamedTuple):
     force: Any
     """(3 nb,)"""
     samples: Any
-    """(6, c) gaps or normal forces at PARTS."""
+    """(6, c) what is looked at along a step, at PARTS: see within.read."""
     answer: Any
-    """(c, 3 nb) change of velocities by a unit impulse of each contact."""
+    """(c, 3 nb) change of velocities by a unit impulse along each row."""
     compliance: Any
     """(c, c)"""
     factor: Any
     """(c, c) Cholesky factor of some of it."""
     tableau: Any
-    """(c, 2 c + 2) of Lemke's method."""
+    """(n, 2 n + 2) of Lemke's method; n: gaps, and three times the ways."""
     vector: Any
     """(8, c)"""
     intervals: Any
     """(MOST_LOOKS + 2, 6) that are still to be looked at for a dip."""
     chosen: Any
-    """(5, c) int, flags of contacts."""
+    """(6, c) int, flags of rows."""
     schur: Any
     """mbsd.dynamics.reference.schur.Schur without the rows of contacts, while all are open."""
     special: Any
     """Constraints of relative pose that are no contacts."""
     basis: Any
-    """(2, c) int: of the tableau, and rows of its ratio test."""
+    """(2, n) int: of the tableau, and the rows of J that its first rows are of."""
+    sticks: Any
+    """Sticks; empty without friction of joints."""
+    friction: Friction
+    """The contacts with friction."""
+    wheels: Wheels

@@ -1,4 +1,7 @@
-"""Which contact closes or opens first within a step, and when: events/crossing.py and EventSteps, compiled."""
+"""Which contact closes, opens, slips or comes to rest first in a step, and when: events/crossing.py, compiled.
+
+k: a row of Contacts, whose scalar within.py says.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +12,18 @@ from mbsd.dynamics.many.contacts.arrays import (
     BEYOND,
     CLOSED,
     FAILURE,
+    GAP,
+    KIND,
     LENGTH,
     LOAD,
     NEAR,
     PARTS,
     REST,
     ROW,
+    SIGN,
     SKIPPED,
     START,
+    WAY,
     WHERE,
 )
 from mbsd.dynamics.many.contacts.dips import first_dip
@@ -41,13 +48,13 @@ SAMPLES = 6
 
 @internal
 def still_of(contacts, k):
-    """Values of contact k above minus this are rounding."""
+    """Values of row k above minus this are rounding."""
     return ROUNDING * contacts.clock[LOAD] if contacts.number[k, CLOSED] > 0.0 else contacts.number[k, NEAR]
 
 
 @apart
 def quintic_root(dyn, scratch, contacts, k, level, left, right, at_left, at_right):
-    """Part of the step between ``left`` and ``right`` where the quintic of contact k passes ``level``."""
+    """Part of the step between ``left`` and ``right`` where the quintic of row k passes ``level``."""
     a = right
     fa = at_right - level
     b = left
@@ -119,7 +126,8 @@ def _falls(dyn, scratch, contacts, k, until):
     if first == SAMPLES - 1 or PARTS[first] >= until:
         return -1.0, -1.0
     where, negative = _root(dyn, scratch, contacts, k, first, still, still)
-    if where == 0.0 and contacts.number[k, CLOSED] == 0.0 and _leaves(dyn, scratch, contacts, k):
+    gap = contacts.place[k, KIND] == GAP and contacts.number[k, CLOSED] == 0.0
+    if where == 0.0 and gap and _leaves(dyn, scratch, contacts, k):
         opened = 0
         while opened < SAMPLES and not contacts.samples[opened, k] > still:
             opened += 1
@@ -133,7 +141,7 @@ def _falls(dyn, scratch, contacts, k, until):
 
 @apart
 def _met_of(dyn, own, scratch, settings, contacts, out, before, after, k, until):
-    """Where contact k first falls through zero, and a part where it is negative; -1, -1 where it does not."""
+    """Where the scalar of row k first falls through zero, and a part where it is negative; -1, -1 where it does not."""
     where, negative = _falls(dyn, scratch, contacts, k, until)
     count = SAMPLES
     if where >= 0.0:
@@ -153,18 +161,25 @@ def _met_of(dyn, own, scratch, settings, contacts, out, before, after, k, until)
 
 @apart
 def first_met(dyn, own, scratch, state, settings, contacts, out, before, after):
-    """The contact that closes or opens first within the step to ``state``; -1: none.
+    """The row whose scalar is the first to fall through zero within the step to ``state``; -1: none.
 
     WHERE and BEYOND of the clock are set.
     """
     count = contacts.place.shape[0]
+    friction = contacts.friction
+    gaps = count - friction.gap.shape[0]
     sample(dyn, scratch, contacts)
     for k in range(count):
         contacts.chosen[SKIPPED, k] = 0
+    for w in range(count - gaps):
+        looked = contacts.number[gaps + w, CLOSED] > 0.0 or contacts.number[gaps + w, SIGN] != 0.0
+        contacts.chosen[SKIPPED, gaps + w] = 0 if looked else 1
     for _ in range(count):
         best = -1
-        for k in range(count):
-            if contacts.chosen[SKIPPED, k] != 0:
+        for turn in range(2 * count):  # joints at rest come last where several are met at once
+            k = friction.order[turn % count]
+            resting = contacts.place[k, KIND] == WAY and contacts.number[k, CLOSED] > 0.0
+            if contacts.chosen[SKIPPED, k] != 0 or resting != (turn >= count):
                 continue
             until = 2.0 if best < 0 else contacts.clock[BEYOND]
             where, negative = _met_of(dyn, own, scratch, settings, contacts, out, before, after, k, until)
@@ -217,7 +232,7 @@ def _near_root(dyn, own, scratch, settings, contacts, out, before, after, k, fir
 
 @apart
 def event_time(dyn, own, scratch, settings, contacts, out, before, after, k):
-    """When (s) what contact k met happens, of the motion itself: as exactly as that is known."""
+    """When (s) what row k met happens, of the motion itself: as exactly as that is known."""
     start = contacts.clock[START]
     first = start + contacts.clock[LENGTH] * contacts.clock[WHERE]
     if not first > start:

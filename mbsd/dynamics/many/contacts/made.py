@@ -1,4 +1,4 @@
-"""Contacts of a prepared run for the compiled loop, or why they do not go there."""
+"""Contacts and joints that stick of a prepared run for the compiled loop, or why they do not go there."""
 
 from __future__ import annotations
 
@@ -6,12 +6,38 @@ import numpy as np
 
 from mbsd.dynamics.events.sides import NEAR as CLOSED_GAP
 from mbsd.dynamics.events.steps import STILL
-from mbsd.dynamics.many.contacts.arrays import FAILURE, HELD, KEPT, MOST_LOOKS, PARTS, SHIFT, Contacts
+from mbsd.dynamics.many.contacts.arrays import (
+    BESIDE,
+    CLUTCH,
+    FOUND,
+    FRICTION,
+    GAP,
+    KINETIC,
+    LEFT,
+    MOST_LOOKS,
+    PARTS,
+    RESTING,
+    SHARING,
+    SHIFT,
+    SIGN,
+    SLIDE,
+    STATIC,
+    WAY,
+    Contacts,
+    Friction,
+    Sticks,
+    Wheels,
+)
+from mbsd.dynamics.prepare.following import SHORTEST
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.schur import Schur
 from mbsd.dynamics.reference.sequence import plan_schur
+from mbsd.dynamics.reference.sliding import sliding_for
+from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import State
 from mbsd.equations.constraints.relative import ROW as RELATIVE_ROW
+from mbsd.kinematics.limits.free_wheels import HALF, MET
+from mbsd.model.teeth import with_radii
 
 MOST = 40
 """Contacts of which all meet all others in small full matrices."""
@@ -19,50 +45,30 @@ MOST = 40
 
 def why_not(ready: PreparedDynamics) -> str | None:
     """Why events of this mechanism are left to single simulations, or None."""
-    contacts = ready.switches.contacts
-    if ready.sticks:
-        return f"'{ready.sticks[0].name}' sticks by events"
+    contacts, sticks = ready.switches.contacts, ready.sticks
     for contact in contacts:
-        if contact.friction:
-            return f"'{contact.name}' has friction"
-        if contact.always_closed:
-            return f"'{contact.name}' locks one way"
-    if contacts and len(ready.dynamics.loads.friction):
-        return f"'{contacts[0].name}' is beside friction of joints"
-    if contacts and ready.approaches:
-        return f"'{contacts[0].name}' is beside a contact that remembers how fast it began"
-    if len(contacts) > MOST:
-        return f"it has {len(contacts)} contacts; {MOST} at most"
+        if contact.friction and len(ready.dynamics.loads.friction):
+            return f"'{contact.name}' has friction beside that of joints"
+    if (contacts or sticks) and ready.approaches:
+        return f"'{[*contacts, *sticks][0].name}' is beside a contact that remembers how fast it began"
+    if len(contacts) + len(sticks) > MOST:
+        return f"it has {len(contacts) + len(sticks)} contacts and joints that stick; {MOST} at most"
     return None
 
 
 def contacts_of(ready: PreparedDynamics, state: State) -> Contacts:
-    """Those of a run at its start; all are open."""
-    packed, switches = ready.packed, ready.switches
-    scale = packed.row_scale()
-    own = switches.contacts
-    place = [(contact.gap, *switches.place[contact.gap]) for contact in own]
-    number = [
-        (
-            CLOSED_GAP / scale[contact.gap],
-            STILL / scale[contact.gap],
-            contact.settle,
-            contact.restitution,
-            scale[contact.gap],
-            0.0,
-            0.0,
-        )
-        for contact in own
-    ]
+    """Those of a run at its start; all are open, and all joints slide."""
+    own = _places(ready)
     c, n3, rows = len(own), state.y.shape[1], len(state.lam)
+    pushing = c + 2 * len(_rough(ready))
 
     def another() -> State:
         return State(*(np.zeros_like(part) for part in state))
 
     return Contacts(
-        np.array(place, np.int64).reshape(-1, 3),
-        np.array(number).reshape(-1, HELD + 1),
-        np.zeros(FAILURE + 1),
+        np.array(own, np.int64).reshape(-1, FRICTION + 1),
+        np.array(_numbers(ready)).reshape(-1, SIGN + 1),
+        np.zeros(SHARING + 1),
         another(),
         another(),
         np.zeros((6, n3)),
@@ -74,19 +80,99 @@ def contacts_of(ready: PreparedDynamics, state: State) -> Contacts:
         np.zeros((c, n3)),
         np.zeros((c, c)),
         np.zeros((c, c)),
-        np.zeros((c, 2 * c + 2)),
+        np.zeros((pushing, 2 * pushing + 2)),
         np.zeros((SHIFT + 1, c)),
         np.zeros((MOST_LOOKS + 2, 6)),
-        np.zeros((KEPT + 1, c), np.int64),
+        np.zeros((RESTING + 1, c), np.int64),
         *_without(ready),
-        np.zeros((2, c), np.int64),
+        np.zeros((2, pushing), np.int64),
+        _sticks_of(ready, c, n3, rows),
+        _friction_of(ready, c, n3, rows),
+        _wheels_of(ready, another()),
+    )
+
+
+def _rough(ready: PreparedDynamics) -> list[tuple[int, RunContact]]:
+    """Contacts with friction, with their numbers among all."""
+    return [(k, contact) for k, contact in enumerate(ready.switches.contacts) if contact.way is not None]
+
+
+def _places(ready: PreparedDynamics) -> list[tuple[int, ...]]:
+    switches, special = ready.switches, ready.packed.system.special[:, RELATIVE_ROW].tolist()
+
+    def place(row: int, kind: int, friction: int) -> tuple[int, ...]:
+        return row, *switches.place[row], kind, special.index(row) if row in special else -1, friction
+
+    rows = [(contact.gap, CLUTCH if contact.always_closed else GAP, -1) for contact in switches.contacts]
+    rows += [(contact.way or 0, SLIDE, -1) for _, contact in _rough(ready)]
+    return [place(*each) for each in [*rows, *((stick.way, WAY, stick.at) for stick in ready.sticks)]]
+
+
+def _numbers(ready: PreparedDynamics) -> list[tuple[float, ...]]:
+    scale = ready.packed.row_scale()
+    out: list[tuple[float, ...]] = []
+    for contact in ready.switches.contacts:
+        size = scale[contact.gap]
+        near = STILL if contact.always_closed else CLOSED_GAP
+        out.append((near / size, STILL / size, contact.settle, contact.restitution, size, 0.0, 0.0, 0.0))
+    ways = [(contact.way or 0, 0.0) for _, contact in _rough(ready)]
+    for way, sign in [*ways, *((stick.way, stick.sign) for stick in ready.sticks)]:
+        still = STILL / scale[way]
+        out.append((still, still, 0.0, 0.0, scale[way], 0.0, 0.0, sign))
+    return out
+
+
+def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Sticks:
+    frictions = len(ready.dynamics.loads.friction) if c else 0
+    own = c if frictions else 0
+    n = own + 2 * len(ready.sticks)
+    return Sticks(
+        np.zeros((LEFT + 1, own)),
+        np.zeros((FOUND + 1, frictions)),
+        np.zeros((own, rows)),
+        np.zeros((2, rows)),
+        np.zeros((2, n3)),
+        np.zeros((own, own)),
+        np.zeros((n, 2 * n + 2)),
+        np.zeros((2, n), np.int64),
+    )
+
+
+def _friction_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Friction:
+    """Friction of contacts."""
+    rough, count = _rough(ready), len(ready.switches.contacts)
+    way_of = {k: count + w for w, (k, _) in enumerate(rough)}
+    order = [row for k in range(count) for row in ([k, way_of[k]] if k in way_of else [k])]
+    number = np.zeros((len(rough), BESIDE + 1))
+    number[:, KINETIC] = [contact.friction for _, contact in rough]
+    number[:, STATIC] = [contact.static_friction for _, contact in rough]
+    own = c if rough else 0
+    return Friction(
+        np.array([k for k, _ in rough], np.int64),
+        number,
+        np.zeros((own, own)),
+        np.zeros(n3),
+        np.array([*order, *range(len(order), c)], np.int64),
+        sliding_for(np.zeros((0, 2), np.int64), n3, rows),
+    )
+
+
+def _wheels_of(ready: PreparedDynamics, before: State) -> Wheels:
+    """Wheels that may run into each other."""
+    pairs = ready.following.wheels.pairs
+    sized = [with_radii(joint.params) for joint, _, _ in pairs]
+    return Wheels(
+        np.array([(i, j) for _, i, j in pairs], np.int64).reshape(-1, 2),
+        np.array([MET * (params["radius_i"] + params["radius_j"]) for params in sized]),
+        np.array([HALF, SHORTEST]),
+        before,
     )
 
 
 def _without(ready: PreparedDynamics) -> tuple[Schur, np.ndarray]:
     """What steps need while all contacts are open."""
     packed, schur, special = ready.packed, ready.dynamics.schur, ready.packed.system.special
-    if not ready.switches.contacts:
+    if not ready.switches.contacts and not ready.sticks:
         return schur, special
     blocks = schur.rows[(schur.rows >= 0).any(axis=1)]
     kept = blocks[np.argsort(blocks.max(axis=1))]

@@ -12,7 +12,7 @@ import math
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.laws.lcp import GONE, SMALL
 from mbsd.dynamics.many.contacts.arrays import ALONE, NORMAL, ROW, TAKING
-from mbsd.dynamics.many.contacts.within import along
+from mbsd.dynamics.many.contacts.rows import along
 from mbsd.dynamics.reference.schur import solve_schur, subtract_forces, times_jacobian
 
 STIFF = 1e-12
@@ -112,7 +112,7 @@ def solve_pushes(contacts, rates):
             lowest = i
     if least >= 0.0:
         return True
-    if not _lemke(tableau, contacts.basis[0], n, lowest):
+    if not pivot_to_end(tableau, contacts.basis[0], n, lowest):
         return False
     for i in range(n):
         variable = contacts.basis[0, i]
@@ -123,7 +123,7 @@ def solve_pushes(contacts, rates):
 
 
 @internal
-def _lemke(tableau, basis, n, row):
+def pivot_to_end(tableau, basis, n, row):
     """Pivot a tableau (n, 2 n + 2) to the end, the artificial variable entering at ``row``; whether it leaves."""
     last = 2 * n + 1
     entering = 2 * n

@@ -1,4 +1,4 @@
-"""Steps of a row with contacts: one by one, back to the start of the step where one closes or opens, and on from there.
+"""Steps of a row with contacts: one by one, back to the start of the step where one changes, and on from there.
 
 EventSteps, compiled: the same steps, decided in the same way. What it cannot do it leaves to single simulations.
 """
@@ -15,18 +15,24 @@ from mbsd.dynamics.many.contacts.arrays import (
     BEGUN,
     CLOSED,
     FAILURE,
+    GAP,
     HELD,
+    KIND,
     LOAD,
     MET,
     ROW,
     SCALE,
+    SHARING,
     WHEN,
 )
 from mbsd.dynamics.many.contacts.crossing import event_time, first_met
-from mbsd.dynamics.many.contacts.jumps import hold_rows, resolve
-from mbsd.dynamics.many.contacts.within import copy_state, fit, measure_gaps
-from mbsd.dynamics.many.methods import USUAL
-from mbsd.dynamics.many.through import NO_LIMIT, cross, through
+from mbsd.dynamics.many.contacts.jumps import resolve
+from mbsd.dynamics.many.contacts.rows import hold_rows, measure_gaps
+from mbsd.dynamics.many.contacts.sticking.jumps import resolve_friction
+from mbsd.dynamics.many.contacts.sticking.ways import share_outputs
+from mbsd.dynamics.many.contacts.wheels import advance_to
+from mbsd.dynamics.many.contacts.within import fit
+from mbsd.dynamics.many.through import NO_LIMIT, copy_state, cross
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, begin
 from mbsd.equations.system import System
@@ -54,6 +60,13 @@ def _restart(dyn, scratch, contacts, state):
 
 
 @internal
+def _resolve(dyn, scratch, contacts, state, met):
+    if dyn.loads.friction.shape[0] > 0 and contacts.place.shape[0] > 0:
+        return resolve_friction(dyn, scratch, contacts, state, met)
+    return resolve(dyn, scratch, contacts, state, met)
+
+
+@internal
 def _close_at_start(dyn, scratch, contacts, state):
     """What is closed at the start, and impacts of velocities that contacts forbid; whether that can be."""
     contacts.clock[BEGUN] = 1.0
@@ -61,9 +74,10 @@ def _close_at_start(dyn, scratch, contacts, state):
     for k in range(contacts.place.shape[0]):
         contacts.number[k, CLOSED] = 0.0
         contacts.number[k, HELD] = 0.0
-        if scratch.ws.phi[contacts.place[k, ROW]] * contacts.number[k, SCALE] < -INSIDE:
+        gap = contacts.place[k, KIND] == GAP
+        if gap and scratch.ws.phi[contacts.place[k, ROW]] * contacts.number[k, SCALE] < -INSIDE:
             return False
-    if not resolve(dyn, scratch, contacts, state, -1):
+    if not _resolve(dyn, scratch, contacts, state, -1):
         return False
     _restart(dyn, scratch, contacts, state)
     return True
@@ -89,7 +103,7 @@ def _go_to(own, scratch, state, settings, contacts, out, t, before, after):
         return
     copy_state(state, contacts.before)
     if contacts.clock[FAILURE] == 0.0 and t > state.clock[TIME]:
-        contacts.clock[FAILURE] = through(own, scratch, state, out, settings, t, NO_LIMIT, before, after, USUAL)
+        contacts.clock[FAILURE] = advance_to(own, scratch, state, out, settings, contacts, t, NO_LIMIT, before, after)
 
 
 @inlined
@@ -123,7 +137,7 @@ def _open(dyn, contacts):
         dyn.laws,
         dyn.loads,
         contacts.schur,
-        dyn.sliding,
+        contacts.friction.none,
         dyn.inertia,
         dyn.inverse,
         dyn.metric,
@@ -152,7 +166,7 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
         cross(state, before, after)
         begin(own, scratch, state)
         copy_state(contacts.before, state)
-        status = through(own, scratch, state, out, settings, end, 1, before, after, USUAL)
+        status = advance_to(own, scratch, state, out, settings, contacts, end, 1, before, after)
         if status != REACHED and status != PAUSED:
             return status
         met = -1
@@ -164,13 +178,16 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
         if met >= 0:
             t = event_time(dyn, own, scratch, settings, contacts, out, before, after, met)
             _go_to(own, scratch, state, settings, contacts, out, t, before, after)
+        if contacts.clock[SHARING] > 0.0:
+            share_outputs(dyn, scratch, contacts, out, contacts.before.count[NEXT], state.count[NEXT])
         if contacts.clock[FAILURE] != 0.0:
             return NOT_SOLVED
         if met < 0:
             if status == REACHED and state.clock[TIME] >= end:
                 return REACHED
             continue
-        if not _counted(contacts, state.clock[TIME]) or not resolve(dyn, scratch, contacts, state, met):
+        begin(own, scratch, state)
+        if not _counted(contacts, state.clock[TIME]) or not _resolve(dyn, scratch, contacts, state, met):
             return NOT_SOLVED
         _restart(dyn, scratch, contacts, state)
     return PAUSED

@@ -1,4 +1,9 @@
-"""Gaps and normal forces within a step: on its quintic, which shows where to look, and of the motion itself.
+"""What is looked at within a step, on its quintic, which shows where to look, and of the motion itself.
+
+    open contact    its gap (of a clutch its rate)      closed contact    its normal force N
+    it slides       its speed                           it sticks         mu_s N - |T|
+
+Each is that of a row of Contacts: of a gap, or of a way; sticking/ways.py says what those of joints are.
 
 The quintic is that of events/dense.py; the motion itself is found by going on from the start of the step.
 """
@@ -8,28 +13,26 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.many.contacts.arrays import BEYOND, CLOSED, FAILURE, LENGTH, PARTS, ROW, START, VALUE
-from mbsd.dynamics.many.methods import USUAL
-from mbsd.dynamics.many.through import NO_LIMIT, through
+from mbsd.dynamics.many.contacts.arrays import (
+    BEYOND,
+    CLOSED,
+    CLUTCH,
+    FAILURE,
+    KIND,
+    LENGTH,
+    PARTS,
+    ROW,
+    SIGN,
+    START,
+    STATIC,
+    VALUE,
+)
+from mbsd.dynamics.many.contacts.rows import along, measure_gaps
+from mbsd.dynamics.many.contacts.sticking.ways import read_ways
+from mbsd.dynamics.many.contacts.wheels import advance_to
+from mbsd.dynamics.many.through import NO_LIMIT, copy_state
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.state import NEXT, REACHED, TIME
-from mbsd.equations.assembly import position
-from mbsd.equations.laws import evaluate_laws
-
-
-@internal
-def copy_state(target, source):
-    """Make ``target`` the state ``source``."""
-    for part in range(2):
-        for c in range(source.y.shape[1]):
-            target.y[part, c] = source.y[part, c]
-            target.dy[part, c] = source.dy[part, c]
-            target.memory[part, c] = source.memory[part, c]
-    for r in range(source.lam.shape[0]):
-        target.lam[r] = source.lam[r]
-    for i in range(source.clock.shape[0]):
-        target.clock[i] = source.clock[i]
-        target.count[i] = source.count[i]
 
 
 @internal
@@ -67,24 +70,32 @@ def stand_at(contacts, x):
     return contacts.clock[START] + h * x
 
 
-@apart
-def measure_gaps(dyn, scratch, t, q):
-    """Fill scratch.ws.phi and scratch.ws.jac at q (3 nb,) and t (s)."""
-    if scratch.drive.shape[0] > 1:
-        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
-    position(dyn.system, q, scratch.drive, scratch.ws)
-
-
 @internal
 def read(dyn, scratch, contacts, t, y, forces):
-    """Fill vector[VALUE] at a state y (2, 3 nb): gaps of open contacts and, with ``forces``, forces of others."""
+    """Fill vector[VALUE] at a state y (2, 3 nb); what depends on forces only with ``forces``."""
     if forces:
         derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
     else:
         measure_gaps(dyn, scratch, t, y[0])
-    for k in range(contacts.place.shape[0]):
+    friction = contacts.friction
+    gaps = contacts.place.shape[0] - friction.gap.shape[0]
+    for k in range(gaps):
         row = contacts.place[k, ROW]
-        contacts.vector[VALUE, k] = -contacts.lam[row] if contacts.number[k, CLOSED] > 0.0 else scratch.ws.phi[row]
+        if contacts.number[k, CLOSED] > 0.0:
+            contacts.vector[VALUE, k] = -contacts.lam[row]
+        elif contacts.place[k, KIND] == CLUTCH:
+            contacts.vector[VALUE, k] = along(dyn, scratch, row, y[1])
+        else:
+            contacts.vector[VALUE, k] = scratch.ws.phi[row]
+    for w in range(friction.gap.shape[0]):
+        row = contacts.place[gaps + w, ROW]
+        if contacts.number[gaps + w, CLOSED] > 0.0:
+            normal = -contacts.lam[contacts.place[friction.gap[w], ROW]]
+            contacts.vector[VALUE, gaps + w] = friction.number[w, STATIC] * normal - abs(contacts.lam[row])
+        else:
+            contacts.vector[VALUE, gaps + w] = contacts.number[gaps + w, SIGN] * along(dyn, scratch, row, y[1])
+    if contacts.sticks.normal.shape[1] > 0:
+        read_ways(dyn, scratch, contacts, y, forces)
 
 
 @apart
@@ -102,7 +113,7 @@ def sample(dyn, scratch, contacts):
 
 @apart
 def on_quintic(dyn, scratch, contacts, k, x):
-    """Gap or normal force of contact k at the part x of the step, on the quintic."""
+    """What is looked at of row k at the part x of the step, on the quintic."""
     t = stand_at(contacts, x)
     read(dyn, scratch, contacts, t, contacts.pose, contacts.number[k, CLOSED] > 0.0)
     return contacts.vector[VALUE, k]
@@ -122,22 +133,11 @@ def of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, t):
     copy_state(trial, contacts.before)
     if t > trial.clock[TIME]:
         trial.count[NEXT] = out.t.shape[0]
-        status = through(own, scratch, trial, out, settings, t, NO_LIMIT, before, after, USUAL)
+        status = advance_to(own, scratch, trial, out, settings, contacts, t, NO_LIMIT, before, after)
         if status != REACHED:
             contacts.clock[FAILURE] = status
             return math.nan
     return at_state(dyn, scratch, contacts, trial, k)
-
-
-@internal
-def along(dyn, scratch, row, u):
-    """Row of J times u (3 nb,), where scratch.ws.jac is."""
-    out = 0.0
-    for side in range(2):
-        at = 3 * dyn.system.row_body[row, side]
-        for c in range(3):
-            out += scratch.ws.jac[row, 3 * side + c] * u[at + c]
-    return out
 
 
 @internal

@@ -1,0 +1,91 @@
+"""How a mechanism answers forces at a pose, its joints and drivers holding and all rows that events switch released.
+
+    M a + J^T lam = Q,   J a = gamma          M dv + J^T p = impulse,   J dv = 0
+
+As events/laws/compliance.py has it, by the factors of dynamics/reference/acceleration.py.
+"""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import apart, internal
+from mbsd.dynamics.many.contacts.arrays import ALONE, ROW
+from mbsd.dynamics.many.contacts.rows import along
+from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
+from mbsd.equations.assembly import evaluate_gamma, evaluate_position
+from mbsd.equations.laws import evaluate_laws
+
+
+@apart
+def stand(dyn, scratch, t, y):
+    """Fill scratch.ws and, with the rows that hold now, the factors at a state y (2, 3 nb) and time t (s).
+
+    gamma (m,) is in scratch.ws.right[0].
+    """
+    if scratch.drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
+    evaluate_position(dyn.system, y[0], scratch.drive, scratch.ws)
+    evaluate_gamma(dyn.system, y[1], scratch.drive, scratch.ws, scratch.ws.right[0])
+    factor(dyn, scratch)
+
+
+@apart
+def factor(dyn, scratch):
+    """Factors of the rows that hold now, at the pose of scratch.ws."""
+    factor_schur(dyn.schur, dyn.inverse, scratch.ws.jac, scratch.factors, 0.0)
+
+
+@apart
+def respond(dyn, scratch, force, moving, a, lam):
+    """Fill a (3 nb,) and lam (m,) under ``force`` (3 nb,), which is overwritten; gamma is taken ``moving`` times."""
+    schur = dyn.schur
+    factors = scratch.factors
+    pose = scratch.ws.pose
+    gamma = scratch.ws.right[0]
+    y = factors.side
+    n3 = a.shape[0]
+    for c in range(n3):
+        a[c] = 0.0
+    for r in range(lam.shape[0]):
+        lam[r] = 0.0
+    for _ in range(dyn.passes):
+        for c in range(3, n3):
+            pose[c] = a[c] + dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
+        for b in range(schur.rows.shape[0]):
+            for s in range(2):
+                r = schur.rows[b, s]
+                y[b, s, 0] = times_jacobian(factors, schur, b, s, pose) - moving * gamma[r] if r >= 0 else 0.0
+        solve_schur(schur, factors, 1)
+        subtract_forces(factors, schur, 0, force)
+        for c in range(3, n3):
+            a[c] += dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
+        for b in range(schur.rows.shape[0]):
+            for s in range(2):
+                r = schur.rows[b, s]
+                if r >= 0:
+                    lam[r] += y[b, s, 0]
+
+
+@internal
+def find_answers(dyn, scratch, contacts, flags):
+    """Fill answer, borne, compliance and vector[ALONE] of the rows in ``flags`` (c,)."""
+    count = contacts.place.shape[0]
+    force = contacts.force
+    for k in range(count):
+        if flags[k] == 0:
+            continue
+        row = contacts.place[k, ROW]
+        for c in range(force.shape[0]):
+            force[c] = 0.0
+        for side in range(2):
+            at = 3 * dyn.system.row_body[row, side]
+            for c in range(3):
+                force[at + c] += scratch.ws.jac[row, 3 * side + c]
+        alone = 0.0
+        for c in range(3, force.shape[0]):
+            alone += dyn.inverse[c] * force[c] ** 2
+        contacts.vector[ALONE, k] = alone if alone > 0.0 else 1.0
+        respond(dyn, scratch, force, 0.0, contacts.answer[k], contacts.sticks.borne[k])
+    for k in range(count):
+        for j in range(count):
+            if flags[k] != 0 and flags[j] != 0:
+                contacts.compliance[j, k] = along(dyn, scratch, contacts.place[j, ROW], contacts.answer[k])

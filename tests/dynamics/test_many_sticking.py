@@ -1,0 +1,148 @@
+"""Joints that stick, and freewheels, in the compiled loop over simulations: what single simulations give."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, harmonic
+from mbsd.measures import final, first, samples
+from tools.models.sticking import (
+    arm,
+    bell,
+    coasting_slider_crank,
+    shaken_block,
+    two_slider_cranks,
+    weightless_slider_crank,
+)
+
+STEPS = 24
+EXACT = 2e-9
+
+
+def loaded_lever() -> Mechanism:
+    """A ball falls on a lever that the friction of its pin holds, and later breaks away."""
+    m = Mechanism("lever")
+    lever, ball = m.body("lever", 1.0, inertia=0.1), m.body("ball", 0.5, inertia=1e-3)
+    m.revolute("pin", m.ground.origin, lever.origin)
+    m.friction("rub", "pin", 0.5, radius=0.2, sticks=True)
+    m.rigid_contact("touch", lever.origin, ball.origin, radius=0.02)
+    m.start_near(lever=0, ball=(0.3, 0.32, 0))
+    return m
+
+
+def stopped_bell() -> Mechanism:
+    m = bell(40.0)
+    m.stop("end", m.joints["pin"], lower=-2.0, upper=1.0, restitution=0.5)
+    return m
+
+
+def ratchet() -> Mechanism:
+    """A wheel on a spring that an oscillating load turns forwards alone."""
+    m = Mechanism("ratchet", gravity=None)
+    wheel, load = m.body("wheel", 1.0, inertia=0.5), m.body("load", 1.0, inertia=0.3)
+    m.revolute("axle", m.ground.origin, wheel.origin)
+    m.revolute("other", m.ground.at(1, 0), load.origin)
+    m.one_way("clutch", m.ground, wheel)
+    m.torsion_spring("shaft", wheel, load, 40.0, 0.2)
+    m.torque("motor", load, harmonic(6.0, 4.0, 1.0))
+    return m
+
+
+def rubbed_ratchet() -> Mechanism:
+    m = ratchet()
+    m.friction("rub", "other", 0.2, radius=0.1, preload=20.0, sticks=True)
+    return m
+
+
+CASES: dict[str, tuple[Callable[[], Mechanism], float, Mapping[str, Any], str]] = {
+    "bell": (bell, 4.0, {"bar": {"mass": [1.0, 1.5]}}, "bar"),
+    "slider-crank": (coasting_slider_crank, 0.6, {"rub": {"preload": [10.0, 12.0]}}, "crank"),
+    "breaks away": (lambda: coasting_slider_crank(0.0, 3.0), 0.3, {"slider": {"mass": [1.5, 2.0]}}, "crank"),
+    "shaken block": (shaken_block, 4.0, {"block": {"mass": [1.0, 1.3]}}, "block"),
+    "arm": (arm, 3.0, {"fore": {"mass": [0.7, 0.9]}}, "fore"),
+    "lever": (loaded_lever, 0.5, {"ball": {"mass": [0.5, 0.8]}}, "lever"),
+    "stopped bell": (stopped_bell, 3.0, {"bar": {"mass": [1.0, 1.1]}}, "bar"),
+    "ratchet": (ratchet, 3.0, {"load": {"inertia": [0.3, 0.4]}}, "wheel"),
+    "rubbed ratchet": (rubbed_ratchet, 3.0, {"load": {"inertia": [0.3, 0.4]}}, "wheel"),
+}
+
+
+QUICK = {"bell", "slider-crank", "shaken block", "lever", "ratchet"}
+
+
+@pytest.mark.parametrize(
+    "case", [pytest.param(case, marks=[] if case in QUICK else pytest.mark.slow) for case in CASES]
+)
+def test_joints_stick_and_slide_as_in_single_simulations(case: str) -> None:
+    build, duration, vary, body = CASES[case]
+    times = np.linspace(0.0, duration, STEPS + 1)
+    joint = next(iter(build().joints))
+    parts, forces = ("x", "y", "theta", "omega"), ("fx", "fy", "torque")
+    measures: dict[str, Any] = {part: samples(f"{body}.{part}", times.tolist()) for part in parts}
+    measures |= {part: samples(f"{joint}.{part}", times.tolist()) for part in forces}
+    many = build().simulate_many(duration, vary=vary, measure={**measures, "w": final("work")}, steps=STEPS)
+    assert many.alone == [None] * len(many), many.way
+    (name, values), *_ = vary.items()
+    for k in range(len(many)):
+        m = build()
+        m.change(name, **{key: column[k] for key, column in values.items()})
+        sol = m.simulate(duration, steps=STEPS)
+        assert {event.what for event in sol.events} & {"sticks", "closes"}
+        for part in parts:
+            np.testing.assert_allclose(many[part][k], getattr(sol.body(body), part), atol=EXACT, err_msg=part)
+        for part in forces:
+            np.testing.assert_allclose(many[part][k], getattr(sol.joint(joint), part), atol=1e-7, err_msg=part)
+        assert sol.work is not None
+        assert many["w"][k] == pytest.approx(sol.work[-1], abs=EXACT)
+
+
+def test_bells_come_to_rest_from_any_angle_where_single_ones_do() -> None:
+    """Starts vary, rows end early, and the digits do not depend on the threads."""
+    angles, measure = [-20.0, -60.0], {"still": first("bar.omega", above=-1e-9, give="bar.theta")}
+    alone, together = (bell().simulate_many(4.0, start={"bar": angles}, measure=measure, threads=n) for n in (1, 2))
+    assert alone.alone == [None] * 2, alone.way
+    np.testing.assert_array_equal(alone["still"], together["still"])
+    end = bell().simulate_many(4.0, start={"bar": angles}, measure={"rest": final("bar.theta")})
+    for angle, rest in zip(angles, end["rest"], strict=True):
+        sol = bell(angle).simulate(4.0)
+        assert abs(sol.body("bar").omega[-1]) < 1e-12
+        assert rest == pytest.approx(sol.body("bar").theta[-1], abs=EXACT)
+        assert abs(rest + math.pi / 2) > 1e-3
+
+
+def test_a_turned_world_changes_nothing() -> None:
+    ends = []
+    for turned in (0.0, 2.0):
+        many = bell(-20.0, turned).simulate_many(4.0, vary={"bar": {"mass": [1.0]}}, measure={"a": final("bar.theta")})
+        assert many.alone == [None], many.way
+        ends.append(many["a"][0] - turned)
+    assert ends[0] == pytest.approx(ends[1], abs=1e-7)
+
+
+def test_what_has_come_to_rest_without_any_load_runs_on() -> None:
+    """Velocities fall to 1e-155, whose squares are no numbers."""
+    m = weightless_slider_crank()
+    many = m.simulate_many(
+        2.0, vary={"part": {"mass": [1.7456816106902577]}}, measure={"a": final("part.theta")}, steps=2
+    )
+    assert many.alone == [None], many.way
+    assert many["a"][0] == pytest.approx(m.simulate(2.0, steps=2).body("part").theta[-1], abs=EXACT)
+
+
+def test_what_single_simulations_decide_is_left_to_them() -> None:
+    m = two_slider_cranks()
+    many = m.simulate_many(0.5, vary={"crank a": {"mass": [1.0, 1.2]}}, measure={"a": final("crank a.theta")}, steps=10)
+    assert many.way == "2 one by one (what happened at an event there is decided by single simulations)"
+    for k, mass in enumerate((1.0, 1.2)):
+        own = two_slider_cranks()
+        own.change("crank a", mass=mass)
+        assert many["a"][k] == own.simulate(0.5, steps=10).body("crank a").theta[-1]
+    other = bell().simulate_many(
+        0.5, vary={"bar": {"mass": [1.0]}}, measure={"a": final("bar.theta")}, steps=10, method="rk4", step=1e-2
+    )
+    assert "are met by 'dop853' alone, not by 'rk4'" in other.way

@@ -1,0 +1,91 @@
+"""Machines whose joints stick and slide, for tests and benchmarks."""
+
+from __future__ import annotations
+
+import math
+
+from mbsd import Mechanism, harmonic, polynomial
+from tools.models.slider_cranks import slider_crank
+
+
+def bell(angle: float = -20.0, turned: float = 0.0) -> Mechanism:
+    """A pendulum in a dry bearing, which comes to rest off the vertical; ``turned`` (rad): the world with it."""
+    m = Mechanism("bell", gravity=(9.80665 * math.sin(turned), -9.80665 * math.cos(turned)))
+    bar = m.bar("bar", 0.5, mass=1.0)
+    m.revolute("pin", m.ground.at(0.2, 0.1), bar.start)
+    m.friction("rub", "pin", 0.3, static=0.4, radius=0.1, preload=1.0, sticks=True)
+    m.start_near(bar=angle + math.degrees(turned))
+    return m
+
+
+def coasting_slider_crank(speed: float = 6.0, pull: float = 0.0) -> Mechanism:
+    """A slider-crank with friction in all its joints, which come to rest at once; the torque ``pull`` t turns it."""
+    m = slider_crank(gravity=None)
+    for pin in "OAB":
+        m.friction(f"rub {pin}", pin, 0.15, static=0.2, radius=0.02, preload=20.0, sticks=True)
+    m.friction("rub", "rail", 0.2, length=0.08, preload=10.0, sticks=True)
+    if pull:
+        m.torque("motor", m.bodies["crank"], polynomial(0.0, pull))
+    m.start_moving(crank=speed)
+    return m
+
+
+def shaken_block() -> Mechanism:
+    """A block on a spring and on a belt that goes to and fro: it sticks and breaks away again and again."""
+    m = Mechanism("shaken block")
+    belt, block = m.body("belt", 1.0, inertia=1.0), m.body("block", 1.0, inertia=1.0)
+    m.prismatic("rail", m.ground.origin, belt.origin)
+    m.drive_coordinate("shake", m.ground.origin, belt.origin, harmonic(0.03, 7.0))
+    m.prismatic("touch", belt.origin, block.origin)
+    m.friction("rub", "touch", 0.3, static=0.5, stribeck=0.05, sticks=True)
+    m.spring("spring", m.ground.at(-3, 0), block.origin, 50.0, free_length=3.0)
+    m.start_near(belt=(0, 0, 0), block=(0, 0, 0))
+    return m
+
+
+def arm() -> Mechanism:
+    """Two links with friction in both joints, which stick and slide in turn."""
+    m = Mechanism("arm")
+    upper, fore = m.bar("upper", 0.5, mass=1.0), m.bar("fore", 0.4, mass=0.7)
+    m.revolute("shoulder", m.ground.at(0, 0), upper.start)
+    m.revolute("elbow", upper.end, fore.start)
+    for joint in ("shoulder", "elbow"):
+        m.friction(f"rub {joint}", joint, 0.3, static=0.4, radius=0.05, sticks=True)
+    m.start_near(upper=-20, fore=10)
+    return m
+
+
+def two_slider_cranks() -> Mechanism:
+    """Two slider-cranks without a common body: how the joints of both share their friction is a linear programme."""
+    m = Mechanism("two slider-cranks", gravity=None)
+    for name, y in (("a", 0.0), ("b", 1.0)):
+        crank, rod = m.bar(f"crank {name}", 0.1, 1.0), m.bar(f"rod {name}", 0.3, 0.8)
+        slider = m.body(f"slider {name}", 1.5, inertia=0.01)
+        m.revolute(f"O{name}", m.ground.at(0, y), crank.start)
+        m.revolute(f"A{name}", crank.end, rod.start)
+        m.revolute(f"B{name}", rod.end, slider.origin)
+        m.prismatic(f"rail {name}", m.ground.at(0, y), slider.origin)
+        for pin in "OA":
+            m.friction(f"rub {pin}{name}", f"{pin}{name}", 0.15, radius=0.02, preload=20.0, sticks=True)
+        m.start_near(**{f"crank {name}": 30, f"rod {name}": -10, f"slider {name}": (0.37, y, 0)})
+        m.start_moving(**{f"crank {name}": 2.0})
+    return m
+
+
+def weightless_slider_crank() -> Mechanism:
+    """It comes to rest in one dry pin, nothing loading it: squares of its rates are then too small for a number."""
+    m = Mechanism("weightless", gravity=None)
+    r, length, angle = 0.09957978332364759, 0.2476403430340473, 4.788131827429562
+    crank, rod = m.bar("part", r, 1.7456816106902577), m.bar("rod", length, 0.8)
+    slider = m.body("slider", 1.5748304925257235, inertia=0.01)
+    m.revolute("O", m.ground.origin, crank.start)
+    m.revolute("A", crank.end, rod.start)
+    m.revolute("B", rod.end, slider.origin)
+    m.prismatic("rail", m.ground.origin, slider.origin)
+    tilt = -math.asin(r * math.sin(angle) / length)
+    reach = r * math.cos(angle) + length * math.cos(tilt)
+    m.start_near(part=math.degrees(angle), rod=math.degrees(tilt), slider=(reach, 0, 0))
+    m.friction("rub O", "O", 0.05, static=0.22, radius=0.02, preload=20.0, sticks=True)
+    m.torque("motor", crank, polynomial(0.0, 0.0))
+    m.start_moving(part=1.5748304925257235)
+    return m

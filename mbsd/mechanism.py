@@ -207,9 +207,10 @@ class Mechanism(Building):
         """Derivatives of what a motion is by numbers of the model: of a sweep, or of a simulation with its events.
 
         ``of``: names of quantities (``"P.x"``, ``"A.fx"``, ``"motor.effort"``, as measures have them), a list of them,
-        or labels to quantities, measures (mbsd.measures) and functions of a solution. ``to``: names of numbers, such as
-        ``"crank.length"``, ``"spring.stiffness"``, ``"rod.mass"``, ``"B.x"`` (the place of a joint), ``"P.y"`` (of a
-        traced point), ``"motor.rate"``, ``"gravity.y"``, ``"door.moving.omega"``; docs/derivatives.md lists them.
+        a measure alone, or labels to quantities, measures (mbsd.measures) and functions of a solution. ``to``: names of
+        numbers, such as ``"crank.length"``, ``"spring.stiffness"``, ``"rod.mass"``, ``"B.x"`` (the place of a joint),
+        ``"P.y"`` (of a traced point), ``"motor.rate"``, ``"gravity.y"``, ``"door.moving.omega"``; docs/derivatives.md
+        lists them.
         A mechanism is swept where its drivers leave no freedom and simulated otherwise; ``simulate`` says which. The
         other arguments are those of :meth:`sweep` and :meth:`simulate`; times stay what they are.
 

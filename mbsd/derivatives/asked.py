@@ -14,7 +14,7 @@ from mbsd.base.users_function import described
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.quantities import quantity_named
 from mbsd.model.mechanism import Model
-from mbsd.results.columns import JOINT, columns
+from mbsd.results.columns import FRAME, JOINT, columns
 from mbsd.results.solution import Solution
 
 Wanted = Mapping[str, Callable[[Solution], np.ndarray]]
@@ -22,15 +22,22 @@ Wanted = Mapping[str, Callable[[Solution], np.ndarray]]
 
 def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], np.ndarray]]:
     """By label, a function that gives a number or numbers of a solution. Raises ModelError for what cannot be."""
-    given, of = of, [of] if isinstance(of, str) else of
+    given, of = of, _several(of)
     if isinstance(of, list | tuple):
         of = {each if isinstance(each, str) else str(k): each for k, each in enumerate(of)}
     if not isinstance(of, Mapping) or not of:
         raise ModelError(
-            f"{m.name}: of is {shown(given)}; give names of quantities, or labels and quantities: {{'x': 'P.x'}}"
+            f"{m.name}: of is {shown(given)}; give names of quantities, a measure, or labels and quantities: "
+            "{'x': 'P.x'}"
         )
-    known = list(columns(taken(sol, np.arange(1))))
-    return {str(label): _function(m, str(label), each, sol, known) for label, each in of.items()}
+    return {str(label): _function(m, str(label), each, sol) for label, each in of.items()}
+
+
+def _several(of: Any) -> Any:
+    """What is asked for alone, as several; a measure has the name of its quantity."""
+    if isinstance(of, Measure):
+        return {of.quantity: of}
+    return [of] if isinstance(of, str) or callable(of) else of
 
 
 def needs_models(of: Any) -> bool:
@@ -47,12 +54,12 @@ def needs_reactions(m: Model, of: Any) -> bool:
     return not things <= {*m.bodies, *m.traces, *m.drivers} or bool(things & {*m.joints})
 
 
-def _function(m: Model, label: str, given: Any, sol: Solution, known: list[str]) -> Callable[[Solution], np.ndarray]:
+def _function(m: Model, label: str, given: Any, sol: Solution) -> Callable[[Solution], np.ndarray]:
     if isinstance(given, str):
-        return _quantity(m, given, known)
+        return _quantity(m, given, sol)
     if isinstance(given, Measure):
         given.check(f"{m.name}: '{label}'", sol.t)
-        quantities = {name: _quantity(m, name, known) for name in given.quantities}
+        quantities = {name: _quantity(m, name, sol) for name in given.quantities}
 
         def measured(sol: Solution) -> np.ndarray:
             along = {name: quantity(sol)[None] for name, quantity in quantities.items()}
@@ -67,12 +74,15 @@ def _function(m: Model, label: str, given: Any, sol: Solution, known: list[str])
     )
 
 
-def _quantity(m: Model, name: str, known: list[str]) -> Callable[[Solution], np.ndarray]:
+def _quantity(m: Model, name: str, sol: Solution) -> Callable[[Solution], np.ndarray]:
     """(T,) of a quantity by name, without all others."""
-    quantity = quantity_named(m, name, known)
     if name == "work":
         raise ModelError(f"{m.name}: derivatives of 'work' are not known; take the integral of a power, or 'kinetic'")
     whole, _, component = name.rpartition(".")
+    if whole in m.bodies and whole != "ground" and component in FRAME:
+        return lambda sol: getattr(sol.body(whole), component)
+    known = list(columns(taken(sol, np.arange(1))))
+    quantity = quantity_named(m, name, known)
     title = whole.split(" ", 1)[-1] if whole.split(" ", 1)[0] in ("joint", "driver", "force") else whole
     if whole in m.bodies or name == "kinetic" or whole.startswith("trace "):
         return quantity.of_solution

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.derivatives.beside import accelerate_along, close, combine
+from mbsd.derivatives.differentiated import Made, Nodes, Own, can_differentiate, differentiated
 from mbsd.derivatives.linear_motion import NODES, carried
-from mbsd.derivatives.tangents import LOOSE, along_directions, differences, refuse_large
+from mbsd.derivatives.tangents import LOOSE, along_directions, by_numbers, differences, per_scales, refuse_large
 from mbsd.derivatives.terms import Along, Change, Left, Terms
 from mbsd.derivatives.variants import TINY, Variants
 
@@ -24,6 +25,8 @@ REACH = 1e-5
 """How far differences along a direction go: sizes, rad, parts of the fastest speed."""
 SLIGHT = 1e-3
 """Changes of the motion below this, in sizes, rad, and parts of the fastest speed, count as small."""
+AT_ONCE = 800
+"""Nodes at once."""
 WORST = 30.0
 """Condition of [J; Z] beyond which another Z is taken."""
 
@@ -33,6 +36,8 @@ class Stretch:
     """Nodes of a motion between two events, with the rows that hold there."""
 
     along: Along
+    compact: np.ndarray
+    """(T, m, 6) J."""
     rows: np.ndarray
     """Independent rows that hold."""
     dependent: list[tuple[int, int]]
@@ -74,18 +79,15 @@ def joined(parts: list[Tangents]) -> Tangents:
 
 
 class FreeTangents:
-    """Tangents along one stretch, from q' and v' (P, 3 nb) at its start.
+    """Tangents along one stretch, from q' and v' (P, 3 nb) at its start."""
 
-    ``own``: how the equations change with the numbers at the held motion, (P, T, ...) each.
-    """
-
-    def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants], own: Left) -> None:
+    def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants]) -> None:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
-        self.dependent, self.own, self.asked = stretch.dependent, own, stretch.asked
+        self.dependent, self.asked, self.compact = stretch.dependent, stretch.asked, stretch.compact
         packed = terms.packed
         refuse_large(terms, len(self.along.t))
         self.scale = packed.column_scale()
-        self.jac = packed.spread(terms.rows(self.along)[2])
+        self.jac = packed.spread(stretch.compact)
         self.held = self.jac[:, self.rows]
 
     def carry(self, q: np.ndarray, v: np.ndarray) -> Carried:
@@ -130,7 +132,7 @@ class _Piece:
         at = slice(first, first + len(inverse))
         self.terms, self.every, self.rows, self.dependent = whole.terms, whole.every, whole.rows, whole.dependent
         self.along, self.basis = whole.along.take(at), basis
-        self.own = whole.own.each(lambda part: part[:, at])
+        self.compact = whole.compact[at]
         asked = whole.asked[at].copy()
         asked[0] &= first == 0
         self.asked = np.flatnonzero(asked)
@@ -163,14 +165,50 @@ class _Piece:
 
     def carry(self, q: np.ndarray, v: np.ndarray) -> Carried:
         """See :meth:`FreeTangents.carry`."""
+        last, asked = len(self.along.t) - 1, len(self.asked)
+        at = self.asked if asked and self.asked[-1] == last else np.append(self.asked, last)
+        plain = self.effort is None and can_differentiate(self.terms)
+        made = self._node_by_node(q, at) if plain else self._in_arrays(q, at)
+        begun = np.concatenate([self.basis @ q[:, 3:].T, self.basis @ v[:, 3:].T])
+        y, error = carried(self.along.t, made.matrix, made.right, begun, self._slight())
+        y, parts = y[at], [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
+        for out, part in zip(parts, made[2:], strict=True):
+            combine(y, part, out)
+        return Carried(Tangents(*(part[:, :asked] for part in parts)), parts[0][:, -1], parts[1][:, -1], error)
+
+    def _node_by_node(self, begun: np.ndarray, at: np.ndarray) -> Made:
+        """By the kernel, some nodes at once, so that what is known of them stays near the processor."""
+        parts: list[Made] = []
+        along, per_scale, first = self.along, per_scales(self.terms, self.along), None
+        drives = self.terms.packed.drives(along.t)
+        for begin in range(0, len(along.t), AT_ONCE):
+            here = slice(begin, begin + AT_ONCE)
+            own = self._own(here)
+            first = self._first(begun, own) if first is None else first
+            position, some = self._opened(own, first)
+            known = (along.t, along.q, along.v, along.a, along.lam, drives, self.fixed, self.free)
+            nodes = Nodes(*(np.ascontiguousarray(part[here]) for part in known), rows=self.rows)
+            changes = Own(position, own.velocity, own.acceleration, own.load, some)
+            inside = at[(at >= begin) & (at < begin + AT_ONCE)] - begin
+            parts.append(differentiated(self.terms, nodes, changes, *per_scale, REACH, inside))
+        if len(parts) == 1:
+            return parts[0]
+        joined_parts = zip(*parts, strict=True)
+        return Made(*(np.concatenate(part, axis=0 if k < 2 else 1) for k, part in enumerate(joined_parts)))
+
+    def _in_arrays(self, begun: np.ndarray, at: np.ndarray) -> Made:
+        """The same in numpy, for friction in joints and contacts that slide as well."""
         f, numbers, count = self.f, len(self.every), len(self.along.t)
+        own = self._own(slice(None))
+        position, some = self._opened(own, self._first(begun, own))
         positions, velocities = np.zeros((2, 2 * f + numbers, count, 3 + self.n))
         positions[:f, :, 3:] = velocities[f : 2 * f, :, 3:] = np.moveaxis(self.free, 2, 0)
-        self._speeds(positions, velocities, self._by_numbers(q, positions[2 * f :]))
+        close(self.fixed, self.rows, some, position, positions[2 * f :])
+        self._speeds(positions, velocities, some, own)
         change = along_directions(self.terms, self.along, positions, velocities, REACH)
         bend, load = change.acceleration, change.load
-        bend[2 * f :] += self.own.acceleration
-        load[2 * f :] += self.own.load
+        bend[2 * f :] += own.acceleration
+        load[2 * f :] += own.load
         rubbed = [self._rubbed(variants) for variants in self.every]
         for p, part in enumerate(rubbed):
             if part is not None:
@@ -179,21 +217,12 @@ class _Piece:
         for p, part in enumerate(rubbed):
             if part is not None:
                 lam[2 * f + p] += part
-        matrix = np.zeros((count, 2 * f, 2 * f))
+        matrix, right = np.zeros((count, 2 * f, 2 * f)), np.zeros((count, 2 * f, numbers))
         matrix[:, :f, f:] = np.eye(f)
         bent = a @ self.basis.T  # (D, T, f)
         matrix[:, f:] = bent[: 2 * f].transpose(1, 2, 0)
-        right = np.zeros((count, 2 * f, numbers))
         right[:, f:] = bent[2 * f :].transpose(1, 2, 0)
-        begun = np.concatenate([self.basis @ q[:, 3:].T, self.basis @ v[:, 3:].T])
-        y, error = carried(self.along.t, matrix, right, begun, self._slight())
-        at = np.append(self.asked, count - 1)
-        parts = [np.zeros((numbers, len(at), part.shape[2])) for part in (positions, velocities, a, lam)]
-        for out, part in zip(parts, (positions, velocities, a, lam), strict=True):
-            combine(y, at, part, out)
-        parts[2] = _wide(parts[2])
-        asked = Tangents(*(part[:, :-1] for part in parts))
-        return Carried(asked, parts[0][:, -1], parts[1][:, -1], error)
+        return Made(matrix, right, *(np.ascontiguousarray(p[:, at]) for p in (positions, velocities, _wide(a), lam)))
 
     def _slight(self) -> np.ndarray:
         """(2 f, P) changes of s and s' that are rounding where the number changes by all of itself."""
@@ -201,33 +230,39 @@ class _Piece:
         numbers = np.array([abs(variants.step) / TINY for variants in self.every])
         return SLIGHT * np.repeat([1.0, fastest], self.f)[:, None] / numbers
 
-    def _by_numbers(self, begun: np.ndarray, out: np.ndarray) -> np.ndarray:
-        """Fill out (P, T, 3 nb) with q' by numbers with s at zero; ``begun`` (P, 3 nb) is q' at the first node.
+    def _own(self, at: slice) -> Left:
+        """How the equations change with the numbers at some nodes of the held motion."""
+        return by_numbers(self.terms, self.along.take(at), self.every, self.compact[at])
 
-        Returns the numbers that change places or speeds.
+    def _first(self, begun: np.ndarray, own: Left) -> np.ndarray:
+        """(P, 1, m) what J q' and the numbers leave open at the first node, q' being ``begun`` (P, 3 nb) there."""
+        first = np.zeros((len(begun), 1, self.jac.shape[1]))
+        first[:, 0, self.rows] = begun[:, 3:] @ self.held[0].T + own.position[:, 0, self.rows]
+        return first
+
+    def _opened(self, own: Left, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(P, T, m) what the numbers open of J q' with s at zero, and those that change places or speeds.
+
+        Of what sticks, where it stuck changes too: that is ``first``.
         """
-        position, first = self.own.position, np.zeros((len(out), 1, self.jac.shape[1]))
-        first[:, 0, self.rows] = begun[:, 3:] @ self.held[0].T + position[:, 0, self.rows]
-        some = np.flatnonzero(first.any(axis=(1, 2)) | position.any(axis=(1, 2)) | self.own.velocity.any(axis=(1, 2)))
-        # of what sticks: where it stuck changes too
-        close(self.fixed, self.rows, some, position - first, out)
-        return some
+        moved = [part.any(axis=(1, 2)) for part in (first, own.position, own.velocity)]
+        return (own.position - first if first.any() else own.position), np.flatnonzero(np.logical_or.reduce(moved))
 
-    def _speeds(self, positions: np.ndarray, out: np.ndarray, numbers: np.ndarray) -> None:
+    def _speeds(self, positions: np.ndarray, out: np.ndarray, numbers: np.ndarray, own: Left) -> None:
         """Fill out (2 f + P, T, 3 nb) with v' that belongs to positions, and to ``numbers``: Z v' = 0."""
         some, rows = np.concatenate([np.arange(self.f), 2 * self.f + numbers]), self.jac.shape[1]
         change = Change(*(np.zeros((len(out), len(self.along.t), size)) for size in (rows, rows, 3 + self.n)))
         still = np.zeros_like(positions)
         differences(self.terms, self.along, positions, still, REACH, some, change, forces=False)
-        change.velocity[2 * self.f :] += self.own.velocity
+        change.velocity[2 * self.f :] += own.velocity
         close(self.fixed, self.rows, some, change.velocity, out)
 
     def _accelerations(self, bend: np.ndarray, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """a' (D, T, n), lam' (D, T, m) where the equations change by ``bend`` (D, T, m) and ``load`` (D, T, 3 nb)."""
         lam, a = np.zeros((*load.shape[:2], self.jac.shape[1])), np.empty((*load.shape[:2], self.n))
         if self.effort is None:
-            scratch = np.zeros((self.f + 1, max(1, self.f)))
-            accelerate_along(self.fixed, self.free, self.inertia, self.rows, bend, load, scratch, a, lam)
+            scratch = np.zeros((self.f + 1, max(1, self.f))), np.zeros((self.f, len(self.rows)))
+            accelerate_along(self.fixed, self.free, self.inertia, self.rows, bend, load, *scratch, a, lam)
             return a, lam
         r = len(self.rows)
         matrix = np.zeros((load.shape[1], self.n + r, self.n + r))

@@ -168,7 +168,7 @@ class Jump:
                 total += weight * self._bounced(variant.terms, plain, t, q, v, bounce)[0]
                 continue
             value = variants.number.value + variant.offset * variants.step
-            with with_value(whole.variation.work, variants.number, value) as m:
+            with with_value(whole.variation.work, variants.number, value, whole.variation.saved) as m:
                 other = prepare_dynamics(m, *whole.span, contacts=True)
             take = other.packed
             take.system = take.system.changed(angle_offset=variant.terms.packed.system.angle_offset)

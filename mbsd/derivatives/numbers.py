@@ -20,6 +20,7 @@ from typing import Any
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
+from mbsd.derivatives.saved_model import SavedModel
 from mbsd.model.body import Marker
 from mbsd.model.change import BAR, BODY, change, given, given_body
 from mbsd.model.joint import Joint
@@ -68,25 +69,17 @@ def number_named(m: Model, name: str) -> Number:
 
 
 @contextmanager
-def with_value(m: Model, number: Number, value: float) -> Iterator[Model]:
-    """The model ``m`` with another value of a number, for as long as the context lasts."""
+def with_value(m: Model, number: Number, value: float, saved: SavedModel | None = None) -> Iterator[Model]:
+    """The model ``m`` with another value of a number, for as long as the context lasts; ``saved``: as it is now."""
     if number.built is not None:
         yield number.built(value)
         return
-    tables = [(table, dict(table)) for table in (*connections(m), m.traces, m.starts, m.velocities)]
-    bodies = [(body, dict(body.__dict__)) for body in m.bodies.values()]
-    gravity = m.gravity
+    saved = saved or SavedModel(m)
     try:
         number.put(m, value)
         yield m
     finally:
-        for table, before in tables:
-            table.clear()
-            table.update(before)  # pyright: ignore[reportArgumentType, reportCallIssue]
-        for body, own in bodies:
-            body.__dict__.clear()
-            body.__dict__.update(own)
-        m.gravity = gravity
+        saved.restore()
 
 
 def with_values(m: Any, numbers: Sequence[Number], values: Sequence[float]) -> Any:

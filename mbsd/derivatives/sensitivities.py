@@ -15,7 +15,8 @@ from mbsd.derivatives.numbers import Number, numbers_named
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.sweeps import SweepTangents
 from mbsd.dynamics.mobility import mobility
-from mbsd.dynamics.simulate import output_times, refuse_bad_steps, simulate
+from mbsd.dynamics.repeated import Repeated
+from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
@@ -149,8 +150,4 @@ def moves_freely(m: Model) -> bool:
 def simulation_tangents(m: Model, grid: np.ndarray, numbers: Sequence[Number], tolerance: float) -> SimulationTangents:
     """Simulate at output times (T,) (s), with tangents by numbers."""
     refuse_bad_steps(m, grid, tolerance, None)
-
-    def simulated(times: np.ndarray) -> Solution:
-        return simulate(m, None, 1, times, "dop853", tolerance, None, None, {}, event_rows=True)
-
-    return SimulationTangents(m, simulated, grid, numbers)
+    return SimulationTangents(m, Repeated(m, grid, tolerance), grid, numbers)

@@ -145,6 +145,31 @@ def by_number(terms: Terms, along: Along, variants: Variants, compact: np.ndarra
     return combined([variant.terms.left(_as_met(along, variant)) for variant in variants.variants], weights)
 
 
+def by_numbers(terms: Terms, along: Along, every: list[Variants], compact: np.ndarray) -> Left:
+    """The same by P numbers along a simulation: (P, T, m), loads (P, T, 3 nb)."""
+    count, rows = len(along.t), len(terms.packed.ws.phi)
+    position, velocity, acceleration = np.zeros((3, len(every), count, rows))
+    out = Left(position, velocity, acceleration, np.zeros((len(every), *along.q.shape)), None)
+    for k, variants in enumerate(every):
+        own, weights = variants.variants, variants.weights / variants.step
+        pushed = terms.rough or not all(variant.same_loads for variant in own)
+        if all(variant.same_places for variant in own):
+            weight, inertia = (
+                variants.slope(lambda v, key=key: getattr(v.terms, key)) for key in ("weight", "inertia")
+            )
+            if weight.any() or inertia.any():
+                out.load[k] = weight - inertia * along.a
+            if pushed:
+                for w, variant in zip(weights, own, strict=True):
+                    out.load[k] += w * variant.terms.forces(along, compact)
+            continue
+        for w, variant in zip(weights, own, strict=True):
+            for whole, part in zip(out[:4], variant.terms.left(along, pushed=pushed), strict=False):
+                assert whole is not None
+                whole[k] += w * part
+    return out
+
+
 def _pushed(terms: Terms, along: Along, compact: np.ndarray) -> np.ndarray:
     return terms.forces(along, compact) + (terms.weight - terms.inertia * along.a)
 
@@ -200,15 +225,21 @@ def differences(
     packed, (_, count, width) = terms.packed, q.shape
     rows, drives = len(packed.ws.phi), packed.drives(along.t)
     at_once = max(1, AT_ONCE // (2 * count * max(1, 6 * rows)))
-    scale, fastest = _scales(terms, along)
+    per_size, per_speed = per_scales(terms, along)
     for first in range(0, len(some), at_once):
         at = some[first : first + at_once]
         steps, (beside_q, beside_v) = np.empty((len(at), count)), np.empty((2, 2, len(at), count, width))
-        displace(along.q, along.v, q, v, at, scale, fastest, reach, beside_q, beside_v, steps)
+        displace(along.q, along.v, q, v, at, per_size, per_speed, reach, beside_q, beside_v, steps)
         beside = along.beside(beside_q.reshape(-1, width), beside_v.reshape(-1, width), terms.rough)
         _, gamma, compact = terms.rows(beside, np.concatenate([drives] * (2 * len(at))))
         force = terms.forces(beside, compact) if forces else np.zeros_like(beside.q)
         differ(packed.system.row_body, steps, at, beside.v, along.a, along.lam, compact, gamma, force, *out)
+
+
+def per_scales(terms: Terms, along: Along) -> tuple[np.ndarray, float]:
+    """What makes coordinates (3 nb,), and then speeds, parts of their sizes and of the fastest."""
+    scale, fastest = _scales(terms, along)
+    return 1.0 / scale, 1.0 / fastest
 
 
 def _scales(terms: Terms, along: Along) -> tuple[np.ndarray, float]:

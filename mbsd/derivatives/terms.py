@@ -132,13 +132,16 @@ class Terms:
         """Whether joints have friction."""
         return self.loads is not None and len(self.loads.friction) > 0
 
-    def left(self, along: Along, q: np.ndarray | None = None, v: np.ndarray | None = None) -> Left:
-        """Along a motion; or at states q, v (D T, 3 nb) beside it, with a, lam and all else of the motion."""
+    def left(self, along: Along, q: np.ndarray | None = None, v: np.ndarray | None = None, pushed: bool = True) -> Left:
+        """Along a motion; or at states q, v (D T, 3 nb) beside it, with a, lam and all else of the motion.
+
+        Without ``pushed`` as if no force acted.
+        """
         packed = self.packed
         beside = along if q is None or v is None else along.beside(q, v, self.rough or along.spread is not None)
         drives = packed.drives(along.t)
         phi, bend, compact = self.rows(beside, np.tile(drives, (len(beside.t) // len(along.t), 1, 1)))
-        rate, load = np.empty_like(phi), self.forces(beside, compact)
+        rate, load = np.empty_like(phi), self.forces(beside, compact) if pushed else np.zeros_like(beside.q)
         leave(
             packed.system.row_body, packed.driver_rows, self.inertia, self.weight, drives, compact,
             np.ascontiguousarray(beside.v), np.ascontiguousarray(along.a), np.ascontiguousarray(along.lam),
@@ -188,8 +191,10 @@ class Terms:
         return approached_along(self.packed, self.loads, self.laws, along.t, along.q, along.v)
 
 
-def terms_of(packed: Packed, span: tuple[float, float], laws: Laws | None = None, loads: bool = True) -> Terms:
-    """The equations of a packed mechanism over ``span`` (s); ``laws``: those that are known already.
+def terms_of(
+    packed: Packed, span: tuple[float, float], laws: Laws | None = None, loads: bool = True, known: Loads | None = None
+) -> Terms:
+    """The equations of a packed mechanism over ``span`` (s); ``laws`` and ``known`` loads: if they are known already.
 
     Without ``loads`` forces are left out.
     """
@@ -199,4 +204,4 @@ def terms_of(packed: Packed, span: tuple[float, float], laws: Laws | None = None
     weight[:, :2] = system.mass[:, None] * system.gravity
     if not packed.forces or not loads:
         return Terms(packed, None, None, inertia, weight.ravel())
-    return Terms(packed, laws or compiled_laws(packed, *span), pack_loads(packed), inertia, weight.ravel())
+    return Terms(packed, laws or compiled_laws(packed, *span), known or pack_loads(packed), inertia, weight.ravel())

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,7 +17,10 @@ import numpy as np
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
 from mbsd.derivatives.numbers import Number, with_value, with_values
+from mbsd.derivatives.repacked import repacked, unchanged
+from mbsd.derivatives.saved_model import SavedModel
 from mbsd.derivatives.terms import Terms, terms_of
+from mbsd.equations.loads import Loads
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 
@@ -42,6 +45,8 @@ class Variant:
     same_places: bool
     """Whether all places, lengths, angles and laws of drivers are those of the motion."""
     same_masses: bool
+    same_loads: bool
+    """Whether all loads have the numbers that they have in the motion."""
     start: Any = None
     """q, v (3 nb,) at the start, where that changes."""
 
@@ -70,6 +75,8 @@ def models_of(m: Model, number: Number, variants: Variants) -> list[Model]:
 
 
 Close = Callable[[Model, Packed], Any]
+NUMBERS_OF_LOADS = ("element", "place", "term", "number", "interaction", "given", "user", "user_body", "user_com",
+                    "friction", "friction_number")  # fmt: skip
 PLACES = ("marker_arm", "marker_axis", "angle_offset", "distance_length", "numbers")
 
 
@@ -88,8 +95,10 @@ class Variation:
         self.base, self.span, self.close, self.contacts, self.starts = base, span, close, contacts or [], starts
         self.loads = loads
         self.given = repr((self.work.starts, self.work.velocities))
+        self.saved = SavedModel(self.work)
         self.first = pack(self.work, self._contacts(self.work))
         self.motions, self.laws = list(self.first.motions), _laws_of_forces(self.first)
+        self.moving = bool(self.work.velocities) or bool(self.motions)
 
     def of(self, number: Number, order: tuple[np.ndarray, np.ndarray] = FOURTH, step: float = STEP) -> Variants:
         """The variants of a number. Raises ModelError where it cannot change."""
@@ -105,30 +114,36 @@ class Variation:
         raise ModelError(f"{self.base.packed.name}: no derivative by '{number.name}': {first}") from first
 
     def _variant(self, number: Number, offset: float, h: float) -> Variant:
-        with with_value(self.work, number, number.value + offset * h) as m:
+        with with_value(self.work, number, number.value + offset * h, self.saved) as m:
             packed, lawful = self._packed(m)
-            if packed.first_row.tolist() != self.first.first_row.tolist():
-                raise ModelError(f"{m.name}: '{number.name}' changes which joints there are")
             first = self.first
-            places = all(np.array_equal(getattr(packed.system, k), getattr(first.system, k)) for k in PLACES)
-            places = (
-                places and np.array_equal(packed.com, first.com) and _same(packed.motions, self.base.packed.motions)
-            )
-            masses = all(
-                np.array_equal(getattr(packed.system, k), getattr(first.system, k)) for k in ("mass", "inertia")
-            )
-            moving = bool(self.work.velocities) or bool(self.base.packed.motions)
-            begins = self.starts and not (places and (masses or not moving) and self._starts_alike(m))
+            if packed.first_row is not first.first_row and packed.first_row.tolist() != first.first_row.tolist():
+                raise ModelError(f"{m.name}: '{number.name}' changes which joints there are")
+            places = _alike(packed, first, PLACES) and packed.com.tobytes() == first.com.tobytes()
+            places = places and _same(packed.motions, self.base.packed.motions)
+            masses = _alike(packed, first, ("mass", "inertia"))
+            begins = self.starts and not (places and (masses or not self.moving) and self._starts_alike(m))
             start = self._decide(m, packed, begins)
-            terms = terms_of(packed, self.span, self.base.laws if lawful else None, self.loads)
-            return Variant(offset, terms, dict(m.traces), places, masses, start)
+            known = self.base.loads if lawful and self._pushes_alike(m, packed) else None
+            terms = terms_of(packed, self.span, self.base.laws if lawful else None, self.loads, known)
+            same_loads = lawful and (known is not None or _same_loads(terms.loads, self.base.loads))
+            return Variant(offset, terms, dict(m.traces), places, masses, same_loads, start)
 
     def _starts_alike(self, m: Model) -> bool:
         return repr((m.starts, m.velocities)) == self.given
 
+    def _pushes_alike(self, m: Model, packed: Packed) -> bool:
+        """Whether forces are clearly those of the motion: elements alone, which know no masses, at the same arms."""
+        loads = self.base.loads
+        if loads is None or len(loads.interaction) or len(loads.user) or len(loads.friction):
+            return False
+        return unchanged(m.forces, self.saved) and packed.com.tobytes() == self.first.com.tobytes()
+
     def _packed(self, m: Model) -> tuple[Packed, bool]:
         """The mechanism packed, and whether its laws are those of the motion."""
-        packed = pack(m, self._contacts(m))
+        packed = repacked(m, self.first, self.saved)
+        if packed is None or (self.moving and not _alike(packed, self.first, ("mass", "inertia"))):
+            packed = pack(m, self._contacts(m))
         same = _same(packed.motions, self.motions)
         if same:
             packed.motions[:] = self.base.packed.motions
@@ -162,3 +177,15 @@ def _laws_of_forces(packed: Packed) -> list[Any]:
 
 def _same(laws: list[Any], others: list[Any]) -> bool:
     return len(laws) == len(others) and all(a is b for a, b in zip(laws, others, strict=True))
+
+
+def _alike(packed: Packed, other: Packed, names: Sequence[str]) -> bool:
+    """Whether arrays of two mechanisms have the same numbers."""
+    pairs = [(getattr(packed.system, name), getattr(other.system, name)) for name in names]
+    return all(a is b or a.tobytes() == b.tobytes() for a, b in pairs)
+
+
+def _same_loads(loads: Loads | None, others: Loads | None) -> bool:
+    if loads is None or others is None:
+        return loads is others
+    return all(getattr(loads, name).tobytes() == getattr(others, name).tobytes() for name in NUMBERS_OF_LOADS)

@@ -56,8 +56,9 @@ def simulate(
     options: Mapping[str, float],
     event_rows: bool = False,
     formulation: str = AUTO,
+    ready: PreparedDynamics | None = None,
 ) -> Solution:
-    """See :meth:`mbsd.mechanism.Mechanism.simulate`."""
+    """See :meth:`mbsd.mechanism.Mechanism.simulate`; ``ready``: what an earlier run has prepared over the same span."""
     integrator = integrator_named(m.name, method)
     integrator.numbers(m.name, options)
     grid = output_times(m, duration, steps, times)
@@ -66,7 +67,7 @@ def simulate(
         raise ModelError(f"{m.name}: progress is {shown(progress)}; it must be a function of the part done, 0 .. 1")
     if formulation not in FORMULATIONS:
         raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
-    ready = prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
+    ready = ready or prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
     if ready.initial.velocities:
         warn(
             f"{m.name}: the start was made consistent: " + "; ".join(ready.initial.velocities),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, ModelWarning, curve
+from mbsd.derivatives import free_tangents
 from mbsd.measures import final, largest
 from mbsd.testing.derivatives import check_derivatives
 from mechanisms.quarter_car import mechanism as quarter_car
@@ -85,6 +86,24 @@ def test_a_ball_that_bounces_has_those_of_its_formula_across_impacts() -> None:
 def test_a_four_bar_agrees_with_differences_of_simulations() -> None:
     numbers = ["a.length", "b.mass", "D.x", "spring.stiffness", "spring.free_length", "a.moving.omega", "P.x"]
     check_derivatives(four_bar(), ["c.theta", "b.omega", "A.fx", "spring.effort", "P.x"], numbers, 0.6, 30, 1e-5, 2e-4)
+
+
+def test_compiled_tangents_are_those_in_arrays(monkeypatch: pytest.MonkeyPatch) -> None:
+    numbers = ["a.length", "b.mass", "D.x", "spring.stiffness", "gravity.y", "a.moving.omega", "c.start.angle"]
+    of = ["a.theta", "b.ax", "C.fx", "spring.effort"]
+    compiled = four_bar().sensitivities(of, numbers, 0.3, 30)
+    monkeypatch.setattr(free_tangents, "can_differentiate", lambda terms: False)
+    arrays = four_bar().sensitivities(of, numbers, 0.3, 30)
+    for label in of:
+        scale = np.abs(arrays[label]).max(axis=0)
+        assert (np.abs(compiled[label] - arrays[label]) <= 1e-8 * scale).all(), label
+
+
+def test_the_solution_is_that_of_simulate_to_the_bit() -> None:
+    m = four_bar()
+    own = m.sensitivities("a.theta", "a.mass", 0.3, 30).solution
+    sol = m.simulate(0.3, 30, tolerance=1e-9)
+    assert all(np.array_equal(getattr(own, part), getattr(sol, part)) for part in ("t", "q", "v", "a", "lam", "wrench"))
 
 
 def test_tangents_of_a_smooth_simulation_are_as_exact_as_it_is() -> None:

@@ -113,6 +113,15 @@ def test_measures_and_functions_of_a_solution() -> None:
     assert s.table().shape == (91, 3)
 
 
+def test_a_measure_or_a_function_may_be_asked_for_alone() -> None:
+    m = slider_crank()
+    peak = largest("motor.effort")
+    both = m.sensitivities({"peak": peak, "reach": lambda sol: sol.body("slider").x.max()}, "crank.length", steps=40)
+    assert np.array_equal(m.sensitivities(peak, "crank.length", steps=40)["motor.effort"], both["peak"])
+    alone = m.sensitivities(lambda sol: sol.body("slider").x.max(), "crank.length", steps=40)
+    assert np.array_equal(alone["0"], both["reach"])
+
+
 def test_efforts_of_other_actuators_than_those_that_made_the_motion() -> None:
     m = slider_crank()
     slider = m.bodies["slider"]

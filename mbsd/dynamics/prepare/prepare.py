@@ -126,10 +126,14 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     return ready
 
 
-def started(m: Model, start: float, end: float) -> tuple[Packed, Initial]:
-    """A model that was prepared before, with other numbers: as arrays without contacts, and its start alone."""
-    packed = pack(m)
-    packed.settle_laws(start, end)
+def started(m: Model, start: float, end: float, packed: Packed | None = None) -> tuple[Packed, Initial]:
+    """A model that was prepared before, with other numbers: as arrays without contacts, and its start alone.
+
+    ``packed``: the model as arrays without contacts, where they are known, with its laws settled.
+    """
+    if packed is None:
+        packed = pack(m)
+        packed.settle_laws(start, end)
     return packed, _initial(m, packed, start, _inertias(packed)[2])
 
 

@@ -1,0 +1,58 @@
+"""Arrays of a mechanism after one number has changed: what the number does not concern is taken over.
+
+Most numbers are a mass, a number of a force, gravity or a start: markers, joints and tables stay as they are, and only
+a few entries are written anew. Whatever moves a marker or a joint is packed as a whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from operator import is_
+from typing import Any
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.derivatives.saved_model import SavedModel
+from mbsd.model.force import Force
+from mbsd.model.mechanism import Model
+
+
+def repacked(m: Model, packed: Packed, saved: SavedModel) -> Packed | None:
+    """``packed`` of the model that was ``saved``, with what has changed in ``m`` since; None where a place has."""
+    joints = m.joints, m.drivers, m.contacts
+    if m is not saved.m or packed.specials.names or not all(unchanged(table, saved) for table in joints):
+        return None
+    bodies = saved.bodies
+    if any(body.com != before["com"] for body, before in bodies):
+        return None
+    forces = _forces(m, saved)
+    if forces is None:
+        return None
+    system, changes = packed.system, dict[str, np.ndarray]()
+    for name in ("mass", "inertia"):
+        if any(getattr(body, name) != before[name] for body, before in bodies):
+            changes[name] = np.array([getattr(body, name) for body, _ in bodies])
+    if m.gravity != saved.gravity:
+        changes["gravity"] = np.array(m.gravity or (0.0, 0.0), float)
+    if changes:
+        packed = replace(packed, system=system.changed(**changes), constant=None)
+    return replace(packed, forces=forces, motions=list(packed.motions), phases=dict(packed.phases))
+
+
+def _forces(m: Model, saved: SavedModel) -> list[Force] | None:
+    """The forces; None where one of them acts elsewhere than before."""
+    before = saved.before(m.forces)
+    if len(m.forces) != len(before):
+        return None
+    for force, old in zip(m.forces.values(), before.values(), strict=True):
+        if force is not old and not (force.i == old.i and force.j == old.j and force.kind is old.kind):
+            return None
+    return list(m.forces.values())
+
+
+def unchanged(table: Mapping[str, Any], saved: SavedModel) -> bool:
+    """Whether a table of the model holds what it held."""
+    before = saved.before(table)
+    return len(table) == len(before) and all(map(is_, table.values(), before.values()))

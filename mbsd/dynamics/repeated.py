@@ -1,0 +1,70 @@
+"""Simulations of one mechanism over one span at several sets of output times, prepared once where it moves smoothly.
+
+A run without events, contacts and jumps, in independent coordinates, leaves nothing behind in what was prepared: the
+next one has the digits of one that is prepared anew.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.states import without_states
+from mbsd.dynamics.follow import follow
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.simulate import integrator_named, simulate
+from mbsd.model.mechanism import Model
+from mbsd.results.solution import Solution
+
+
+@dataclass
+class Course:
+    """How a simulation goes, without reactions and residuals."""
+
+    packed: Packed
+    t: np.ndarray
+    """(T,) s; with events twice the same where one happens."""
+    v: np.ndarray
+    """(T, 3 nb), as a."""
+    a: np.ndarray
+    steps: int
+    """Steps of the integrator."""
+    remembers: bool
+    """Whether contacts remember how fast they were approached."""
+
+
+class Repeated:
+    """Simulations from the first to the last of ``grid`` (T,) (s), with rows before and after events."""
+
+    def __init__(self, m: Model, grid: np.ndarray, tolerance: float) -> None:
+        self.m, self.tolerance = m, tolerance
+        self.method = integrator_named(m.name, "dop853")
+        self.ready: PreparedDynamics | None = None
+        self.span = float(grid[0]), float(grid[-1])
+
+    def course(self, times: np.ndarray) -> Course:
+        """How it goes at times (T,) (s) from the start to the end. Raises what ``simulate`` raises."""
+        ready = prepare_dynamics(self.m, *self.span, contacts=True)
+        if not (self.m.events or ready.switches.contacts or ready.sticks or ready.stops.jumps or ready.approaches):
+            duration = self.span[1] - self.span[0]
+            run = Run(ready, self.method, self.tolerance, duration, duration, {})
+            recording = follow(ready, run, times, [], event_rows=True, progress=None)
+            if recording.independent:
+                self.ready = ready
+            shown, out = without_states(ready.packed), recording.out
+            v, a = (part[:, : 3 * len(shown.body_names)] for part in (out.y[:, 1], out.a))
+            return Course(shown, out.t, v, a, recording.steps, remembers=False)
+        sol = self._simulated(times, ready)
+        v, a = (part.reshape(len(sol.t), -1) for part in (sol.v, sol.a))
+        return Course(sol.packed, sol.t, v, a, sol.stats.steps, sol.approached is not None)
+
+    def __call__(self, times: np.ndarray) -> Solution:
+        """The simulation at times (T,) (s)."""
+        return self._simulated(times, self.ready if (times[0], times[-1]) == self.span else None)
+
+    def _simulated(self, times: np.ndarray, ready: PreparedDynamics | None) -> Solution:
+        return simulate(self.m, None, 1, times, "dop853", self.tolerance, None, None, {}, event_rows=True, ready=ready)

@@ -10,30 +10,45 @@ MANY_ROWS = 200
 """From here on rows are added all at once, which is slower for few."""
 
 
-def wrenches(packed: Packed, compact: np.ndarray, q: np.ndarray, lam: np.ndarray) -> np.ndarray:
+def rows_of_joints(packed: Packed, joints: np.ndarray) -> np.ndarray:
+    """Rows of J of some joints (k,), one joint after the other."""
+    first, end = packed.first_row[joints], packed.first_row[joints + 1]
+    return np.concatenate([np.zeros(0, np.int64), *map(np.arange, first, end)])
+
+
+def wrenches(
+    packed: Packed, compact: np.ndarray, q: np.ndarray, lam: np.ndarray, joints: np.ndarray | None = None
+) -> np.ndarray:
     """(T, joints, 3) -J_b^T lam on each joint's second body b, moved from its centre of mass to the second marker.
 
     compact (T, m, 6), q (T, 3 nb), lam (T, m); N and N m. Ground as second body takes the opposite of what the first
-    body gets.
+    body gets. With ``joints`` (k,) (T, k, 3) of these, whose rows compact and lam hold (:func:`rows_of_joints`).
     """
-    system, first_row = packed.system, packed.first_row
-    i, j = packed.markers.T
+    system, counts, markers = packed.system, np.diff(packed.first_row), packed.markers
+    if joints is not None:
+        counts, markers = counts[joints], markers[joints]
+    first_row = np.cumsum(counts) - counts
+    i, j = markers.T
     carrier, (x, y) = system.marker_body[j], system.marker_arm[j].T[..., None]
-    second, counts = carrier > 0, np.diff(first_row)
+    second = carrier > 0
     body = np.where(second, carrier, system.marker_body[i])
     rows = _by_row(compact)
     own = rows[:, 3:] if second.all() else np.where(np.repeat(second, counts)[:, None, None], rows[:, 3:], rows[:, :3])
     parts = own * _by_time(lam)[:, None]
     push = np.zeros((len(counts), 3, len(lam)))
-    for total, start, count in zip(push, first_row, counts, strict=False):
+    for total, start, count in zip(push, first_row, counts, strict=True):
         for row in range(start, start + count):
             total += parts[row]
     push *= np.where(second, -1.0, 1.0)[:, None, None]
-    pose = _by_row(q.reshape(len(q), -1, 3))
+    poses, ground = q.reshape(len(q), -1, 3), 1
+    if joints is not None:
+        bodies, at = np.unique([carrier, body], return_inverse=True)
+        poses, (carrier, body), ground = poses[:, bodies], at.reshape(2, -1), int((bodies == 0).any())
+    pose = _by_row(poses)
     turn = np.zeros((2, len(pose), len(lam)))
-    turn[0, 0] = 1.0
-    np.cos(pose[1:, 2], out=turn[0, 1:])
-    np.sin(pose[1:, 2], out=turn[1, 1:])
+    turn[0, :ground] = 1.0
+    np.cos(pose[ground:, 2], out=turn[0, ground:])
+    np.sin(pose[ground:, 2], out=turn[1, ground:])
     c, s = turn[:, carrier]
     arm_x = pose[carrier, 0] + (c * x - s * y) - pose[body, 0]
     arm_y = pose[carrier, 1] + (s * x + c * y) - pose[body, 1]

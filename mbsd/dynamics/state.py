@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.compiling.jit import inlined, kernel
-from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.reference.acceleration import accelerate, derivative
+from mbsd.dynamics.reference.projection import bring_back
 
 REACHED, PAUSED, STEP_TOO_SMALL, NOT_FINITE, NO_CONVERGENCE, CHOOSE, UNCLEAR = 0, 1, 2, 3, 4, 5, 6
 """What ``advance`` returns: the end was reached, the allowed steps were used, or why it cannot go on.
@@ -49,7 +49,7 @@ class Output(NamedTuple):
     a: Any
     """(T, 3 nb)"""
     lam: Any
-    """(T, m)"""
+    """(T, m); (0, m) where neither multipliers nor accelerations are asked for."""
     work: Any
     """(T,) of loads and drivers since the start (J)."""
     margin: Any
@@ -105,14 +105,14 @@ def record(dyn, scratch, out, k, work):
     """Write output k from scratch.state, projected first."""
     state = scratch.state
     t = out.t[k]
-    project(dyn, scratch, t, state, 2)
-    derivative(dyn, scratch, t, state, scratch.stages[0], out.lam[k])
+    bring_back(dyn, scratch, t, state, 2)
     for c in range(state.shape[1]):
         out.y[k, 0, c] = state[0, c]
         out.y[k, 1, c] = state[1, c]
-        out.a[k, c] = scratch.stages[0, 1, c]
     out.work[k] = work
-    out.margin[k] = scratch.report[0]
+    if out.lam.shape[0] > 0:
+        accelerate(dyn, scratch, t, state, out.a[k], out.lam[k])
+        out.margin[k] = scratch.report[0]
 
 
 @kernel
@@ -123,8 +123,9 @@ def record_here(scratch, state, out):
         out.y[k, 0, c] = state.y[0, c]
         out.y[k, 1, c] = state.y[1, c]
         out.a[k, c] = state.dy[1, c]
-    for r in range(state.lam.shape[0]):
-        out.lam[k, r] = state.lam[r]
+    if out.lam.shape[0] > 0:
+        for r in range(state.lam.shape[0]):
+            out.lam[k, r] = state.lam[r]
     out.work[k] = state.clock[WORK]
     out.margin[k] = scratch.report[0]
     state.count[NEXT] = k + 1

@@ -347,3 +347,20 @@ def test_contacts_by_penalty_bounce_as_in_single_simulations(damping: dict[str, 
         sol = ball(masses[k], heights[k]).simulate(1.0, steps=30)
         assert many["y"][k] == sol.body("ball").y[-1]
         assert many["fast"][k] == sol.body("ball").vy.max()
+
+
+@pytest.mark.parametrize("build", [door, pendulum, barrier, lambda: barrier(stops=True)])
+@pytest.mark.parametrize("formulation", ["auto", "reference"])
+def test_what_is_measured_beside_changes_no_digit(build: Callable[[], Mechanism], formulation: str) -> None:
+    m = build()
+    body, joints = list(m.bodies)[-1], list(m.joints)
+    motion = {"theta": samples(f"{body}.theta", [0.1, 0.4]), "fast": largest(f"{body}.omega"), "e": integral("kinetic")}
+    forces = {"a": smallest(f"{body}.alpha")} | {name: largest(f"{name}.torque") for name in joints}
+    asked = [motion, motion | forces, *({name: each} for name, each in forces.items())]
+    vary = {body: {"mass": [1.0, 2.0]}}
+    made = [m.simulate_many(0.4, vary=vary, measure=each, steps=STEPS, formulation=formulation) for each in asked]
+    whole = made[1]
+    assert whole.alone == [None, None]
+    for each in made:
+        for name, column in each.columns.items():
+            assert column.tolist() == whole[name].tolist()

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, constant_rate
+from mbsd import AssemblyError, Mechanism, constant_rate
 from mbsd.base.kept import MOST, Kept
 
 
@@ -44,7 +44,7 @@ def test_another_mechanism_is_not_taken_for_the_one_before(what: str) -> None:
 
     poses(four_bar())
     after = poses(CHANGED[what]())
-    for kept in (mbsd.kinematics.pose.close._CLOSED, mbsd.kinematics.sample_jacobians._SAMPLES):
+    for kept in (mbsd.kinematics.pose.close._NEAREST, mbsd.kinematics.sample_jacobians._SAMPLES):
         kept._results.clear()
     for remembered in (mbsd.kinematics.pose.mobility._kept_independent, mbsd.kinematics.pose.mobility._kept_motion):
         remembered.cache_clear()
@@ -67,6 +67,21 @@ def test_a_result_that_is_written_into_spoils_no_other() -> None:
     first = sol.q.copy()
     sol.q[:] = 0.0
     assert np.array_equal(m.sweep(steps=12).q, first)
+
+
+def test_what_does_not_close_is_not_tried_again_and_named_by_its_own_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    import mbsd.kinematics.pose.close as pose
+
+    said = []
+    for name in ("first", "second"):
+        m = four_bar(crank=0.5)
+        m.name = name
+        with pytest.raises(AssemblyError) as raised:
+            m.sweep(steps=12)
+        said.append(str(raised.value))
+        monkeypatch.setattr(pose, "close_with_phases", lambda *_: pytest.fail("it is closed again"))
+    assert said[0].startswith("first: the links do not close")
+    assert said[1] == said[0].replace("first", "second")
 
 
 def test_welds_keep_their_turns() -> None:

@@ -102,6 +102,15 @@ def power_of_all(rate, inertia, weight, coordinate, a):
 @merged
 def accelerate(dyn, scratch, t, state, a, lam):
     """Fill a (3 + f,) at a state (2, 3 + f) and time (s); returns the power of loads and drivers (W)."""
+    return evaluate(dyn, scratch, t, state, a, True)
+
+
+@merged
+def evaluate(dyn, scratch, t, state, a, forces):
+    """Poses and rates at a state and time; a as ``accelerate`` fills it only where ``forces`` are asked for.
+
+    Returns the power of loads and drivers (W), 0 without forces.
+    """
     coordinate = scratch.coordinate
     rate = scratch.rate
     force = scratch.force
@@ -151,7 +160,9 @@ def accelerate(dyn, scratch, t, state, a, lam):
             scratch.joined_rate,
             t,
         )
-    if status == SOLVED:
+    if status != SOLVED:
+        power = math.nan
+    elif forces:
         if dyn.loads.total > 0:
             for b in dyn.loaded:
                 force[3 * b] = 0.0
@@ -180,8 +191,6 @@ def accelerate(dyn, scratch, t, state, a, lam):
             power = math.nan
         if last > count:
             power = power_of_all(rate, dyn.inertia, dyn.weight, coordinate, a) + (power - power)  # keeps nan
-    else:
-        power = math.nan
     return power
 
 
@@ -250,8 +259,11 @@ def look(dyn, scratch, t, state):
 
 
 @internal
-def put(body, rate, base, coordinate, a, poses, accelerations):
-    """Poses and velocities (2, 3 nb) and accelerations (3 nb,) of the pose evaluated last; a (3 + f,) has its z''."""
+def put(body, rate, base, coordinate, a, forces, poses, accelerations):
+    """Poses and velocities (2, 3 nb) and, with ``forces``, accelerations (3 nb,) of the pose evaluated last.
+
+    a (3 + f,) has its z''.
+    """
     last = coordinate.shape[0] - 1
     for b in range(1, body.shape[0]):
         poses[0, 3 * b] = body[b, X]
@@ -259,20 +271,21 @@ def put(body, rate, base, coordinate, a, poses, accelerations):
         poses[0, 3 * b + 2] = angle_of(body, base, coordinate, b)
         for c in range(3):
             v = 0.0
-            bend = rate[b, 3 * last + c]
             for j in range(last):
                 v += rate[b, 3 * j + c] * coordinate[j, SPEED]
-            for j in range(a.shape[0] - 3):
-                bend += rate[b, 3 * j + c] * a[3 + j]
             poses[1, 3 * b + c] = v
-            accelerations[3 * b + c] = bend
+            if forces:
+                bend = rate[b, 3 * last + c]
+                for j in range(a.shape[0] - 3):
+                    bend += rate[b, 3 * j + c] * a[3 + j]
+                accelerations[3 * b + c] = bend
 
 
 @inlined
 def write(dyn, scratch, t, state, stage, out, k):
     """Output k in reference coordinates from a state; stage (2, 3 + f) takes its derivative."""
     power = derivative(dyn, scratch, t, state, stage, scratch.multipliers)
-    put(scratch.body, scratch.rate, scratch.base, scratch.coordinate, stage[1], out.y[k], out.a[k])
+    put(scratch.body, scratch.rate, scratch.base, scratch.coordinate, stage[1], True, out.y[k], out.a[k])
     return power
 
 

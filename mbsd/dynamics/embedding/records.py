@@ -11,7 +11,7 @@ a little before and after it, H seconds apart:
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, inlined
-from mbsd.dynamics.embedding.equations import accelerate, put, write
+from mbsd.dynamics.embedding.equations import evaluate, put, write
 from mbsd.dynamics.state import NEXT, TIME, WORK
 
 
@@ -26,11 +26,11 @@ def record(dyn, scratch, out, k, t, work):
 @inlined
 def record_all(dyn, scratch, out, k, t, work):
     """``record`` with the evaluation in it: no arrays are handed over for each of many outputs."""
-    state = scratch.state
-    stage = scratch.stages[0]
+    a = scratch.stages[0, 1]
+    forces = out.lam.shape[0] > 0
     out.work[k] = work
-    power = accelerate(dyn, scratch, t, state, stage[1], scratch.multipliers)
-    put(scratch.body, scratch.rate, scratch.base, scratch.coordinate, stage[1], out.y[k], out.a[k])
+    power = evaluate(dyn, scratch, t, scratch.state, a, forces)
+    put(scratch.body, scratch.rate, scratch.base, scratch.coordinate, a, forces, out.y[k], out.a[k])
     return power + work == power + work
 
 

@@ -26,9 +26,9 @@ class Outputs:
     steps: np.ndarray
 
     @property
-    def shape(self) -> tuple[int, int]:
-        """Coordinates and rows of a simulation."""
-        return self.y.shape[-1], self.lam.shape[-1]
+    def shape(self) -> tuple[int, int, bool]:
+        """Coordinates and rows of a simulation, and whether the loop finds multipliers and accelerations."""
+        return self.y.shape[-1], self.lam.shape[-1], self.lam.shape[1] > 0
 
     @property
     def arrays(self) -> tuple[np.ndarray, ...]:
@@ -36,12 +36,15 @@ class Outputs:
         return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps
 
 
-def room_for(count: int, times: int, coordinates: int, rows: int) -> Outputs:
-    """Outputs of ``count`` simulations, used again and again: memory that is touched first costs more than a step."""
+def room_for(count: int, times: int, coordinates: int, rows: int, forces: bool) -> Outputs:
+    """Outputs of ``count`` simulations, used again and again: memory that is touched first costs more than a step.
+
+    Without ``forces`` the loop finds neither multipliers nor accelerations.
+    """
     return Outputs(
         np.zeros((count, times, 2, coordinates)),
         np.zeros((count, times, coordinates)),
-        np.zeros((count, times, rows)),
+        np.zeros((count, times if forces else 0, rows)),
         np.zeros((count, times)),
         np.zeros((count, times)),
         np.zeros(count, np.int64),
@@ -58,26 +61,29 @@ class Reacting:
     y: np.ndarray
     """(R, T, 2, 3 nb)"""
     jacobians: np.ndarray
-    """(R, T, m, 6) compact."""
+    """(R, T, rows, 6) compact."""
     lam: np.ndarray
     """(R, T, m)"""
     times: np.ndarray
+    joints: np.ndarray
+    """(k,) those that are wanted."""
+    rows: np.ndarray
+    """Their rows of J, one joint after the other."""
 
     def of(self, which: np.ndarray) -> Reactive:
         """Reactions of some rows."""
-        q, jacobians, lam = self.y[which, :, 0], self.jacobians[which], self.lam[which]
+        packed, jacobians, lam = self.packed[0], self.jacobians[which], self.lam[which]
+        q, own = self.y[which, :, 0], lam[..., self.rows]
         count, times = q.shape[:2]
         if len(self.packed) == 1:
-            flat = (part.reshape(count * times, *part.shape[2:]) for part in (jacobians, q, lam))
-            made = wrenches(self.packed[0], *flat)
+            compact, poses, multipliers = (part.reshape(count * times, *part.shape[2:]) for part in (jacobians, q, own))
+            made = wrenches(packed, compact, poses, multipliers, self.joints)
             wrench = made.reshape(count, times, *made.shape[1:])
         else:
-            rows = [
-                wrenches(self.packed[k], *parts) for k, *parts in zip(which.tolist(), jacobians, q, lam, strict=True)
-            ]
-            wrench = np.array(rows)
-        packed = self.packed[0]
-        return Reactive(wrench, lam[..., packed.driver_rows :], packed.drives(self.times))
+            each = zip(which.tolist(), jacobians, q, own, strict=True)
+            made = [wrenches(self.packed[k], *parts, joints=self.joints) for k, *parts in each]
+            wrench = np.array(made)
+        return Reactive(self.joints.tolist(), wrench, lam[..., packed.driver_rows :], packed.drives(self.times))
 
 
 def motions_of(

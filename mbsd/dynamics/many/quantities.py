@@ -22,6 +22,7 @@ from mbsd.results.columns import FRAME
 from mbsd.results.moved_frame import moved_frame
 from mbsd.results.solution import Solution
 
+ACCELERATIONS = ("ax", "ay", "alpha")
 WRENCH = ("fx", "fy", "torque")
 """Components of the reaction of a joint that are found of many at once."""
 
@@ -30,8 +31,10 @@ WRENCH = ("fx", "fy", "torque")
 class Reactive:
     """Reactions and efforts of R simulations at T outputs."""
 
+    joints: list[int]
+    """Numbers of the joints whose reactions are wanted."""
     wrench: np.ndarray
-    """(R, T, joints, 3) as ``Solution.wrench``."""
+    """(R, T, joints, 3) of these, as ``Solution.wrench``."""
     lam: np.ndarray
     """(R, T, drivers) and rows of what comes behind."""
     drives: np.ndarray
@@ -84,7 +87,7 @@ class Motions:
     def of_joint(self, number: int, component: int) -> np.ndarray:
         """(R, T) N or N m."""
         assert self.reactive is not None
-        return self.reactive.wrench[:, :, number, component]
+        return self.reactive.wrench[:, :, self.reactive.joints.index(number), component]
 
     def of_driver(self, number: int, component: str) -> np.ndarray:
         """(R, T) of one component of a driver."""
@@ -111,6 +114,13 @@ class Quantity:
     """(R, T), if it is found of many at once."""
     reactive: bool = False
     """Whether it comes from multipliers."""
+    joint: int | None = None
+    """Number of the joint whose reaction it is, if so."""
+
+    @property
+    def forces(self) -> bool:
+        """Whether it comes from multipliers or accelerations."""
+        return self.reactive or self.name.rpartition(".")[2] in ACCELERATIONS
 
 
 def quantity_named(m: Model, name: str, columns: list[str]) -> Quantity:
@@ -146,7 +156,7 @@ def quantity_named(m: Model, name: str, columns: list[str]) -> Quantity:
     if joint in m.joints and component in WRENCH:
         number, c = list(m.joints).index(joint), WRENCH.index(component)
         return Quantity(
-            name, lambda sol: sol.columns()[column], lambda motions: motions.of_joint(number, c), reactive=True
+            name, lambda sol: sol.columns()[column], lambda motions: motions.of_joint(number, c), True, number
         )
     if driver in m.drivers:
         number = list(m.drivers).index(driver)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mbsd.arrays.reactions import rows_of_joints
 from mbsd.dynamics.many.arguments import content, laid_out
 from mbsd.dynamics.many.base import Base
 from mbsd.dynamics.many.outputs import Outputs, Reacting
@@ -15,10 +16,12 @@ from mbsd.dynamics.many.tabulated_reactions import tabulate_reactions
 
 
 class Reactions:
-    """Reactions of rows that are like one run, in one thread."""
+    """Reactions in some joints (k,) of rows that are like one run, in one thread."""
 
-    def __init__(self, run: SingleRun, patches: Patches | None) -> None:
-        self.run = run
+    def __init__(self, run: SingleRun, patches: Patches | None, joints: np.ndarray) -> None:
+        self.run, self.joints = run, joints
+        self.rows = rows_of_joints(run.ready.packed, joints)
+        self.room = np.zeros((0, 0, 0, 6))
         arguments, block, layout = laid_out(self._arguments(run))
         self.base = Base(run, arguments, block, layout, (), block[None].copy())
         self.patches = None if patches is None else Patches(patches.designs, self.base, starts=False)
@@ -41,9 +44,14 @@ class Reactions:
         self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, runs: Sequence[SingleRun], out: Outputs,
         times: np.ndarray,
     ) -> Reacting:  # fmt: skip
-        jacobians = np.zeros((*out.lam.shape, 6))
-        tabulate_reactions(
-            *self.base.arguments, self.base.block, fresh, place, value, times, out.y, out.status, jacobians, out.lam,
-            self.run.independent is None,
-        )  # fmt: skip
-        return Reacting([run.ready.packed for run in runs], out.y, jacobians, out.lam, times)
+        count, known = len(out.lam), self.run.independent is None
+        if len(self.room) < count:
+            self.room = np.zeros((*out.lam.shape[:2], len(self.rows), 6))
+        jacobians = self.room[:count]
+        if len(self.rows) or not known:
+            tabulate_reactions(
+                *self.base.arguments, self.base.block, fresh, place, value, times, out.y, out.status, self.rows,
+                jacobians, out.lam, known,
+            )  # fmt: skip
+        packed = [run.ready.packed for run in runs]
+        return Reacting(packed, out.y, jacobians, out.lam, times, self.joints, self.rows)

@@ -49,12 +49,13 @@ def run_rows(
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 
-    ``method`` is the number of the integrator (methods.py). All arrays of numbers of the arguments before it stand in
-    ``block`` (N,). Row r begins with row r of ``fresh`` (R or 1, N) there, with ``value`` (R, k) at ``place`` (k,).
-    Steps end at ``before`` (s) and go on from ``after``. ``at_once`` steps are taken between two looks at ``stop``
-    (1,), ``most`` altogether. Where ``near`` is above 0, a row ends where its margin falls below this part of the
-    largest so far (runs/carried_steps.py). Rows whose status (R,) is WAITING begin, those UNDERWAY go on. With
-    ``upto`` outputs, less than T, they are put away in ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY.
+    With lam (R, 0, m) neither multipliers nor accelerations are found. ``method`` is the number of the integrator
+    (methods.py). All arrays of numbers of the arguments before it stand in ``block`` (N,). Row r begins with row r of
+    ``fresh`` (R or 1, N) there, with ``value`` (R, k) at ``place`` (k,). Steps end at ``before`` (s) and go on from
+    ``after``. ``at_once`` steps are taken between two looks at ``stop`` (1,), ``most`` altogether. Where ``near`` is
+    above 0, a row ends where its margin falls below this part of the largest so far (runs/carried_steps.py). Rows whose
+    status (R,) is WAITING begin, those UNDERWAY go on. With ``upto`` outputs, less than T, they are put away in
+    ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY.
     """
     end = t[t.shape[0] - 1]
     whole = upto == t.shape[0]

@@ -23,6 +23,7 @@ from mbsd.dynamics.runs.independent_steps import IndependentSteps
 from mbsd.dynamics.runs.run import REFERENCE, Run
 from mbsd.dynamics.runs.to_end import independent_steps
 from mbsd.dynamics.state import State
+from mbsd.equations.interactions.switching import SWITCHING
 from mbsd.kinematics.limits.joints import limits_of
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
@@ -84,6 +85,13 @@ class SingleRun:
         """That it did."""
         for callback in self.ready.packed.specials.callbacks:
             callback.forget()
+
+    @cached_property
+    def outputs_count(self) -> bool:
+        """Whether forces at outputs count in later steps: friction goes on from the last one, others may remember."""
+        loads, sliding = self.ready.dynamics.loads, self.ready.dynamics.sliding
+        switches = bool(loads.switch[0, SWITCHING] > 0.0)
+        return switches or len(loads.friction) + len(loads.user) + len(sliding.rows) > 0
 
     @cached_property
     def near(self) -> float:

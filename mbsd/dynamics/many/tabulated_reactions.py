@@ -9,8 +9,10 @@ from mbsd.equations.assembly import position
 
 
 @threaded
-def tabulate_reactions(dyn, scratch, block, fresh, place, value, t, y, status, jacobians, lam, known):
-    """Fill compact jacobians (R, T, m, 6) and, unless ``known``, lam (R, T, m) along states y (R, T, 2, 3 nb).
+def tabulate_reactions(dyn, scratch, block, fresh, place, value, t, y, status, rows, jacobians, lam, known):
+    """Fill ``rows`` (k,) of J into compact jacobians (R, T, k, 6) and, unless ``known``, lam (R, T, m).
+
+    States are y (R, T, 2, 3 nb).
 
     Rows of ``block``, ``fresh``, ``place`` and ``value`` are those of run_rows, for Dynamics and its scratch alone.
     """
@@ -25,7 +27,9 @@ def tabulate_reactions(dyn, scratch, block, fresh, place, value, t, y, status, j
         for k in range(t.shape[0]):
             if not known:
                 derivative(dyn, scratch, t[k], y[r, k], scratch.stages[0], lam[r, k])
+            if rows.shape[0] == 0:
+                continue
             position(dyn.system, y[r, k, 0], scratch.drive, scratch.ws)
-            for row in range(lam.shape[2]):
+            for i in range(rows.shape[0]):
                 for c in range(6):
-                    jacobians[r, k, row, c] = scratch.ws.jac[row, c]
+                    jacobians[r, k, i, c] = scratch.ws.jac[rows[i], c]

@@ -206,7 +206,8 @@ class Worker:
     def _reactions(self, patches: Patches | None) -> Reactions:
         if self.reactions is None:
             assert self.base is not None
-            self.reactions = Reactions(self.base.run, patches)
+            wanted = sorted({q.joint for q in self.work.quantities.values() if q.joint is not None})
+            self.reactions = Reactions(self.base.run, patches, np.array(wanted, np.int64))
         return self.reactions
 
     def _run(self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, motions: MotionsOf) -> Outputs:
@@ -214,7 +215,8 @@ class Worker:
         assert self.base is not None
         run, ready, times = self.base.run, self.base.run.ready, self.work.asked.times
         count, whole = max(len(fresh), len(value)), len(times)
-        shape = len(ready.initial.q), len(ready.packed.ws.phi)
+        forces = run.outputs_count or any(quantity.forces for quantity in self.work.quantities.values())
+        shape = len(ready.initial.q), len(ready.packed.ws.phi), forces
         if self.room is None or len(self.room.status) < count or self.room.shape != shape:
             self.room = room_for(count, whole, *shape)
         out = Outputs(*(array[:count] for array in self.room.arrays))

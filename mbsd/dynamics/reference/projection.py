@@ -7,7 +7,7 @@ Source: Eich 1993, SIAM J. Numer. Anal. 30 (projection after each step); Hairer,
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import inlined, kernel
+from mbsd.compiling.jit import inlined, kernel, merged
 from mbsd.dynamics.reference.pins import change_by_pins, factor_pins
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.equations.assembly import evaluate_nu, evaluate_position
@@ -21,12 +21,9 @@ OPEN, CONTRACTION = 1e-4, 0.1
 and by more than this part of the first pass, does not lead to a pose near the step's."""
 
 
-@kernel
-def project(dyn, scratch, t, state, passes):
-    """Project coordinates and velocities of a state (2, 3 nb) in place, ``passes`` times.
-
-    The largest changes of coordinates in the first and last pass (sizes, rad) go to scratch.report[1:3].
-    """
+@merged
+def bring_back(dyn, scratch, t, state, passes):
+    """``project`` for kernels that contain it."""
     system = dyn.system
     schur = dyn.schur
     ws = scratch.ws
@@ -66,6 +63,15 @@ def project(dyn, scratch, t, state, passes):
         scratch.report[2] = largest
         if step == 0:
             scratch.report[1] = largest
+
+
+@kernel
+def project(dyn, scratch, t, state, passes):
+    """Project coordinates and velocities of a state (2, 3 nb) in place, ``passes`` times.
+
+    The largest changes of coordinates in the first and last pass (sizes, rad) go to scratch.report[1:3].
+    """
+    bring_back(dyn, scratch, t, state, passes)
 
 
 @inlined

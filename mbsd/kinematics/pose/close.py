@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import heapq
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,10 +28,21 @@ ATTEMPTS = 24
 MANY_ROWS = 100
 """From here on the shortest step is found without singular values where rows are well apart."""
 WELL_CONDITIONED = 1e-4
-_CLOSED: Kept[tuple[np.ndarray, np.ndarray]] = Kept()
-"""Closed poses, and the angle offsets that go with them."""
 LONGEST_STEP = 0.5
 """Longest Gauss-Newton step, in sizes and rad."""
+
+
+class _Nearest(NamedTuple):
+    """A pose as near to a closed one as attempts led; those that stay open are kept, too, as they take longest."""
+
+    q: np.ndarray
+    """(3 nb,)"""
+    offsets: np.ndarray
+    """System.angle_offset that goes with it: the turns of welds are taken to suit the pose."""
+    closes: bool
+
+
+_NEAREST: Kept[_Nearest] = Kept()
 
 
 def assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
@@ -48,20 +60,18 @@ def _assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
     drive = packed.drives(np.array([time]))[0]
     numbers = packed.numbers()
     if numbers is None:
-        return _assembled(m, packed, drive, time)
-
-    def closed() -> tuple[np.ndarray, np.ndarray]:
-        q = _assembled(m, packed, drive, time)
-        return q.copy(), packed.system.angle_offset  # the turns of welds are taken to suit the pose
-
-    key = (*numbers, tuple(packed.body_names), repr(m.starts), drive[:, 0].tobytes())
-    q, offsets = _CLOSED.get(key, closed)
-    packed.system = packed.system.changed(angle_offset=offsets)
-    return q.copy()
+        start = _nearest(m, packed, drive)
+    else:
+        key = (*numbers, tuple(packed.body_names), repr(m.starts), drive[:, 0].tobytes())
+        start = _NEAREST.get(key, lambda: _nearest(m, packed, drive))
+    packed.system = packed.system.changed(angle_offset=start.offsets)
+    if not start.closes:
+        raise AssemblyError(why_open(m, packed, start.q, drive, time))
+    return start.q.copy()
 
 
-def _assembled(m: Model, packed: Packed, drive: np.ndarray, time: float) -> np.ndarray:
-    """The same, found anew; drive (motions + 1, 3) at ``time``."""
+def _nearest(m: Model, packed: Packed, drive: np.ndarray) -> _Nearest:
+    """The pose nearest to a closed one, found anew; drive (motions + 1, 3)."""
     best: tuple[float, np.ndarray] | None = None
     for attempt in range(ATTEMPTS):
         q = rough_pose(m, packed, drive, attempt)
@@ -69,12 +79,12 @@ def _assembled(m: Model, packed: Packed, drive: np.ndarray, time: float) -> np.n
         q, worst = close_with_phases(packed, q, drive)
         if worst <= CLOSED:
             refuse_impossible(packed, q)
-            return q
+            return _Nearest(q, packed.system.angle_offset, True)
         if best is None or worst < best[0]:
             best = worst, q
     assert best is not None
     packed.specials.check()
-    raise AssemblyError(why_open(m, packed, best[1], drive, time))
+    return _Nearest(best[1], packed.system.angle_offset, False)
 
 
 def close_with_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, float]:

@@ -26,7 +26,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     WAY,
     WHERE,
 )
-from mbsd.dynamics.many.contacts.dips import first_dip
+from mbsd.dynamics.many.contacts.dips import first_dip, may_dip
 from mbsd.dynamics.many.contacts.within import (
     along,
     at_state,
@@ -159,6 +159,16 @@ def _met_of(dyn, own, scratch, settings, contacts, out, before, after, k, until)
     return where, negative
 
 
+@internal
+def _may_meet(contacts, k):
+    """Whether samples of contact k leave it open that it falls through zero; most steps end here."""
+    still = still_of(contacts, k)
+    for i in range(1, SAMPLES):
+        if contacts.samples[i, k] < -still or may_dip(contacts, k, i - 1, SAMPLES, still):
+            return True
+    return False
+
+
 @apart
 def first_met(dyn, own, scratch, state, settings, contacts, out, before, after):
     """The row whose scalar is the first to fall through zero within the step to ``state``; -1: none.
@@ -170,10 +180,10 @@ def first_met(dyn, own, scratch, state, settings, contacts, out, before, after):
     gaps = count - friction.gap.shape[0]
     sample(dyn, scratch, contacts)
     for k in range(count):
-        contacts.chosen[SKIPPED, k] = 0
+        contacts.chosen[SKIPPED, k] = 0 if _may_meet(contacts, k) else 1
     for w in range(count - gaps):
-        looked = contacts.number[gaps + w, CLOSED] > 0.0 or contacts.number[gaps + w, SIGN] != 0.0
-        contacts.chosen[SKIPPED, gaps + w] = 0 if looked else 1
+        if contacts.number[gaps + w, CLOSED] == 0.0 and contacts.number[gaps + w, SIGN] == 0.0:
+            contacts.chosen[SKIPPED, gaps + w] = 1
     for _ in range(count):
         best = -1
         for turn in range(2 * count):  # joints at rest come last where several are met at once

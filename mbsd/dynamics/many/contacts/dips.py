@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart, internal
+from mbsd.compiling.jit import apart, inlined, internal
 from mbsd.dynamics.events.dips import AT_END, INSIDE, NARROWEST, NEAR, SLACK, UNSURE
 from mbsd.dynamics.many.contacts.arrays import LENGTH, MOST_LOOKS, PARTS, START
 from mbsd.dynamics.many.contacts.within import of_motion, on_quintic
@@ -33,22 +33,43 @@ def _put(piece, a, fa, b, fb, falls, rises):
     piece[RISES] = rises
 
 
-@apart
-def _interval(dyn, scratch, contacts, k, i, count, level):
-    """Fill intervals[0] with the i-th; returns whether the scalar may fall below ``level`` there."""
+@inlined
+def _slopes(contacts, k, i, count):
+    """Slopes of the lines through the samples on both sides of the i-th interval; 0 where there are none."""
+    left = 0.0
+    right = 0.0
+    if i > 0:
+        left = (contacts.samples[i, k] - contacts.samples[i - 1, k]) / (PARTS[i] - PARTS[i - 1])
+    if i + 2 < count:
+        right = (contacts.samples[i + 2, k] - contacts.samples[i + 1, k]) / (PARTS[i + 2] - PARTS[i + 1])
+    return left, right
+
+
+@internal
+def may_dip(contacts, k, i, count, still):
+    """Whether contact k may fall below -``still`` in the i-th interval, by its first ``count`` samples alone."""
+    fa = contacts.samples[i, k]
+    fb = contacts.samples[i + 1, k]
+    if i == 0 and min(fa, fb) <= still:
+        return False  # it has just left zero
+    width = PARTS[i + 1] - PARTS[i]
+    left, right = _slopes(contacts, k, i, count)
+    if (i > 0 and left >= 0.0) or (i + 2 < count and right <= 0.0):
+        return False
+    level = -still + NEAR * max(fa + still, fb + still, 0.0)
+    if i > 0 and fa + left * width >= level:
+        return False
+    return not (i + 2 < count and fb - right * width >= level)
+
+
+@internal
+def _interval(dyn, scratch, contacts, k, i, count):
+    """Fill intervals[0] with the i-th."""
     a = PARTS[i]
     b = PARTS[i + 1]
     fa = contacts.samples[i, k]
     fb = contacts.samples[i + 1, k]
-    left = (fa - contacts.samples[i - 1, k]) / (a - PARTS[i - 1]) if i > 0 else 0.0
-    right = (contacts.samples[i + 2, k] - fb) / (PARTS[i + 2] - b) if i + 2 < count else 0.0
-    if (i > 0 and left >= 0.0) or (i + 2 < count and right <= 0.0):
-        return False
-    level += NEAR * max(fa - level, fb - level, 0.0)
-    if i > 0 and fa + left * (b - a) >= level:
-        return False
-    if i + 2 < count and fb - right * (b - a) >= level:
-        return False
+    left, right = _slopes(contacts, k, i, count)
     near = AT_END * (b - a)
     falls = (on_quintic(dyn, scratch, contacts, k, a + near) - fa) / near
     rises = (fb - on_quintic(dyn, scratch, contacts, k, b - near)) / near
@@ -57,7 +78,6 @@ def _interval(dyn, scratch, contacts, k, i, count, level):
     if i + 2 < count:
         rises = max(rises, right)
     _put(contacts.intervals[0], a, fa, b, fb, falls, rises)
-    return True
 
 
 @apart
@@ -105,10 +125,9 @@ def first_dip(dyn, own, scratch, settings, contacts, out, before, after, k, coun
         low = min(low, contacts.samples[i, k])
         high = max(high, contacts.samples[i, k])
     for i in range(count - 1):
-        if i == 0 and min(contacts.samples[0, k], contacts.samples[1, k]) <= still:
-            continue  # it has just left zero
-        if not _interval(dyn, scratch, contacts, k, i, count, -still):
+        if not may_dip(contacts, k, i, count, still):
             continue
+        _interval(dyn, scratch, contacts, k, i, count)
         kept_falls = contacts.intervals[0, FALLS]
         kept_rises = contacts.intervals[0, RISES]
         level = UNSURE * (high - low) - still

@@ -4,20 +4,37 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import apart, internal
+from mbsd.compiling.jit import apart, internal, merged
 from mbsd.dynamics.events.bounds import DEPENDENT
 from mbsd.dynamics.many.contacts.arrays import BLOCK, HELD, KEPT, RATE, RELATIVE, ROW, SHIFT, SIDE, TAKING
 from mbsd.equations.assembly import position
+from mbsd.equations.constraints.relative import rows as relative_rows
 from mbsd.equations.laws import evaluate_laws
+from mbsd.equations.markers import place
 from mbsd.equations.system import ZERO
 
 
 @apart
-def measure_gaps(dyn, scratch, t, q):
+def measure(dyn, scratch, t, q):
     """Fill scratch.ws.phi and scratch.ws.jac at q (3 nb,) and t (s)."""
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
     position(dyn.system, q, scratch.drive, scratch.ws)
+
+
+@merged
+def gaps(dyn, scratch, t, q):
+    """``measure`` of the rows that events switch alone, which are all constraints of relative pose."""
+    if scratch.drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
+    place(dyn.system, q, scratch.ws)
+    relative_rows(dyn.system, q, scratch.drive, scratch.ws)
+
+
+@apart
+def measure_gaps(dyn, scratch, t, q):
+    """``gaps`` as a call."""
+    gaps(dyn, scratch, t, q)
 
 
 @internal

@@ -27,7 +27,7 @@ from mbsd.dynamics.many.contacts.arrays import (
 )
 from mbsd.dynamics.many.contacts.crossing import event_time, first_met
 from mbsd.dynamics.many.contacts.jumps import resolve
-from mbsd.dynamics.many.contacts.rows import hold_rows, measure_gaps
+from mbsd.dynamics.many.contacts.rows import hold_rows, measure
 from mbsd.dynamics.many.contacts.sticking.jumps import resolve_friction
 from mbsd.dynamics.many.contacts.sticking.ways import share_outputs
 from mbsd.dynamics.many.contacts.wheels import advance_to
@@ -70,7 +70,7 @@ def _resolve(dyn, scratch, contacts, state, met):
 def _close_at_start(dyn, scratch, contacts, state):
     """What is closed at the start, and impacts of velocities that contacts forbid; whether that can be."""
     contacts.clock[BEGUN] = 1.0
-    measure_gaps(dyn, scratch, state.clock[TIME], state.y[0])
+    measure(dyn, scratch, state.clock[TIME], state.y[0])
     for k in range(contacts.place.shape[0]):
         contacts.number[k, CLOSED] = 0.0
         contacts.number[k, HELD] = 0.0

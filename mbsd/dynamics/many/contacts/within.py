@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import apart, internal
+from mbsd.compiling.jit import apart, internal, merged
 from mbsd.dynamics.many.contacts.arrays import (
     BEYOND,
     CLOSED,
@@ -27,7 +27,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     STATIC,
     VALUE,
 )
-from mbsd.dynamics.many.contacts.rows import along, measure_gaps
+from mbsd.dynamics.many.contacts.rows import along, gaps, measure_gaps
 from mbsd.dynamics.many.contacts.sticking.ways import read_ways
 from mbsd.dynamics.many.contacts.wheels import advance_to
 from mbsd.dynamics.many.through import NO_LIMIT, copy_state
@@ -70,16 +70,12 @@ def stand_at(contacts, x):
     return contacts.clock[START] + h * x
 
 
-@internal
-def read(dyn, scratch, contacts, t, y, forces):
-    """Fill vector[VALUE] at a state y (2, 3 nb); what depends on forces only with ``forces``."""
-    if forces:
-        derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
-    else:
-        measure_gaps(dyn, scratch, t, y[0])
+@merged
+def _values(dyn, scratch, contacts, y, forces):
+    """Fill vector[VALUE] at a state y (2, 3 nb) that was measured; what depends on forces only with ``forces``."""
     friction = contacts.friction
-    gaps = contacts.place.shape[0] - friction.gap.shape[0]
-    for k in range(gaps):
+    count = contacts.place.shape[0] - friction.gap.shape[0]
+    for k in range(count):
         row = contacts.place[k, ROW]
         if contacts.number[k, CLOSED] > 0.0:
             contacts.vector[VALUE, k] = -contacts.lam[row]
@@ -88,17 +84,27 @@ def read(dyn, scratch, contacts, t, y, forces):
         else:
             contacts.vector[VALUE, k] = scratch.ws.phi[row]
     for w in range(friction.gap.shape[0]):
-        row = contacts.place[gaps + w, ROW]
-        if contacts.number[gaps + w, CLOSED] > 0.0:
+        row = contacts.place[count + w, ROW]
+        if contacts.number[count + w, CLOSED] > 0.0:
             normal = -contacts.lam[contacts.place[friction.gap[w], ROW]]
-            contacts.vector[VALUE, gaps + w] = friction.number[w, STATIC] * normal - abs(contacts.lam[row])
+            contacts.vector[VALUE, count + w] = friction.number[w, STATIC] * normal - abs(contacts.lam[row])
         else:
-            contacts.vector[VALUE, gaps + w] = contacts.number[gaps + w, SIGN] * along(dyn, scratch, row, y[1])
+            contacts.vector[VALUE, count + w] = contacts.number[count + w, SIGN] * along(dyn, scratch, row, y[1])
     if contacts.sticks.normal.shape[1] > 0:
         read_ways(dyn, scratch, contacts, y, forces)
 
 
-@apart
+@internal
+def read(dyn, scratch, contacts, t, y, forces):
+    """Fill vector[VALUE] at a state y (2, 3 nb); what depends on forces only with ``forces``."""
+    if forces:
+        derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
+    else:
+        measure_gaps(dyn, scratch, t, y[0])
+    _values(dyn, scratch, contacts, y, forces)
+
+
+@merged
 def sample(dyn, scratch, contacts):
     """Fill contacts.samples."""
     forces = False
@@ -106,7 +112,11 @@ def sample(dyn, scratch, contacts):
         forces = forces or contacts.number[k, CLOSED] > 0.0
     for i in range(PARTS.shape[0]):
         t = stand_at(contacts, PARTS[i])
-        read(dyn, scratch, contacts, t, contacts.pose, forces)
+        if forces:
+            derivative(dyn, scratch, t, contacts.pose, contacts.rates, contacts.lam)
+        else:
+            gaps(dyn, scratch, t, contacts.pose[0])
+        _values(dyn, scratch, contacts, contacts.pose, forces)
         for k in range(contacts.place.shape[0]):
             contacts.samples[i, k] = contacts.vector[VALUE, k]
 

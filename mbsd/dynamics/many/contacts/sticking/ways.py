@@ -20,7 +20,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     VALUE,
     WAY,
 )
-from mbsd.dynamics.many.contacts.rows import along, measure_gaps
+from mbsd.dynamics.many.contacts.rows import along, measure
 from mbsd.dynamics.many.contacts.sticking.sharing import UNDECIDED, carry, limit_of
 from mbsd.equations.joint_friction import normal_forces
 
@@ -59,6 +59,6 @@ def read_ways(dyn, scratch, contacts, y, forces):
 def share_outputs(dyn, scratch, contacts, out, first, end):
     """Divide the friction of joints at rest in outputs ``first`` to ``end`` (left out)."""
     for k in range(first, end):
-        measure_gaps(dyn, scratch, out.t[k], out.y[k, 0])
+        measure(dyn, scratch, out.t[k], out.y[k, 0])
         if carry(dyn, scratch, contacts, out.lam[k]) == UNDECIDED:
             contacts.clock[FAILURE] = NOT_SHARED

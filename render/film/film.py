@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,7 +24,8 @@ from render.film.heights import Heights, trail_heights
 from render.film.pieces import piece_specs, refuse_mismatch
 from render.film.poses import Poses
 from render.film.rolling.rollers import Rollers
-from render.film.scene import Card, LabelSpec, LegendRow, LineSpec, Scene, State, StudioSpec, Writing
+from render.film.scene import Card, LabelSpec, LegendRow, LineSpec, Plane, Scene, State, StudioSpec, Writing
+from render.film.section import between_bodies
 from render.film.swept import SweptSpace
 from render.film.tubes.belts import Belt, belts
 from render.film.tubes.spirals import Spiral, spirals
@@ -71,11 +73,16 @@ class Film:
             trails=self.trails.specs(self.look.dark),
             labels=[LabelSpec(text=s.text, size=s.size * self.size, colour=s.colour) for s in self.shot.labels],
             studio=self.studio,
-            tubes=[spec for arrow in self.drawn for spec in arrow.specs],
+            tubes=[msgspec.structs.replace(spec, cut=self.cut) for arrow in self.drawn for spec in arrow.specs],
             arrows=self.arrows.specs(),
             arcs=self.arcs.specs(),
             writing=self._writing(),
         )
+
+    @cached_property
+    def cut(self) -> tuple[Plane, ...]:
+        """Planes of the world by which a section cuts springs, ropes and belts."""
+        return between_bodies(self.parts, self.shot.section, self.folder, self.motion) if self.drawn else ()
 
     @cached_property
     def studio(self) -> StudioSpec:

@@ -74,6 +74,8 @@ class TubeSpec(msgspec.Struct, kw_only=True, frozen=True):
     surface: SurfaceSpec
     radius: float
     points: int
+    cut: tuple[Plane, ...] = ()
+    """Planes of the world beyond all of which a section has cut it away."""
 
 
 class ArrowSpec(msgspec.Struct, kw_only=True, frozen=True):

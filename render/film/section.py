@@ -4,6 +4,7 @@ Bodies of a planar machine turn about the normal of its plane alone, so a plane 
 the same way at every moment. Other planes cut what stands still, as in a model of an engine in a museum; bodies that
 are named are cut as they stand at the start of the motion, and carry their cut with them. Planes that are fixed stay
 where they are instead: what moves through them has another cut at every moment, what moves along them has the same.
+Springs, ropes and belts hang between bodies, and are cut where all that moves is.
 """
 
 from __future__ import annotations
@@ -67,19 +68,38 @@ def cuts_of(parts: Parts, asked: Section | float, folder: Path, motion: Motion |
 
     Raises UserError for a section that cuts no piece open.
     """
-    section = section_of(asked)
-    depths = {side: getattr(section, side) for side in WAYS if getattr(section, side)}
+    depths, solids, planes = _planned(parts, section_of(asked), folder, motion)
     if not depths:
         return {}
-    moves = section.fixed and set(depths) != {"front"}
-    solids = [
-        _Solid(key, piece, folder, _poses(motion, key[0], moves)) for key, piece in _cut(parts, section, depths, moves)
-    ]
-    planes = [_plane(WAYS[side], part, solids) for side, part in depths.items()]
     out = {solid.key: solid.cut(planes) for solid in solids if all(solid.reach(n)[1] > d for n, d in planes)}
     if all(cut.gone for cut in out.values()):
         raise UserError(_nothing(parts.mechanism, asked, solids, depths))
     return out
+
+
+def between_bodies(parts: Parts, asked: Section | float, folder: Path, motion: Motion | None) -> tuple[Plane, ...]:
+    """The planes of the world beyond all of which springs, ropes and belts are cut away: those of a section that cuts
+    everything that moves where it is, from the front or by fixed planes; none of one that names its pieces.
+    """
+    section = section_of(asked)
+    if section.only or not (section.fixed or section == Section(front=section.front)):
+        return ()
+    _, _, planes = _planned(parts, section, folder, motion)
+    return tuple((*normal, place) for normal, place in planes)
+
+
+def _planned(
+    parts: Parts, section: Section, folder: Path, motion: Motion | None
+) -> tuple[dict[str, float], list[_Solid], list[tuple[Normal, float]]]:
+    """Sides with their parts, the solids that they may cut, and a plane for each."""
+    depths = {side: getattr(section, side) for side in WAYS if getattr(section, side)}
+    if not depths:
+        return depths, [], []
+    moves = section.fixed and set(depths) != {"front"}
+    solids = [
+        _Solid(key, piece, folder, _poses(motion, key[0], moves)) for key, piece in _cut(parts, section, depths, moves)
+    ]
+    return depths, solids, [_plane(WAYS[side], part, solids) for side, part in depths.items()]
 
 
 def seen_from(section: Section | float, azimuth: float) -> float:

@@ -61,6 +61,11 @@ class TimeMap:
         rows = zip(self.pieces, self.pieces[1:], strict=False)
         return cuts + [b.film[0] for a, b in rows if abs(b.model[0] - a.model[1]) > 1e-9 * max(1.0, abs(a.model[1]))]
 
+    def held(self, seconds: float) -> TimeMap:
+        """The same showing, whose last moment is held until it is so many film seconds long."""
+        end, moment = self.seconds, self.pieces[-1].model[1]
+        return TimeMap((*self.pieces, TimePiece((end, seconds), (moment, moment))), False) if seconds > end else self
+
     def at(self, film: Array) -> tuple[Array, Array]:
         """Moments of the motion (s) and rates, (n,) each, at seconds ``film`` (n,) of a showing."""
         starts = np.array([piece.film[0] for piece in self.pieces])

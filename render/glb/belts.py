@@ -19,30 +19,43 @@ from render.film.tubes.belts import CHAIN, Belt
 from render.glb.animation import Animation
 from render.glb.document import Document
 from render.glb.materials import Paints
-from render.glb.tubes import primitive, tube, tube_mesh
+from render.glb.tubes import Tube, below, primitive, tube, tube_mesh
 from shared.contract.belt_section import LONG, PIN
 
 Array = NDArray[np.float64]
 
 
-def add_belt(document: Document, animation: Animation, paints: Paints, poses: Poses, belt: Belt) -> list[int]:
-    """Its nodes, which stand at the root."""
+def add_belt(
+    document: Document, animation: Animation, paints: Paints, poses: Poses, belt: Belt, front: float = math.inf
+) -> list[int]:
+    """Its nodes, which stand at the root; what is higher than ``front`` (m) is cut away."""
     moments = [Moment(float(poses.time[k]), 0) for k in animation.fewer]
     runs = [belt.run(poses, at) for at in moments]
     places = np.array([place.points(every) for place, every in runs])  # (T, count, 3)
+    left = front - belt.z
     if belt.chain:
         ahead = np.roll(places, -1, axis=1) - places
-        return _units(document, animation, _links(document, paints, belt, ahead), f"{belt.name} link", places, ahead)
+        links = _links(document, paints, belt, ahead, left)
+        return _units(document, animation, links, f"{belt.name} link", places, ahead)
     loop, *marks = belt.specs
-    mesh = tube_mesh(document, paints, loop, belt.name, [tube(_flat(belt), loop.radius)])
+    shape = _cut(tube(_flat(belt), loop.radius), left)
+    if not len(shape[2]):
+        return []
+    mesh = tube_mesh(document, paints, loop, belt.name, [shape])
     node = document.add("nodes", {"name": belt.name, "mesh": mesh})
     start = np.array([[*place.origin, belt.z] for place, _ in runs])
     animation.place(node, start, np.unwrap([place.line for place, _ in runs]))
     step = LONG * belt.radius
     ends = [np.array([place.points(every + side * step) for place, every in runs]) for side in (-1.0, 1.0)]
     half = np.array([[-step, 0.0, 0.0], [step, 0.0, 0.0]])
-    mark = tube_mesh(document, paints, marks[0], f"{belt.name} mark", [tube(half, marks[0].radius)])
+    shape = _cut(tube(half, marks[0].radius), left)
+    mark = tube_mesh(document, paints, marks[0], f"{belt.name} mark", [shape])
     return [node, *_units(document, animation, [mark], f"{belt.name} mark", places, ends[1] - ends[0])]
+
+
+def _cut(shape: Tube, left: float) -> Tube:
+    """A tube about the belt's middle without what is higher than ``left`` (m)."""
+    return below(shape, left) if left < math.inf else shape
 
 
 def _flat(belt: Belt) -> Array:
@@ -50,8 +63,10 @@ def _flat(belt: Belt) -> Array:
     return np.array(belt.still().points(belt.closed)) - [0.0, 0.0, belt.z]
 
 
-def _links(document: Document, paints: Paints, belt: Belt, ahead: Array) -> list[int]:
-    """Meshes of the links that take turns."""
+def _links(document: Document, paints: Paints, belt: Belt, ahead: Array, left: float) -> list[int]:
+    """Meshes of the links that take turns, without what is higher than ``left`` over their middle (m); none where
+    nothing is left.
+    """
     length = float(np.hypot(*np.moveaxis(ahead[..., :2], -1, 0)).mean())
     specs = {
         what: TubeSpec(name=what, surface=surface, radius=part * belt.radius, points=2) for what, surface, part in CHAIN
@@ -65,10 +80,10 @@ def _links(document: Document, paints: Paints, belt: Belt, ahead: Array) -> list
             "lower plate": [[0.0, 0, -aside], [length, 0, -aside]],
             "upper plate": [[0.0, 0, aside], [length, 0, aside]],
         }
-        parts = [
-            primitive(document, paints, specs[what], tube(np.array(line), specs[what].radius))
-            for what, line in lines.items()
-        ]
+        shapes = {what: _cut(tube(np.array(line), specs[what].radius), left) for what, line in lines.items()}
+        parts = [primitive(document, paints, specs[what], shape) for what, shape in shapes.items() if len(shape[2])]
+        if not parts:
+            return []
         links.append(document.add("meshes", {"name": f"{belt.name} link {k + 1}", "primitives": parts}))
     return links
 
@@ -78,7 +93,7 @@ def _units(
 ) -> list[int]:
     """Equal things at places (T, n, 3), turned to ways (T, n, 3) about z."""
     nodes = []
-    for k in range(places.shape[1]):
+    for k in range(places.shape[1] if meshes else 0):
         nodes.append(document.add("nodes", {"name": f"{name} {k + 1}", "mesh": meshes[k % len(meshes)]}))
         angle = np.unwrap(np.arctan2(ways[:, k, 1], ways[:, k, 0]), period=math.tau)
         animation.place(nodes[-1], places[:, k], angle)

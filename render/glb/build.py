@@ -19,7 +19,7 @@ from render.film.scene import PieceSpec
 from render.film.solids import read_triangles
 from render.glb.animation import Animation
 from render.glb.belts import add_belt
-from render.glb.cut import faces_of, pieces_of
+from render.glb.cut import faces_of, front_of, pieces_of
 from render.glb.document import INDICES, VERTICES, Document
 from render.glb.materials import CLEARCOAT, Paints
 from render.glb.mesh import smooth
@@ -41,7 +41,7 @@ def turn(up: Vector) -> Quaternion:
 
 def glb(film: Film) -> bytes:
     """The file's bytes, the same each time."""
-    return _content(film, pieces_of(film))
+    return _content(film, pieces_of(film), front_of(film))
 
 
 def tubes(film: Film) -> bytes:
@@ -49,16 +49,18 @@ def tubes(film: Film) -> bytes:
     return _content(film, [])
 
 
-def _content(film: Film, pieces: Sequence[PieceSpec]) -> bytes:
-    document, animation = scene_of(film, pieces)
+def _content(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -> bytes:
+    document, animation = scene_of(film, pieces, front)
     if any("extensions" in paint for paint in document.json["materials"]):
         document.json["extensionsUsed"] = [CLEARCOAT]
     document.add("animations", animation.content())
     return document.content()
 
 
-def scene_of(film: Film, pieces: Sequence[PieceSpec]) -> tuple[Document, Animation]:
-    """The scene with these pieces and all springs, ropes and belts, and what its nodes do."""
+def scene_of(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -> tuple[Document, Animation]:
+    """The scene with these pieces and all springs, ropes and belts as far as they are not higher than ``front`` (m),
+    and what its nodes do.
+    """
     document, motion = Document(), film.motion
     paints, animation = Paints(document), Animation(document, motion)
     nodes: dict[str, int] = {}
@@ -80,12 +82,12 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec]) -> tuple[Document, Animati
             animation.place(nodes[name], np.stack([x, y, 0 * x], axis=1), theta)
     for roller in (each for each in film.rollers.found if (each.body, each.piece) in children):
         animation.turn(children[roller.body, roller.piece], roller.turned[animation.kept])
-    springs = Springs(document, animation, paints, motion)
+    springs = Springs(document, animation, paints, motion, front)
     for stretched in film.stretched:
         springs.stretched(stretched)
     for spiral in film.spirals:
         springs.spiral(spiral)
-    belts = [node for belt in film.belts for node in add_belt(document, animation, paints, film.poses, belt)]
+    belts = [node for belt in film.belts for node in add_belt(document, animation, paints, film.poses, belt, front)]
     root = document.add(
         "nodes",
         {

@@ -5,6 +5,7 @@ Hatches are triangles of two materials, not a texture: every viewer shows them, 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -32,10 +33,20 @@ def pieces_of(film: Film) -> list[PieceSpec]:
     return [piece for each in film.scene.pieces if (piece := _at_start(film, each)) is not None]
 
 
+def front_of(film: Film) -> float:
+    """The height (m) beyond which springs, ropes and belts are cut away; infinite where they are not, as by planes that
+    stand up, for what hangs between bodies passes those in every other shape.
+    """
+    return film.cut[0][3] if film.cut and all(plane[2] for plane in film.cut) else math.inf
+
+
 def said_of(film: Film) -> str:
-    """Which bodies are so cut, in words; empty where none is."""
+    """Which bodies are so cut, and that springs, ropes and belts are not, in words; empty where there are none."""
     bodies = dict.fromkeys(piece.body for piece in film.scene.pieces if piece.fixed)
-    return f"{film.motion.mechanism}: {', '.join(bodies)}: {PART}" if bodies else ""
+    words = [f"{', '.join(bodies)}: {PART}"] if bodies else []
+    if film.cut and front_of(film) == math.inf:
+        words.append("springs, ropes and belts are whole, as the film's are not")
+    return f"{film.motion.mechanism}: {'; '.join(words)}" if words else ""
 
 
 def faces_of(triangles: Array, piece: PieceSpec, radius: float) -> list[tuple[Array, SurfaceSpec]]:

@@ -21,7 +21,7 @@ from render.film.tubes.stretched import Path, Stretched
 from render.glb.animation import Animation
 from render.glb.document import Document
 from render.glb.materials import Paints
-from render.glb.tubes import Tube, tube, tube_mesh
+from render.glb.tubes import Tube, below, tube, tube_mesh
 from shared.contract import Motion
 
 Array = NDArray[np.float64]
@@ -35,8 +35,12 @@ SHAPES = 32
 class Springs:
     """Adds them to a document; ``nodes`` are those that stand at its root."""
 
-    def __init__(self, document: Document, animation: Animation, paints: Paints, motion: Motion) -> None:
+    def __init__(
+        self, document: Document, animation: Animation, paints: Paints, motion: Motion, front: float = math.inf
+    ) -> None:
+        """What is higher than ``front`` (m) is cut away."""
         self._document, self._animation, self._paints, self._motion = document, animation, paints, motion
+        self._front = front
         self.nodes: list[int] = []
 
     def stretched(self, spring: Stretched) -> None:
@@ -68,8 +72,9 @@ class Springs:
         shapes = np.linspace(least, most, min(SHAPES, max(2, math.ceil((most - least) / WINDING) + 1)))
         tubes = [tube(spring.curve(angle), wire.radius) for angle in shapes]
         node = self._node(wire, wire.name, tubes)
-        self._animation.place(node, _flat(place), start)
-        if most > least:
+        if node is not None:
+            self._animation.place(node, _flat(place), start)
+        if node is not None and most > least:
             weights = np.maximum(0.0, 1 - np.abs(turned[:, None] - shapes) / (shapes[1] - shapes[0]))[:, 1:]
             self._animation.add(node, "weights", weights)
             self._document.json["nodes"][node]["weights"] = weights[0].astype(np.float32).tolist()
@@ -91,30 +96,41 @@ class Springs:
             return
         length = np.hypot(way[:, 0], way[:, 1])
         mean = float(length.mean())
-        node = self._node(spec, name, [tube(np.array([[0.0, 0, 0], [mean, 0, 0]]), spec.radius)])
+        level = tube(np.array([[0.0, 0, 0], [mean, 0, 0]]), spec.radius)
+        node = self._node(spec, name, [level], float(lines[0, 0, 2]))
         self._between(node, lines[:, 0], way, length / mean)
 
     def _upright(self, spec: TubeSpec, name: str, places: Array, low: float, high: float) -> None:
         """From one height to another (m) at places (T, 2)."""
         node = self._node(spec, name, [tube(np.array([[0.0, 0, low], [0.0, 0, high]]), spec.radius)])
-        self._animation.place(node, _flat(places), np.zeros(len(places)))
+        if node is not None:
+            self._animation.place(node, _flat(places), np.zeros(len(places)))
 
     def _coil(self, spec: TubeSpec, path: Path, a: Array, b: Array) -> None:
         length = np.hypot(*(b - a)[:, :2].T)
         mean = float(length.mean())
-        node = self._node(spec, spec.name, [tube(path(np.zeros(3), np.array([mean, 0.0, 0.0])), spec.radius)])
+        coil = tube(path(np.zeros(3), np.array([mean, 0.0, 0.0])), spec.radius)
+        node = self._node(spec, spec.name, [coil], float(a[0, 2]))
         self._between(node, a, b - a, length / mean)
 
-    def _between(self, node: int, start: Array, way: Array, longer: Array) -> None:
+    def _between(self, node: int | None, start: Array, way: Array, longer: Array) -> None:
         """Lay a node from (T, 3) along ways (T, 3), stretched by factors (T,)."""
+        if node is None:
+            return
         angle = np.unwrap(np.arctan2(way[:, 1], way[:, 0]))
         self._animation.place(node, start, angle)
         scale = np.column_stack([longer, np.ones((len(longer), 2))])
         self._animation.add(node, "scale", scale)
         self._document.json["nodes"][node]["scale"] = scale[0].astype(np.float32).tolist()
 
-    def _node(self, spec: TubeSpec, name: str, tubes: list[Tube]) -> int:
-        """A node with a tube as its mesh; tubes beyond the first are shapes that it may be blended to."""
+    def _node(self, spec: TubeSpec, name: str, tubes: list[Tube], height: float = 0.0) -> int | None:
+        """A node at a height (m) with a tube as its mesh; tubes beyond the first are shapes that it may be blended to.
+        None where all of it is cut away.
+        """
+        if self._front < math.inf:
+            tubes = [below(shape, self._front - height) for shape in tubes]
+        if not len(tubes[0][2]):
+            return None
         mesh = tube_mesh(self._document, self._paints, spec, name, tubes)
         self.nodes.append(self._document.add("nodes", {"name": name, "mesh": mesh}))
         return self.nodes[-1]

@@ -17,6 +17,22 @@ Tube = tuple[Array, Array, NDArray[np.signedinteger]]
 """Positions and normals (n, 3), corners (m,)."""
 
 
+def below(tube: Tube, place: float) -> Tube:
+    """A tube without what is higher than ``place`` (m), closed by a flat cut face; without corners where all of it is.
+
+    What is beyond is laid into the plane, and goes between rings that are wholly there: exact for a tube that stands
+    upright, to within a facet for one that lies level, to within a ring for a coil.
+    """
+    positions, normals, corners = tube
+    beyond = positions[:, 2] > place
+    gone = beyond.reshape(-1, SIDES).all(axis=1)  # rings, then both ends
+    gone[-2:] = gone[0] & gone[1], gone[-4] & gone[-3]
+    triangles = corners.reshape(-1, 3)
+    kept = triangles[~gone[triangles // SIDES].all(axis=1)]
+    laid = np.column_stack([positions[:, :2], np.minimum(positions[:, 2], place)])
+    return laid, np.where(beyond[:, None], [0.0, 0.0, 1.0], normals), kept.reshape(-1)
+
+
 def tube_mesh(document: Document, paints: Paints, spec: TubeSpec, name: str, tubes: list[Tube]) -> int:
     """The number of a mesh; tubes beyond the first are shapes that it may be blended to."""
     (positions, normals, _), *others = tubes

@@ -15,7 +15,7 @@ from render.frames.film_file import refuse_other_than
 from render.frames.muxing import AAC
 from render.frames.running_ffmpeg import run_ffmpeg
 from render.presets import Preset
-from render.showreel import card, reel_sound
+from render.showreel import card, reel_sound, reel_words
 from render.showreel.card import Title
 from render.showreel.clip import Clip, read_clip
 from shared.stage.console import say
@@ -39,10 +39,13 @@ class Entry:
 
 
 def join(films: Sequence[Entry], preset: Preset, target: Path, scratch: Path) -> list[Clip]:
-    """Write ``target`` from films under their titles, with a chapter for each; returns its clips in order.
+    """Write ``target`` from films under their titles, with a chapter for each, and their subtitles beside it as .srt;
+    returns its clips in order.
 
     The films' most frequent rate is that of all. Raises UserError naming the film that does not decode.
     """
+    for film in films:
+        reel_words.captions_beside(film.path)  # refused now, not after the films are joined
     clips = [read_clip(film.path) for film in films]
     fps = Counter(clip.fps for clip in clips).most_common(1)[0][0]
     chapters: list[list[Clip]] = []
@@ -61,6 +64,7 @@ def join(films: Sequence[Entry], preset: Preset, target: Path, scratch: Path) ->
     with whole_file(target) as part:
         _concatenate(chapters, [film.title for film in films], part, scratch)
         _check(row, [film.path for film in films], part, target.name, preset, fps)
+    reel_words.write_subtitles([film.path for film in films], chapters, fps, target.with_suffix(".srt"))
     return row
 
 

@@ -1,4 +1,4 @@
-"""Which films, in which order, and out/films/showreel-<preset>.mp4."""
+"""Which films, in which order, and out/films/showreel-<preset>.mp4 with its .srt."""
 
 from __future__ import annotations
 
@@ -58,10 +58,11 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
             home.rmdir()
     seconds = sum(clip.frames for clip in row) / row[0].fps
     copied = sum(clip.path.parent == target.parent for clip in row)
+    words = ", subtitles beside it" if target.with_suffix(".srt").is_file() else ""
     say(
         NAME,
         f"{target}: {duration(seconds)}, {copied} films copied as they are, {len(films) - copied} encoded again, "
-        f"{target.stat().st_size / 1e6:.1f} MB",
+        f"{target.stat().st_size / 1e6:.1f} MB{words}",
     )
     return target
 

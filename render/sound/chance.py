@@ -7,8 +7,12 @@ Random Numbers: As Easy as 1, 2, 3, SC 2011.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
+
+from render.sound.fourier import irfft
 
 Array = NDArray[np.float64]
 KEY = 0x6D627364
@@ -26,10 +30,18 @@ def uniform(count: int, stream: int) -> Array:
 
 def shaped(count: int, stream: int, amplitude: Array) -> Array:
     """(count,) noise of rms 1 whose spectrum has these amplitudes (count // 2 + 1,)."""
-    spectrum = amplitude * np.exp(2j * np.pi * uniform(len(amplitude), stream))
+    return irfft(shaped_spectrum(count, stream, amplitude), count)
+
+
+def shaped_spectrum(count: int, stream: int, amplitude: Array) -> NDArray[np.complex128]:
+    """(count // 2 + 1,) its spectrum; the rms is that of Parseval's theorem."""
+    spectrum = amplitude.astype(np.complex128) * np.exp(2j * np.pi * uniform(len(amplitude), stream))
     spectrum[0] = 0.0
-    wave = np.fft.irfft(spectrum, count)
-    return wave / max(float(np.sqrt(np.mean(wave**2))), 1e-300)
+    if count % 2 == 0:
+        spectrum[-1] = spectrum[-1].real
+    power = 2 * np.vdot(spectrum, spectrum).real - (abs(spectrum[-1]) ** 2 if count % 2 == 0 else 0.0)
+    spectrum *= count / max(math.sqrt(power), 1e-300)
+    return spectrum
 
 
 def octave_noise(count: int, centre: float, stream: int) -> Array:

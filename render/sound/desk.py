@@ -15,12 +15,14 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from render.sound.chance import octave_noise
+from render.sound.fourier import irfft, rfft
 from render.sound.ringing import Modes
 from render.sound.setting import RATE, Setting
 
@@ -104,12 +106,12 @@ class Desk:
                 bank[k] = bank[k] if k in bank else self._octave(k)
                 for channel, row in zip(wave, power, strict=True):
                     channel += self._fine(self._soft(np.sqrt(row))) * bank[k]
-        stems = {source: np.fft.rfft(wave) for source, wave in self._waves.items()}
+        stems = {source: rfft(wave) for source, wave in self._waves.items()}
         responses: dict[str, Spectrum] = {}
         for source, struck in self.struck.items():
             for body in dict.fromkeys(body for body, _ in struck):
                 if body not in responses:
-                    responses[body] = np.fft.rfft(self._modes[body].response(self.setting.samples, RATE))
+                    responses[body] = rfft(self._modes[body].response(self.setting.samples, RATE))
                 rung = self._blows([blows for name, blows in struck if name == body]) * responses[body]
                 stems[source] = stems[source] + rung if source in stems else rung
         return stems
@@ -122,8 +124,8 @@ class Desk:
         film, impulse, tau, side = (np.concatenate(row) for row in zip(*blows, strict=True))
         gains = _gains(side)
         if np.ptp(side) < NARROW:
-            return np.outer(gains.mean(axis=1), np.fft.rfft(self._pulses(film, impulse, tau)))
-        return np.stack([np.fft.rfft(self._pulses(film, gain * impulse, tau)) for gain in gains])
+            return np.outer(gains.mean(axis=1), rfft(self._pulses(film, impulse, tau)))
+        return np.stack([rfft(self._pulses(film, gain * impulse, tau)) for gain in gains])
 
     def _pulses(self, film: Array, impulse: Array, tau: Array) -> Array:
         """(N,) half sines of these areas; those that last about as long are made together."""
@@ -145,9 +147,16 @@ class Desk:
         return wave
 
     def _fine(self, values: Array) -> Array:
-        """(N,) of (M + 1,)."""
+        """(N,) of (M + 1,), straight in between."""
+        first, part = self._between
+        return values[first] + part * np.diff(values)[first]
+
+    @cached_property
+    def _between(self) -> tuple[NDArray[np.intp], Array]:
+        """(N,) after which of the values (M + 1,) each sample is, and the part of the way to the next."""
         count = self.setting.samples
-        return np.interp(np.arange(count) * (self.setting.steps / count), np.arange(len(values)), values)
+        first, rest = np.divmod(np.arange(count) * self.setting.steps, count)
+        return first, rest / count
 
     def _soft(self, level: Array) -> Array:
         """Smoothed round the ring."""
@@ -155,7 +164,7 @@ class Desk:
         bell = np.hanning(width + 2)[1:-1]
         ring, full = level[:-1], np.zeros(len(level) - 1)
         np.add.at(full, (np.arange(width) - width // 2) % len(ring), bell / bell.sum())
-        smooth = np.maximum(np.fft.irfft(np.fft.rfft(ring) * np.fft.rfft(full), len(ring)), 0.0)
+        smooth = np.maximum(irfft(rfft(ring) * rfft(full), len(ring)), 0.0)
         return np.append(smooth, smooth[0])
 
 

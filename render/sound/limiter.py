@@ -11,9 +11,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from render.sound.fourier import irfft, rfft
 from render.sound.loudness import STEP, energies, loudness, of_energies
 
 Array = NDArray[np.float64]
+Spectrum = NDArray[np.complex128]
 FINER = 4
 """True peaks are looked for at so many times the rate."""
 CHUNK, BESIDE = 16_000, 192
@@ -44,28 +46,27 @@ def true_peaks(wave: Array) -> Array:
 def _upsampled(wave: Array) -> Array:
     """(2, FINER n) the wave between its samples (2, n); its ends are not to be used."""
     count = wave.shape[1]
-    spectrum = np.fft.rfft(wave) * FINER
+    spectrum = rfft(wave) * FINER
     if count % 2 == 0:
         spectrum[:, -1] *= 0.5
-    return np.fft.irfft(spectrum, count * FINER)
+    return irfft(spectrum, count * FINER)
 
 
-def levelled(spectrum: NDArray[np.complex128], beside: Array, wanted: float, ceiling: float, showings: int) -> Array:
-    """A ring (2, N) with this spectrum and what is heard ``beside`` it (2, N), together at ``wanted`` LUFS, as far as
-    peaks below ``ceiling`` (1 is full scale) let the former be.
+def levelled(spectrum: Spectrum, beside: Spectrum, count: int, wanted: float, ceiling: float, showings: int) -> Array:
+    """A ring (2, count) with this spectrum and that of what is heard ``beside`` it, (2, count // 2 + 1) each, together
+    at ``wanted`` LUFS, as far as peaks below ``ceiling`` (1 is full scale) let the former be.
 
     What is beside it counts: the second gate of the loudness depends on how quiet the rest is.
     """
-    count = beside.shape[1]
-    wave, energy = np.fft.irfft(spectrum, count), energies(spectrum, count)
+    wave, energy, air = irfft(spectrum, count), energies(spectrum, count), irfft(beside, count)
     now = of_energies(energy, showings, floor=-np.inf)
     if not np.isfinite(now) or not energy.any():
-        return beside
-    peaks, quiet, aim, out = true_peaks(wave), energies(np.fft.rfft(beside), count), wanted, beside
+        return air
+    peaks, quiet, aim, out = true_peaks(wave), energies(beside, count), wanted, air
     for _ in range(TRIES):
         gain = _gain(peaks, energy, quiet, aim, 10 ** ((wanted - now) / 20), ceiling, showings)
         middles = (np.arange(len(gain)) + 0.5) * (count / len(gain))
-        out = wave * np.interp(np.arange(count), middles, gain, period=count) + beside
+        out = wave * np.interp(np.arange(count), middles, gain, period=count) + air
         off = wanted - loudness(out, showings)
         if abs(off) < ENOUGH:
             break

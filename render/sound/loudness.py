@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from render.sound.fourier import irfft, rfft
+
 Array = NDArray[np.float64]
 RATE = 48_000
 SHELF = (1.53512485958697, -2.69169618940638, 1.19839281085285), (1.0, -1.69065929318241, 0.73248077421585)
@@ -40,7 +42,7 @@ def weighting(count: int) -> NDArray[np.complex128]:
 def energies(spectrum: NDArray[np.complex128], count: int) -> Array:
     """(m,) mean squares of each ms of a ring of so many samples, K-weighted, both channels together, from its spectrum
     (2, count // 2 + 1)."""
-    square = (np.fft.irfft(spectrum * weighting(count), count) ** 2).sum(axis=0)
+    square = (irfft(spectrum * weighting(count), count) ** 2).sum(axis=0)
     if count < STEP:
         return np.array([square.mean()])
     whole = count // STEP
@@ -67,7 +69,7 @@ def of_energies(energy: Array, showings: int = 1, floor: float = ABSOLUTE) -> fl
 
 def loudness(wave: Array, showings: int = 1, floor: float = ABSOLUTE) -> float:
     """Integrated loudness (LUFS) of a ring (2, N) that is played so many times."""
-    return of_energies(energies(np.fft.rfft(wave), wave.shape[1]), showings, floor)
+    return of_energies(energies(rfft(wave), wave.shape[1]), showings, floor)
 
 
 def _lufs(square: Any) -> Any:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from render.sound import limiter, room
 from render.sound.chance import frequencies
+from render.sound.fourier import irfft
 from render.sound.loudness import energies, of_energies
 
 Array = NDArray[np.float64]
@@ -36,9 +37,9 @@ def mixed(stems: Mapping[str, Spectrum], count: int, showings: int) -> Array:
     heard = {name: level for name, level in loud.items() if level > QUIETEST}
     air = room.air(count)
     if not heard:
-        return air
+        return irfft(air, count)
     most = max(heard.values())
     whole = np.zeros((2, len(high)), complex)
     for name, level in sorted(heard.items()):
         whole += stems[name] * 10 ** ((1 - BALANCE) * (most - level) / 20)
-    return limiter.levelled(whole * high * room.walls(count), air, LOUDNESS, CEILING, showings)
+    return limiter.levelled(whole * high * room.walls(count), air, count, LOUDNESS, CEILING, showings)

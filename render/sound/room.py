@@ -11,8 +11,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from render.sound.chance import frequencies, shaped
-from render.sound.loudness import loudness
+from render.sound.chance import frequencies, shaped, shaped_spectrum
+from render.sound.fourier import rfft
+from render.sound.loudness import energies, of_energies
 
 Array = NDArray[np.float64]
 RATE = 48_000
@@ -29,14 +30,14 @@ STREAMS = 100
 """Number of the first of its streams of chance."""
 
 
-def air(count: int) -> Array:
-    """(2, count) the room alone, at its level."""
+def air(count: int) -> NDArray[np.complex128]:
+    """(2, count // 2 + 1) the spectrum of the room alone, at its level."""
     f = frequencies(count)
     slope = np.where(f > 20.0, 1 / np.sqrt(1 + (f / KNEE) ** 2), 0.0)
-    middle, left, right = (shaped(count, STREAMS + k, slope) for k in range(3))
-    wave = np.stack([middle + left, middle + right])
-    level = loudness(wave, 4)
-    return wave * 10 ** ((AIR_LEVEL - level) / 20) if np.isfinite(level) else 0.0 * wave
+    middle, left, right = (shaped_spectrum(count, STREAMS + k, slope) for k in range(3))
+    spectrum = np.stack([middle + left, middle + right])
+    level = of_energies(energies(spectrum, count), 4)
+    return spectrum * 10 ** ((AIR_LEVEL - level) / 20) if np.isfinite(level) else 0.0 * spectrum
 
 
 def walls(count: int) -> NDArray[np.complex128]:
@@ -49,4 +50,4 @@ def walls(count: int) -> NDArray[np.complex128]:
         tail = shaped(length, STREAMS + 10 + side, dull) * fall
         late = np.arange(length) + round(BEFORE * RATE)
         np.add.at(folded[side], late % count, tail * WALLS / np.sqrt((tail**2).sum()))
-    return 1 + np.fft.rfft(folded)
+    return 1 + rfft(folded)

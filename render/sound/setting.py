@@ -19,6 +19,7 @@ from render.film.camera import angles
 from render.film.film import Film
 from render.film.framing import axes
 from render.film.time_map import TimeMap
+from render.sound.fourier import quick_length
 from render.sound.ringing import Modes, modes_of
 from shared.stage.errors import UserError
 
@@ -47,6 +48,9 @@ class Setting:
         ``within`` is where the machine's picture begins and ends in the whole picture, -1 at its left edge, 1 at its
         right; ``streams`` is the number of the first stream of chance of its noises.
 
+        That other film is shown once; here its last moment is held for some tenths of a second more, until a number of
+        samples whose spectrum is quickly made. :attr:`heard_samples` are its own.
+
         Raises UserError where the showing is longer than what there is room for.
         """
         self.film, self.motion, self.map = film, film.motion, time_map or film.clock.time_map
@@ -57,8 +61,12 @@ class Setting:
                 f"{film.motion.mechanism}: a showing of the film lasts {self.seconds:.0f} s, and sound is made of "
                 f"{LONGEST:.0f} s at most; give the shot fewer seconds_per_turn, or film it with SOUND=off"
             )
-        self.samples = max(64, round(self.seconds * RATE))
-        """Samples of a showing."""
+        self.samples = self.heard_samples = max(64, round(self.seconds * RATE))
+        """Samples of the ring, and those of the film in it."""
+        if time_map is not None:  # a prime number of frames would take four times as long
+            self.samples = quick_length(self.samples)
+            self.map = self.map.held(self.samples / RATE)
+            self.seconds = self.map.seconds
         self.time = np.asarray(film.motion.time)
         self.steps = max(16, round(self.seconds * CONTROL))
         self.at = np.linspace(0.0, self.seconds, self.steps + 1)

@@ -24,7 +24,7 @@ def sound_of(film: Film, time_map: TimeMap | None = None) -> Array:
     """
     setting = Setting(film, time_map)
     if time_map is not None:
-        return mixed(stems_of(setting), setting.samples, 1)
+        return mixed(stems_of(setting), setting.samples, 1)[:, : setting.heard_samples]
     clock = film.clock
     ring = mixed(stems_of(setting), setting.samples, clock.showings)
     count = round(clock.total / film.shot.fps * RATE)

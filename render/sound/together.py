@@ -39,4 +39,4 @@ def sound_of_all(machines: Sequence[Heard]) -> Array:
     for setting in settings:
         for name, stem in stems_of(setting).items():
             stems[name] = stems[name] + stem if name in stems else stem
-    return mixed(stems, settings[0].samples, 1)
+    return mixed(stems, settings[0].samples, 1)[:, : settings[0].heard_samples]

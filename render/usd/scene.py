@@ -19,7 +19,7 @@ from pxr import Gf, Kind, Usd, UsdGeom
 from render.film.film import Film
 from render.glb.animation import Animation, Track
 from render.glb.build import scene_of
-from render.glb.cut import pieces_of
+from render.glb.cut import front_of, pieces_of
 from render.glb.document import Document
 from render.usd import moves
 from render.usd.clock import Clock
@@ -30,7 +30,7 @@ from render.usd.surfaces import Surfaces
 
 def stage_of(film: Film) -> Usd.Stage:
     """The stage, in memory."""
-    document, animation = scene_of(film, pieces_of(film))
+    document, animation = scene_of(film, pieces_of(film), front_of(film))
     clock = Clock(np.asarray(film.motion.time))
     stage = Usd.Stage.CreateInMemory()
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)

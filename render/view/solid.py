@@ -12,7 +12,8 @@ solid   looks {dark, light}: see looks.py; reach: away from the camera (m); size
         front, those of pieces then: cut [(x, y, z, m)] a normal and how far along it each plane is, in the body, or
         where fixed in the world, and gone: whether all of it is always away
         heights {joints, points, bodies: {name: m}}: of what floats over them
-        tubes: bytes of a GLB with springs, ropes and belts and their motion, or null
+        tubes: bytes of a GLB with springs, ropes and belts and their motion, or null; still [(x, y, z, m)]: planes of
+        the machine that cut them where the shot's section does
 """
 
 from __future__ import annotations
@@ -98,6 +99,7 @@ def solid(film: Film) -> dict[str, Any]:
         "surfaces": [_surface(surface) for surface in surfaces],
         "pieces": pieces,
         "heights": _heights(film),
+        "still": [list(plane) for plane in film.cut],
         "tubes": np.frombuffer(tubes(film), np.uint8) if film.drawn else None,
     }
 

@@ -283,6 +283,7 @@ def refuse_unknown(shot: Shot, names: Names) -> None:
         known(f"sound.silent[{index}]", name, (*names.joints, *names.acting))
     for index, shot_name in enumerate(shot.story.shots or ()):
         known(f"story.shots[{index}]", shot_name, STORY_SHOTS)
+    _refuse_unseen(shot.story, names.mechanism)
     for index, curve in enumerate(shot.story.curves or ()):
         known(f"story.curves[{index}]", curve, dict.fromkeys((*names.joints, *names.efforts, *names.points)))
     if shot.story.joint is not None:
@@ -295,6 +296,16 @@ def refuse_unknown(shot: Shot, names: Names) -> None:
         known("materials", name, [*names.pieces, *pieces])
         if isinstance(surface, str):
             known(f"materials['{name}']", surface, MATERIALS)
+
+
+def _refuse_unseen(story: Story, mechanism: str) -> None:
+    """Raise UserError for a wish whose shot the story leaves out."""
+    for field, seen_in in (("caption", "reason"), ("joint", "macro")):
+        if getattr(story, field) is not None and story.shots is not None and seen_in not in story.shots:
+            raise UserError(
+                f"{mechanism}: shot.story.{field} is for the shot '{seen_in}', which shot.story.shots leaves out; "
+                f"add '{seen_in}' to the shots, or take the {field} away"
+            )
 
 
 def _only(shot: Shot) -> tuple[str, ...]:

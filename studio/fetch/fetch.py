@@ -1,4 +1,4 @@
-"""Brings the films of another machine into out/films/, what has changed alone.
+"""Brings the films of another machine and their subtitles into out/films/, what has changed alone.
 
 Films arrive in out/.fetch/ and get their names in out/films/ when all are whole. What was brought in part stays there,
 also after a kill or a power cut, and the next run brings the rest alone.
@@ -19,7 +19,7 @@ from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import refusal
 from shared.stage.paths import out_root, refuse_links
-from studio.fetch.transfer import Transfer, program, shell_program, transfer
+from studio.fetch.transfer import KINDS, Transfer, program, shell_program, transfer
 
 FOLDER = "mbsd"
 """Where the project is on the other machine, below the home folder."""
@@ -59,7 +59,8 @@ def run(host: str, folder: str = "") -> list[str]:
         moved = _moved(arriving, films)
     if moved:
         line = f"{result.received / 1e6:.1f} MB over the line, {result.there / 1e6:.1f} MB of them were here"
-        say("fetch", f"{len(moved)} films came, {line}")
+        films_and = "films and subtitles" if any(name.endswith(".srt") for name in moved) else "films"
+        say("fetch", f"{len(moved)} {films_and} came, {line}")
     else:
         say("fetch", "nothing to do: all films are here")
     return moved
@@ -111,7 +112,7 @@ def _lock_of(folder: Path) -> int:
 
 def _moved(arriving: Path, films: Path) -> list[str]:
     """Give the films their names; each is there whole, old or new, at any moment."""
-    names = sorted(path.name for path in arriving.glob("*.mp4"))
+    names = sorted(path.name for path in _files(arriving))
     for name in names:
         os.replace(arriving / name, films / name)
     shutil.rmtree(arriving, ignore_errors=True)
@@ -119,7 +120,11 @@ def _moved(arriving: Path, films: Path) -> list[str]:
 
 
 def _bytes(folder: Path) -> int:
-    return sum(path.stat().st_size for path in folder.glob("*.mp4") if path.is_file())
+    return sum(path.stat().st_size for path in _files(folder) if path.is_file())
+
+
+def _files(folder: Path) -> list[Path]:
+    return [path for kind in KINDS for path in folder.glob(kind)]
 
 
 def _reason(result: Transfer, host: str, source: str, kept: int) -> str:

@@ -19,6 +19,8 @@ from shared.system import missing
 
 SSH = "ssh -o ConnectTimeout=20 -o ServerAliveInterval=20 -o ServerAliveCountMax=6"
 """A machine that is gone is given up after two minutes. $RSYNC_RSH, if set, takes its place."""
+KINDS = ("*.mp4", "*.srt")
+"""What is brought."""
 FILE = re.compile(r"^file (\d+) (\d+) (.*)$")
 
 
@@ -37,14 +39,22 @@ class Transfer:
 
 
 def transfer(source: str, target: Path, beside: Path, lock: int, report: Callable[[str, int], None]) -> Transfer:
-    """Bring the films of ``source`` into ``target``, those left out that ``beside`` has with the same bytes.
+    """Bring the films of ``source`` and their subtitles into ``target``, those left out that ``beside`` has with the
+    same bytes.
 
     A file that is in ``target`` in part gets the rest alone. ``report`` is called with the name and the size of each
     file that is done. rsync keeps the open file ``lock``, so that a lock on it is held until it has ended itself.
     """
     command = [program("rsync"), "-r", "--checksum", "--inplace", "--no-whole-file", "--stats"]
     command += ["--out-format=file %b %l %n", f"--compare-dest={beside.resolve()}", f"--rsh={remote_shell()}"]
-    command += ["--exclude=.*", "--include=*.mp4", "--exclude=*", "--", f"{source}/", f"{target.resolve()}/"]
+    command += [
+        "--exclude=.*",
+        *(f"--include={kind}" for kind in KINDS),
+        "--exclude=*",
+        "--",
+        f"{source}/",
+        f"{target.resolve()}/",
+    ]
     environment = {key: value for key, value in os.environ.items() if not key.startswith("RSYNC_")} | {"LC_ALL": "C"}
     with terminable():
         process = subprocess.Popen(

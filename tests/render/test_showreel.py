@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 
+from render.film.story.frame import Caption
+from render.film.story.subtitles import captions_of, srt
 from render.frames import encode, muxing
 from render.presets import Preset
-from render.showreel import card, showreel
+from render.showreel import card, reel_words, showreel
 from render.showreel.card import Title
 from render.showreel.clip import read_clip
 from render.sound.wave_file import wav
@@ -90,6 +92,37 @@ def test_films_are_heard_under_their_pictures(out_root: Path) -> None:
     assert shown_at(target) == [k / 30 for k in range(2 * title + 40)], "also where a film with sound begins"
     before = target.read_bytes()
     assert showreel.run(TINY, "pendulum,four_bar").read_bytes() == before
+
+
+def test_films_have_their_captions_where_they_are(out_root: Path) -> None:
+    """Of two that are joined, and of one of another rate, which is encoded again; a film without a file has none."""
+    film(out_root, "pendulum", 30)
+    first = film(out_root, "four_bar", 60)
+    other = film(out_root, "jansen_leg", 48, fps=24, size=(64, 64))
+    first.with_suffix(".srt").write_text(srt([Caption(0.5, 1.25, "The crank turns."), Caption(1.5, 9.0, "It rests.")]))
+    other.with_suffix(".srt").write_text(srt([Caption(0.25, 1.0, "A leg,\nof eight links"), Caption(2.5, 3, "late")]))
+    target = showreel.run(TINY, "pendulum,four_bar,jansen_leg")
+    title, words = card.number(30) / 30, captions_of(target.with_suffix(".srt").read_text())
+    begin, then = 2 * title + 1.0, 3 * title + 3.0
+    assert [caption.text for caption in words] == ["The crank turns.", "It rests.", "A leg,\nof eight links"]
+    times = [(begin + 0.5, begin + 1.25), (begin + 1.5, begin + 2.0), (then + 0.25, then + 1.0)]
+    assert [(caption.start, caption.end) for caption in words] == [pytest.approx(pair, abs=6e-4) for pair in times]
+    listing = subprocess.run([encode.ffmpeg(), "-i", str(target)], capture_output=True, text=True).stderr
+    starts = [float(start) for start in re.findall(r"start (\d+\.\d+), end", listing)]
+    assert starts == pytest.approx([0.0, title + 1.0, 2 * title + 3.0], abs=1e-5), "a chapter for each film"
+
+
+def test_subtitles_go_with_their_films_and_are_refused_before_any_is_joined(out_root: Path) -> None:
+    first, second = film(out_root, "four_bar", 6), film(out_root, "pendulum", 6)
+    first.with_suffix(".srt").write_text(srt([Caption(0.0, 0.1, "It turns.")]))
+    target, chapters = out_root / "reel.srt", [[read_clip(first)], [read_clip(second)]]
+    assert reel_words.write_subtitles([first, second], chapters, 30, target)
+    assert captions_of(target.read_text()) == [Caption(0.0, 0.1, "It turns.")]
+    assert not reel_words.write_subtitles([second], chapters[1:], 30, target)
+    assert not target.exists(), "no words of films that are no longer in it"
+    second.with_suffix(".srt").write_text("1\nsoon --> later\nIt swings.\n")
+    with pytest.raises(UserError, match=r"pendulum-tiny\.srt is not a subtitle file .*'1 soon --> later It swings\.'"):
+        showreel.run(TINY, "pendulum,four_bar")
 
 
 def shown_at(path: Path) -> list[float]:

@@ -175,7 +175,7 @@ def test_belts_and_chains_run_as_in_the_glb(out_root: Path, teeth: tuple[int, in
     no: list[Any] = []
     film: Any = SimpleNamespace(
         motion=poses.motion, poses=poses, belts=[belt], stretched=no, spirals=no, parts=SimpleNamespace(mount=Mount()),
-        scene=SimpleNamespace(pieces=no), rollers=SimpleNamespace(found=no),
+        scene=SimpleNamespace(pieces=no), cut=(), rollers=SimpleNamespace(found=no),
     )  # fmt: skip
     names = same_as_glb(film, out_root)
     assert any("link" in name for name in names) == bool(teeth)

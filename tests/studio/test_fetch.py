@@ -47,7 +47,8 @@ def project(tmp_path: Path, other: Machine, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def there(project: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in (project / "out" / "films").glob("[!.]*.mp4")}
+    films = (project / "out" / "films").glob("[!.]*")
+    return {path.name: path.read_bytes() for path in films if path.suffix in (".mp4", ".srt")}
 
 
 def here(out_root: Path) -> dict[str, bytes]:
@@ -74,7 +75,9 @@ def test_films_come_and_only_what_changed(
     future = time.time() + 1e6
     for path in (out_root / "films").iterdir():
         os.utime(path, (future, future))
-    assert fetch.run(HOST, str(project)) == ["arm-preview.mp4"]
+    (arm.parent / "arm-preview.srt").write_text("1\n00:00:00,500 --> 00:00:02,000\nIt lifts.\n")
+    assert fetch.run(HOST, str(project)) == ["arm-preview.mp4", "arm-preview.srt"]
+    assert "2 films and subtitles came" in capsys.readouterr().out
     assert int(other.counted.read_text()) < 30_000
     assert here(out_root) == there(project)
 

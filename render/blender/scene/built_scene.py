@@ -80,7 +80,10 @@ def build(job: Job) -> BuiltScene:
     if job.drawn:
         meshes = [thing for thing in scene.objects if thing.type == "MESH" and thing not in trails]
         coded.number(meshes, [*trails, *texts], job.scene.studio.radius)
-    passing.cut_in_passing(scene, job.scene, solids, painted=job.flat is None and not job.drawn)
+    painted = job.flat is None and not job.drawn
+    passing.cut_in_passing(scene, job.scene, solids, painted)
+    if wires:
+        passing.cut_tubes(scene, job.scene, job.states, wires, painted)
     _animate(job, bodies, camera, texts)
     _lift(job, solids)
     drawn = (job.scene.arrows or job.scene.arcs) and job.flat is None

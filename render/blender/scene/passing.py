@@ -1,4 +1,4 @@
-"""Solids that move through planes which stand still: Blender cuts them anew at every moment, also in a saved scene.
+"""What moves through planes that stand still: Blender cuts it anew at every moment, also in a saved scene.
 
 What is beyond all planes is a box, for sides of a section are along axes; it is taken from each solid by a boolean
 modifier, which leaves the box's faces, with their paint, as the cut faces.
@@ -12,10 +12,12 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from render.blender.scene.cut import WELDED
 from render.blender.scene.materials import hatched
 from render.film.hatches import hatch_of
-from render.film.scene import PieceSpec, Plane, Scene, StudioSpec
+from render.film.scene import PieceSpec, Plane, Point, Scene, State, StudioSpec, SurfaceSpec, TubeSpec
 from shared.stage.errors import UserError
 
 BEYOND = 4.0
@@ -34,6 +36,29 @@ def cut_in_passing(scene: Any, spec: Scene, solids: dict[str, Any], painted: boo
             _close(solids[name], name)
             paints = _paints(piece, name, spec.studio) if painted else []
             _take_away(solids[name], _box(scene, f"{name} cut", piece.cut, reach, paints), painted)
+
+
+def cut_tubes(scene: Any, spec: Scene, states: Sequence[State], tubes: Sequence[Any], painted: bool) -> None:
+    """Cut springs, ropes and belts, the ``tubes`` of a scene, as far as they are beyond their planes in any state."""
+    reach = math.hypot(*spec.studio.centre) + BEYOND * spec.studio.radius
+    boxes: dict[SurfaceSpec, Any] = {}
+    for k, (tube, thing) in enumerate(zip(spec.tubes, tubes, strict=True)):
+        if not tube.cut or not _ever_beyond([state.tubes[k] for state in states], tube):
+            continue
+        if tube.surface not in boxes:
+            paints = [
+                hatched(tube.surface, f"{tube.name} cut {j}", spec.studio.radius, hatch_of(tube.name, plane), True)
+                for j, plane in enumerate(tube.cut if painted else (), 1)
+            ]
+            boxes[tube.surface] = _box(scene, f"{tube.name} cut", tube.cut, reach, paints)
+        _take_away(thing, boxes[tube.surface], painted)
+
+
+def _ever_beyond(paths: Sequence[Sequence[Point]], tube: TubeSpec) -> bool:
+    """Whether any of it is beyond all planes along any of these paths."""
+    points = np.array(paths).reshape(-1, 3)
+    far = [points @ np.array(plane[:3]) > plane[3] - tube.radius for plane in tube.cut]
+    return bool(np.all(far, axis=0).any())
 
 
 def _paints(piece: PieceSpec, name: str, studio: StudioSpec) -> list[Any]:

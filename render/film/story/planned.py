@@ -91,8 +91,8 @@ def _story(scenery: Scenery) -> Story:
     shots = [shot for shot in reversed(made) if shot is not None]
     if not shots:
         raise UserError(
-            f"{scenery.film.motion.mechanism}: shot.story.shots = {', '.join(names)} leaves nothing to show: this "
-            "machine has no such shots; add motion or last"
+            f"{scenery.film.motion.mechanism}: shot.story.shots = {', '.join(names)} leaves nothing to show: the "
+            "machine has no such shots, and a title stands before another shot; add motion or last"
         )
     return _made(scenery, shots)
 

@@ -29,6 +29,7 @@ from render.report.reasons import reasons
 from shared.contract import Motion, read_motion, read_parts
 from shared.contract.clearance import read_clearance
 from shared.contract.shot import Shot, read_shot, shown
+from shared.contract.shot import Story as Wishes
 from shared.contract.spanning import with_rods
 from shared.stage.console import duration
 from shared.stage.errors import UserError
@@ -94,7 +95,7 @@ def telling_of(
     refuse_missing(out)
     shot, parts = read_shot(out.shot), read_parts(out.parts, out.name)
     if shots is not None:
-        shot = msgspec.structs.replace(shot, story=msgspec.structs.replace(shot.story, shots=shots))
+        shot = msgspec.structs.replace(shot, story=Wishes(shots=shots, language=shot.story.language))
     motion = read_motion(out.motion, out.name)
     why = reasons(motion)
     whole = with_rods(motion, parts)

@@ -72,6 +72,27 @@ def test_a_period_that_begins_anew_has_no_gap_and_a_cut_has_one() -> None:
     assert cut.fade[at] < 0.1
 
 
+def test_a_story_of_a_prime_number_of_frames_is_made_as_quickly_and_is_as_long() -> None:
+    """Its last moment is held to a length whose spectrum is quickly made; what it is until then is heard as it was."""
+    film = filmed(gears())
+    frames = 89
+    heard = TimeMap.through([0.0, frames / 30], [film.clock.start, film.clock.end], closes=False)
+    setting = Setting(film, heard)
+    assert setting.heard_samples == frames * RATE // 30
+    assert 0 <= setting.samples - setting.heard_samples < 0.05 * setting.heard_samples
+    left = setting.samples
+    for prime in (2, 3, 5):
+        while left % prime == 0:
+            left //= prime
+    assert left == 1
+    assert sound_of(film, heard).shape == (2, setting.heard_samples)
+    at = np.linspace(0.0, frames / 30, 50, endpoint=False)
+    assert np.array_equal(setting.map.at(at), heard.at(at))
+    moment, rate = setting.map.at(np.array([setting.seconds]))
+    assert (moment[0], rate[0]) == (film.clock.end, 0.0)
+    assert Setting(film).samples == Setting(film).heard_samples == round(film.clock.time_map.seconds * RATE)
+
+
 def test_impacts_are_heard_in_the_frame_that_shows_them_through_ramps_and_cuts() -> None:
     """Slower and slower into the first bounce, on at another rate, and a cut back before it."""
     film = filmed(ball())

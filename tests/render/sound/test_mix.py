@@ -6,9 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from mbsd import Mechanism, Solution
 from mbsd.model.joint import KINDS
+from render.sound.chance import frequencies, shaped
+from render.sound.desk import Desk
 from render.sound.limiter import true_peaks
 from render.sound.loudness import loudness
 from render.sound.mix import mixed
@@ -85,6 +89,18 @@ def test_a_film_loops_without_a_click_or_an_offset(made, shot: Shot) -> None:
     for seam in (ring - 1,) if film.clock.showings > 1 else ():
         assert (steps[:, seam] <= np.quantile(steps, 0.9999, axis=1)).all()
     assert (np.abs(sound[:, 0] - sound[:, -1]) <= np.quantile(steps, 0.9999, axis=1)).all()
+
+
+@given(st.integers(64, 5000), st.integers(0, 50))
+def test_noise_has_the_rms_one_by_its_spectrum(count: int, stream: int) -> None:
+    assert np.sqrt((shaped(count, stream, frequencies(count) ** -0.5) ** 2).mean()) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_what_changes_slowly_is_straight_between_its_values() -> None:
+    desk = Desk(Setting(filmed(gears(), Shot(seconds_per_turn=0.37, fps=24))))
+    values = np.random.default_rng(1).normal(size=desk.setting.steps + 1)
+    samples = np.arange(desk.setting.samples) / desk.setting.samples * desk.setting.steps
+    assert desk._fine(values) == pytest.approx(np.interp(samples, np.arange(len(values)), values), abs=1e-9)
 
 
 def test_peaks_between_the_samples_count() -> None:

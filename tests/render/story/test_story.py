@@ -12,6 +12,7 @@ from render.film.framing import project
 from render.film.story.curves import curves_of
 from render.film.story.planned import planned, scenery_of
 from render.film.story.reason import Reason
+from render.film.story.shots import reason
 from render.film.story.story import Story
 from render.frames.story import kinds
 from render.frames.story.telling import Telling, telling_of
@@ -217,6 +218,11 @@ def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:
          r"picture of 640x360: it takes \d\.\d lines of 2 .*; write a shorter shot\.story\.caption"),
         (Wishes(shots=("titel",)), r"four_bar: shot\.story\.shots\[0\] names 'titel', which is not there; known: "
          r"title, assembly, .*; did you mean 'title'\?"),
+        (Wishes(shots=("title", "motion"), caption="Look"), r"four_bar: shot\.story\.caption is for the shot "
+         r"'reason', which shot\.story\.shots leaves out; add 'reason'"),
+        (Wishes(shots=("motion", "reason"), joint="B"), r"shot\.story\.joint is for the shot 'macro', .*; add 'macro'"),
+        (Wishes(shots=("title",)), r"title leaves nothing to show: .* a title stands before another shot; "
+         r"add motion or last"),
         (Wishes(joint="Z"), r"four_bar: shot\.story\.joint names 'Z', which is not there; known: A, B, C, D"),
         (Wishes(language="xx"), r"language is 'xx'"),
     ],
@@ -264,3 +270,20 @@ def test_a_loop_of_a_motion_that_ends_stops_at_its_event(out_root, part: float) 
     assert shot.model(stopped[len(stopped) // 2]) == pytest.approx(at, abs=1e-9)
     assert shot.over(0.0).dark == shot.over(12.0).dark == 1.0
     assert shot.over(6.0).dark == 0.0
+
+
+def test_the_camera_stops_where_all_arrows_are_in_the_picture(out_root, monkeypatch) -> None:
+    """From the first distance of those that are tried; a third of it is too near for this machine."""
+    distances = []
+    for tried in ((1.0,), (0.3, 1.0), (0.3,)):
+        monkeypatch.setattr(reason, "NEARER", tried)
+        telling = made(Wishes(shots=("reason",)))
+        shot, film = telling.story.shots[0], telling.forces
+        assert film is not None
+        picture = shot.picture(reason.GOES + reason.SLOWS + reason.GROWS + 1.0)
+        assert picture.grown == 1.0
+        ends = np.array([end for arrow in film.state(picture.at, picture.camera).arrows for end in arrow])
+        places = project(picture.camera, ends, film.aspect, 1.0) / [film.aspect, 1.0]
+        assert bool(np.abs(places - 0.5).max() < 0.5 - reason.EDGE) == (tried[-1] == 1.0)
+        distances.append(picture.camera.position)
+    assert distances[0] == distances[1] != distances[2]

@@ -6,9 +6,11 @@ import re
 from string import Formatter
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from render.film.story.frame import Caption
-from render.film.story.subtitles import chapters, srt
+from render.film.story.subtitles import captions_of, chapters, srt
 from render.film.story.words import TABLE, rate_words, words_in
 from shared.stage.errors import UserError
 
@@ -24,6 +26,23 @@ def test_subtitles_are_subrip() -> None:
     ]
     assert seconds == [[0.5, 4.25], [61.0, 3662.0]]
     assert [(row[0], row[9]) for row in rows] == [("1", "Here it turns: 1.45 N."), ("2", "Über")]
+
+
+WORDS = st.text(st.characters(categories=("L", "N", "P")), min_size=1)
+MILLISECONDS = st.integers(0, 10**8).map(lambda count: count / 1000)
+
+
+@given(st.lists(st.builds(Caption, MILLISECONDS, MILLISECONDS, WORDS)))
+def test_subtitles_are_read_as_they_were_written(captions: list[Caption]) -> None:
+    assert captions_of(srt(captions)) == captions
+
+
+def test_subtitles_of_other_programs_are_read() -> None:
+    saved = "\ufeff1\r\n00:00:01.5 --> 00:00:02,250 X1:40\r\nzwei\r\nZeilen\r\n \r\n00:01:00,000-->00:01:01,000\r\nEnde"
+    assert captions_of(saved) == [Caption(1.5, 2.25, "zwei\nZeilen"), Caption(60.0, 61.0, "Ende")]
+    assert captions_of("") == []
+    with pytest.raises(ValueError, match=r"no times such as .* in '7'"):
+        captions_of("1\n00:00:01,000 --> 00:00:02,000\nA\n\n7\n")
 
 
 def test_chapters_are_escaped() -> None:

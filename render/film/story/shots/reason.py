@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from render.film.framing import project
 from render.film.story.cameras import Stand, between
 from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
 from render.film.story.ramp import Ramp, eased, into
@@ -16,7 +19,10 @@ GOES_AWAY = 0.3
 """Seconds in which arrows go when time goes on."""
 BEFORE, AFTER = (9.0, 3.0), (3.0, 7.0)
 """Azimuth and elevation (degrees) beside those of the shot, when it begins and when time stands still."""
-NEARER = 0.92
+NEARER = (0.92, 0.96, 1.0, 1.05, 1.1, 1.2, 1.35)
+"""Parts of the distance at which time stands still: the first from which all arrows are in the picture."""
+EDGE = 0.03
+"""Part of the picture at each side that arrows leave free."""
 
 
 def reason(scenery: Scenery) -> Shot | None:
@@ -31,7 +37,7 @@ def reason(scenery: Scenery) -> Shot | None:
     begins = stop + grows + STANDS
     after = Ramp(ramp.at(stop), ((on, 0.0, clock.rate),))
     seconds = begins + on
-    wide, near = _stands(scenery, what)
+    wide, near = _stands(scenery, ramp.at(stop))
 
     def model(s: float) -> float:
         return ramp.at(s) if s < begins else after.at(s - begins)
@@ -64,7 +70,19 @@ def sentence(scenery: Scenery, what: Reason) -> str:
     )  # fmt: skip
 
 
-def _stands(scenery: Scenery, what: Reason) -> tuple[Stand, Stand]:
-    """From a little aside, and nearer when time stands still."""
+def _stands(scenery: Scenery, time: float) -> tuple[Stand, Stand]:
+    """From a little aside, and nearer when time stands still at ``time`` (s)."""
     wide, near = (scenery.stand(*way, arrows=True) for way in (BEFORE, AFTER))
-    return wide, Stand(near.target, near.azimuth, near.elevation, NEARER * near.distance, near.lens)
+    stands = [Stand(near.target, near.azimuth, near.elevation, part * near.distance, near.lens) for part in NEARER]
+    return wide, next((stand for stand in stands if _holds_arrows(scenery, stand, time)), stands[-1])
+
+
+def _holds_arrows(scenery: Scenery, stand: Stand, time: float) -> bool:
+    """Whether all straight arrows of that moment are in the picture from there."""
+    film, seen = scenery.forces, scenery.picture(stand, time, forces=True, grown=1.0, hidden="trails")
+    points = [end for arrow in film.state(seen.at, seen.camera).arrows for end in arrow] if film is not None else []
+    if film is None or not points:
+        return True
+    wide, high = max(1.0, film.aspect), max(1.0, 1 / film.aspect)
+    places = project(seen.camera, np.array(points), wide, high) / [wide, high]
+    return bool(((places > EDGE) & (places < 1 - EDGE)).all())

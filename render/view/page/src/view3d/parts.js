@@ -21,6 +21,8 @@ export class Parts {
     this.steps = [];
     this.apart = this.dressed = 0;
     this.meshes = [];
+    /** Materials of springs, ropes and belts. @type {import("three").Material[]} */
+    this.paints = [];
     this.materials = solid.surfaces.map((surface) => materialOf(surface, soft));
     const geometries = solid.meshes.map((mesh) => geometryOf(mesh, solid.step));
     for (const piece of solid.pieces) {
@@ -62,7 +64,12 @@ export class Parts {
     const { scene, animations } = await new GLTFLoader().parseAsync(file, "");
     scene.rotation.set(0, 0, 0);
     for (const root of scene.children) root.quaternion.identity(); // its y is up, ours z
-    scene.traverse((one) => { one.castShadow = one.receiveShadow = !!one.isMesh; });
+    const paints = new Set();
+    scene.traverse((one) => {
+      one.castShadow = one.receiveShadow = !!one.isMesh;
+      if (one.isMesh) paints.add(one.material);
+    });
+    this.paints = [...paints];
     this.tubes = scene;
     this.group.add(scene);
     this.mixer = new AnimationMixer(scene);

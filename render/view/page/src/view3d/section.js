@@ -23,6 +23,8 @@ export class Section {
     this.place = new Vector3();
     /** Pieces that the shot cuts: mesh, own material, the one of all like it, planes of the mesh (or of the machine, where fixed) and of the world. */
     this.sawn = [];
+    /** Planes of the film that cut springs, ropes and belts: of the machine, and of the world. */
+    this.still = [];
     this.on = "";
   }
 
@@ -34,8 +36,9 @@ export class Section {
   draw(parts, cut, side, machine, eye) {
     const axes = AXES[side] ?? [], on = !cut ? "" : side === "film" ? side : `${axes.length}`;
     if (cut) axes.forEach((axis, k) => this.lay(this.planes[axes.length][k], parts, axis, cut, machine, eye));
-    if (this.parts !== parts || this.on !== on || (on === "film" && this.dressed !== parts.dressed)) this.change(parts, on);
+    if (this.parts !== parts || this.on !== on || this.paints !== parts.paints || (on === "film" && this.dressed !== parts.dressed)) this.change(parts, on);
     for (const { mesh, own, planes, fixed } of this.sawn) planes.forEach((plane, k) => plane.copy(own[k]).applyMatrix4((fixed ? machine : mesh).matrixWorld));
+    for (const [own, plane] of this.still) plane.copy(own).applyMatrix4(machine.matrixWorld);
   }
 
   /** Lay a plane across an axis of the machine, so that what is on the eye's side goes. */
@@ -61,6 +64,9 @@ export class Section {
     this.dressed = parts.dressed;
     const planes = this.planes[on] ?? null;
     parts.materials.forEach((material, k) => opened(material, k, planes));
+    this.paints = parts.paints;
+    this.still = (on === "film" ? (parts.solid.still ?? []) : []).map(([x, y, z, place]) => [new Plane(new Vector3(-x, -y, -z), place), new Plane()]);
+    parts.paints.forEach((material, k) => opened(material, k, this.still.length ? this.still.map(([, plane]) => plane) : planes));
     if (on === "film") parts.solid.pieces.forEach((piece, k) => this.saw(piece, parts.meshes[k], k));
   }
 

@@ -9,49 +9,13 @@ import numba
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, curve
+from mbsd import Mechanism, ModelError
 from mbsd.compiling.jit import COMPILED
-from mbsd.measures import final, first, integral, largest, samples, smallest
+from mbsd.measures import final, largest, samples, smallest
 from mbsd.model.force import ForceKind
 from mbsd.testing.kinds import force_kinds
+from tests.dynamics.many_models import STEPS, barrier, door, pendulum
 from tools.models.random_linkages import linkage
-
-STEPS = 20
-
-
-def door(stiffness: float = 5.0, damping: float = 10.0) -> Mechanism:
-    m = Mechanism("door", gravity=None)
-    leaf = m.bar("door", 0.9, mass=30.0)
-    m.revolute("hinge", m.ground.at(0, 0), leaf.start)
-    m.torsion_spring("closer", m.ground, leaf, stiffness, damping, free_angle=-0.3)
-    m.start_near(door=90)
-    return m
-
-
-def pendulum() -> Mechanism:
-    m = Mechanism("double")
-    a, b = m.bar("a", 1.0, mass=1.0), m.bar("b", 0.7, mass=0.5)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.torsion_spring("joint", a, b, 2.0, 0.1)
-    m.trace("P", b.at(0.6, 0.1))
-    m.start_near(a=-80, b=-60)
-    return m
-
-
-def barrier(stops: bool = False) -> Mechanism:
-    m = Mechanism("barrier")
-    a, b, c = m.bar("crank", 0.1, mass=0.3), m.bar("coupler", 0.38, mass=0.5), m.bar("rocker", 0.3, mass=2.0)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("C", b.end, c.end)
-    pivot = m.revolute("D", m.ground.at(0.4, 0.02), c.start)
-    m.motor("motor", m.ground, a, curve([-10, 0, 20, 40], [6.0, 5.0, 2.0, 0.0]))
-    m.torsion_spring("spring", m.ground, c, 3.0, 0.4, free_angle=1.8)
-    if stops:
-        m.stop("end", pivot, lower=math.radians(85), upper=math.radians(125), restitution=0.3)
-    m.start_near(crank=0, coupler=45, rocker=90)
-    return m
 
 
 def test_random_machines_have_the_digits_of_single_simulations() -> None:
@@ -177,42 +141,6 @@ def test_rows_that_fail_carry_a_reason_and_do_not_stop_the_others() -> None:
     assert "cannot be negative" in str(many.reason[1])
     assert np.isnan(many["x"]).tolist() == [False, True, False]
     assert many["x"][2] == door(5.0, 5.0).simulate(1.0, steps=STEPS).body("door").theta[-1]
-
-
-def test_measures_are_what_they_say() -> None:
-    many = door().simulate_many(
-        4.0,
-        vary={"closer": {"stiffness": [4.0, 8.0]}},
-        measure={
-            "shut": first("door.theta", below=1.0),
-            "speed": first("door.theta", below=1.0, give="door.omega"),
-            "never": first("door.theta", above=7.0),
-            "fast": smallest("door.omega"),
-            "way": integral("door.omega"),
-            "power": integral("closer.power"),
-        },
-        steps=400,
-    )
-    for k, stiffness in enumerate((4.0, 8.0)):
-        sol = door(stiffness).simulate(4.0, steps=400)
-        leaf = sol.body("door")
-        at = sol.at([many["shut"][k]])
-        np.testing.assert_allclose(at.body("door").theta, 1.0, atol=1e-4)
-        np.testing.assert_allclose(at.body("door").omega, many["speed"][k], atol=1e-4)
-        assert np.isnan(many["never"][k])
-        assert many["fast"][k] == leaf.omega.min()
-        assert many["fast_time"][k] == sol.t[np.argmin(leaf.omega)]
-        np.testing.assert_allclose(many["way"][k], leaf.theta[-1] - leaf.theta[0], atol=1e-4)
-        np.testing.assert_allclose(many["power"][k], np.trapezoid(sol.force("closer").power, sol.t), rtol=1e-12)
-    assert "'closer.power'" in many.way
-
-
-def test_a_function_of_solutions_measures_too() -> None:
-    many = door().simulate_many(
-        1.0, vary={"closer": {"stiffness": [4.0, 8.0]}}, measure=lambda sol: {"x": sol.body("door").theta[-1]}, steps=5
-    )
-    assert many["x"][1] == door(8.0).simulate(1.0, steps=5).body("door").theta[-1]
-    assert "function of a solution" in many.way
 
 
 @pytest.mark.parametrize(
@@ -347,20 +275,3 @@ def test_contacts_by_penalty_bounce_as_in_single_simulations(damping: dict[str, 
         sol = ball(masses[k], heights[k]).simulate(1.0, steps=30)
         assert many["y"][k] == sol.body("ball").y[-1]
         assert many["fast"][k] == sol.body("ball").vy.max()
-
-
-@pytest.mark.parametrize("build", [door, pendulum, barrier, lambda: barrier(stops=True)])
-@pytest.mark.parametrize("formulation", ["auto", "reference"])
-def test_what_is_measured_beside_changes_no_digit(build: Callable[[], Mechanism], formulation: str) -> None:
-    m = build()
-    body, joints = list(m.bodies)[-1], list(m.joints)
-    motion = {"theta": samples(f"{body}.theta", [0.1, 0.4]), "fast": largest(f"{body}.omega"), "e": integral("kinetic")}
-    forces = {"a": smallest(f"{body}.alpha")} | {name: largest(f"{name}.torque") for name in joints}
-    asked = [motion, motion | forces, *({name: each} for name, each in forces.items())]
-    vary = {body: {"mass": [1.0, 2.0]}}
-    made = [m.simulate_many(0.4, vary=vary, measure=each, steps=STEPS, formulation=formulation) for each in asked]
-    whole = made[1]
-    assert whole.alone == [None, None]
-    for each in made:
-        for name, column in each.columns.items():
-            assert column.tolist() == whole[name].tolist()

@@ -12,7 +12,7 @@ from mbsd import Mechanism
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics.many import worker
 from mbsd.measures import Measure, final, first, samples
-from tests.dynamics.test_many import barrier, door, pendulum
+from tests.dynamics.many_models import barrier, door, pendulum
 
 DURATION, STEPS = 4.0, 300
 WHOLE = {"end": final("work")}

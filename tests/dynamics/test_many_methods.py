@@ -7,7 +7,7 @@ import pytest
 
 from mbsd import Mechanism
 from mbsd.measures import final, first, samples
-from tests.dynamics.test_many import STEPS, door, pendulum
+from tests.dynamics.many_models import STEPS, door, pendulum
 
 METHODS = [
     ("rk4", {"step": 2e-3}),

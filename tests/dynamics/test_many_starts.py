@@ -7,7 +7,7 @@ import pytest
 
 from mbsd import ModelError, constant_rate
 from mbsd.measures import final
-from tests.dynamics.test_many import door, pendulum
+from tests.dynamics.many_models import door, pendulum
 
 
 def test_starts_do_not_follow_from_which_rows_go_together() -> None:

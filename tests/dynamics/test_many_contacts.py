@@ -4,29 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, curve
+from mbsd import Mechanism
 from mbsd.measures import final, largest, samples, smallest
+from tests.dynamics.many_models import barrier
 
 STEPS = 40
-
-
-def barrier() -> Mechanism:
-    m = Mechanism("barrier")
-    a, b, c = m.bar("crank", 0.1, mass=0.3), m.bar("coupler", 0.38, mass=0.5), m.bar("rocker", 0.3, mass=2.0)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("C", b.end, c.end)
-    pivot = m.revolute("D", m.ground.at(0.4, 0.02), c.start)
-    m.motor("motor", m.ground, a, curve([-10, 0, 20, 40], [6.0, 5.0, 2.0, 0.0]))
-    m.torsion_spring("spring", m.ground, c, 3.0, 0.4, free_angle=1.8)
-    m.stop("end", pivot, lower=math.radians(85), upper=math.radians(125), restitution=0.3)
-    m.start_near(crank=0, coupler=45, rocker=90)
-    return m
 
 
 def ball() -> Mechanism:
@@ -93,8 +81,8 @@ def massless() -> Mechanism:
 
 
 CASES: dict[str, tuple[Callable[[], Mechanism], float, Mapping[str, Any], str]] = {
-    "barrier": (barrier, 0.6, {"spring": {"damping": [0.2, 0.5, 0.9]}}, "rocker"),
-    "rebound": (barrier, 0.4, {"end upper": {"restitution": [0.0, 0.5, 0.8]}}, "rocker"),
+    "barrier": (partial(barrier, True), 0.6, {"spring": {"damping": [0.2, 0.5, 0.9]}}, "rocker"),
+    "rebound": (partial(barrier, True), 0.4, {"end upper": {"restitution": [0.0, 0.5, 0.8]}}, "rocker"),
     "ball": (ball, 4.0, {"band": {"stiffness": [0.5, 1.0, 30.0]}}, "ball"),
     "bumpers": (bumpers, 2.0, {"c1": {"mass": [0.5, 0.6, 0.4]}}, "c3"),
     "plank": (plank, 1.3, {"plank": {"mass": [0.9, 1.0]}}, "plank"),

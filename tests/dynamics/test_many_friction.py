@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, SimulationError, harmonic
 from mbsd.measures import final, first, samples
+from tools.models.loose_gears import loose_gears
 
 pytestmark = pytest.mark.slow
 G = 9.81
@@ -138,18 +139,6 @@ def ring() -> Mechanism:
     return m
 
 
-def loose(stiffness: float = 0.0) -> Mechanism:
-    """Wheels whose centres nothing holds apart: they meet after about a second."""
-    m = Mechanism("loose", gravity=None)
-    ring, gear = m.body("ring", 2.0, inertia=1.0), m.body("gear", 1.0, inertia=0.1)
-    wide = math.hypot(0.3, 0.05) / 0.3
-    m.gear_pair("mesh", ring.origin, gear.origin, radius_i=0.5 * wide, radius_j=0.2 * wide, internal=True)
-    m.torsion_spring("coil", m.ground, gear, stiffness, 0.1, 0.5)
-    m.start_near(ring=(0, 0, 0), gear=(0.3, 0.05, 0))
-    m.start_moving(gear=(-0.3, -0.05, 0.0), ring=(0.0, 0.0, 0.0))
-    return m
-
-
 def freewheel() -> Mechanism:
     """A rolling disc pushed to and fro, with a flywheel that it takes along one way alone."""
     m = Mechanism("freewheel", gravity=(0, -G))
@@ -225,14 +214,14 @@ def test_rows_that_end_early_and_threads_change_no_digit() -> None:
 
 
 def test_wheels_that_may_meet_go_in_the_loop_up_to_where_they_do() -> None:
-    compare(loose, 0.9, {"coil": {"stiffness": [0.0, 1.0, 3.0]}}, "gear")
-    many = loose().simulate_many(
+    compare(loose_gears, 0.9, {"coil": {"stiffness": [0.0, 1.0, 3.0]}}, "gear")
+    many = loose_gears().simulate_many(
         1.5, vary={"coil": {"stiffness": [0.0, 3.0]}}, measure={"x": final("gear.x")}, steps=10
     )
     assert many.good.tolist() == [False, True]
     assert many.alone[1] is None
     assert "'mesh' meet at t = " in str(many.reason[0])
-    np.testing.assert_allclose(many["x"][1], loose(3.0).simulate(1.5, steps=10).body("gear").x[-1], atol=1e-9)
+    np.testing.assert_allclose(many["x"][1], loose_gears(3.0).simulate(1.5, steps=10).body("gear").x[-1], atol=1e-9)
 
 
 def test_numbers_of_friction_vary_and_jamming_rows_say_so() -> None:

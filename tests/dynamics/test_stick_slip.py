@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from mbsd import Mechanism, ModelError, constant_rate, harmonic, polynomial
 from mbsd.results.solution import Solution
 from tools.models.slider_cranks import slider_crank
+from tools.models.sticking import loaded_lever
 
 G = 9.80665
 
@@ -290,12 +291,7 @@ def test_a_joint_that_is_let_go_has_no_friction_any_more(sticks: bool) -> None:
 
 def test_an_impact_frees_a_joint_at_rest() -> None:
     """A ball falls on a lever that its pin holds: the pin is no part of the impact, and slides after it."""
-    m = Mechanism("lever")
-    lever, ball = m.body("lever", 1.0, inertia=0.1), m.body("ball", 0.5, inertia=1e-3)
-    m.revolute("pin", m.ground.origin, lever.origin)
-    m.friction("rub", "pin", 0.5, radius=0.2, sticks=True)
-    m.rigid_contact("touch", lever.origin, ball.origin, radius=0.02)
-    m.start_near(lever=0, ball=(0.3, 0.32, 0))
+    m = loaded_lever()
     sol = m.simulate(0.5, steps=50, tolerance=1e-9)
     hit = next(event for event in sol.events if event.what == "impact")
     assert told(sol)[0] == ("rub", "sticks")

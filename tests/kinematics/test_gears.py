@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, SimulationError, constant_rate
+from tools.models.loose_gears import loose_gears
 
 PLANETARY = json.loads((Path(__file__).parents[1] / "published" / "reference" / "analytic_planetary.json").read_text())
 SUN, PLANET, RING = 0.020, 0.030, 0.080  # radii in the ratio of the teeth
@@ -271,12 +272,6 @@ def test_a_rack_and_a_toothed_belt_by_teeth(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("stiffness", "when"), [(0.0, "(0.99|1)"), (3.0, "1.8")])
 def test_centres_that_meet_end_the_motion(method: str, options: dict, stiffness: float, when: str) -> None:
     """Nothing holds the centres apart, and their line keeps its direction: they run into each other."""
-    m = Mechanism("loose", gravity=None)
-    ring, gear = m.body("ring", 2.0, inertia=1.0), m.body("gear", 1.0, inertia=0.1)
-    wide = math.hypot(0.3, 0.05) / 0.3
-    m.gear_pair("mesh", ring.origin, gear.origin, radius_i=0.5 * wide, radius_j=0.2 * wide, internal=True)
-    m.torsion_spring("coil", m.ground, gear, stiffness, 0.1, 0.5)
-    m.start_near(ring=(0, 0, 0), gear=(0.3, 0.05, 0))
-    m.start_moving(gear=(-0.3, -0.05, 0.0), ring=(0.0, 0.0, 0.0))
+    m = loose_gears(stiffness)
     with pytest.raises(SimulationError, match=f"loose: the centres of gear_pair 'mesh' meet at t = {when}"):
         m.simulate(2.0, method=method, **options)

@@ -89,3 +89,14 @@ def weightless_slider_crank() -> Mechanism:
     m.torque("motor", crank, polynomial(0.0, 0.0))
     m.start_moving(part=1.5748304925257235)
     return m
+
+
+def loaded_lever() -> Mechanism:
+    """A ball falls on a lever that the friction of its pin holds, and later breaks away."""
+    m = Mechanism("lever")
+    lever, ball = m.body("lever", 1.0, inertia=0.1), m.body("ball", 0.5, inertia=1e-3)
+    m.revolute("pin", m.ground.origin, lever.origin)
+    m.friction("rub", "pin", 0.5, radius=0.2, sticks=True)
+    m.rigid_contact("touch", lever.origin, ball.origin, radius=0.02)
+    m.start_near(lever=0, ball=(0.3, 0.32, 0))
+    return m

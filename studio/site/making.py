@@ -47,7 +47,8 @@ def run(names: Sequence[str], folder: Path | None = None) -> int:
     _write_pages(entries, folder)
     _remove_others(folder, {entry.name for entry in entries})
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6
-    say("site", f"{len(entries)} machines, {size:.0f} MB: {(folder / 'index.html').as_uri()}")
+    machines = f"{len(entries)} machine{'' if len(entries) == 1 else 's'}"
+    say("site", f"{machines}, {size:.0f} MB: {(folder / 'index.html').as_uri()}")
     return int(len(entries) < len(names))
 
 

@@ -40,18 +40,29 @@ def _several(of: Any) -> Any:
     return [of] if isinstance(of, str) or callable(of) else of
 
 
+def needed(of: Any, t: np.ndarray) -> np.ndarray:
+    """Rows of output times (T,) of which tangents are asked: where measures alone are, those that they read."""
+    given = _each(of)
+    if not given or not all(isinstance(each, Measure) for each in given):
+        return np.arange(len(t))
+    return np.unique(np.concatenate([each.needed(t) for each in given]))
+
+
 def needs_models(of: Any) -> bool:
     """Whether a function of the user may ask the mechanism of a solution."""
-    given = of.values() if isinstance(of, Mapping) else of if isinstance(of, list | tuple) else [of]
-    return any(callable(each) for each in given)
+    return any(callable(each) for each in _each(of))
 
 
 def needs_reactions(m: Model, of: Any) -> bool:
     """Whether anything may ask for the reactions of joints."""
-    given = of.values() if isinstance(of, Mapping) else of if isinstance(of, list | tuple) else [of]
+    given = _each(of)
     names = [[each] if isinstance(each, str) else getattr(each, "quantities", [""]) for each in given]
     things = {name.rpartition(".")[0] for own in names for name in own}
     return not things <= {*m.bodies, *m.traces, *m.drivers} or bool(things & {*m.joints})
+
+
+def _each(of: Any) -> list[Any]:
+    return list(of.values()) if isinstance(of, Mapping) else list(of) if isinstance(of, list | tuple) else [of]
 
 
 def _function(m: Model, label: str, given: Any, sol: Solution) -> Callable[[Solution], np.ndarray]:

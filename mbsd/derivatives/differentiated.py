@@ -1,7 +1,7 @@
 """Compiled: the equations of a motion without friction in joints differentiated node by node, near the processor.
 
     J q' = -dPhi/dp,  Z q' = s;   J v' = -d(J v - nu),  Z v' = s';   M a' + J^T lam' = d(Q - M a - J^T lam),
-    J a' = -d(J a - gamma)      =>   (s, s')' = A (s, s') + B
+    J a' = -d(J a - gamma)      =>   s'' = A (s, s') + B
 
 along each coordinate of the basis Z, each of their rates, and each number. What free_tangents.py says in numpy.
 """
@@ -106,12 +106,12 @@ class Scratch(NamedTuple):
 
 
 class Made(NamedTuple):
-    """s' = A s + B at T nodes, and how the motion changes with coordinates of the basis, their rates, and numbers."""
+    """s'' = A (s, s') + B at T nodes; the motion's changes with coordinates of the basis, their rates, and numbers."""
 
     matrix: Any
-    """(T, 2 f, 2 f) A."""
+    """(T, f, 2 f) A."""
     right: Any
-    """(T, 2 f, P) B."""
+    """(T, f, P) B."""
     q: Any
     """(2 f + P, R, 3 nb) at R nodes that are asked for, as v and a."""
     v: Any
@@ -209,10 +209,9 @@ def differentiate(system, loads, laws, ws, nodes, own, inertia, per_size, per_sp
             accelerate(free, scratch.coupled, nodes.rows, bend[at], load[at], scratch.mass)
             for i in range(f):
                 if d < 2 * f:
-                    made.matrix[k, i, d] = 1.0 if d == f + i else 0.0
-                    made.matrix[k, f + i, d] = scratch.mass[f, i]
+                    made.matrix[k, i, d] = scratch.mass[f, i]
                 else:
-                    made.right[k, f + i, d - 2 * f] = scratch.mass[f, i]
+                    made.right[k, i, d - 2 * f] = scratch.mass[f, i]
             if slots[k] >= 0:
                 spread_out(fixed, free, nodes.rows, bend[at], scratch.mass, scratch.a)
                 for c in range(3, width):
@@ -240,7 +239,7 @@ def differentiated(
     )  # fmt: skip
     all_ways = 2 * f + numbers
     made = Made(
-        np.zeros((count, 2 * f, 2 * f)), np.zeros((count, 2 * f, numbers)),
+        np.zeros((count, f, 2 * f)), np.zeros((count, f, numbers)),
         *(np.zeros((all_ways, len(asked), size)) for size in (width, width, width, rows)),
     )  # fmt: skip
     slots = np.full(count, -1)

@@ -33,7 +33,7 @@ WORST = 30.0
 
 @dataclass
 class Stretch:
-    """Nodes of a motion between two events, with the rows that hold there."""
+    """T times of a motion between two events, nodes and others, with the rows that hold there."""
 
     along: Along
     compact: np.ndarray
@@ -43,7 +43,9 @@ class Stretch:
     dependent: list[tuple[int, int]]
     """Rows of sliding and of the gap whose normal force makes their friction."""
     asked: np.ndarray
-    """(T,) whether tangents are wanted at a node."""
+    """(T,) whether tangents are wanted there."""
+    nodes: np.ndarray
+    """(T,) whether it is one of the nodes of whole steps, the first and the last among them."""
 
 
 @dataclass
@@ -84,6 +86,7 @@ class FreeTangents:
     def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants]) -> None:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
         self.dependent, self.asked, self.compact = stretch.dependent, stretch.asked, stretch.compact
+        self.nodes = stretch.nodes
         packed = terms.packed
         refuse_large(terms, len(self.along.t))
         self.scale = packed.column_scale()
@@ -118,8 +121,8 @@ class FreeTangents:
         inverse = np.linalg.inv(square)
         size = np.abs(inverse).max(axis=(1, 2))
         far = size > WORST * size[0]
-        beyond = int(np.argmax(far)) if far.any() else count
-        last = min(max(NODES, (beyond - 1) // NODES * NODES), count - 1)
+        edges = np.flatnonzero(self.nodes[first:])[::NODES]
+        last = int(edges[max(1, np.searchsorted(edges, np.argmax(far)) - 1)] if far.any() else edges[-1])
         inverse = inverse[: last + 1] * self.scale[:, None]
         inverse[:, :, :rank] /= norms[: last + 1, None]
         return right[rank:] / self.scale, inverse
@@ -135,7 +138,7 @@ class _Piece:
         self.compact = whole.compact[at]
         asked = whole.asked[at].copy()
         asked[0] &= first == 0
-        self.asked = np.flatnonzero(asked)
+        self.asked, self.nodes = np.flatnonzero(asked), np.flatnonzero(whole.nodes[at])
         self.jac, self.held = whole.jac[at], whole.held[at]
         self.fixed = np.ascontiguousarray(inverse[:, :, : len(self.rows)])
         self.free = np.ascontiguousarray(inverse[:, :, len(self.rows) :])
@@ -170,11 +173,12 @@ class _Piece:
         plain = self.effort is None and can_differentiate(self.terms)
         made = self._node_by_node(q, at) if plain else self._in_arrays(q, at)
         begun = np.concatenate([self.basis @ q[:, 3:].T, self.basis @ v[:, 3:].T])
-        y, error = carried(self.along.t, made.matrix, made.right, begun, self._slight())
-        y, parts = y[at], [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
+        nodes = self.nodes
+        line = carried(self.along.t[nodes], made.matrix[nodes], made.right[nodes], begun, self._slight())
+        y, parts = line.at(self.along.t[at]), [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
         for out, part in zip(parts, made[2:], strict=True):
             combine(y, part, out)
-        return Carried(Tangents(*(part[:, :asked] for part in parts)), parts[0][:, -1], parts[1][:, -1], error)
+        return Carried(Tangents(*(part[:, :asked] for part in parts)), parts[0][:, -1], parts[1][:, -1], line.errors)
 
     def _node_by_node(self, begun: np.ndarray, at: np.ndarray) -> Made:
         """By the kernel, some nodes at once, so that what is known of them stays near the processor."""
@@ -217,12 +221,12 @@ class _Piece:
         for p, part in enumerate(rubbed):
             if part is not None:
                 lam[2 * f + p] += part
-        matrix, right = np.zeros((count, 2 * f, 2 * f)), np.zeros((count, 2 * f, numbers))
-        matrix[:, :f, f:] = np.eye(f)
-        bent = a @ self.basis.T  # (D, T, f)
-        matrix[:, f:] = bent[: 2 * f].transpose(1, 2, 0)
-        right[:, f:] = bent[2 * f :].transpose(1, 2, 0)
-        return Made(matrix, right, *(np.ascontiguousarray(p[:, at]) for p in (positions, velocities, _wide(a), lam)))
+        bent = (a @ self.basis.T).transpose(1, 2, 0)  # (T, f, D)
+        return Made(
+            bent[..., : 2 * f],
+            bent[..., 2 * f :],
+            *(np.ascontiguousarray(p[:, at]) for p in (positions, velocities, _wide(a), lam)),
+        )
 
     def _slight(self) -> np.ndarray:
         """(2 f, P) changes of s and s' that are rounding where the number changes by all of itself."""

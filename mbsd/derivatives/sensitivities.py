@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import names_in, no_such
-from mbsd.derivatives.asked import Wanted, needs_models, needs_reactions, wanted
+from mbsd.derivatives.asked import Wanted, needed, needs_models, needs_reactions, wanted
 from mbsd.derivatives.numbers import Number, numbers_named
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.sweeps import SweepTangents
@@ -31,7 +32,7 @@ class Tangents(Protocol):
     sol: Solution
 
     def moved(self, k: int, reactions: bool = True) -> list[Solution]:
-        """The motion at other values of number k; without ``reactions`` those of joints are left out."""
+        """The motion at other values of number k, where its tangents are asked for; without ``reactions`` of joints."""
         ...
 
     def weights(self, k: int) -> np.ndarray:
@@ -127,7 +128,7 @@ def sensitivities(
     numbers: list[Number] = numbers_named(m, names_in(f"{m.name}: sensitivities: to", to))
     tangents: Tangents
     if moves_freely(m) if simulated is None else simulated:
-        tangents = simulation_tangents(m, output_times(m, duration, steps, times), numbers, tolerance)
+        tangents = simulation_tangents(m, output_times(m, duration, steps, times), numbers, tolerance, of)
         functions = wanted(m, of, tangents.sol)
     else:
         sol = sweep(m, duration, steps, times)
@@ -147,7 +148,9 @@ def moves_freely(m: Model) -> bool:
     return mobility(m).dof > len(m.drivers)
 
 
-def simulation_tangents(m: Model, grid: np.ndarray, numbers: Sequence[Number], tolerance: float) -> SimulationTangents:
-    """Simulate at output times (T,) (s), with tangents by numbers."""
+def simulation_tangents(
+    m: Model, grid: np.ndarray, numbers: Sequence[Number], tolerance: float, of: Any
+) -> SimulationTangents:
+    """Simulate at output times (T,) (s), with tangents by numbers where what is asked ``of`` the motion reads them."""
     refuse_bad_steps(m, grid, tolerance, None)
-    return SimulationTangents(m, Repeated(m, grid, tolerance), grid, numbers)
+    return SimulationTangents(m, Repeated(m, grid, tolerance), grid, numbers, partial(needed, of))

@@ -6,7 +6,7 @@ stretches from event to event.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -18,7 +18,7 @@ from mbsd.derivatives.asked import taken
 from mbsd.derivatives.free_tangents import FreeTangents, Stretch, Tangents, joined
 from mbsd.derivatives.jumps import Jump, jumps_of
 from mbsd.derivatives.linear_motion import NODES
-from mbsd.derivatives.mesh import first_edges, longest_steps, looked_at, nodes_of, refined
+from mbsd.derivatives.mesh import ROUNDING, apart, first_edges, longest_steps, looked_at, nodes_of, refined
 from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.sweeps import along_of, displaced
 from mbsd.derivatives.tangents import Tangent
@@ -34,9 +34,9 @@ from mbsd.model.contact import ContactKind
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
 
-ENOUGH = 1.2e-5
+ENOUGH = 5e-6
 """Error of tangents, as part of the largest, beyond which nodes come closer."""
-AIMED = 2e-6
+AIMED = 1e-6
 """What they then come to."""
 MOST = 6
 """So often at most."""
@@ -44,14 +44,20 @@ DOUBTFUL = 1e-3
 """Error that is warned of."""
 MOST_STEPS = 20_000
 """Steps at most."""
-STEPS_OF_METHOD = 0.5
+STEPS_OF_METHOD = 0.2
 """Usual steps of the tangents for one of the integrator."""
 
 
 class SimulationTangents:
-    """A simulation at output times ``grid`` (T,), and its tangents by numbers."""
+    """A simulation at output times ``grid`` (T,), and its tangents by numbers at some of them.
 
-    def __init__(self, m: Model, runs: Repeated, grid: np.ndarray, numbers: Sequence[Number]) -> None:
+    ``needed`` gives the rows of output times of which they are asked.
+    """
+
+    def __init__(
+        self, m: Model, runs: Repeated, grid: np.ndarray, numbers: Sequence[Number],
+        needed: Callable[[np.ndarray], np.ndarray],
+    ) -> None:  # fmt: skip
         self.m = m
         self._ready: PreparedDynamics | None = None
         self.redundant = False
@@ -68,13 +74,16 @@ class SimulationTangents:
         reached = grid[grid <= first.t[-1]]
         met = np.append(first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]])
         usual = (first.t[-1] - first.t[0]) / max(1.0, STEPS_OF_METHOD * first.steps)
-        edges = first_edges(reached, met, first.t, longest_steps(first.t, _parts(first), usual))
+        longest = longest_steps(first.t, _parts(first), usual)
+        edges = first_edges((span[0], float(reached[-1])), met, first.t, longest)
+        outputs = apart(grid, met, span[1] - span[0])
         before = error = 0.0
         for turn in range(MOST):
-            nodes = nodes_of(edges, reached, met)
-            whole = runs(nodes if len(reached) == len(grid) else np.append(nodes, grid[-1]))
+            nodes = nodes_of(edges, met)
+            whole = runs(np.union1d(nodes, outputs))
             rows = self._outputs(whole, grid)
-            made, errors = self._made(whole, rows)
+            asked = rows[needed(whole.t[rows])]
+            made, errors = self._made(whole, asked, nodes)
             before, error = error, float(errors.sum())
             if error <= ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
                 break
@@ -94,22 +103,26 @@ class SimulationTangents:
                 ModelWarning,
             )
         self.sol = taken(whole, rows)
-        self.along = along_of(self.sol)
+        self.known = self.sol if len(asked) == len(rows) else taken(whole, asked)
+        """The outputs of which tangents are known."""
+        self.along = along_of(self.known)
         if self.redundant:
             made.lam[:] = np.nan  # joints that repeat others share their loads in many ways
+        if self.ends is not None and asked[-1] < rows[-1]:
+            self.ends = None
         if self.ends is not None:  # the last output is the event that ended it, wherever that is
             made.q[:, -1] += self.along.v[-1] * self.ends[:, None]
             made.v[:, -1] += self.along.a[-1] * self.ends[:, None]
         self.tangents = [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
 
     def moved(self, k: int, reactions: bool = True) -> list[Solution]:
-        """The simulation at other values of number k, along its tangent: one for each variant."""
+        """The simulation at other values of number k, along its tangent where that is known: one for each variant."""
         out = []
         for variant in self.variants[k].variants:
-            h, t = variant.offset * self.variants[k].step, self.sol.t
+            h, t = variant.offset * self.variants[k].step, self.known.t
             if self.ends is not None:
                 t = np.append(t[:-1], t[-1] + h * self.ends[k])
-            out.append(displaced(self.sol, self.along, self.tangents[k], variant, h, reactions, t=t, work=None))
+            out.append(displaced(self.known, self.along, self.tangents[k], variant, h, reactions, t=t, work=None))
         return out
 
     def weights(self, k: int) -> np.ndarray:
@@ -122,13 +135,17 @@ class SimulationTangents:
 
     # -- nodes -----------------------------------------------------------------------------------------------------
 
-    def _made(self, whole: Solution, rows: np.ndarray) -> tuple[Tangents, np.ndarray]:
-        """Tangents at some rows of the simulation, and the error that each step adds."""
+    def _made(self, whole: Solution, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray]:
+        """Tangents at some rows of the simulation, and the error that each step between nodes adds."""
+        asked, known = np.zeros(len(whole.t), bool), np.isin(whole.t, nodes)
+        asked[rows] = True
+        begins = np.append(True, np.diff(whole.t) <= 0.0)
+        known |= begins | np.append(begins[1:], True)
+        kept = np.flatnonzero(asked | known)
+        whole, asked, known, begins = taken(whole, kept), asked[kept], known[kept], begins[kept]
         along = along_of(whole)
         along.held = whole.held
-        asked = np.zeros(len(whole.t), bool)
-        asked[rows] = True
-        edges = [0, *(np.flatnonzero(np.diff(whole.t) <= 0.0) + 1).tolist(), len(whole.t)]
+        edges = [*np.flatnonzero(begins).tolist(), len(kept)]
         q, v = self._begun()
         parts: list[Tangents] = []
         errors: list[np.ndarray] = []
@@ -137,8 +154,8 @@ class SimulationTangents:
         compact = self.terms.rows(along)[2]
         for k, (a, b) in enumerate(pairwise(edges)):
             at = slice(a, b)
-            stretch = self._stretch(along.take(at), compact[at], asked[at])
-            if (b - a) % NODES != 1:
+            stretch = self._stretch(along.take(at), compact[at], asked[at], known[at])
+            if known[at].sum() % NODES != 1:
                 raise SimulationError(
                     f"{self.m.name}: derivatives: events from t = {whole.t[a]:.9g} s on come at other times when they "
                     "are simulated again; take a smaller tolerance"
@@ -151,11 +168,13 @@ class SimulationTangents:
                 q, v, times_moved = jumps[k].across(q, v)
                 if jumps[k].ends:
                     self.ends = times_moved
-        return joined(parts), np.concatenate(errors)
+        again = np.unique(rows, return_inverse=True)[1]  # two outputs may be nearer to an event than rounding
+        return Tangents(*(part[:, again] for part in joined(parts).parts())), np.concatenate(errors)
 
-    def _stretch(self, along: Along, compact: np.ndarray, asked: np.ndarray) -> Stretch:
+    def _stretch(self, along: Along, compact: np.ndarray, asked: np.ndarray, nodes: np.ndarray) -> Stretch:
         assert along.held is not None
-        return Stretch(along, compact, self.stretch_rows(along, 0), self._sliding(along.held[0], along.lam), asked)
+        sliding = self._sliding(along.held[0], along.lam)
+        return Stretch(along, compact, self.stretch_rows(along, 0), sliding, asked, nodes)
 
     def stretch_rows(self, along: Along, k: int) -> np.ndarray:
         """Independent rows among those that hold at node k."""
@@ -212,7 +231,8 @@ class SimulationTangents:
     @staticmethod
     def _outputs(whole: Solution, grid: np.ndarray) -> np.ndarray:
         """Rows of the outputs; at an event what comes after it, and its end if one ended it."""
-        rows = np.searchsorted(whole.t, grid[grid <= whole.t[-1]], side="right") - 1
+        near = ROUNDING * (grid[-1] - grid[0])
+        rows = np.searchsorted(whole.t, grid[grid <= whole.t[-1]] + near, side="right") - 1
         ended = bool(whole.events) and whole.events[-1].what == "end"
         return np.append(rows, len(whole.t) - 1) if ended and rows[-1] < len(whole.t) - 1 else rows
 

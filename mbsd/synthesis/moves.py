@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -78,7 +78,7 @@ class Moves:
         numbers = self._numbers(model, x)
         own = {label: function_of_values(self.bounds.names, what) for label, what in self.wishes.items()}
         asked = {label: what for label, what in self.wishes.items() if own[label] is None}
-        tangents = self._tangents(model, numbers)
+        tangents = self._tangents(model, numbers, asked)
         functions = wanted(model, asked, tangents.sol) if asked else {}
         values = {label: np.asarray(function(tangents.sol)) for label, function in functions.items()}
         for label, value in values.items():
@@ -113,9 +113,9 @@ class Moves:
             raise ModelError(f"{self.m.name}: optimise: build returned {type(made).__name__}, not a Mechanism")
         return made
 
-    def _tangents(self, model: Model, numbers: list[Number]) -> Tangents:
+    def _tangents(self, model: Model, numbers: list[Number], asked: Mapping[str, Any]) -> Tangents:
         if self.free:
-            return simulation_tangents(model, self.grid, numbers, self.tolerance)
+            return simulation_tangents(model, self.grid, numbers, self.tolerance, asked)
         return SweepTangents(model, sweep(model, None, 1, self.grid), numbers)
 
     def _numbers(self, model: Model, x: np.ndarray) -> list[Number]:

@@ -10,7 +10,7 @@ import pytest
 
 from mbsd import Mechanism, ModelError, ModelWarning, curve
 from mbsd.derivatives import free_tangents
-from mbsd.measures import final, largest
+from mbsd.measures import final, largest, samples
 from mbsd.testing.derivatives import check_derivatives
 from mechanisms.quarter_car import mechanism as quarter_car
 
@@ -165,6 +165,26 @@ def test_a_box_that_slides_and_stops_agrees_with_differences() -> None:
         ["left.friction", "box.mass", "spring.stiffness", "box.moving.vx"], 1.0, 40, tolerance=1e-6, step=1e-4,
     )  # fmt: skip
     assert len(s) == 4
+
+
+@pytest.mark.parametrize("ended", [False, True])
+def test_measures_of_some_outputs_have_the_derivatives_of_these(ended: bool) -> None:
+    m = door()
+    if ended:
+        m.event("low", lambda t, s: s.body("rod").theta + 0.5, terminal=True)
+    numbers, times = ["rod.length", "end.restitution", "gravity.y"], [0.0, 0.05, 0.1, 0.35, 0.5, 0.7]
+    whole = m.sensitivities("rod.theta", numbers, times=times)
+    for measures in (
+        {"last": final("rod.theta")},
+        {"some": samples("rod.theta", [0.1, 0.05])},
+        {"last": final("rod.theta"), "some": samples("rod.theta", [0.1, 0.05]), "again": final("rod.theta")},
+    ):
+        part = m.sensitivities(measures, numbers, times=times)
+        assert np.array_equal(part.t, whole.t)
+        for label in measures:
+            row = -1 if label != "some" else [2, 1]
+            assert np.array_equal(part.values[label], whole.values["rod.theta"][row])
+            np.testing.assert_allclose(part[label], whole["rod.theta"][row], rtol=1e-9, atol=1e-12)
 
 
 def test_the_end_of_a_simulation_moves_with_its_event() -> None:

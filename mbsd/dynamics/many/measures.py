@@ -54,6 +54,10 @@ class Measure:
         """(n,) whether the outputs so far tell it, of which these are the last; see early.py."""
         return np.zeros(len(along[self.quantity]), bool)
 
+    def needed(self, t: np.ndarray) -> np.ndarray:
+        """Rows of the output times (T,) whose values it reads."""
+        return np.arange(len(t))
+
     def check(self, what: str, t: np.ndarray) -> None:
         """Raise ModelError where it does not suit output times (T,)."""
 
@@ -64,6 +68,9 @@ class Measure:
 
 @dataclass(frozen=True)
 class _Final(Measure):
+    def needed(self, t: np.ndarray) -> np.ndarray:
+        return np.array([len(t) - 1])
+
     def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         return {name: along[self.quantity][:, -1].copy()}
 
@@ -144,9 +151,11 @@ class _Samples(Measure):
                     "Give such times, or other steps or times of the simulation"
                 )
 
+    def needed(self, t: np.ndarray) -> np.ndarray:
+        return np.abs(t[:, None] - np.array(self.times)).argmin(axis=0)
+
     def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        at = np.abs(t[:, None] - np.array(self.times)).argmin(axis=0)
-        return {name: along[self.quantity][:, at]}
+        return {name: along[self.quantity][:, self.needed(t)]}
 
 
 def final(quantity: str) -> Measure:

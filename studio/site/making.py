@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from render.gallery.posters import small_poster
+from shared.stage import locks
 from shared.stage.console import progress, say, warn
-from shared.stage.errors import UserError
-from shared.stage.files import file_hash, write_bytes
+from shared.stage.errors import Busy, UserError
+from shared.stage.files import file_hash, refusal, write_bytes
 from shared.stage.paths import ROOT, Out, in_workshop, out_root, refuse_links
 from shared.stage.stages import Stage
 from studio.pages import making as view_pages
@@ -29,10 +32,36 @@ TITLE = "Machines in motion"
 def run(names: Sequence[str], folder: Path | None = None) -> int:
     """Make the site of these machines in ``folder``, out/site if not given; 1 if one of them is left out.
 
-    Raises UserError where there is none to show.
+    Raises UserError where there is none to show, or another process makes a site there.
     """
     folder = folder or out_root() / "site"
     refuse_links(folder)
+    with _alone(folder):
+        return _run(names, folder)
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Hold the folder for one process: the machines of another site would be removed as gone."""
+    lock = folder.with_name(f".{folder.name}.lock")
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        handle = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
+    except OSError as error:
+        raise UserError(refusal(lock, error)) from error
+    try:
+        try:
+            own = locks.take(handle)
+        except OSError as error:
+            raise UserError(refusal(lock, error, "lock")) from error
+        if not own:
+            raise Busy(f"another process makes {folder}; wait for it or stop it")
+        yield
+    finally:
+        os.close(handle)
+
+
+def _run(names: Sequence[str], folder: Path) -> int:
     view_pages.run(names)
     entries: list[Entry] = []
     with progress("site", len(names), "machine") as shown:

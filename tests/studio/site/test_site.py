@@ -16,7 +16,7 @@ import pytest
 
 from mechanisms.four_bar.mechanism import Params, build
 from render.view.bundle import PAGE, node, node_modules
-from shared.stage.errors import UserError
+from shared.stage.errors import Busy, UserError
 from shared.stage.paths import ROOT
 from studio.pages import making as view_pages
 from studio.site import making
@@ -129,3 +129,20 @@ def test_a_machine_without_a_page_is_named_and_left_out(
     assert "pendulum is left out: it has no page" in capsys.readouterr().err
     with pytest.raises(UserError, match="no machine has a motion"):
         making.run(["pendulum"])
+
+
+def test_two_sites_are_not_made_in_one_folder_at_a_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "site"
+    second: list[BaseException] = []
+
+    def meanwhile(names: list[str]) -> int:
+        with pytest.raises(Busy, match=r"another process makes .*site; wait for it or stop it") as refused:
+            making.run(["trammel"], folder)
+        second.append(refused.value)
+        return 1
+
+    monkeypatch.setattr(view_pages, "run", meanwhile)
+    for _ in range(2):  # the folder is free again after a failure
+        with pytest.raises(UserError, match="no machine has a motion"):
+            making.run(["nothing_made"], folder)
+    assert len(second) == 2

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.derivatives.beside import accelerate_along, close, combine
-from mbsd.derivatives.differentiated import Made, Nodes, Own, can_differentiate, differentiated
+from mbsd.derivatives.compiled_nodes import can_differentiate, differentiated
+from mbsd.derivatives.differentiated import Made, Nodes, Own
 from mbsd.derivatives.linear_motion import NODES, carried
 from mbsd.derivatives.tangents import LOOSE, along_directions, by_numbers, differences, per_scales, refuse_large
 from mbsd.derivatives.terms import Along, Change, Left, Terms

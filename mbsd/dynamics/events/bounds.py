@@ -12,3 +12,11 @@ DEPENDENT = 1e-9
 """Part of its compliance that the rows before must leave of a row."""
 AT_LIMIT = 1e-10
 """Part of the limit of friction: closer to it a contact slides."""
+HAIR = 1e-9
+"""Part of their limits that joints at rest lack when one of them has just come to its limit."""
+ROUNDING, PATIENCE = 1e-9, 20
+"""Part of the largest normal force of a joint that may be left after so many passes."""
+PASSES = 100
+"""Passes in which joints at rest agree on how they share their friction, at most."""
+AGREED = 1e-12
+"""Part of the largest friction that may still change."""

@@ -11,14 +11,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from mbsd.arrays.friction_along import normals_along
+from mbsd.dynamics.events.bounds import AGREED, PASSES
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.sharing import share
 from mbsd.dynamics.rows.held import STICKS
 from mbsd.dynamics.rows.joint_sticks import JointStick
-
-PASSES = 100
-AGREED = 1e-12
-"""Part of the largest friction that may still change."""
 
 
 def carried(at: Compliance, sticks: Sequence[JointStick], lam: np.ndarray) -> tuple[np.ndarray, float]:

@@ -18,7 +18,7 @@ import numpy as np
 
 from mbsd.arrays.friction_along import REMEDY, friction_under, jam, normals_along
 from mbsd.base.errors import SimulationError
-from mbsd.dynamics.events.bounds import AT_LIMIT
+from mbsd.dynamics.events.bounds import AT_LIMIT, HAIR, PATIENCE, ROUNDING
 from mbsd.dynamics.events.laws.complementarity import complementarity, gives_way
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.sharing import share
@@ -26,11 +26,6 @@ from mbsd.dynamics.rows.held import RELEASED, SLIDES
 from mbsd.dynamics.rows.joint_sticks import JointStick
 from mbsd.dynamics.rows.switches import RunContact
 from mbsd.equations.joint_friction import FAINT, MOST_PASSES, SETTLED, X
-
-HAIR = 1e-9
-"""Part of their limits that joints at rest lack when one of them has just come to its limit."""
-ROUNDING, PATIENCE = 1e-9, 20
-"""Part of the largest normal force of a joint that may be left after so many passes."""
 
 
 @dataclass

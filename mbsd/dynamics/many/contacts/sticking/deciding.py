@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.bounds import AT_LIMIT
-from mbsd.dynamics.events.laws.stick_slip import HAIR, PATIENCE, ROUNDING
+from mbsd.dynamics.events.bounds import AT_LIMIT, HAIR, PATIENCE, ROUNDING
 from mbsd.dynamics.many.contacts.arrays import (
     ALONE,
     FORCE,

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.laws.resting import AGREED, PASSES
+from mbsd.dynamics.events.bounds import AGREED, PASSES
 from mbsd.dynamics.events.laws.sharing import SINGULAR
 from mbsd.dynamics.many.contacts.arrays import (
     CLOSED,

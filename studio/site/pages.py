@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from html import escape
 
@@ -21,6 +22,11 @@ HEAD = """<!doctype html>
 <body>
 """
 KILO = 1000
+
+
+def _prose(said: str) -> str:
+    """Words of a docstring as HTML; what stands in backticks is code."""
+    return re.sub(r"`+([^`]+)`+", r"<code>\1</code>", escape(said))
 
 
 def wall(title: str, entries: Sequence[Entry], filters: Sequence[str]) -> str:
@@ -85,7 +91,7 @@ def machine(entry: Entry, others: Sequence[Entry]) -> str:
 <button type="button" class="theme">Dark</button>
 </header>
 <main>
-<p class="lead">{escape(entry.said)}</p>
+<p class="lead">{_prose(entry.said)}</p>
 {film}
 <h2>The machine</h2>
 <p>Turn it, play it, click a joint for its forces.{moved} <a href="machine.html">On a page of its own</a></p>
@@ -122,7 +128,7 @@ def _tile(entry: Entry, place: int, root: str = "") -> str:
         f'<li data-words="{escape(words)}" data-purposes="{escape("|".join(entry.purposes))}"{loop}>'
         f'<a class="tile" href="{escape(folder)}index.html"><span class="moving">'
         f'<img src="{escape(folder + entry.picture)}" width="{2 * WIDTH}" height="{2 * HEIGHT}" alt="" {when}></span>'
-        f'<b>{escape(entry.title)}</b><span class="said">{escape(entry.said)}</span></a></li>'
+        f'<b>{escape(entry.title)}</b><span class="said">{_prose(entry.said)}</span></a></li>'
     )
 
 

@@ -48,6 +48,13 @@ def test_what_an_author_writes_is_no_html() -> None:
     assert [link["href"] for link in page.all("a")] == ["press/index.html", "lift/index.html"]
 
 
+def test_commands_in_backticks_are_code() -> None:
+    v8 = entry("v8", "`make compare-v8` & <more>")
+    for page in (wall("All", [v8], []), machine(v8, [])):
+        assert "<code>make compare-v8</code> &amp; &lt;more&gt;" in page
+        assert "`" not in Read(page).words
+
+
 def test_a_machine_has_its_film_files_and_neighbours() -> None:
     files = [Download("press_stl.zip", "parts, STL", 1_250_000)]
     page = Read(machine(entry("press", film="film.mp4", has_sliders=True, downloads=files), [entry("lift")]))

@@ -10,7 +10,7 @@ stuck, whatever that is. Source: Haug, Ehle, Mech. Mach. Theory 17 (1982); Wehag
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -47,6 +47,8 @@ class Stretch:
     """(T,) whether tangents are wanted there."""
     nodes: np.ndarray
     """(T,) whether it is one of the nodes of whole steps, the first and the last among them."""
+    solved: bool = True
+    """Whether accelerations and multipliers are known; else accelerations are about what they will be."""
 
 
 @dataclass
@@ -74,6 +76,8 @@ class Carried:
     v: np.ndarray
     errors: np.ndarray
     """(d,) what each step adds, as part of the largest."""
+    off: float
+    """By how much accelerations were other than about what was known, as part of the largest."""
 
 
 def joined(parts: list[Tangents]) -> Tangents:
@@ -87,7 +91,7 @@ class FreeTangents:
     def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants]) -> None:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
         self.dependent, self.asked, self.compact = stretch.dependent, stretch.asked, stretch.compact
-        self.nodes = stretch.nodes
+        self.nodes, self.solved = stretch.nodes, stretch.solved
         packed = terms.packed
         refuse_large(terms, len(self.along.t))
         self.scale = packed.column_scale()
@@ -103,7 +107,8 @@ class FreeTangents:
             parts.append(_Piece(self, first, basis, inverse).carry(q, v))
             q, v = parts[-1].q, parts[-1].v
             first += len(inverse) - 1
-        return Carried(joined([part.asked for part in parts]), q, v, np.concatenate([part.errors for part in parts]))
+        errors, off = np.concatenate([part.errors for part in parts]), max(part.off for part in parts)
+        return Carried(joined([part.asked for part in parts]), q, v, errors, off)
 
     def _basis(self, first: int) -> tuple[np.ndarray, np.ndarray]:
         """Z (f, n) at node ``first``, and inverses of [J; Z] up to the last node, whole steps on, that it serves."""
@@ -146,6 +151,16 @@ class _Piece:
         self.f, self.n = len(basis), inverse.shape[1]
         self.inertia, self._scale = self.terms.inertia[3:], 1.0 / whole.scale
         self.effort = self._efforts(whole)
+        self.off = 0.0 if whole.solved else self._solve()
+
+    def _solve(self) -> float:
+        """Find accelerations and multipliers; returns by how much accelerations change, as part of the largest."""
+        about, (_, gamma, compact) = self.along.a, self.terms.rows(self.along)
+        load = self.terms.forces(self.along, compact) + self.terms.weight
+        a, lam = self._accelerations(-gamma[None], load[None])
+        a = _wide(a[0])
+        self.along = replace(self.along, a=a, lam=lam[0])
+        return float(np.abs(a - about).max(initial=0.0)) / max(float(np.abs(a).max(initial=0.0)), 1e-300)
 
     def _efforts(self, whole: FreeTangents) -> np.ndarray | None:
         """(T, n, r) E of the rows that hold, where that is more than J^T: with friction in them; else None."""
@@ -179,7 +194,7 @@ class _Piece:
         y, parts = line.at(self.along.t[at]), [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
         for out, part in zip(parts, made[2:], strict=True):
             combine(y, part, out)
-        return Carried(Tangents(*(part[:, :asked] for part in parts)), parts[0][:, -1], parts[1][:, -1], line.errors)
+        return Carried(Tangents(*(part[:, :asked] for part in parts)), parts[0][:, -1], parts[1][:, -1], line.errors, self.off)
 
     def _node_by_node(self, begun: np.ndarray, at: np.ndarray) -> Made:
         """By the kernel, some nodes at once, so that what is known of them stays near the processor."""

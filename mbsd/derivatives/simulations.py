@@ -18,8 +18,9 @@ from mbsd.derivatives.asked import taken
 from mbsd.derivatives.free_tangents import FreeTangents, Stretch, Tangents, joined
 from mbsd.derivatives.jumps import Jump, jumps_of
 from mbsd.derivatives.linear_motion import NODES
-from mbsd.derivatives.mesh import ROUNDING, apart, first_edges, longest_steps, looked_at, nodes_of, refined
+from mbsd.derivatives.mesh import ROUNDING, apart, first_edges, longest_steps, looked_at, looked_at_closer, nodes_of, refined
 from mbsd.derivatives.numbers import Number
+from mbsd.derivatives.smooth_motion import Motion, between, motion_of
 from mbsd.derivatives.sweeps import along_of, displaced
 from mbsd.derivatives.tangents import Tangent
 from mbsd.derivatives.terms import Along, terms_of
@@ -46,6 +47,8 @@ MOST_STEPS = 20_000
 """Steps at most."""
 STEPS_OF_METHOD = 0.2
 """Usual steps of the tangents for one of the integrator."""
+CLOSE = 1e-4
+"""Error of accelerations between looks, as part of the largest, beyond which the motion is simulated at the nodes."""
 
 
 class SimulationTangents:
@@ -75,15 +78,23 @@ class SimulationTangents:
         met = np.append(first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]])
         usual = (first.t[-1] - first.t[0]) / max(1.0, STEPS_OF_METHOD * first.steps)
         longest = longest_steps(first.t, _parts(first), usual)
+        if first.q is not None and first.steps > len(first.t):
+            first = runs.closer(looked_at_closer(first.t, longest))
+            longest = longest_steps(first.t, _parts(first), usual)
         edges = first_edges((span[0], float(reached[-1])), met, first.t, longest)
         outputs = apart(grid, met, span[1] - span[0])
         before = error = 0.0
+        smooth = first.q is not None
         for turn in range(MOST):
             nodes = nodes_of(edges, met)
-            whole = runs(np.union1d(nodes, outputs))
+            times = np.union1d(nodes, outputs)
+            whole = between(first, times) if smooth else motion_of(runs(times))
             rows = self._outputs(whole, grid)
             asked = rows[needed(whole.t[rows])]
             made, errors = self._made(whole, asked, nodes)
+            if smooth and self.off > CLOSE:
+                smooth, whole = False, motion_of(runs(times))
+                made, errors = self._made(whole, asked, nodes)
             before, error = error, float(errors.sum())
             if error <= ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
                 break
@@ -102,8 +113,12 @@ class SimulationTangents:
                 "does that: smooth it, or take differences of whole simulations",
                 ModelWarning,
             )
-        self.sol = taken(whole, rows)
-        self.known = self.sol if len(asked) == len(rows) else taken(whole, asked)
+        if whole.solution is None:
+            self.sol = runs.recorded(np.searchsorted(first.t, whole.t[rows]))
+            self.known = self.sol if len(asked) == len(rows) else taken(self.sol, np.searchsorted(rows, asked))
+        else:
+            self.sol = taken(whole.solution, rows)
+            self.known = self.sol if len(asked) == len(rows) else taken(whole.solution, asked)
         """The outputs of which tangents are known."""
         self.along = along_of(self.known)
         if self.redundant:
@@ -135,26 +150,26 @@ class SimulationTangents:
 
     # -- nodes -----------------------------------------------------------------------------------------------------
 
-    def _made(self, whole: Solution, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray]:
+    def _made(self, whole: Motion, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray]:
         """Tangents at some rows of the simulation, and the error that each step between nodes adds."""
         asked, known = np.zeros(len(whole.t), bool), np.isin(whole.t, nodes)
         asked[rows] = True
         begins = np.append(True, np.diff(whole.t) <= 0.0)
         known |= begins | np.append(begins[1:], True)
         kept = np.flatnonzero(asked | known)
-        whole, asked, known, begins = taken(whole, kept), asked[kept], known[kept], begins[kept]
-        along = along_of(whole)
-        along.held = whole.held
+        whole, asked, known, begins = whole.take(kept), asked[kept], known[kept], begins[kept]
+        along = whole.along
         edges = [*np.flatnonzero(begins).tolist(), len(kept)]
         q, v = self._begun()
         parts: list[Tangents] = []
         errors: list[np.ndarray] = []
-        self.ends = None
-        jumps: list[Jump] = jumps_of(self, whole, along, edges)
+        self.ends, self.off = None, 0.0
+        jumps: list[Jump] = [] if whole.solution is None else jumps_of(self, whole.solution, along, edges)
         compact = self.terms.rows(along)[2]
         for k, (a, b) in enumerate(pairwise(edges)):
             at = slice(a, b)
             stretch = self._stretch(along.take(at), compact[at], asked[at], known[at])
+            stretch.solved = whole.solution is not None
             if known[at].sum() % NODES != 1:
                 raise SimulationError(
                     f"{self.m.name}: derivatives: events from t = {whole.t[a]:.9g} s on come at other times when they "
@@ -162,6 +177,7 @@ class SimulationTangents:
                 )
             made = FreeTangents(self.terms, stretch, self.variants).carry(q, v)
             errors.append(made.errors)
+            self.off = max(self.off, made.off)
             parts.append(made.asked)
             q, v = made.q, made.v
             if k < len(jumps):
@@ -229,11 +245,12 @@ class SimulationTangents:
         return q, v
 
     @staticmethod
-    def _outputs(whole: Solution, grid: np.ndarray) -> np.ndarray:
+    def _outputs(whole: Motion, grid: np.ndarray) -> np.ndarray:
         """Rows of the outputs; at an event what comes after it, and its end if one ended it."""
         near = ROUNDING * (grid[-1] - grid[0])
         rows = np.searchsorted(whole.t, grid[grid <= whole.t[-1]] + near, side="right") - 1
-        ended = bool(whole.events) and whole.events[-1].what == "end"
+        events = () if whole.solution is None else whole.solution.events
+        ended = bool(events) and events[-1].what == "end"
         return np.append(rows, len(whole.t) - 1) if ended and rows[-1] < len(whole.t) - 1 else rows
 
 

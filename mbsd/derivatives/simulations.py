@@ -47,6 +47,9 @@ MOST_STEPS = 20_000
 """Steps at most."""
 STEPS_OF_METHOD = 0.2
 """Usual steps of the tangents for one of the integrator."""
+AGAIN, FEW = 3, 2
+"""A motion is looked at again so often at most, as long as a step somewhere has no more gaps than so many, or the
+integrator took more steps than there were looks."""
 CLOSE = 1e-4
 """Error of accelerations between looks, as part of the largest, beyond which the motion is simulated at the nodes."""
 
@@ -76,11 +79,7 @@ class SimulationTangents:
         self.variation = variation
         reached = grid[grid <= first.t[-1]]
         met = np.append(first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]])
-        usual = (first.t[-1] - first.t[0]) / max(1.0, STEPS_OF_METHOD * first.steps)
-        longest = longest_steps(first.t, _parts(first), usual)
-        if first.q is not None and first.steps > len(first.t):
-            first = runs.closer(looked_at_closer(first.t, longest))
-            longest = longest_steps(first.t, _parts(first), usual)
+        first, longest = _looked_at_closely(runs, first)
         edges = first_edges((span[0], float(reached[-1])), met, first.t, longest)
         outputs = apart(grid, met, span[1] - span[0])
         before = error = 0.0
@@ -256,6 +255,18 @@ class SimulationTangents:
 
 def _state_of(initial: Initial) -> tuple[np.ndarray, np.ndarray]:
     return initial.q, initial.v
+
+
+def _looked_at_closely(runs: Repeated, first: Course) -> tuple[Course, np.ndarray]:
+    """A course, at closer times where it is smooth and was looked at too seldom, and how long steps may be there."""
+    usual = (first.t[-1] - first.t[0]) / max(1.0, STEPS_OF_METHOD * first.steps)
+    longest = longest_steps(first.t, _parts(first), usual)
+    for _ in range(AGAIN if first.q is not None else 0):
+        if first.steps < len(first.t) and not (longest < FEW * np.diff(first.t)).any():
+            break
+        first = runs.closer(looked_at_closer(first.t, longest))
+        longest = longest_steps(first.t, _parts(first), usual)
+    return first, longest
 
 
 def _parts(first: Course) -> np.ndarray:

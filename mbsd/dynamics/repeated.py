@@ -1,7 +1,7 @@
 """Simulations of one mechanism over one span at several sets of output times, prepared once where it moves smoothly.
 
 A run without events, contacts and jumps, in independent coordinates, leaves nothing behind in what was prepared: the
-next one has the digits of one that is prepared anew, and what the first one recorded is a solution at some of its times.
+next one has the digits of one that is prepared anew, and what the first one recorded is a solution at its own times.
 """
 
 from __future__ import annotations

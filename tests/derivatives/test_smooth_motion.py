@@ -89,13 +89,13 @@ def test_a_smooth_motion_is_not_simulated_at_its_nodes(monkeypatch: pytest.Monke
         raise AssertionError(f"simulated at {len(times)} nodes")
 
     turns: list[int] = []
-    made = simulations.SimulationTangents._made
+    made = simulations.nodes_of
 
-    def counted(self: object, whole: object, rows: np.ndarray, nodes: np.ndarray) -> object:
-        turns.append(len(nodes))
-        return made(self, whole, rows, nodes)  # pyright: ignore[reportArgumentType]
+    def counted(edges: np.ndarray, met: np.ndarray) -> np.ndarray:
+        turns.append(len(edges))
+        return made(edges, met)
 
     monkeypatch.setattr(Repeated, "__call__", refuse)
-    monkeypatch.setattr(simulations.SimulationTangents, "_made", counted)
+    monkeypatch.setattr(simulations, "nodes_of", counted)
     settling().sensitivities({"of": final("rod.theta")}, ["oil.stiffness"], 6.0, 40)
     assert len(turns) == 1, turns

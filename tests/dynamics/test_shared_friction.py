@@ -48,7 +48,7 @@ def test_a_linkage_shares_as_if_the_other_were_not_there(name: str) -> None:
 
 def test_no_joint_of_a_five_bar_is_at_its_limit_before_they_give_way() -> None:
     names = [f"rub {pin}" for pin in "ABCDE"]
-    sol = stuck_five_bar().simulate(0.6, steps=120)
+    sol = stuck_five_bar().simulate(0.6, steps=120, event_rows=True)
     assert {name for name, what in told(sol) if what == "sticks"} == set(names)
     resting = at_rest(sol)
     normal = np.stack([sol.friction(name).normal for name in names], axis=1)
@@ -60,9 +60,31 @@ def test_no_joint_of_a_five_bar_is_at_its_limit_before_they_give_way() -> None:
     np.testing.assert_allclose(np.sort(part[resting], axis=1)[:, 1], first, rtol=1e-9)
     slides = [name for name, what in told(sol) if what == "slides"]
     assert slides == [f"rub {pin}" for pin in "ABCE"]
-    last = np.flatnonzero(resting)[-1]
-    assert part[last].max() > 0.98
-    assert part[last, 3] == part[last].min()
+    before = int(np.flatnonzero(sol.t == sol.events[-1].time)[0])
+    np.testing.assert_allclose(part[before, [0, 1, 2, 4]], 1.0, rtol=1e-7)
+    assert part[before, 3] < 0.9
+
+
+def test_a_five_bar_breaks_away_as_the_four_bar_that_a_weld_makes_of_it() -> None:
+    """One freedom is left where the joint that rests is welded."""
+    bars = stuck_five_bar()
+    bars.start_moving(a=0.0)
+    sol = bars.simulate(0.5, steps=STEPS, event_rows=True)
+    assert [name for name, what in told(sol) if what == "slides"] == [f"rub {pin}" for pin in "ABCE"]
+    bend = float(sol.body("c").theta[0] - sol.body("d").theta[0])
+    welded = stuck_five_bar(order="ABCE", bend=bend)
+    welded.start_moving(a=0.0)
+    four = welded.simulate(0.5, steps=STEPS, event_rows=True)
+    assert [event.time for event in four.events if event.what == "slides"] == pytest.approx(
+        [event.time for event in sol.events if event.what == "slides"], rel=1e-9
+    )
+    slides = sol.events[-1].time
+    for pin in "ABCE":  # before, another motion is the one that would give way first
+        force, own = (
+            each.friction(f"rub {pin}").force[(each.t > 0.4 * slides) & (each.t < slides - 1e-6)]
+            for each in (sol, four)
+        )
+        np.testing.assert_allclose(force, own, atol=1e-8)
 
 
 @pytest.mark.parametrize("change", [{"order": "DBEAC"}, {"turned": 2.0}])

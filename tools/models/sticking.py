@@ -76,8 +76,13 @@ def two_slider_cranks(pull: float = 0.0, names: str = "ab") -> Mechanism:
     return m
 
 
-def stuck_five_bar(motor: float = 20.0, turned: float = 0.0, order: str = "ABCDE") -> Mechanism:
-    """Four bars with two freedoms, friction in all joints, added in this ``order``, and the torque ``motor`` t."""
+def stuck_five_bar(
+    motor: float = 20.0, turned: float = 0.0, order: str = "ABCDE", bend: float | None = None
+) -> Mechanism:
+    """Four bars with two freedoms, friction in all joints, added in this ``order``, and the torque ``motor`` t.
+
+    ``bend`` (rad): c is welded to d, ahead of it by so much.
+    """
     fall = 9.80665
     m = Mechanism("five-bar", gravity=(fall * math.sin(turned), -fall * math.cos(turned)))
     a, d = m.bar("a", 0.3, mass=0.6), m.bar("d", 0.25, mass=0.5)
@@ -85,7 +90,10 @@ def stuck_five_bar(motor: float = 20.0, turned: float = 0.0, order: str = "ABCDE
     m.revolute("A", m.ground.origin, a.start)
     m.revolute("B", a.end, b.start)
     m.revolute("C", b.end, c.end)
-    m.revolute("D", c.start, d.end)
+    if bend is None:
+        m.revolute("D", c.start, d.end)
+    else:
+        m.weld("D", c.start, d.at(0.25, 0.0, bend))
     m.revolute("E", m.ground.at(0.4 * math.cos(turned), 0.4 * math.sin(turned)), d.start)
     for pin in order:
         preload = 100.0 + 10.0 * "ABCDE".index(pin)

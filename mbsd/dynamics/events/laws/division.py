@@ -15,7 +15,7 @@ moves carry s L_k, each against its rate, so that by the virtual work of that mo
 
 What they carry is settled. Joints which that motion leaves at rest divide what is left of the loads b among them
 likewise, with a smaller s, and so on: of all divisions this one has the smallest largest part, then the smallest second
-largest part. It is unique, and what decouples is divided as if it were alone.
+largest part. It is unique, and what decouples is divided by itself.
 
 Source: Chvatal, Linear Programming, ch. 8, with Bland's rule; Prager, An Introduction to Plasticity, for motions
 that give way first; Schmeidler 1969, SIAM J. Appl. Math. 17, for what is unique.

@@ -98,6 +98,14 @@ def test_a_joint_counted_the_other_way_only_changes_its_sign(case: Stuck, joint:
     np.testing.assert_allclose(other.divided()[0] * sign, case.divided()[0], atol=NEAR)
 
 
+@given(stuck(), st.integers(0, 2**32 - 1))
+def test_a_division_changes_by_little_where_loads_and_limits_do(case: Stuck, seed: int) -> None:
+    rng, n = np.random.default_rng(seed), len(case.forces)
+    forces, limits = case.forces + 1e-10 * rng.uniform(-1, 1, n), case.limits * (1.0 + 1e-10 * rng.uniform(-1, 1, n))
+    near = Stuck(case.ways, case.mobility, forces, limits)
+    np.testing.assert_allclose(near.divided()[0], case.divided()[0], atol=1e-6)
+
+
 @given(stuck(), stuck(), st.booleans())
 def test_what_moves_nothing_of_another_shares_nothing_with_it(first: Stuck, second: Stuck, heavy: bool) -> None:
     """Also where one stands on the other, so that their masses couple them."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, Tolerances, constant_rate, tolerances
+from mbsd import Mechanism, ModelError, Tolerances, Uniform, constant_rate, tolerances
 from mbsd.measures import final, largest, samples
 from tests.tolerancing.linkages import SIZES, four_bar, rocker_angle, switch
 
@@ -151,6 +151,34 @@ def test_the_picture_shows_limits_and_shares(tmp_path: Path) -> None:
     assert (tmp_path / "first.svg").read_bytes() == (tmp_path / "second.svg").read_bytes()
     with pytest.raises(ModelError, match="two axes"):
         t.plot(3)
+
+
+def test_corners_that_all_fail_have_no_worst_case() -> None:
+    t = tolerances(lambda a=0.0: a if abs(a) < 2.5 else np.nan, {"a": Uniform(3.0)}, n=50)
+    assert t.corners_failed == 2
+    assert "unknown at the corners: all 2 of them fail" in str(t)
+
+
+def test_a_function_that_fails_for_a_machine_fails_that_machine_alone() -> None:
+    """What it gives besides numbers is refused, and so is a function that fails for the machine as it is given."""
+
+    def root(a: float = 1.0) -> float:
+        if a > 1.08:
+            raise ValueError("too long")
+        return a**2
+
+    t = tolerances(root, {"a": Uniform(0.1)}, n=100)
+    assert 0 < len(t.failed) == t.failures["the result fails: ValueError: too long"] < 50
+    assert (t.deviations[t.failed, 0] > 0.08).all()
+
+    def measured(sol: Any) -> float:
+        return root(1.0 + 100.0 * (sol.mechanism.bodies["crank"].length - 0.04))
+
+    own = tolerances(four_bar(), {"crank": Uniform(1e-3)}, measured, n=40, steps=4, way="sweep")
+    assert 0 < len(own.failed) == (own.deviations[:, 0] > 0.8e-3).sum()
+    assert own.failures == {"the result fails: ValueError: too long": len(own.failed)}
+    with pytest.raises(ModelError, match="result gives 'long'; it must give a number"):
+        tolerances(lambda a=1.0: "long" if a > 1.08 else a, {"a": Uniform(0.1)}, n=100)
 
 
 def test_machines_without_a_number_are_counted() -> None:

@@ -270,7 +270,8 @@ def agrees(patches: Patches, row: int, fresh: np.ndarray, content_of: Callable[[
     for first, end in _overwritten(patches.base):
         mine[first:end] = other[first:end]
     rounding = 0.0 if patches.designs.exact else ROUNDING
-    close = np.abs(mine - other) <= rounding * np.maximum(np.abs(other), 1.0)
+    with np.errstate(invalid="ignore"):  # infinite bounds
+        close = np.abs(mine - other) <= rounding * np.maximum(np.abs(other), 1.0)
     return bool((close | (np.isnan(mine) & np.isnan(other)) | (mine == other)).all())
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import warnings
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -17,7 +16,9 @@ from mbsd.base.arguments import whole_number
 from mbsd.base.cores import cores
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
+from mbsd.base.quiet import quiet
 from mbsd.base.shown import shown
+from mbsd.base.users_function import refuse_other_arguments
 from mbsd.dynamics.many.designs import Designs, designs_of
 from mbsd.dynamics.many.done import Done, joined, numbers_of
 from mbsd.dynamics.many.early import windows_of
@@ -176,8 +177,7 @@ def simulations(
         [len(grid)] if callable(measures) or not pausing else windows_of(len(grid), measures, quantities),
         any(quantity.reactive for quantity in quantities.values()),
     )
-    with warnings.catch_warnings():  # here, as threads share what is shown
-        warnings.simplefilter("ignore")
+    with quiet():  # here, as threads share what is shown
         done = _all(work, len(m.bodies), min(threads or cores(), designs.count), progress)
     table = done.columns if callable(measures) else _empty(measures, designs.count) | done.columns
     return Simulations(table, done.reasons, done.alone, work.note)
@@ -192,6 +192,7 @@ def _empty(measures: Mapping[str, Measure], count: int) -> dict[str, np.ndarray]
 def checked_measures(m: Model, measure: Any, grid: np.ndarray) -> Measures:
     """As given, checked."""
     if callable(measure):
+        refuse_other_arguments(f"{m.name}: measure", measure, "a solution")
         return measure
     if not isinstance(measure, Mapping) or not measure:
         raise ModelError(
@@ -224,12 +225,11 @@ def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], 
     """Raise ModelError if ``measure`` gives anything but numbers of the first simulation."""
     model = designs.copied()
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with quiet():
             given = measure(simulated(designs.put(model, 0), asked))
     except Exception:
         return  # that is the reason of the first row
-    numbers_of(given)
+    numbers_of(designs.m.name, given)
 
 
 def _column_names(designs: Designs) -> list[str]:

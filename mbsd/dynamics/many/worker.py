@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.stopping import stops_when
 from mbsd.base.users_function import described
 from mbsd.dynamics.many.arguments import content
 from mbsd.dynamics.many.base import Base, based_on
@@ -81,6 +82,10 @@ class Work:
     """Numbers of rows that need not be."""
     note: str | None = None
     """Why not, if so."""
+
+    def unwanted(self) -> bool:
+        """Whether all is to stop."""
+        return bool(self.stop[0])
 
 
 class Worker:
@@ -177,6 +182,9 @@ class Worker:
         alike: dict[Any, dict[int, SingleRun]] = {}
         done: dict[int, Done] = {}
         for row in rows:
+            if self.work.unwanted():
+                done[row] = failed(STOP)
+                continue
             try:
                 run = self._run_of(row)
                 alike.setdefault(run.kind, {})[row] = run
@@ -280,10 +288,11 @@ class Worker:
     # -- by simulate ---------------------------------------------------------------------------------------------
 
     def _single(self, row: int, why: str) -> Done:
-        if self.work.stop[0]:
+        if self.work.unwanted():
             return failed(STOP, why)
         try:
-            columns = self._simulated(row)
+            with stops_when(self.work.unwanted):
+                columns = self._simulated(row)
         except Exception as error:
             return failed(described(error), why)
         return Done(columns, [None], [why])
@@ -292,7 +301,7 @@ class Worker:
         measures = self.work.measures
         sol = simulated(self.designs.put(self.model, row), self.work.asked)
         if not isinstance(measures, Mapping):
-            return {name: np.array([value]) for name, value in numbers_of(measures(sol)).items()}
+            return {name: np.array([value]) for name, value in numbers_of(sol.mechanism.name, measures(sol)).items()}
         along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}
         return columns_of(measures, sol.t, along)
 

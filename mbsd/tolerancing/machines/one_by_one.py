@@ -9,7 +9,6 @@ computed  by a function of the user
 from __future__ import annotations
 
 import copy
-import warnings
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,13 +17,14 @@ from typing import Any, Protocol
 import numpy as np
 
 from mbsd.base.errors import MechanismError, ModelError
+from mbsd.base.quiet import quiet
 from mbsd.dynamics.many.measures import Measure
 from mbsd.model.change import change
 from mbsd.model.mechanism import Model
 from mbsd.synthesis.changed import lengthen, put_place
 from mbsd.tolerancing.dimensions.dimension import Column
 from mbsd.tolerancing.dimensions.named import first_marker
-from mbsd.tolerancing.machines.results import NAME, OfSolution, called, number_of
+from mbsd.tolerancing.machines.results import NAME, FailingResult, NoNumber, OfSolution, called, number_of
 
 
 @dataclass
@@ -71,15 +71,14 @@ class OneByOne:
     def __call__(self, x: np.ndarray) -> Answers:
         """The result of each row."""
         out = Answers(np.full(len(x), np.nan))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with quiet():
             for k, row in enumerate(x):
                 try:
                     out.values[k] = self._evaluate(row)
-                except ModelError as error:
-                    if "tolerances: result" in str(error):
-                        raise
-                    out.failures[reason_of(error)] += 1
+                except FailingResult as error:
+                    out.failures[error.reason] += 1
+                except NoNumber:
+                    raise
                 except MechanismError as error:
                     out.failures[reason_of(error)] += 1
         return out
@@ -141,9 +140,9 @@ class Simulated:
         many = self._m.simulate_many(vary=vary, measure=self._result, **self._options)
         self.way = f"simulated: {many.way}"
         failures: Counter[str] = Counter(" ".join(reason.split())[:120] for reason in many.reason if reason)
-        wrong = next((reason for reason in failures if "tolerances: result" in reason), None)
+        wrong = next((reason for reason in failures if reason.startswith(f"{NoNumber.__name__}: ")), None)
         if wrong:
-            raise ModelError(wrong)
+            raise NoNumber(wrong.partition(": ")[2])
         return Answers(many[NAME].reshape(len(x)), failures)
 
 

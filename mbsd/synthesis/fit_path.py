@@ -206,6 +206,8 @@ def _times(m: Model, times: object, count: int) -> np.ndarray | None:
     moments = number_array(f"{m.name}: fit_path: times", times)
     if moments.shape != (count,):
         raise ModelError(f"{m.name}: fit_path: {count} points have times of shape {moments.shape}; give one time each")
+    if len(np.unique(moments)) < count:
+        raise ModelError(f"{m.name}: fit_path: two points have the same time; the point is at one of them then")
     return moments
 
 

@@ -11,7 +11,7 @@ linkage that strays); Shigley's Mechanical Engineering Design, section 1-13 (sta
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -22,11 +22,12 @@ from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
+from mbsd.tolerancing.dimensions.dimension import Dimension
 from mbsd.tolerancing.machines.functions import function_task
 from mbsd.tolerancing.machines.one_by_one import Machines
 from mbsd.tolerancing.machines.tasks import Task, task_of
 from mbsd.tolerancing.outcome import Tolerances
-from mbsd.tolerancing.statistics.derivatives import middles, slopes
+from mbsd.tolerancing.statistics.derivatives import middles, parts, slopes
 from mbsd.tolerancing.statistics.draws import drawn
 from mbsd.tolerancing.statistics.halving import curved, halving
 from mbsd.tolerancing.statistics.shares import linear_variances, shares_of, sobol_indices
@@ -139,11 +140,10 @@ def _carried_out(
     slope = slopes(run, dimensions)
     if not np.isfinite([middle, *slope]).all():
         raise ModelError(
-            f"{task.owner}: tolerances: machines in the middle of the tolerances, or a standard deviation beside "
-            "it, fail "
-            f"({', '.join(run.failures)}); the tolerances are too wide for derivatives, or the motion passes a "
-            "dead centre: narrow them, or sweep a part of the motion (duration=...). Where joints repeat others "
-            "or gears mesh, only exact lengths close: leave those out"
+            f"{task.owner}: tolerances: machines {_where(dimensions, middle, slope)} fail ({', '.join(run.failures)}); "
+            "the tolerances are too wide for derivatives, or the motion passes a dead centre: narrow them, or sweep a "
+            "part of the motion (duration=...). Where joints repeat others or gears mesh, only exact lengths close: "
+            "leave those out"
         )
     corner, corners_failed = None, 0
     if corners if corners is not None else 2 ** len(dimensions) <= n:
@@ -193,6 +193,15 @@ class _Run:
             if self._progress is not None:
                 self._progress(min(1.0, (first + len(x[part])) / self._total))
         return out
+
+
+def _where(dimensions: Sequence[Dimension], middle: float, slope: np.ndarray) -> str:
+    """Where machines fail about the middle, in words."""
+    if not np.isfinite(middle):
+        return "in the middle of the tolerances"
+    own = zip(dimensions, parts(dimensions), strict=True)
+    failing = [f"'{dimension.label}'" for dimension, part in own if not np.isfinite(slope[part]).all()]
+    return f"a standard deviation of {' or '.join(failing)} beside the middle of the tolerances"
 
 
 def _title(column: Any) -> str:

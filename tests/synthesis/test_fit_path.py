@@ -191,6 +191,7 @@ def test_progress_is_told_and_may_end_the_fit() -> None:
         ({"points": [(0, 0), (0, 0)]}, "same place"),
         ({"points": [(0, 0), (0, np.nan)]}, "finite"),
         ({"times": [0.0]}, "one time each"),
+        ({"times": [0.1, 0.1]}, "two points have the same time"),
         ({"point": "Q"}, "no traced point 'Q'"),
         ({"least_transmission": 2.0}, "below pi/2"),
         ({"starts": 0}, "starts is 0"),

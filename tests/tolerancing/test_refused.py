@@ -154,7 +154,9 @@ def test_functions(function: Any, sizes: Any, said: str) -> None:
 
 
 def test_tolerances_too_wide_for_derivatives() -> None:
-    with pytest.raises(ModelError, match="too wide for derivatives"):
+    with pytest.raises(
+        ModelError, match=r"a standard deviation of 'rocker' beside the middle .* too wide for derivatives"
+    ):
         tolerances(four_bar(), {"rocker": Uniform(0.089)}, ANGLE)
 
 

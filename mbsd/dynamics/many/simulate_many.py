@@ -18,7 +18,7 @@ from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
 from mbsd.base.quiet import quiet
 from mbsd.base.shown import shown
-from mbsd.base.users_function import refuse_other_arguments
+from mbsd.base.users_function import described, refuse_other_arguments
 from mbsd.dynamics.many.designs import Designs, designs_of
 from mbsd.dynamics.many.done import Done, joined, numbers_of
 from mbsd.dynamics.many.early import windows_of
@@ -46,6 +46,8 @@ NUMBERS_OF_A_BODY = 12
 LOOK = 0.2
 """s between two looks at the keyboard."""
 REASON = "reason"
+WRONGLY_WRITTEN = (NameError, AttributeError, TypeError, KeyError, ImportError, ModelError)
+"""What a function raises that is wrong for any simulation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,13 +224,22 @@ def quantities_of(designs: Designs, measures: Mapping[str, Measure]) -> dict[str
 
 
 def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], Any]) -> None:
-    """Raise ModelError if ``measure`` gives anything but numbers of the first simulation."""
+    """Raise ModelError if ``measure`` gives anything but numbers of the first simulation, or is written wrongly.
+
+    Else what it raises is the reason of that row.
+    """
     model = designs.copied()
-    try:
-        with quiet():
-            given = measure(simulated(designs.put(model, 0), asked))
-    except Exception:
-        return  # that is the reason of the first row
+    with quiet():
+        try:
+            sol = simulated(designs.put(model, 0), asked)
+        except Exception:
+            return
+        try:
+            given = measure(sol)
+        except WRONGLY_WRITTEN as error:
+            raise ModelError(f"{designs.m.name}: measure fails for the first simulation: {described(error)}") from error
+        except Exception:
+            return
     numbers_of(designs.m.name, given)
 
 

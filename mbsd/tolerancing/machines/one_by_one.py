@@ -26,6 +26,9 @@ from mbsd.tolerancing.dimensions.dimension import Column
 from mbsd.tolerancing.dimensions.named import first_marker
 from mbsd.tolerancing.machines.results import NAME, FailingResult, NoNumber, OfSolution, called, number_of
 
+LONGEST = 200
+"""Letters of a reason."""
+
 
 @dataclass
 class Answers:
@@ -51,9 +54,9 @@ class Machines(Protocol):
 
 
 def reason_of(error: MechanismError) -> str:
-    """The type of an error: what failed alike is counted together, whatever its numbers."""
-    said = (type(error).__doc__ or "").strip().partition("\n")[0].rstrip(".")
-    return f"{type(error).__name__} ({said[:1].lower()}{said[1:]})" if said else type(error).__name__
+    """The type of an error and its first sentence."""
+    said = " ".join(str(error).split()).partition(". ")[0].rstrip(".")
+    return f"{type(error).__name__} ({said[:LONGEST]})" if said else type(error).__name__
 
 
 class OneByOne:
@@ -63,6 +66,8 @@ class OneByOne:
 
     def __init__(self, way: str, evaluate: Callable[[np.ndarray], float]) -> None:
         self.way, self._evaluate = way, evaluate
+        self._reasons: dict[type[MechanismError], str] = {}
+        """What failed by an error of one type is counted together, under what the first of them said."""
 
     def at(self, row: np.ndarray) -> float:
         """The result of a row. Raises what it raises."""
@@ -80,7 +85,7 @@ class OneByOne:
                 except NoNumber:
                     raise
                 except MechanismError as error:
-                    out.failures[reason_of(error)] += 1
+                    out.failures[self._reasons.setdefault(type(error), reason_of(error))] += 1
         return out
 
 

@@ -12,6 +12,7 @@ import copy
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any, Protocol
 
 import numpy as np
@@ -90,11 +91,17 @@ class OneByOne:
 
 
 def swept(m: Model, columns: Sequence[Column], result: Measure | Callable[[Any], Any], grid: np.ndarray) -> OneByOne:
-    """Machines swept one by one over times ``grid`` (T,)."""
+    """Machines swept one by one over times ``grid`` (T,); they share the plan of ``m``."""
+    from mbsd.kinematics.prepare import prepare
     from mbsd.kinematics.sweep import sweep
 
     of_solution = OfSolution(m, result)
-    return OneByOne("swept one by one", lambda row: of_solution(sweep(with_numbers(m, columns, row), None, 1, grid)))
+    own = cache(lambda: prepare(m, float(grid[0]), float(grid[-1])))  # once, and if any is asked for
+
+    def evaluate(row: np.ndarray) -> float:
+        return of_solution(sweep(with_numbers(m, columns, row), None, 1, grid, beside=own()))
+
+    return OneByOne("swept one by one", evaluate)
 
 
 def with_numbers(m: Model, columns: Sequence[Column], row: np.ndarray) -> Any:

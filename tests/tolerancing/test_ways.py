@@ -154,6 +154,31 @@ def test_the_picture_shows_limits_and_shares(tmp_path: Path) -> None:
         t.plot(3)
 
 
+@pytest.mark.parametrize("more", [{}, {"sobol": True}, {"corners": True}])
+def test_progress_rises_to_1_at_the_end_whatever_is_evaluated(more: dict[str, Any]) -> None:
+    told: list[float] = []
+    evaluated = 0
+
+    def bent(a: float = 0.0, b: float = 0.0) -> float:
+        nonlocal evaluated
+        evaluated += 1
+        return a**2 + b
+
+    def progress(part: float) -> None:
+        told.append(part)
+        seen.append(evaluated)
+
+    seen: list[int] = []
+    t = tolerances(bent, {"a": 1.0, "b": 0.1}, n=3000, progress=progress, **more)
+    assert t.curved  # all are solved again for each dimension
+    assert told == sorted(told)
+    assert len(set(told)) == len(told) > 8
+    assert told[-1] == 1.0
+    assert told[-2] < 1.0
+    assert seen[-1] == evaluated
+    assert max(np.diff([0.0, *told])) < 0.5
+
+
 def test_corners_that_all_fail_have_no_worst_case() -> None:
     t = tolerances(lambda a=0.0: a if abs(a) < 2.5 else np.nan, {"a": Uniform(3.0)}, n=50)
     assert t.corners_failed == 2

@@ -182,4 +182,4 @@ def test_what_takes_long_says_how_far_it_is(
     parts = [int(part) for part in re.findall(r"far: (\d+) of 100 per cent of its machines", said)]
     assert parts == sorted(parts)
     assert len(parts) > 2
-    assert parts[-1] == 100
+    assert 0 < parts[0] < parts[-1] <= 100

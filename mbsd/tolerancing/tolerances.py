@@ -25,6 +25,7 @@ from mbsd.model.output_times import refuse_beyond_memory
 from mbsd.tolerancing.dimensions.dimension import Dimension
 from mbsd.tolerancing.machines.functions import function_task
 from mbsd.tolerancing.machines.one_by_one import Machines
+from mbsd.tolerancing.machines.results import named_after
 from mbsd.tolerancing.machines.tasks import Task, task_of
 from mbsd.tolerancing.outcome import Tolerances
 from mbsd.tolerancing.progress import Progress
@@ -130,11 +131,20 @@ def asked(
     width = sum(len(dimension.columns) for dimension in task.dimensions)
     numbers = 5 * n * (1 + width) + sobol * 2 ** _power(n) * (5 * width + 2 + len(task.dimensions))
     refuse_beyond_memory(f"{owner}: tolerances: {n} machines", numbers, "Take fewer")
-    return partial(_carried_out, task, n, seed, within_limits, sobol, corners, confidence, progress)
+    quantity = named_after(machine if result is None else result)
+    return partial(_carried_out, task, quantity, n, seed, within_limits, sobol, corners, confidence, progress)
 
 
 def _carried_out(
-    task: Task, n: int, seed: int, limits: Any, sobol: bool, corners: bool | None, confidence: float, progress: Any
+    task: Task,
+    quantity: str,
+    n: int,
+    seed: int,
+    limits: Any,
+    sobol: bool,
+    corners: bool | None,
+    confidence: float,
+    progress: Any,
 ) -> Tolerances:
     dimensions = task.dimensions
     with_corners = corners if corners is not None else 2 ** len(dimensions) <= n
@@ -179,7 +189,7 @@ def _carried_out(
         values, x, tuple(_title(column) for d in dimensions for column in d.columns), task.nominal,
         linear_std, linear_worst(middle, slope, dimensions), corner, corners_failed, limits,
         confidence, failures, halves, indices, "; ".join([task.machines.way, *task.notes]), task.owner,
-        tuple(dimensions), slope, shares_of(variances),
+        tuple(dimensions), slope, shares_of(variances), quantity,
     )  # fmt: skip
 
 

@@ -143,6 +143,7 @@ def test_the_picture_shows_limits_and_shares(tmp_path: Path) -> None:
     )
     picture = t.plot()
     histogram, bars = picture.figure.axes
+    assert histogram.get_xlabel() == "rocker.theta"
     assert sum(patch.get_height() for patch in histogram.patches) == 500
     assert [line.get_label() for line in histogram.lines].count("limit") == 1  # the other is far away
     assert {label.get_text() for label in bars.get_yticklabels()} == {row.name for row in t.rows}

@@ -131,7 +131,7 @@ class Simulated:
     ) -> None:
         self._m, self._columns, self._options = m, columns, dict(options)
         self._result: Any = {NAME: result} if isinstance(result, Measure) else self._of_solution(result)
-        self.at_once = 10_000
+        self.at_once = 2000  # of more, progress would say nothing for long
         for column in columns:
             if column.kind not in ("length", "argument"):
                 what = "play" if column.kind in ("bore", "reaction") else "place"

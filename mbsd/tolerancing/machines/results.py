@@ -40,6 +40,14 @@ def result_given(owner: str, result: Any) -> Measure | Callable[[Any], Any]:
     )
 
 
+def named_after(result: Any) -> str:
+    """What a result is of: its measure's quantity, or the name of its function."""
+    if isinstance(result, Measure):
+        return result.quantity
+    name = getattr(result, "__name__", "")
+    return name if name.isidentifier() else NAME
+
+
 def numbers_of_batch(owner: str, given: Any, count: int) -> np.ndarray:
     """(n,) what a function of a Batch gave. Raises ModelError for anything else."""
     values = np.asarray(given)

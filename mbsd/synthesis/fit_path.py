@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number, number_array, switch, whole_number
+from mbsd.base.arguments import checked, finite_number, number_array, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
@@ -69,6 +69,7 @@ class PathFit:
         return f"<PathFit of {self.mechanism.name}: mean {self.mean:.3g} m, largest {self.largest:.3g} m>"
 
 
+@checked
 def fit_path(
     m: Any,
     points: Sequence[Sequence[float]] | np.ndarray,

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number, positive_number, switch, whole_number
+from mbsd.base.arguments import checked, finite_number, positive_number, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
@@ -62,6 +62,7 @@ class Optimum:
         )
 
 
+@checked
 def optimise(
     m: Any,
     objective: Any,

@@ -195,6 +195,7 @@ def test_progress_is_told_and_may_end_the_fit() -> None:
         ({"point": "Q"}, "no traced point 'Q'"),
         ({"least_transmission": 2.0}, "below pi/2"),
         ({"starts": 0}, "starts is 0"),
+        ({"start": 1}, "four-bar: fit_path: there is no argument 'start', did you mean 'starts'"),
         ({"progress": 1}, "must be a function"),
     ],
 )

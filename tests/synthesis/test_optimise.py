@@ -107,6 +107,7 @@ def test_maximise_and_a_search_that_meets_motions_that_are_none() -> None:
         ({"build": 3}, "build is 3; give a function"),
         ({"steps": 0}, "steps is 0"),
         ({"most": 0}, "most is 0"),
+        ({"stps": 10}, "door: optimise: there is no argument 'stps', did you mean 'steps'"),
         ({"duration": -1.0}, "duration"),
         ({"objective": "rod.theta"}, "'rod.theta', which is no number that varies; for a quantity take a measure"),
         ({"objective": 3}, "the objective is|objective is 3"),

@@ -88,7 +88,7 @@ def test_results(result: Any, said: str) -> None:
     [
         ({"n": 0}, "n is 0"),
         ({"n": 1}, "n is 1"),
-        ({"n": 1e4}, "n is 10000.0"),
+        ({"n": 1e4}, "four_bar: tolerances: n is 10000.0"),
         ({"seed": -1}, "seed is -1"),
         ({"steps": 0}, "steps is 0"),
         ({"limits": (2.0, 1.0)}, "from 2 to 1; the lowest comes first"),

@@ -43,6 +43,8 @@ NUMBERS_AT_ONCE = 400_000
 """Numbers of a chunk's outputs."""
 NUMBERS_OF_A_BODY = 12
 """Numbers of an output of a body and its joints."""
+NUMBERS_OF_A_ROW = 12
+"""Numbers' room that a simulation takes beside its columns: what varies, its reasons, its part of a chunk."""
 LOOK = 0.2
 """s between two looks at the keyboard."""
 REASON = "reason"
@@ -165,7 +167,8 @@ def simulations(
     quantities = {} if callable(measures) else quantities_of(designs, measures)
     why = _why_single(designs, asked, measures, quantities)
     width = 1 if callable(measures) else sum(column[0].size for column in _empty(measures, 1).values())
-    refuse_beyond_memory(f"{m.name}: {designs.count} simulations", 3 * width * designs.count, "Take fewer at once")
+    numbers = (3 * width + NUMBERS_OF_A_ROW) * designs.count
+    refuse_beyond_memory(f"{m.name}: {designs.count} simulations", numbers, "Take fewer at once")
     if callable(measures):
         _refuse_no_numbers(designs, asked, measures)
     pausing = asked.integrator in PAUSED_ANYWHERE

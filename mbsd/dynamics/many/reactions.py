@@ -9,7 +9,7 @@ import numpy as np
 from mbsd.arrays.reactions import rows_of_joints
 from mbsd.dynamics.many.arguments import content, laid_out
 from mbsd.dynamics.many.base import Base
-from mbsd.dynamics.many.outputs import Outputs, Reacting
+from mbsd.dynamics.many.outputs import Outputs, Reacting, until
 from mbsd.dynamics.many.patches import Patches
 from mbsd.dynamics.many.single_run import SingleRun
 from mbsd.dynamics.many.tabulated_reactions import tabulate_reactions
@@ -50,8 +50,8 @@ class Reactions:
         jacobians = self.room[:count]
         if len(self.rows) or not known:
             tabulate_reactions(
-                *self.base.arguments, self.base.block, fresh, place, value, times, out.y, out.status, self.rows,
-                jacobians, out.lam, known,
+                *self.base.arguments, self.base.block, fresh, place, value, times, out.over, out.y, out.status,
+                self.rows, jacobians, out.lam, known,
             )  # fmt: skip
         packed = [run.ready.packed for run in runs]
-        return Reacting(packed, out.y, jacobians, out.lam, times, self.joints, self.rows)
+        return Reacting(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, self.rows)

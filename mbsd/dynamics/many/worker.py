@@ -18,7 +18,7 @@ from mbsd.dynamics.many.done import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.many.early import STEPS, Known, window
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.methods import number_of
-from mbsd.dynamics.many.outputs import Outputs, Reacting, motions_of, room_for
+from mbsd.dynamics.many.outputs import Outputs, Reacting, motions_of, room_for, until
 from mbsd.dynamics.many.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.many.quantities import Motions, Quantity
 from mbsd.dynamics.many.reactions import Reactions
@@ -218,9 +218,10 @@ class Worker:
         forces = run.outputs_count or any(quantity.forces for quantity in self.work.quantities.values())
         shape = len(ready.initial.q), len(ready.packed.ws.phi), forces
         if self.room is None or len(self.room.status) < count or self.room.shape != shape:
-            self.room = room_for(count, whole, *shape)
-        out = Outputs(*(array[:count] for array in self.room.arrays))
+            self.room = room_for(count, times, *shape)
+        out = Outputs(times, *(array[:count] for array in self.room.arrays))
         out.status[:] = WAITING
+        out.over[:] = np.inf
         run.forget()
         stops, windows, method = ready.stops, self.work.windows, number_of(self.work.asked.integrator)
         early = len(windows) > 1
@@ -261,7 +262,7 @@ class Worker:
                 columns[name][at] = values
 
         if len(good):
-            put(self._columns(motions(good)), good)
+            put(self._columns(motions(good), out.over[good]), good)
         for k in np.flatnonzero(out.status != REACHED).tolist():
             status = int(out.status[k])
             done = failed(STOP) if status == STOPPED else self._single(rows[k], LEFT.get(status, SMALL))
@@ -269,13 +270,13 @@ class Worker:
             reasons[k], alone[k] = done.reasons[0], done.alone[0]
         return Done(columns, reasons, alone)
 
-    def _columns(self, motions: Motions) -> dict[str, np.ndarray]:
+    def _columns(self, motions: Motions, over: np.ndarray) -> dict[str, np.ndarray]:
         assert isinstance(self.work.measures, Mapping)
         along = {}
         for name, quantity in self.work.quantities.items():
             assert quantity.of_motions is not None
             along[name] = quantity.of_motions(motions)
-        return columns_of(self.work.measures, self.work.asked.times, along)
+        return columns_of(self.work.measures, until(self.work.asked.times, over), along)
 
     # -- by simulate ---------------------------------------------------------------------------------------------
 

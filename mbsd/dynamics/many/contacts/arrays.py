@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mbsd.dynamics.many.events.arrays import Events
 from mbsd.dynamics.reference.sliding import Sliding
 
 ROW, BLOCK, SIDE, KIND, RELATIVE, FRICTION = range(6)
@@ -124,8 +125,10 @@ class Contacts(NamedTuple):
     """(m,)"""
     force: Any
     """(3 nb,)"""
+    parts: Any
+    """(6,) PARTS."""
     samples: Any
-    """(6, c) what is looked at along a step, at PARTS: see within.read."""
+    """(c, 6) what is looked at along a step, at PARTS: see within.read."""
     answer: Any
     """(c, 3 nb) change of velocities by a unit impulse along each row."""
     compliance: Any
@@ -151,3 +154,5 @@ class Contacts(NamedTuple):
     friction: Friction
     """The contacts with friction."""
     wheels: Wheels
+    events: Events
+    """Those of the user; e-th of them is met as row c + e."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from mbsd.dynamics.events.sides import NEAR as CLOSED_GAP
+from mbsd.dynamics.events.bounds import NEAR as CLOSED_GAP
 from mbsd.dynamics.events.steps import STILL
 from mbsd.dynamics.many.contacts.arrays import (
     BESIDE,
@@ -28,6 +30,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     Sticks,
     Wheels,
 )
+from mbsd.dynamics.many.events.made import events_of
 from mbsd.dynamics.prepare.following import SHORTEST
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.schur import Schur
@@ -37,27 +40,31 @@ from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import State
 from mbsd.equations.constraints.relative import ROW as RELATIVE_ROW
 from mbsd.kinematics.limits.free_wheels import HALF, MET
+from mbsd.model.event import Event
 from mbsd.model.teeth import with_radii
 
 MOST = 40
 """Contacts of which all meet all others in small full matrices."""
 
 
-def why_not(ready: PreparedDynamics) -> str | None:
-    """Why events of this mechanism are left to single simulations, or None."""
+def why_not(ready: PreparedDynamics, events: Sequence[Event]) -> str | None:
+    """Why events of this mechanism, and those of the user, are left to single simulations, or None."""
     contacts, sticks = ready.switches.contacts, ready.sticks
     for contact in contacts:
         if contact.friction and len(ready.dynamics.loads.friction):
             return f"'{contact.name}' has friction beside that of joints"
-    if (contacts or sticks) and ready.approaches:
-        return f"'{[*contacts, *sticks][0].name}' is beside a contact that remembers how fast it began"
+    if (contacts or sticks or events) and ready.approaches:
+        return f"'{[*contacts, *sticks, *events][0].name}' is beside a contact that remembers how fast it began"
     if len(contacts) + len(sticks) > MOST:
         return f"it has {len(contacts) + len(sticks)} contacts and joints that stick; {MOST} at most"
     return None
 
 
-def contacts_of(ready: PreparedDynamics, state: State) -> Contacts:
-    """Those of a run at its start; all are open, and all joints slide."""
+def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], longest: float) -> Contacts:
+    """Those of a run at its start, and events of the user; all are open, and all joints slide.
+
+    ``longest``: of all steps (s).
+    """
     own = _places(ready)
     c, n3, rows = len(own), state.y.shape[1], len(state.lam)
     pushing = c + 2 * len(_rough(ready))
@@ -76,7 +83,8 @@ def contacts_of(ready: PreparedDynamics, state: State) -> Contacts:
         np.zeros((2, n3)),
         np.zeros(rows),
         np.zeros(n3),
-        np.zeros((len(PARTS), c)),
+        PARTS.copy(),
+        np.zeros((c, len(PARTS))),
         np.zeros((c, n3)),
         np.zeros((c, c)),
         np.zeros((c, c)),
@@ -89,6 +97,7 @@ def contacts_of(ready: PreparedDynamics, state: State) -> Contacts:
         _sticks_of(ready, c, n3, rows),
         _friction_of(ready, c, n3, rows),
         _wheels_of(ready, another()),
+        events_of(ready, events, longest),
     )
 
 

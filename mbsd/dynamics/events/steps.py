@@ -32,8 +32,9 @@ from mbsd.dynamics.events.monitors import (
 from mbsd.dynamics.events.resolution import resolved
 from mbsd.dynamics.events.sides import rounding_of, side_ahead, value_of
 from mbsd.dynamics.events.start_inside import refuse_inside
-from mbsd.dynamics.prepare.exchange import LOOK, exchange_rows
+from mbsd.dynamics.prepare.exchange import exchange_rows
 from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.rows.bounds import LOOK
 from mbsd.dynamics.rows.held import STICKS
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.recording import Snapshot

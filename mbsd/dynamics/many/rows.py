@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.integrators.formulation import derivative
-from mbsd.dynamics.many.contacts.steps import OVER, go_on
+from mbsd.dynamics.many.contacts.steps import NOT_SOLVED, OVER, go_on
+from mbsd.dynamics.many.repeated.exchange import again, opens
 from mbsd.dynamics.many.through import through
 from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, TIME, Output
 
@@ -60,6 +61,7 @@ def run_rows(
     """
     end = t[t.shape[0] - 1]
     whole = upto == t.shape[0]
+    repeating = contacts.repeated.place.shape[0] > 0
     for r in range(y.shape[0]):
         if status[r] != WAITING and status[r] != UNDERWAY:
             continue
@@ -93,14 +95,21 @@ def run_rows(
                 counted = state.count[ACCEPTED]
             if not whole and state.count[NEXT] >= upto:
                 break
+            written = state.count[NEXT]
             if (
                 contacts.place.shape[0] > 0
                 or contacts.wheels.markers.shape[0] > 0
                 or contacts.events.table.shape[0] > 0
             ):
                 ended = go_on(dyn, scratch, state, settings, contacts, out, end, at_once, before, after)
+            elif repeating:
+                ended = again(
+                    dyn, scratch, state, out, settings, contacts.repeated, end, at_once, before, after, method
+                )
             else:
                 ended = through(dyn, scratch, state, out, settings, end, at_once, before, after, method)
+            if repeating and opens(dyn, scratch, contacts.repeated, out, written, state.count[NEXT]):
+                ended = NOT_SOLVED
             if near > 0.0 and ended != REACHED:
                 widest = max(widest, scratch.report[0])
                 if not scratch.report[0] > near * widest:

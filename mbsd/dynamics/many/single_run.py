@@ -16,6 +16,7 @@ from mbsd.dynamics.many.contacts.arrays import Contacts
 from mbsd.dynamics.many.contacts.made import contacts_of, why_not
 from mbsd.dynamics.many.events import made as events_made
 from mbsd.dynamics.many.methods import USUAL, number_of
+from mbsd.dynamics.many.repeated import made as repeated_made
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.runs.carried_steps import NEAR, can_carry
@@ -152,13 +153,11 @@ def single_run(m: Model, asked: Asked) -> SingleRun:
 def _refuse(ready: PreparedDynamics, events: list[Event]) -> None:
     """Raise NotCompiled for what Python decides between steps, and what it looks at after a simulation."""
     packed = ready.packed
-    why = why_not(ready, events)
+    why = why_not(ready, events) or repeated_made.why_not(ready)
     if why is not None:
         raise NotCompiled(why)
     if ready.following.rows:
         raise NotCompiled("points on curves that cross themselves are followed step by step")
-    if ready.switches.spare or ready.dropped:
-        raise NotCompiled("joints repeat others, of which a set is chosen anew on the way")
     for force in packed.forces:
         if force.kind.chamber is not None or force.kind.states is not None:
             raise NotCompiled(f"force '{force.name}' is looked after between outputs")

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.dynamics.many.events.arrays import Events
+from mbsd.dynamics.many.repeated.arrays import Repeated
 from mbsd.dynamics.reference.sliding import Sliding
 
 ROW, BLOCK, SIDE, KIND, RELATIVE, FRICTION = range(6)
@@ -156,3 +157,5 @@ class Contacts(NamedTuple):
     wheels: Wheels
     events: Events
     """Those of the user; e-th of them is met as row c + e."""
+    repeated: Repeated
+    """Rows of joints that repeat others."""

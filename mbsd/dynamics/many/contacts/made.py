@@ -31,6 +31,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     Wheels,
 )
 from mbsd.dynamics.many.events.made import events_of
+from mbsd.dynamics.many.repeated.made import repeated_of
 from mbsd.dynamics.prepare.following import SHORTEST
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.schur import Schur
@@ -98,6 +99,7 @@ def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], 
         _friction_of(ready, c, n3, rows),
         _wheels_of(ready, another()),
         events_of(ready, events, longest),
+        repeated_of(ready),
     )
 
 
@@ -183,8 +185,10 @@ def _without(ready: PreparedDynamics) -> tuple[Schur, np.ndarray]:
     packed, schur, special = ready.packed, ready.dynamics.schur, ready.packed.system.special
     if not ready.switches.contacts and not ready.sticks:
         return schur, special
-    blocks = schur.rows[(schur.rows >= 0).any(axis=1)]
-    kept = blocks[np.argsort(blocks.max(axis=1))]
     others = int((special[:, RELATIVE_ROW] < packed.contact_rows).sum())
     first = special[:others] if (special[:others, RELATIVE_ROW] < packed.contact_rows).all() else special
+    if ready.switches.spare:
+        return schur, first  # rows that stand in for others are planned in it
+    blocks = schur.rows[(schur.rows >= 0).any(axis=1)]
+    kept = blocks[np.argsort(blocks.max(axis=1))]
     return plan_schur(packed.system.row_body, np.ascontiguousarray(kept, np.int64))[0], first

@@ -34,6 +34,7 @@ from mbsd.dynamics.many.contacts.sticking.ways import share_outputs
 from mbsd.dynamics.many.contacts.wheels import advance_to
 from mbsd.dynamics.many.contacts.within import fit
 from mbsd.dynamics.many.events.sides import begin_sides, find_sides
+from mbsd.dynamics.many.repeated.exchange import hold_independent, look
 from mbsd.dynamics.many.through import NO_LIMIT, copy_state, cross
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, begin, record_here
@@ -182,9 +183,13 @@ def _end(scratch, state, out):
 @lazy(int)
 def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
     hold_rows(dyn, contacts)
+    repeated = contacts.repeated
+    hold_independent(dyn, repeated)
     if contacts.clock[BEGUN] == 0.0 and not _close_at_start(dyn, scratch, contacts, state):
         return NOT_SOLVED
     for _ in range(steps):
+        if repeated.place.shape[0] > 0:
+            look(dyn, scratch, repeated, state, 1)
         own = dyn if _any_held(contacts) else _open(dyn, contacts)
         cross(state, before, after)
         begin(own, scratch, state)

@@ -94,6 +94,7 @@ def test_rows_that_repeat_others_hold_as_in_single_simulations(case: str, monkey
         np.testing.assert_allclose(many["own"][k], reaction.max(), rtol=1e-8)
         if case == "motor":  # where the rows that hold lie flat, what a driver gives is known as well as tolerated
             sol = m.simulate(duration, steps=STEPS, tolerance=1e-12)
+        assert sol.work is not None
         np.testing.assert_allclose(many["work"][k], sol.work[-1], atol=5e-6 if case == "motor" else 1e-9)
     assert (case == "turning") <= bool(exchanged)
     assert (case == "stops") <= (struck >= count)

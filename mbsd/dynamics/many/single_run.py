@@ -158,9 +158,6 @@ def _refuse(ready: PreparedDynamics, events: list[Event]) -> None:
         raise NotCompiled(why)
     if ready.following.rows:
         raise NotCompiled("points on curves that cross themselves are followed step by step")
-    for force in packed.forces:
-        if force.kind.chamber is not None or force.kind.states is not None:
-            raise NotCompiled(f"force '{force.name}' is looked after between outputs")
     slow = [callback.what for callback in packed.specials.callbacks if not callback.compiled]
     if slow:
         raise NotCompiled(f"{slow[0]}: the function is one of Python; compile it with numba.njit")

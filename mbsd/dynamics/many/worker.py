@@ -13,6 +13,7 @@ from mbsd.base.users_function import described
 from mbsd.dynamics.many.arguments import content
 from mbsd.dynamics.many.base import Base, based_on
 from mbsd.dynamics.many.contacts.steps import NOT_SOLVED
+from mbsd.dynamics.many.cylinders import can_be, has_cylinders
 from mbsd.dynamics.many.designs import Built, Designs
 from mbsd.dynamics.many.done import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.many.early import STEPS, Known, window
@@ -37,10 +38,12 @@ COMPARED = 6
 """Rows that are prepared for comparison."""
 NEAR = 1e-9
 """Part of the size, and rad, by which a start may differ from what it is."""
-OTHER, FAILED = -2, -4
-"""Status of rows that the loop is not made for, and of those beside which a function of the user failed."""
+OTHER, FAILED, NO_ROOM = -2, -4, -10
+"""Status of rows that the loop is not made for, of those beside which a function of the user failed, and of those whose
+gas or oil cannot be as it was found."""
 LEFT = {
     OTHER: "its start is that of another branch",
+    NO_ROOM: "its gas or oil has no room or pressure somewhere",
     FAILED: "a function of the user failed in one of them",
     NOT_SOLVED: "what happened at an event there is decided by single simulations",
     NEARLY_SINGULAR: "it came near a singular pose",
@@ -164,7 +167,7 @@ class Worker:
         def motions(out: Outputs, which: np.ndarray, reacting: Reacting | None = None) -> Motions:
             return motions_of(runs, out, which, mass, inertia, reacting)
 
-        out = self._run(self.base.fresh, self.patches.place, value, motions)
+        out = self._run(self.base.fresh, self.patches.place, value, motions, runs)
         odd = np.array([reason is not None for reason in reasons])
         if q is not None:  # closed forms may stand on another branch than the start does
             odd |= np.abs(out.y[:, 0, 0] - q).max(axis=1) > NEAR * self.base.run.ready.packed.size
@@ -198,7 +201,7 @@ class Worker:
             return motions_of(own, out, which, None, None, reacting)
 
         fresh = np.array([content(run.arguments) for run in own])
-        out = self._run(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), motions)
+        out = self._run(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), motions, own)
         reacting = self._reactions(None).of_runs(own, out, times) if self.work.reactive else None
         together = self._measured(list(runs), lambda which: motions(out, which, reacting), out)
         return {row: together.row(k) for k, row in enumerate(runs)}
@@ -210,8 +213,10 @@ class Worker:
             self.reactions = Reactions(self.base.run, patches, np.array(wanted, np.int64))
         return self.reactions
 
-    def _run(self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, motions: MotionsOf) -> Outputs:
-        """Rows to their end, or as far as there is something to measure."""
+    def _run(
+        self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, motions: MotionsOf, runs: Sequence[SingleRun]
+    ) -> Outputs:
+        """Rows to their end, or as far as there is something to measure; they are those of ``runs``, or like it."""
         assert self.base is not None
         run, ready, times = self.base.run, self.base.run.ready, self.work.asked.times
         count, whole = max(len(fresh), len(value)), len(times)
@@ -224,7 +229,7 @@ class Worker:
         out.over[:] = np.inf
         run.forget()
         stops, windows, method = ready.stops, self.work.windows, number_of(self.work.asked.integrator)
-        early = len(windows) > 1
+        early, written = len(windows) > 1, np.full(count, whole)
         kept = np.zeros((count if early else 0, len(self.base.block) + 1))
         counts = np.zeros((len(kept), len(run.state.count)), np.int64)
         known = (
@@ -242,10 +247,16 @@ class Worker:
             assert known is not None
             seen = slice(max(begin - 1, 0), upto)
             look = motions(window(out, seen.start, upto), underway)
-            out.status[known.look(underway, times[seen], look)] = REACHED  # outputs behind are not read
+            done = known.look(underway, times[seen], look)
+            out.status[done], written[done] = REACHED, upto  # outputs behind are not read
         if run.failed:  # in some row, or in a trial step that was not taken: single simulations can tell
             out.status[out.status == REACHED] = FAILED
             run.forget()
+        if has_cylinders(ready.packed):
+            for k in np.flatnonzero(out.status == REACHED).tolist():
+                packed, end = runs[min(k, len(runs) - 1)].ready.packed, written[k]
+                if not can_be(packed, np.minimum(times[:end], out.over[k]), out.y[k, :end]):
+                    out.status[k] = NO_ROOM
         return out
 
     def _measured(self, rows: Sequence[int], motions: Callable[[np.ndarray], Motions], out: Outputs) -> Done:

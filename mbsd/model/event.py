@@ -64,7 +64,7 @@ class Reaching:
     """A ready-made function of an event: a number of some frames less a level."""
 
     measured: Callable[[float, Any, Any], float]
-    """Of the time, places and velocities of the frames, as functions of the user get them."""
+    """A function of the time, places and velocities of the frames, as functions of the user get them."""
     frames: tuple[Marker, ...]
     level: float
 

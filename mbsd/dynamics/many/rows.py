@@ -99,6 +99,7 @@ def run_rows(
             if (
                 contacts.place.shape[0] > 0
                 or contacts.wheels.markers.shape[0] > 0
+                or contacts.curves.place.shape[0] > 0
                 or contacts.events.table.shape[0] > 0
             ):
                 ended = go_on(dyn, scratch, state, settings, contacts, out, end, at_once, before, after)

@@ -156,8 +156,6 @@ def _refuse(ready: PreparedDynamics, events: list[Event]) -> None:
     why = why_not(ready, events) or repeated_made.why_not(ready)
     if why is not None:
         raise NotCompiled(why)
-    if ready.following.rows:
-        raise NotCompiled("points on curves that cross themselves are followed step by step")
     slow = [callback.what for callback in packed.specials.callbacks if not callback.compiled]
     if slow:
         raise NotCompiled(f"{slow[0]}: the function is one of Python; compile it with numba.njit")

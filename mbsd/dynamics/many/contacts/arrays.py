@@ -75,6 +75,17 @@ class Wheels(NamedTuple):
     """mbsd.dynamics.state.State: where a step began."""
 
 
+class Curves(NamedTuple):
+    """Points on curves that cross themselves or their continuations; see arrays/curve_branches.py."""
+
+    place: Any
+    """(k, 4) int: the row in Workspace.relative, markers i and j, and where its numbers begin."""
+    numbers: Any
+    """Those of their equations."""
+    feet: Any
+    """(k,) parameters of feet after a step."""
+
+
 LIMIT, FORCE, UNSHARED, PREVIOUS, LEFT = range(5)
 """Rows of Sticks.vector: limits of friction; normal forces and friction; friction before it is shared, and as it was
 shared last; accelerations that friction leaves."""
@@ -155,6 +166,7 @@ class Contacts(NamedTuple):
     friction: Friction
     """The contacts with friction."""
     wheels: Wheels
+    curves: Curves
     events: Events
     """Those of the user; e-th of them is met as row c + e."""
     repeated: Repeated

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mbsd.arrays.curve_branches import CURVES
 from mbsd.dynamics.events.bounds import NEAR as CLOSED_GAP
 from mbsd.dynamics.events.steps import STILL
 from mbsd.dynamics.many.contacts.arrays import (
@@ -26,6 +27,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     STATIC,
     WAY,
     Contacts,
+    Curves,
     Friction,
     Sticks,
     Wheels,
@@ -39,6 +41,7 @@ from mbsd.dynamics.reference.sequence import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import State
+from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
 from mbsd.equations.constraints.relative import ROW as RELATIVE_ROW
 from mbsd.kinematics.limits.free_wheels import HALF, MET
 from mbsd.model.event import Event
@@ -98,6 +101,7 @@ def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], 
         _sticks_of(ready, c, n3, rows),
         _friction_of(ready, c, n3, rows),
         _wheels_of(ready, another()),
+        _curves_of(ready),
         events_of(ready, events, longest),
         repeated_of(ready),
     )
@@ -178,6 +182,19 @@ def _wheels_of(ready: PreparedDynamics, before: State) -> Wheels:
         np.array([HALF, SHORTEST]),
         before,
     )
+
+
+def _curves_of(ready: PreparedDynamics) -> Curves:
+    """Points on curves that cross themselves."""
+    special, rows = ready.packed.system.special, ready.following.rows
+    own = {(row.i, row.j) for row in rows}
+    place = [
+        (k, int(entry[MARKER_I]), int(entry[MARKER_J]), int(entry[AT]))
+        for k, entry in enumerate(special)
+        if ready.packed.specials.names[k] in CURVES and (int(entry[MARKER_I]), int(entry[MARKER_J])) in own
+    ]
+    numbers = ready.packed.system.numbers.copy() if rows else np.zeros(0)
+    return Curves(np.array(place, np.int64).reshape(-1, 4), numbers, np.zeros(len(place)))
 
 
 def _without(ready: PreparedDynamics) -> tuple[Schur, np.ndarray]:

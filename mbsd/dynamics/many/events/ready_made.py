@@ -10,17 +10,17 @@ from mbsd.compiling.jit import at_address
 
 @at_address(SIGNATURE)
 def turned(t, inputs, outputs):
-    """Of one frame."""
+    """Angle of one frame."""
     outputs[0] = inputs[2]
 
 
 @at_address(SIGNATURE)
 def turning(t, inputs, outputs):
-    """Of one frame."""
+    """Angular velocity of one frame."""
     outputs[0] = inputs[5]
 
 
 @at_address(SIGNATURE)
 def distance(t, inputs, outputs):
-    """Of two frames."""
+    """Distance of two frames."""
     outputs[0] = math.hypot(inputs[3] - inputs[0], inputs[4] - inputs[1])

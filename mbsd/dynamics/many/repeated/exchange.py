@@ -20,7 +20,7 @@ from mbsd.equations.assembly import position
 from mbsd.equations.laws import evaluate_laws
 
 TURNS = 40
-"""Of inverse iteration."""
+"""Turns of inverse iteration."""
 
 
 @internal

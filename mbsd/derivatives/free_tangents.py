@@ -10,7 +10,7 @@ stuck, whatever that is. Source: Haug, Ehle, Mech. Mach. Theory 17 (1982); Wehag
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from mbsd.derivatives.beside import accelerate_along, close, combine
 from mbsd.derivatives.compiled_nodes import can_differentiate, differentiated
 from mbsd.derivatives.differentiated import Made, Nodes, Own
 from mbsd.derivatives.linear_motion import NODES, carried
+from mbsd.derivatives.stretch import Carried, Stretch, Tangents, joined
 from mbsd.derivatives.tangents import LOOSE, along_directions, by_numbers, differences, per_scales, refuse_large
 from mbsd.derivatives.terms import Along, Change, Left, Terms
 from mbsd.derivatives.variants import TINY, Variants
@@ -32,53 +33,16 @@ WORST = 30.0
 """Condition of [J; Z] beyond which another Z is taken."""
 
 
-@dataclass
-class Stretch:
-    """T times of a motion between two events, nodes and others, with the rows that hold there."""
-
-    along: Along
-    compact: np.ndarray
-    """(T, m, 6) J."""
-    rows: np.ndarray
-    """Independent rows that hold."""
-    dependent: list[tuple[int, int]]
-    """Rows of sliding and of the gap whose normal force makes their friction."""
-    asked: np.ndarray
-    """(T,) whether tangents are wanted there."""
-    nodes: np.ndarray
-    """(T,) whether it is one of the nodes of whole steps, the first and the last among them."""
+def slight_changes(f: int, fastest: float, every: list[Variants]) -> np.ndarray:
+    """(2 f, P) changes of s and s' that are rounding where the number changes by all of itself."""
+    numbers = np.array([abs(variants.step) / TINY for variants in every])
+    return SLIGHT * np.repeat([1.0, fastest], f)[:, None] / numbers
 
 
-@dataclass
-class Tangents:
-    """By P numbers: how a motion changes with them at R times. (P, R, 3 nb), (P, R, m)."""
-
-    q: np.ndarray
-    v: np.ndarray
-    a: np.ndarray
-    lam: np.ndarray
-
-    def parts(self) -> tuple[np.ndarray, ...]:
-        """All of it."""
-        return self.q, self.v, self.a, self.lam
-
-
-@dataclass
-class Carried:
-    """Tangents along some nodes."""
-
-    asked: Tangents
-    """Where they were asked for."""
-    q: np.ndarray
-    """(P, 3 nb) q' at the last node."""
-    v: np.ndarray
-    errors: np.ndarray
-    """(d,) what each step adds, as part of the largest."""
-
-
-def joined(parts: list[Tangents]) -> Tangents:
-    """One stretch after the other."""
-    return Tangents(*(np.concatenate(own, axis=1) for own in zip(*(part.parts() for part in parts), strict=True)))
+def at_rows(terms: Terms, stretch: Stretch, every: list[Variants], basis: np.ndarray, y: np.ndarray) -> Tangents:
+    """Tangents at all times of a stretch, from s = Z q' for Z = ``basis`` (f, n) and s' there: y (T, 2 f, P)."""
+    whole = FreeTangents(terms, stretch, every)
+    return _Piece(whole, 0, basis, whole.inverses(basis)).at_all(y)
 
 
 class FreeTangents:
@@ -87,7 +51,7 @@ class FreeTangents:
     def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants]) -> None:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
         self.dependent, self.asked, self.compact = stretch.dependent, stretch.asked, stretch.compact
-        self.nodes = stretch.nodes
+        self.nodes, self.solved = stretch.nodes, stretch.solved
         packed = terms.packed
         refuse_large(terms, len(self.along.t))
         self.scale = packed.column_scale()
@@ -103,7 +67,8 @@ class FreeTangents:
             parts.append(_Piece(self, first, basis, inverse).carry(q, v))
             q, v = parts[-1].q, parts[-1].v
             first += len(inverse) - 1
-        return Carried(joined([part.asked for part in parts]), q, v, np.concatenate([part.errors for part in parts]))
+        errors, off = np.concatenate([part.errors for part in parts]), max(part.off for part in parts)
+        return Carried(joined([part.asked for part in parts]), q, v, errors, off)
 
     def _basis(self, first: int) -> tuple[np.ndarray, np.ndarray]:
         """Z (f, n) at node ``first``, and inverses of [J; Z] up to the last node, whole steps on, that it serves."""
@@ -113,20 +78,32 @@ class FreeTangents:
         size = np.abs(scaled).max(axis=1, keepdims=True)
         _, singular, right = np.linalg.svd(scaled / size)
         rank = int((singular > LOOSE * singular.max(initial=0.0)).sum())
-        square = np.empty((count, len(self.scale), len(self.scale)))
-        square[:, rank:] = right[rank:]
-        np.multiply(self.held[first:], self.scale, out=square[:, :rank])
-        norms = np.maximum(np.sqrt(np.einsum("trn,trn->tr", square[:, :rank], square[:, :rank])), 1e-300)
-        square[:, :rank] /= norms[..., None]
+        inverse, norms = self._inverted(first, right[rank:])
         # of unit rows: its smallest singular value falls as motions turn away from the basis
-        inverse = np.linalg.inv(square)
         size = np.abs(inverse).max(axis=(1, 2))
         far = size > WORST * size[0]
         edges = np.flatnonzero(self.nodes[first:])[::NODES]
         last = int(edges[max(1, np.searchsorted(edges, np.argmax(far)) - 1)] if far.any() else edges[-1])
-        inverse = inverse[: last + 1] * self.scale[:, None]
-        inverse[:, :, :rank] /= norms[: last + 1, None]
-        return right[rank:] / self.scale, inverse
+        return right[rank:] / self.scale, self._in_sizes(inverse[: last + 1], norms[: last + 1])
+
+    def inverses(self, basis: np.ndarray) -> np.ndarray:
+        """(T, n, n) inverses of [J; Z], Z = ``basis`` (f, n), at all times."""
+        return self._in_sizes(*self._inverted(0, basis * self.scale))
+
+    def _inverted(self, first: int, scaled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Inverses of [J; Z] in sizes, J by unit rows, from node ``first`` on, and what makes rows of J unit rows."""
+        rank = len(self.scale) - len(scaled)
+        square = np.empty((len(self.along.t) - first, len(self.scale), len(self.scale)))
+        square[:, rank:] = scaled
+        np.multiply(self.held[first:], self.scale, out=square[:, :rank])
+        norms = np.maximum(np.sqrt(np.einsum("trn,trn->tr", square[:, :rank], square[:, :rank])), 1e-300)
+        square[:, :rank] /= norms[..., None]
+        return np.linalg.inv(square), norms
+
+    def _in_sizes(self, inverse: np.ndarray, norms: np.ndarray) -> np.ndarray:
+        inverse = inverse * self.scale[:, None]
+        inverse[:, :, : norms.shape[1]] /= norms[:, None]
+        return inverse
 
 
 class _Piece:
@@ -146,6 +123,16 @@ class _Piece:
         self.f, self.n = len(basis), inverse.shape[1]
         self.inertia, self._scale = self.terms.inertia[3:], 1.0 / whole.scale
         self.effort = self._efforts(whole)
+        self.off = 0.0 if whole.solved else self._solve()
+
+    def _solve(self) -> float:
+        """Find accelerations and multipliers; returns by how much accelerations change, as part of the largest."""
+        about, (_, gamma, compact) = self.along.a, self.terms.rows(self.along)
+        load = self.terms.forces(self.along, compact) + self.terms.weight
+        a, lam = self._accelerations(-gamma[None], load[None])
+        a = _wide(a[0])
+        self.along = replace(self.along, a=a, lam=lam[0])
+        return float(np.abs(a - about).max(initial=0.0)) / max(float(np.abs(a).max(initial=0.0)), 1e-300)
 
     def _efforts(self, whole: FreeTangents) -> np.ndarray | None:
         """(T, n, r) E of the rows that hold, where that is more than J^T: with friction in them; else None."""
@@ -175,13 +162,30 @@ class _Piece:
         made = self._node_by_node(q, at) if plain else self._in_arrays(q, at)
         begun = np.concatenate([self.basis @ q[:, 3:].T, self.basis @ v[:, 3:].T])
         nodes = self.nodes
-        line = carried(self.along.t[nodes], made.matrix[nodes], made.right[nodes], begun, self._slight())
+        fastest = float(np.abs(self.along.v[:, 3:] * self._scale).max(initial=0.0)) or 1.0
+        line = carried(
+            self.along.t[nodes],
+            made.matrix[nodes],
+            made.right[nodes],
+            begun,
+            slight_changes(self.f, fastest, self.every),
+        )
         y, parts = line.at(self.along.t[at]), [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
         for out, part in zip(parts, made[2:], strict=True):
             combine(y, part, out)
-        return Carried(Tangents(*(part[:, :asked] for part in parts)), parts[0][:, -1], parts[1][:, -1], line.errors)
+        return Carried(
+            Tangents(*(part[:, :asked] for part in parts)), parts[0][:, -1], parts[1][:, -1], line.errors, self.off
+        )
 
-    def _node_by_node(self, begun: np.ndarray, at: np.ndarray) -> Made:
+    def at_all(self, y: np.ndarray) -> Tangents:
+        """Tangents at all times, from s and s' there: y (T, 2 f, P)."""
+        made = self._node_by_node(None, np.arange(len(self.along.t)))
+        parts = [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
+        for out, part in zip(parts, made[2:], strict=True):
+            combine(y, part, out)
+        return Tangents(*parts)
+
+    def _node_by_node(self, begun: np.ndarray | None, at: np.ndarray) -> Made:
         """By the kernel, some nodes at once, so that what is known of them stays near the processor."""
         parts: list[Made] = []
         along, per_scale, first = self.along, per_scales(self.terms, self.along), None
@@ -189,7 +193,8 @@ class _Piece:
         for begin in range(0, len(along.t), AT_ONCE):
             here = slice(begin, begin + AT_ONCE)
             own = self._own(here)
-            first = self._first(begun, own) if first is None else first
+            if first is None:
+                first = np.zeros((len(self.every), 1, self.jac.shape[1])) if begun is None else self._first(begun, own)
             position, some = self._opened(own, first)
             known = (along.t, along.q, along.v, along.a, along.lam, drives, self.fixed, self.free)
             nodes = Nodes(*(np.ascontiguousarray(part[here]) for part in known), rows=self.rows)
@@ -228,12 +233,6 @@ class _Piece:
             bent[..., 2 * f :],
             *(np.ascontiguousarray(p[:, at]) for p in (positions, velocities, _wide(a), lam)),
         )
-
-    def _slight(self) -> np.ndarray:
-        """(2 f, P) changes of s and s' that are rounding where the number changes by all of itself."""
-        fastest = float(np.abs(self.along.v[:, 3:] * self._scale).max(initial=0.0)) or 1.0
-        numbers = np.array([abs(variants.step) / TINY for variants in self.every])
-        return SLIGHT * np.repeat([1.0, fastest], self.f)[:, None] / numbers
 
     def _own(self, at: slice) -> Left:
         """How the equations change with the numbers at some nodes of the held motion."""

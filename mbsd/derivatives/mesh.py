@@ -14,7 +14,7 @@ EVEN = 4
 """Gaps of five even times."""
 EVENLY = np.linalg.inv(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, EVEN + 1), EVEN))[[2, EVEN]]
 """(2, 5) what makes Legendre's second and fourth coefficients of values at even times."""
-SMOOTH = 3e-5
+SMOOTH = 1e-4
 """What Legendre's eighth coefficient of the motion itself may be in a step, where these are as many as ``USUAL``."""
 USUAL = 50
 """Steps; of more of them each may add less."""
@@ -22,6 +22,8 @@ SHORTER, LONGER = 0.1, 2.5
 """So many times as long as usual steps are at least and at most."""
 LOOKS = 400
 """Times, at least, at which the motion is looked at."""
+CLOSER = 16
+"""Times in each step at which a motion is looked at again."""
 ROUNDING = 1e-12
 """Part of the duration below which two times are one."""
 
@@ -31,6 +33,15 @@ def looked_at(grid: np.ndarray) -> np.ndarray:
     parts = max(3, -(-LOOKS // (len(grid) - 1)))
     inner = grid[:-1, None] + np.diff(grid)[:, None] * (np.arange(parts) / parts)
     return np.append(inner.ravel(), grid[-1])
+
+
+def looked_at_closer(t: np.ndarray, longest: np.ndarray) -> np.ndarray:
+    """(L,) times t (T,) and equal parts of their gaps, ``CLOSER`` in each of the ``longest`` steps (T - 1,) (s)."""
+    gaps = np.diff(t)
+    parts = np.maximum(1, np.ceil(CLOSER * gaps / longest - SAME)).astype(int)
+    at = np.repeat(np.arange(len(gaps)), parts)
+    inside = np.arange(len(at)) - np.repeat(np.cumsum(parts) - parts, parts)
+    return np.append(t[at] + gaps[at] * (inside / parts[at]), t[-1])
 
 
 def longest_steps(t: np.ndarray, motion: np.ndarray, usual: float) -> np.ndarray:

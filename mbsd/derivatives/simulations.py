@@ -7,6 +7,7 @@ stretches from event to event.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -15,11 +16,14 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError, ModelWarning, SimulationError
 from mbsd.base.warn import warn
 from mbsd.derivatives.asked import taken
-from mbsd.derivatives.free_tangents import FreeTangents, Stretch, Tangents, joined
+from mbsd.derivatives.free_tangents import FreeTangents
+from mbsd.derivatives.independent_tangents import IndependentTangents, suits
 from mbsd.derivatives.jumps import Jump, jumps_of
 from mbsd.derivatives.linear_motion import NODES
-from mbsd.derivatives.mesh import ROUNDING, apart, first_edges, longest_steps, looked_at, nodes_of, refined
+from mbsd.derivatives.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of, refined
 from mbsd.derivatives.numbers import Number
+from mbsd.derivatives.smooth_motion import CLOSE, Motion, NotSmooth, between, looked_at_closely, motion_of
+from mbsd.derivatives.stretch import Stretch, Tangents, joined
 from mbsd.derivatives.sweeps import along_of, displaced
 from mbsd.derivatives.tangents import Tangent
 from mbsd.derivatives.terms import Along, terms_of
@@ -44,8 +48,11 @@ DOUBTFUL = 1e-3
 """Error that is warned of."""
 MOST_STEPS = 20_000
 """Steps at most."""
-STEPS_OF_METHOD = 0.2
-"""Usual steps of the tangents for one of the integrator."""
+
+Finish = Callable[[], Tangents]
+"""Evaluates tangents at the outputs of which they are asked."""
+Way = Callable[[np.ndarray], tuple[np.ndarray, Finish]]
+"""Of edges of steps the errors of these, and what finishes them."""
 
 
 class SimulationTangents:
@@ -58,9 +65,9 @@ class SimulationTangents:
         self, m: Model, runs: Repeated, grid: np.ndarray, numbers: Sequence[Number],
         needed: Callable[[np.ndarray], np.ndarray],
     ) -> None:  # fmt: skip
-        self.m = m
+        self.m, self._runs, self._grid, self._needed = m, runs, grid, needed
         self._ready: PreparedDynamics | None = None
-        self.redundant = False
+        self.redundant, self.ends = False, None
         first = runs.course(looked_at(grid))
         _refuse(first)
         span = float(grid[0]), float(grid[-1])
@@ -72,18 +79,27 @@ class SimulationTangents:
         self.variants = [variation.of(number, SECOND, TINY) for number in numbers]
         self.variation = variation
         reached = grid[grid <= first.t[-1]]
-        met = np.append(first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]])
-        usual = (first.t[-1] - first.t[0]) / max(1.0, STEPS_OF_METHOD * first.steps)
-        longest = longest_steps(first.t, _parts(first), usual)
-        edges = first_edges((span[0], float(reached[-1])), met, first.t, longest)
-        outputs = apart(grid, met, span[1] - span[0])
+        self._met = np.append(
+            first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]]
+        )
+        self._first, longest = looked_at_closely(runs, first)
+        edges = first_edges((span[0], float(reached[-1])), self._met, self._first.t, longest)
+        for way in (self._in_independent_coordinates, self._between_looks, self._at_nodes):
+            try:
+                made, self.error = self._refined(way, edges)
+                break
+            except NotSmooth:
+                continue
+        """Estimate of the largest error of the tangents, as part of the largest."""
+        self.tangents = [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
+
+    # -- ways to the tangents --------------------------------------------------------------------------------------
+
+    def _refined(self, way: Way, edges: np.ndarray) -> tuple[Tangents, float]:
+        """Tangents by one of the ways below, with steps as short as errors ask for, and their error."""
         before = error = 0.0
         for turn in range(MOST):
-            nodes = nodes_of(edges, met)
-            whole = runs(np.union1d(nodes, outputs))
-            rows = self._outputs(whole, grid)
-            asked = rows[needed(whole.t[rows])]
-            made, errors = self._made(whole, asked, nodes)
+            errors, finish = way(edges)
             before, error = error, float(errors.sum())
             if error <= ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
                 break
@@ -93,27 +109,80 @@ class SimulationTangents:
             edges = finer
         if error > ENOUGH and turn == MOST - 1:  # where forces jump, a node meets them or misses them by chance
             error = max(before, error)
-        self.error = error
-        """Estimate of the largest error of the tangents, as part of the largest."""
         if error > DOUBTFUL:
             warn(
-                f"{m.name}: derivatives along this simulation are known to {error:.1g} of the largest at best, however "
-                "close their nodes are. A force that jumps, or a curve that bends more tightly than the wheel on it, "
-                "does that: smooth it, or take differences of whole simulations",
+                f"{self.m.name}: derivatives along this simulation are known to {error:.1g} of the largest at best, "
+                "however close their nodes are. A force that jumps, or a curve that bends more tightly than the wheel "
+                "on it, does that: smooth it, or take differences of whole simulations",
                 ModelWarning,
             )
-        self.sol = taken(whole, rows)
-        self.known = self.sol if len(asked) == len(rows) else taken(whole, asked)
+        return finish(), error
+
+    def _in_independent_coordinates(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
+        """Errors of steps between edges, and what evaluates the tangents at outputs. Raises NotSmooth."""
+        ready = self._runs.ready
+        coordinates = suits(ready)
+        if self._first.q is None or ready is None or coordinates is None:
+            raise NotSmooth
+        independent = IndependentTangents(ready, coordinates, self._runs.tolerance, self.variants)
+        line = independent.carry(between(self._first, nodes_of(edges, self._met)).along, self._begun())
+
+        def finish() -> Tangents:
+            grid = self._grid
+            self._take(self._runs.recorded(np.searchsorted(self._first.t, grid)), self._needed(grid))
+            along = replace(self.along, held=np.ones(self.along.lam.shape, bool))
+            return independent.at(self.terms, along, self.terms.rows(along)[2], self.stretch_rows(along, 0), line)
+
+        return line.errors, finish
+
+    def _between_looks(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
+        """The same of a smooth motion in reference coordinates. Raises NotSmooth."""
+        if self._first.q is None:
+            raise NotSmooth
+        nodes = nodes_of(edges, self._met)
+        whole = between(self._first, np.union1d(nodes, self._grid))
+        rows = self._outputs(whole, self._grid)
+        needed = self._needed(self._grid)
+        made, errors = self._made(whole, rows[needed], nodes)
+        if self._off > CLOSE:
+            raise NotSmooth
+
+        def finish() -> Tangents:
+            self._take(self._runs.recorded(np.searchsorted(self._first.t, self._grid)), needed)
+            return made
+
+        return errors, finish
+
+    def _at_nodes(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
+        """The same of any motion, simulated at the nodes."""
+        nodes, grid = nodes_of(edges, self._met), self._grid
+        whole = motion_of(self._runs(np.union1d(nodes, apart(grid, self._met, self.span[1] - self.span[0]))))
+        rows = self._outputs(whole, grid)
+        needed = self._needed(whole.t[rows])
+        made, errors = self._made(whole, rows[needed], nodes)
+
+        def finish() -> Tangents:
+            assert whole.solution is not None
+            self._take(taken(whole.solution, rows), needed)
+            if self.redundant:
+                made.lam[:] = np.nan  # joints that repeat others share their loads in many ways
+            if needed[-1] < len(rows) - 1:
+                self.ends = None
+            if self.ends is not None:  # the last output is the event that ended it, wherever that is
+                made.q[:, -1] += self.along.v[-1] * self.ends[:, None]
+                made.v[:, -1] += self.along.a[-1] * self.ends[:, None]
+            return made
+
+        return errors, finish
+
+    def _take(self, sol: Solution, needed: np.ndarray) -> None:
+        """Keep the simulation at all outputs, and at those of which tangents are asked."""
+        self.sol = sol
+        self.known = sol if len(needed) == len(sol.t) else taken(sol, needed)
         """The outputs of which tangents are known."""
         self.along = along_of(self.known)
-        if self.redundant:
-            made.lam[:] = np.nan  # joints that repeat others share their loads in many ways
-        if self.ends is not None and asked[-1] < rows[-1]:
-            self.ends = None
-        if self.ends is not None:  # the last output is the event that ended it, wherever that is
-            made.q[:, -1] += self.along.v[-1] * self.ends[:, None]
-            made.v[:, -1] += self.along.a[-1] * self.ends[:, None]
-        self.tangents = [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
+
+    # -- what is asked for -----------------------------------------------------------------------------------------
 
     def moved(self, k: int, reactions: bool = True) -> list[Solution]:
         """The simulation at other values of number k, along its tangent where that is known: one for each variant."""
@@ -135,26 +204,26 @@ class SimulationTangents:
 
     # -- nodes -----------------------------------------------------------------------------------------------------
 
-    def _made(self, whole: Solution, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray]:
+    def _made(self, whole: Motion, rows: np.ndarray, nodes: np.ndarray) -> tuple[Tangents, np.ndarray]:
         """Tangents at some rows of the simulation, and the error that each step between nodes adds."""
         asked, known = np.zeros(len(whole.t), bool), np.isin(whole.t, nodes)
         asked[rows] = True
         begins = np.append(True, np.diff(whole.t) <= 0.0)
         known |= begins | np.append(begins[1:], True)
         kept = np.flatnonzero(asked | known)
-        whole, asked, known, begins = taken(whole, kept), asked[kept], known[kept], begins[kept]
-        along = along_of(whole)
-        along.held = whole.held
+        whole, asked, known, begins = whole.take(kept), asked[kept], known[kept], begins[kept]
+        along = whole.along
         edges = [*np.flatnonzero(begins).tolist(), len(kept)]
         q, v = self._begun()
         parts: list[Tangents] = []
         errors: list[np.ndarray] = []
-        self.ends = None
-        jumps: list[Jump] = jumps_of(self, whole, along, edges)
+        self.ends, self._off = None, 0.0
+        jumps: list[Jump] = [] if whole.solution is None else jumps_of(self, whole.solution, along, edges)
         compact = self.terms.rows(along)[2]
         for k, (a, b) in enumerate(pairwise(edges)):
             at = slice(a, b)
             stretch = self._stretch(along.take(at), compact[at], asked[at], known[at])
+            stretch.solved = whole.solution is not None
             if known[at].sum() % NODES != 1:
                 raise SimulationError(
                     f"{self.m.name}: derivatives: events from t = {whole.t[a]:.9g} s on come at other times when they "
@@ -162,6 +231,7 @@ class SimulationTangents:
                 )
             made = FreeTangents(self.terms, stretch, self.variants).carry(q, v)
             errors.append(made.errors)
+            self._off = max(self._off, made.off)
             parts.append(made.asked)
             q, v = made.q, made.v
             if k < len(jumps):
@@ -229,23 +299,17 @@ class SimulationTangents:
         return q, v
 
     @staticmethod
-    def _outputs(whole: Solution, grid: np.ndarray) -> np.ndarray:
+    def _outputs(whole: Motion, grid: np.ndarray) -> np.ndarray:
         """Rows of the outputs; at an event what comes after it, and its end if one ended it."""
         near = ROUNDING * (grid[-1] - grid[0])
         rows = np.searchsorted(whole.t, grid[grid <= whole.t[-1]] + near, side="right") - 1
-        ended = bool(whole.events) and whole.events[-1].what == "end"
+        events = () if whole.solution is None else whole.solution.events
+        ended = bool(events) and events[-1].what == "end"
         return np.append(rows, len(whole.t) - 1) if ended and rows[-1] < len(whole.t) - 1 else rows
 
 
 def _state_of(initial: Initial) -> tuple[np.ndarray, np.ndarray]:
     return initial.q, initial.v
-
-
-def _parts(first: Course) -> np.ndarray:
-    """(T, 2 n) speeds and accelerations, as parts of their largest."""
-    motion = np.concatenate([first.v[:, 3:], first.a[:, 3:]], axis=1)
-    largest = np.abs(motion).max(axis=0)
-    return motion / np.where(largest > 1e-9 * largest.max(initial=1e-300), largest, np.inf)
 
 
 def _refuse(first: Course) -> None:

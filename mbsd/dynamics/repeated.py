@@ -1,22 +1,26 @@
 """Simulations of one mechanism over one span at several sets of output times, prepared once where it moves smoothly.
 
 A run without events, contacts and jumps, in independent coordinates, leaves nothing behind in what was prepared: the
-next one has the digits of one that is prepared anew.
+next one has the digits of one that is prepared anew, and what the first one recorded is a solution at its own times.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.states import without_states
-from mbsd.dynamics.follow import follow
+from mbsd.dynamics.between import Between
+from mbsd.dynamics.follow import follow, resumed
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.runs.recording import Recording
 from mbsd.dynamics.runs.run import Run
-from mbsd.dynamics.simulate import integrator_named, simulate
+from mbsd.dynamics.simulate import integrator_named, refuse_impossible, simulate, solution, warn_of_start
+from mbsd.dynamics.state import Output
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
 
@@ -35,6 +39,8 @@ class Course:
     """Steps of the integrator."""
     remembers: bool
     """Whether contacts remember how fast they were approached."""
+    q: np.ndarray | None = None
+    """(T, 3 nb), where it moves smoothly."""
 
 
 class Repeated:
@@ -44,23 +50,50 @@ class Repeated:
         self.m, self.tolerance = m, tolerance
         self.method = integrator_named(m.name, "dop853")
         self.ready: PreparedDynamics | None = None
+        self.grid = grid
         self.span = float(grid[0]), float(grid[-1])
+        self.run: Run | None = None
+        self.recording: Recording | None = None
 
     def course(self, times: np.ndarray) -> Course:
         """How it goes at times (T,) (s) from the start to the end. Raises what ``simulate`` raises."""
         ready = prepare_dynamics(self.m, *self.span, contacts=True)
         if not (self.m.events or ready.switches.contacts or ready.sticks or ready.stops.jumps or ready.approaches):
-            duration = self.span[1] - self.span[0]
-            run = Run(ready, self.method, self.tolerance, duration, duration, {})
-            recording = follow(ready, run, times, [], event_rows=True, progress=None)
-            if recording.independent:
-                self.ready = ready
-            shown, out = without_states(ready.packed), recording.out
-            v, a = (part[:, : 3 * len(shown.body_names)] for part in (out.y[:, 1], out.a))
-            return Course(shown, out.t, v, a, recording.steps, remembers=False)
+            return self._smooth(ready, times)
         sol = self._simulated(times, ready)
         v, a = (part.reshape(len(sol.t), -1) for part in (sol.v, sol.a))
         return Course(sol.packed, sol.t, v, a, sol.stats.steps, sol.approached is not None)
+
+    def closer(self, times: np.ndarray) -> Course:
+        """The same at other times, of a motion that is smooth."""
+        assert self.ready is not None
+        return self._smooth(self.ready, times)
+
+    def _smooth(self, ready: PreparedDynamics, times: np.ndarray) -> Course:
+        duration = self.span[1] - self.span[0]
+        run = Run(ready, self.method, self.tolerance, float(np.diff(self.grid).max()), duration, {})
+        recording = follow(ready, run, times, [], event_rows=True, progress=None)
+        shown, out = without_states(ready.packed), recording.out
+        q, v, a = (part[:, : 3 * len(shown.body_names)] for part in (out.y[:, 0], out.y[:, 1], out.a))
+        if recording.independent:
+            self.ready, self.run, self.recording = ready, run, recording
+        return Course(shown, out.t, v, a, recording.steps, remembers=False, q=q if recording.independent else None)
+
+    def recorded(self, rows: np.ndarray) -> Solution:
+        """The solution at some rows of the course that was looked at last, of a motion that is smooth."""
+        ready, run, recording = self.ready, self.run, self.recording
+        assert ready is not None
+        assert run is not None
+        assert recording is not None
+        warn_of_start(ready)
+        own = replace(recording, out=Output(*(part[rows] for part in recording.out)), held=recording.held[rows])
+        refuse_impossible(ready, own)
+
+        def at(times: np.ndarray) -> Solution:
+            return solution(self.m, ready, resumed(ready, run, own, times, []))
+
+        anew = partial(simulate, self.m, None, 1, self.grid, "dop853", self.tolerance, None, None, {})
+        return solution(self.m, ready, own, Between(at, anew, own.out.y[-1, 0]))
 
     def __call__(self, times: np.ndarray) -> Solution:
         """The simulation at times (T,) (s)."""

@@ -68,11 +68,7 @@ def simulate(
     if formulation not in FORMULATIONS:
         raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
     ready = ready or prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
-    if ready.initial.velocities:
-        warn(
-            f"{m.name}: the start was made consistent: " + "; ".join(ready.initial.velocities),
-            InitialConditionWarning,
-        )
+    warn_of_start(ready)
     longest = step or float(np.diff(grid).max())
     run = Run(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
     events = list(m.events.values())
@@ -87,15 +83,29 @@ def simulate(
     def at(times: np.ndarray) -> Solution:
         return solution(m, ready, resumed(ready, run, recording, times, events))
 
-    poses = np.ascontiguousarray(recording.out.y[:, 0])
-    refuse_passed(ready.packed, recording.out.t, poses)
-    check_pistons(ready.packed, recording.out.t, poses)
-    check_states(ready.packed, recording.out.t, poses, states_of(ready.packed, recording.out.y[:, 1]))
+    refuse_impossible(ready, recording)
     if event_rows:
         recording, asked = with_phase_changes(ready, run, recording, events, grid, asked)
     anew = partial(simulate, m, None, 1, grid, method, tolerance, step, None, options, event_rows, formulation)
     sol = solution(m, ready, recording, Between(at, anew, recording.out.y[-1, 0]))
     return sol if asked is None else asked.rows(sol)
+
+
+def warn_of_start(ready: PreparedDynamics) -> None:
+    """Say what had to change of the velocities that the start was given."""
+    if ready.initial.velocities:
+        warn(
+            f"{ready.packed.name}: the start was made consistent: " + "; ".join(ready.initial.velocities),
+            InitialConditionWarning,
+        )
+
+
+def refuse_impossible(ready: PreparedDynamics, recording: Recording) -> None:
+    """Raise an error where outputs pass limits of joints or of cylinders, or states of forces what they can be."""
+    poses = np.ascontiguousarray(recording.out.y[:, 0])
+    refuse_passed(ready.packed, recording.out.t, poses)
+    check_pistons(ready.packed, recording.out.t, poses)
+    check_states(ready.packed, recording.out.t, poses, states_of(ready.packed, recording.out.y[:, 1]))
 
 
 def refuse_bad_steps(m: Model, grid: np.ndarray, tolerance: float, step: float | None) -> None:

@@ -101,15 +101,66 @@ def sledges(draw: st.DrawFn) -> tuple[Mechanism, str]:
     return m, below.name
 
 
-@pytest.mark.parametrize("machines", [bells, slider_cranks, shaken_blocks, sledges])
-def test_random_machines_stick_and_slide_as_single_ones(machines) -> None:
+@st.composite
+def pairs(draw: st.DrawFn) -> tuple[Mechanism, str]:
+    """Two slider-cranks, the second on ground or on the first one's slider, whose joints come to rest in turn."""
+    m = Mechanism("pair", gravity=draw(st.sampled_from([(0, 0), (6.0, -3.0)])))
+    below, x = m.ground.origin, 0.0
+    for k in range(2):
+        r, angle = draw(between(0.06, 0.12)), draw(between(0.3, 2.5))
+        length = r * draw(between(2.2, 4.0))
+        name = "part" if k == 0 else "other"
+        crank, rod = m.bar(name, r, draw(between(0.5, 2.0))), m.bar(f"rod{k}", length, 0.8)
+        slider = m.body(f"slider{k}", draw(between(0.5, 2.0)), inertia=0.01)
+        m.revolute(f"O{k}", below, crank.start)
+        m.revolute(f"A{k}", crank.end, rod.start)
+        m.revolute(f"B{k}", rod.end, slider.origin)
+        m.prismatic(f"rail{k}", below, slider.origin)
+        tilt = -math.asin(r * math.sin(angle) / length)
+        reach = x + r * math.cos(angle) + length * math.cos(tilt)
+        places = {name: math.degrees(angle), f"rod{k}": math.degrees(tilt), f"slider{k}": (reach, 0, 0)}
+        m.start_near(**places)
+        for pin in draw(st.lists(st.sampled_from("OAB"), min_size=2, unique=True)):
+            m.friction(f"rub {pin}{k}", f"{pin}{k}", draw(between(0.1, 0.3)), radius=0.02, preload=20.0, sticks=True)
+        m.torque(f"motor{k}", crank, polynomial(0.0, draw(st.sampled_from([0.0, 1.0, -1.0]))))
+        m.start_moving(**{name: draw(between(-5.0, 5.0))})
+        if draw(st.booleans()):
+            below, x = slider.origin, reach
+    return m, "part"
+
+
+@st.composite
+def five_bars(draw: st.DrawFn) -> tuple[Mechanism, str]:
+    """Four bars with two freedoms, whose joints come to rest and give way in turn."""
+    m = Mechanism("five-bar", gravity=draw(st.sampled_from([(0, 0), (0, -9.81)])))
+    lengths = [draw(between(0.25, 0.35)), 0.5, draw(between(0.4, 0.5)), draw(between(0.2, 0.3))]
+    a, b, c, d = (m.bar(n, x, draw(between(0.3, 1.0))) for n, x in zip(("part", *"bcd"), lengths, strict=True))
+    m.revolute("A", m.ground.origin, a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    m.revolute("D", c.start, d.end)
+    m.revolute("E", m.ground.at(0.4, 0), d.start)
+    m.start_near(part=draw(between(90.0, 130.0)), b=45.0, c=100.0, d=draw(between(50.0, 90.0)))
+    for pin in "ABCDE":
+        m.friction(f"rub {pin}", pin, draw(between(0.1, 0.3)), static=0.35, radius=0.05, preload=60.0, sticks=True)
+    m.torque("motor", a, polynomial(0.0, draw(st.sampled_from([0.0, 8.0, -8.0]))))
+    m.torque("other", d, harmonic(draw(between(0.0, 3.0)), draw(between(2.0, 8.0))))
+    m.start_moving(part=draw(between(-2.0, 2.0)), d=draw(between(-2.0, 2.0)))
+    return m, "part"
+
+
+@pytest.mark.parametrize(
+    ("machines", "duration"),
+    [(bells, 2.0), (slider_cranks, 2.0), (shaken_blocks, 2.0), (sledges, 2.0), (pairs, 1.0), (five_bars, 0.8)],
+)
+def test_random_machines_stick_and_slide_as_single_ones(machines, duration: float) -> None:
     met = []
 
     @settings(max_examples=MACHINES)
     @given(machines(), st.integers(1, 40), st.sampled_from([1e-8, 1e-10]))
     def agree(machine: tuple[Mechanism, str], steps: int, tolerance: float) -> None:
         m, body = machine
-        times = np.linspace(0.0, 2.0, steps + 1)
+        times = np.linspace(0.0, duration, steps + 1)
         parts = ("x", "theta", "omega")
         measure = {part: samples(f"{body}.{part}", times.tolist()) for part in parts}
         mass = m.bodies[body].mass

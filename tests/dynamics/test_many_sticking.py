@@ -17,6 +17,7 @@ from tools.models.sticking import (
     coasting_slider_crank,
     loaded_lever,
     shaken_block,
+    stuck_five_bar,
     two_slider_cranks,
     weightless_slider_crank,
 )
@@ -59,10 +60,12 @@ CASES: dict[str, tuple[Callable[[], Mechanism], float, Mapping[str, Any], str]] 
     "stopped bell": (stopped_bell, 3.0, {"bar": {"mass": [1.0, 1.1]}}, "bar"),
     "ratchet": (ratchet, 3.0, {"load": {"inertia": [0.3, 0.4]}}, "wheel"),
     "rubbed ratchet": (rubbed_ratchet, 3.0, {"load": {"inertia": [0.3, 0.4]}}, "wheel"),
+    "two slider-cranks": (lambda: two_slider_cranks(1.0), 0.6, {"slider a": {"mass": [1.5, 2.0]}}, "crank a"),
+    "five-bar": (stuck_five_bar, 0.45, {"b": {"mass": [0.8, 0.9]}}, "b"),
 }
 
 
-QUICK = {"bell", "slider-crank", "shaken block", "lever", "ratchet"}
+QUICK = {"bell", "slider-crank", "shaken block", "lever", "ratchet", "two slider-cranks"}
 
 
 @pytest.mark.parametrize(
@@ -124,14 +127,7 @@ def test_what_has_come_to_rest_without_any_load_runs_on() -> None:
     assert many["a"][0] == pytest.approx(m.simulate(2.0, steps=2).body("part").theta[-1], abs=EXACT)
 
 
-def test_what_single_simulations_decide_is_left_to_them() -> None:
-    m = two_slider_cranks()
-    many = m.simulate_many(0.5, vary={"crank a": {"mass": [1.0, 1.2]}}, measure={"a": final("crank a.theta")}, steps=10)
-    assert many.way == "2 one by one (what happened at an event there is decided by single simulations)"
-    for k, mass in enumerate((1.0, 1.2)):
-        own = two_slider_cranks()
-        own.change("crank a", mass=mass)
-        assert many["a"][k] == own.simulate(0.5, steps=10).body("crank a").theta[-1]
+def test_other_methods_leave_joints_that_stick_to_single_simulations() -> None:
     other = bell().simulate_many(
         0.5, vary={"bar": {"mass": [1.0]}}, measure={"a": final("bar.theta")}, steps=10, method="rk4", step=1e-2
     )

@@ -157,3 +157,22 @@ def test_a_tip_passes_near_points_of_its_arc_wherever_steps_end(tolerance: float
         times = [event.time for event in m.simulate(0.8, steps=10, tolerance=tolerance).events]
         assert len(times) == 2, angle
         assert times[1] - times[0] < 2e-3
+
+
+@pytest.mark.parametrize(("preload", "angles"), [(22.0, (90, 50)), (35.0, (98, 54)), (29.0, (91, 85))])
+def test_a_step_with_no_time_within_it_has_no_events_of_rounding(preload: float, angles: tuple[int, int]) -> None:
+    """Such a step is left where the last but one ends beside the end of a run; one joint rests, the others begin."""
+    m = Mechanism("five-bar")
+    a, b = m.bar("a", 0.3, mass=1.5), m.bar("b", 0.5, mass=1.1)
+    c, d = m.bar("c", 0.45, mass=0.7), m.bar("d", 0.25, mass=1.3)
+    m.revolute("A", m.ground.origin, a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    m.revolute("D", c.start, d.end)
+    m.revolute("E", m.ground.at(0.4, 0), d.start)
+    for pin in "ABCDE":
+        m.friction(f"rub {pin}", pin, 0.2, static=0.35, radius=0.03, preload=preload, sticks=True)
+    m.start_near(a=angles[0], b=45.0, c=100.0, d=angles[1])
+    sol = m.simulate(4e-10, steps=1, tolerance=1e-6)
+    assert [(event.name, event.what) for event in sol.events] == [("rub A", "sticks")]
+    assert sol.t[-1] == 4e-10

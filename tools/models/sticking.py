@@ -55,20 +55,53 @@ def arm() -> Mechanism:
     return m
 
 
-def two_slider_cranks() -> Mechanism:
-    """Two slider-cranks without a common body: how the joints of both share their friction is a linear programme."""
+def two_slider_cranks(pull: float = 0.0, names: str = "ab") -> Mechanism:
+    """Slider-cranks "a" and "b" without a common body; the torque ``pull`` t turns "a", a constant one "b"."""
     m = Mechanism("two slider-cranks", gravity=None)
-    for name, y in (("a", 0.0), ("b", 1.0)):
+    for name in names:
+        y, angle, preload = (0.0, 30.0, 20.0) if name == "a" else (1.0, 50.0, 35.0)
+        tilt = -math.asin(0.1 * math.sin(math.radians(angle)) / 0.3)
+        reach = 0.1 * math.cos(math.radians(angle)) + 0.3 * math.cos(tilt)
         crank, rod = m.bar(f"crank {name}", 0.1, 1.0), m.bar(f"rod {name}", 0.3, 0.8)
         slider = m.body(f"slider {name}", 1.5, inertia=0.01)
         m.revolute(f"O{name}", m.ground.at(0, y), crank.start)
         m.revolute(f"A{name}", crank.end, rod.start)
         m.revolute(f"B{name}", rod.end, slider.origin)
         m.prismatic(f"rail {name}", m.ground.at(0, y), slider.origin)
-        for pin in "OA":
-            m.friction(f"rub {pin}{name}", f"{pin}{name}", 0.15, radius=0.02, preload=20.0, sticks=True)
-        m.start_near(**{f"crank {name}": 30, f"rod {name}": -10, f"slider {name}": (0.37, y, 0)})
+        for pin in "OAB":
+            m.friction(f"rub {pin}{name}", f"{pin}{name}", 0.3, radius=0.02, preload=preload, sticks=True)
+        m.torque(f"motor {name}", crank, polynomial(0.0, pull) if name == "a" else 0.02)
+        m.start_near(**{f"crank {name}": angle, f"rod {name}": math.degrees(tilt), f"slider {name}": (reach, y, 0)})
         m.start_moving(**{f"crank {name}": 2.0})
+    return m
+
+
+def stuck_five_bar(
+    motor: float = 20.0, turned: float = 0.0, order: str = "ABCDE", bend: float | None = None
+) -> Mechanism:
+    """Four bars with two freedoms, friction in all joints, added in this ``order``, and the torque ``motor`` t.
+
+    ``bend`` (rad): c is welded to d, ahead of it by so much.
+    """
+    fall = 9.80665
+    m = Mechanism("five-bar", gravity=(fall * math.sin(turned), -fall * math.cos(turned)))
+    a, d = m.bar("a", 0.3, mass=0.6), m.bar("d", 0.25, mass=0.5)
+    b, c = m.bar("b", 0.5, mass=0.8), m.bar("c", 0.45, mass=0.7)
+    m.revolute("A", m.ground.origin, a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    if bend is None:
+        m.revolute("D", c.start, d.end)
+    else:
+        m.weld("D", c.start, d.at(0.25, 0.0, bend))
+    m.revolute("E", m.ground.at(0.4 * math.cos(turned), 0.4 * math.sin(turned)), d.start)
+    for pin in order:
+        preload = 100.0 + 10.0 * "ABCDE".index(pin)
+        m.friction(f"rub {pin}", pin, 0.3, static=0.4, radius=0.06, preload=preload, sticks=True)
+    m.torque("motor", a, polynomial(0.0, motor))
+    tilt = math.degrees(turned)
+    m.start_near(a=110.0 + tilt, b=45.0 + tilt, c=100.0 + tilt, d=70.0 + tilt)
+    m.start_moving(a=1.0)
     return m
 
 

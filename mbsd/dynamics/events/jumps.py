@@ -126,7 +126,7 @@ class Jumps:
             gaps = closed[holds | creeping]
             ways = np.array([c.way for c in case.closed if c.name in holding and c.way is not None], np.int64)
             resting = ways[np.abs(at.rates(ways, case.v)) <= self.still[ways]]
-            sticking = [stick.way for stick in self.sticks if stick.state == STICKS]
+            sticking = [stick.way for stick in self.sticks if verdict.joints.get(stick.name) == 0.0]
             self.state.y[1] = case.v = at.stopped([*gaps, *resting, *sticking], case.v)
             verdict = decide(at, case)
         return verdict

@@ -183,6 +183,8 @@ class EventSteps:
         if not self.monitors:
             return None
         quintic = Quintic(before, self.state)
+        if quintic.times(np.array([0.5]))[0] in (quintic.start, self.state.clock[TIME]):
+            return self._at_end(before)
 
         def samples(x: np.ndarray) -> Samples:
             q, v = quintic.at(x)
@@ -213,6 +215,12 @@ class EventSteps:
                 return monitor, float(times[0]), float(times[1])
             monitors.remove(monitor)  # the quintic dips below zero, the motion does not
         return None
+
+    def _at_end(self, before: State) -> tuple[Monitor, float, float] | None:
+        """The same for a step with no time within it, on which a polynomial is rounding."""
+        end = float(self.state.clock[TIME])
+        fallen = (monitor for monitor in self.monitors if self._true(monitor, before, end) < -monitor.still)
+        return next(((monitor, end, end) for monitor in fallen), None)
 
     def _warn_of(self, monitor: Monitor, start: float, length: float, count: int) -> None:
         """Say once of each event that its function is not resolved."""

@@ -5,15 +5,16 @@ are given that load no joint by more than the smallest possible part s of its li
 
     minimise s   with   |T_k + (Z y)_k| <= s L_k
 
-a linear programme. s > 1: they cannot hold.
+With one freedom each joint takes the same part s. With more of them that leaves joints undecided which the motion that
+gives way first does not move: they share what is left in the same way, with a smaller s, and so on (division.py).
+s > 1: they cannot hold.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-SINGULAR = 1e-9
-"""Eigenvalues of G, scaled to a diagonal of ones, below this are zero."""
+from mbsd.dynamics.events.laws.division import SINGULAR, divide, division_of
 
 
 def share(compliance: np.ndarray, forces: np.ndarray, limits: np.ndarray) -> tuple[np.ndarray, float]:
@@ -29,20 +30,6 @@ def share(compliance: np.ndarray, forces: np.ndarray, limits: np.ndarray) -> tup
         normal = np.linalg.svd(null.T)[2][-1]
         s = float(normal @ part) / float(np.abs(normal).sum())
         return s * np.sign(normal) * limits, abs(s)
-    return _programme(null, part, limits)
-
-
-def _programme(null: np.ndarray, part: np.ndarray, limits: np.ndarray) -> tuple[np.ndarray, float]:
-    from scipy.optimize import linprog
-
-    k, free = null.shape
-    column = np.ones((k, 1))
-    least = linprog(
-        np.r_[np.zeros(free), 1.0],
-        A_ub=np.block([[null, -column], [-null, -column]]),
-        b_ub=np.r_[-part, part],
-        bounds=[(None, None)] * free + [(0.0, None)],
-    )
-    if least.x is None:  # the given forces are one solution
-        return part * limits, float(np.abs(part).max())
-    return (part + null @ least.x[:-1]) * limits, float(least.x[-1])
+    out, count = np.ascontiguousarray(forces).copy(), len(forces)
+    flags = np.ones(count, np.int64)
+    return out, float(divide(np.ascontiguousarray(compliance), flags, out, limits, division_of(count)))

@@ -106,8 +106,8 @@ class Sticks(NamedTuple):
     """(2, m)"""
     load: Any
     """(2, 3 nb) without and with friction of joints."""
-    small: Any
-    """(c, c)"""
+    division: Any
+    """mbsd.dynamics.events.laws.division.Division, of c rows."""
     tableau: Any
     """(n, 2 n + 2) of Lemke's method."""
     basis: Any

@@ -25,9 +25,11 @@ from mbsd.dynamics.many.contacts.arrays import (
     RESTITUTION,
     ROW,
     SETTLE,
+    SIGN,
     STAYING,
     TAKING,
     TOUCHING,
+    WAY,
 )
 from mbsd.dynamics.many.contacts.friction.decisions import find_friction, note_met, slide_or_stick
 from mbsd.dynamics.many.contacts.friction.pushes import solve_with_friction
@@ -222,7 +224,10 @@ def resolve(dyn, scratch, contacts, state, met):
 
 @internal
 def moving(dyn, scratch, contacts, v):
-    """Whether contacts that hold still move, or others creep; then chosen[KEPT] are the rows that are to be stopped."""
+    """Whether contacts that hold still move, or others creep; then chosen[KEPT] are the rows that are to be stopped.
+
+    Joints that stick are among them.
+    """
     moving = False
     find_rates(dyn, scratch, contacts, v)
     gap = contacts.friction.gap
@@ -231,7 +236,8 @@ def moving(dyn, scratch, contacts, v):
         holds = contacts.vector[NORMAL, k] > 0.0
         rate, rest = contacts.vector[RATE, k], contacts.number[k, REST]
         creeps = contacts.chosen[STAYING, k] != 0 and not holds and rate < -CREEP * rest
-        contacts.chosen[TAKING, k] = 1 if holds or creeps else 0
+        sticks = contacts.place[k, KIND] == WAY and contacts.number[k, SIGN] == 0.0
+        contacts.chosen[TAKING, k] = 1 if holds or creeps or sticks else 0
         moving = moving or creeps or (holds and abs(rate) > rest)
     for w in range(gap.shape[0]):
         p = gaps + w

@@ -8,6 +8,7 @@ import numpy as np
 
 from mbsd.arrays.curve_branches import CURVES
 from mbsd.dynamics.events.bounds import NEAR as CLOSED_GAP
+from mbsd.dynamics.events.laws.division import division_of
 from mbsd.dynamics.events.steps import STILL
 from mbsd.dynamics.many.contacts.arrays import (
     BESIDE,
@@ -147,7 +148,7 @@ def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Sticks:
         np.zeros((own, rows)),
         np.zeros((2, rows)),
         np.zeros((2, n3)),
-        np.zeros((own, own)),
+        division_of(own),
         np.zeros((n, 2 * n + 2)),
         np.zeros((2, n), np.int64),
     )

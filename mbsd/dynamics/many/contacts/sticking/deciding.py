@@ -6,6 +6,7 @@ import math
 
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.bounds import AT_LIMIT, HAIR, PATIENCE, ROUNDING
+from mbsd.dynamics.events.laws.division import divide
 from mbsd.dynamics.many.contacts.arrays import (
     ALONE,
     FORCE,
@@ -32,7 +33,7 @@ from mbsd.dynamics.many.contacts.pushes import STIFF
 from mbsd.dynamics.many.contacts.rows import along, find_rates, keep_independent, stop
 from mbsd.dynamics.many.contacts.sticking.answers import respond, stand
 from mbsd.dynamics.many.contacts.sticking.complementarity import solve_forces
-from mbsd.dynamics.many.contacts.sticking.sharing import UNDECIDED, limit_of, share
+from mbsd.dynamics.many.contacts.sticking.sharing import limit_of
 from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import FAINT as FAINT_LOAD
 from mbsd.equations.joint_friction import MOST_PASSES, SENSE, SETTLED, X, apply_friction, normal_forces
@@ -101,7 +102,7 @@ def _find_signs(dyn, scratch, contacts, v, halted):
 
 @internal
 def _share_rest(contacts):
-    """Share friction among the joints that stay at rest; returns False where that is undecided."""
+    """Share friction among the joints that stay at rest."""
     vector = contacts.sticks.vector
     find_left(contacts)
     within = 0
@@ -109,7 +110,9 @@ def _share_rest(contacts):
         stays = contacts.chosen[RESTING, k] != 0 and vector[LEFT, k] == 0.0
         contacts.chosen[TOUCHING, k] = 1 if stays else 0
         within += contacts.chosen[TOUCHING, k]
-    return within < 2 or share(contacts, contacts.chosen[TOUCHING]) != UNDECIDED
+    if within > 1:
+        sticks = contacts.sticks
+        divide(contacts.compliance, contacts.chosen[TOUCHING], vector[FORCE], vector[LIMIT], sticks.division)
 
 
 @internal
@@ -161,8 +164,9 @@ def _try(dyn, scratch, contacts, v, hair):
             sticks.vector[LIMIT, k] = hair * limit_of(dyn, contacts.place[k, FRICTION], sticks.normal[NOW])
         if contacts.chosen[TAKING, k] != 0:
             contacts.vector[FREE, k] = along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row]
-    if not solve_forces(contacts) or not _share_rest(contacts):
+    if not solve_forces(contacts):
         return -1.0
+    _share_rest(contacts)
     for k in range(contacts.place.shape[0]):
         if contacts.chosen[TAKING, k] != 0:
             for r in range(lam.shape[0]):

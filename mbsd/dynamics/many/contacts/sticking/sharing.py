@@ -1,20 +1,10 @@
-"""How joints at rest share a friction that several of them could carry (events/laws/sharing.py, resting.py, compiled).
-
-Of one freedom alone, where each joint takes the same part s of its limit. With the column G_k1 of the compliance
-
-    T_k = s sign(G_k1) L_k,      s = sum_k G_k1 T_k / sum_k |G_k1| L_k
-
-for forces T of any division: virtual work of the one motion. A division with more freedoms is a linear programme, which
-is left to single simulations.
-"""
+"""How joints at rest share a friction that several of them could carry, as events/laws/resting.py has it, compiled."""
 
 from __future__ import annotations
 
-import math
-
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.bounds import AGREED, PASSES
-from mbsd.dynamics.events.laws.sharing import SINGULAR
+from mbsd.dynamics.events.laws.division import divide
 from mbsd.dynamics.many.contacts.arrays import (
     CLOSED,
     FORCE,
@@ -32,9 +22,6 @@ from mbsd.dynamics.many.contacts.rows import hold_rows, release_rows
 from mbsd.dynamics.many.contacts.sticking.answers import factor, find_answers
 from mbsd.equations.joint_friction import PIN, PRELOAD, SHAPE, SIZE, STATIC, normal_forces
 
-UNDECIDED = -1.0
-"""A part where it takes a linear programme."""
-
 
 @internal
 def limit_of(dyn, k, normal):
@@ -44,76 +31,11 @@ def limit_of(dyn, k, normal):
     return number[STATIC] * lever * (normal[k] + number[PRELOAD])
 
 
-@internal
-def _rank(contacts, flags):
-    """Rank of the compliance of the rows in ``flags`` (c,): pivoted Cholesky, scaled to a diagonal of ones."""
-    count = flags.shape[0]
-    g = contacts.sticks.small
-    for i in range(count):
-        for j in range(count):
-            if flags[i] != 0 and flags[j] != 0:
-                own = max(contacts.compliance[i, i], 1e-300) * max(contacts.compliance[j, j], 1e-300)
-                g[i, j] = contacts.compliance[i, j] / math.sqrt(own)
-    for rank in range(count):
-        pivot = -1
-        for i in range(count):
-            if flags[i] != 0 and g[i, i] >= SINGULAR and (pivot < 0 or g[i, i] > g[pivot, pivot]):
-                pivot = i
-        if pivot < 0:
-            return rank
-        for i in range(count):
-            part = g[i, pivot] / g[pivot, pivot]
-            for j in range(count):
-                if i != pivot and flags[i] != 0 and flags[j] != 0:
-                    g[i, j] -= part * g[pivot, j]
-        for i in range(count):
-            g[i, pivot] = 0.0
-            g[pivot, i] = 0.0
-    return count
-
-
-@internal
-def share(contacts, flags):
-    """Divide vector[FORCE] among the rows in ``flags`` (c,) with limits in vector[LIMIT]; returns s, or UNDECIDED."""
-    count = flags.shape[0]
-    force = contacts.sticks.vector[FORCE]
-    limits = contacts.sticks.vector[LIMIT]
-    first = -1
-    resting = 0
-    largest = 0.0
-    for k in range(count):
-        if flags[k] != 0:
-            first = k if first < 0 else first
-            resting += 1
-            largest = max(largest, abs(limits[k]))
-    least = 1e-12 * largest + 1e-300
-    rank = _rank(contacts, flags)
-    part = 0.0
-    if rank == resting:
-        for k in range(count):
-            if flags[k] != 0:
-                part = max(part, abs(force[k] / max(limits[k], least)))
-        return part
-    if rank != 1:
-        return UNDECIDED
-    whole = 0.0
-    for k in range(count):
-        if flags[k] != 0:
-            part += contacts.compliance[k, first] * force[k]
-            whole += abs(contacts.compliance[k, first]) * max(limits[k], least)
-    part /= whole
-    for k in range(count):
-        if flags[k] != 0:
-            sign = math.copysign(1.0, contacts.compliance[k, first]) if contacts.compliance[k, first] != 0.0 else 0.0
-            force[k] = part * sign * max(limits[k], least)
-    return abs(part)
-
-
 @apart
 def carry(dyn, scratch, contacts, lam):
     """Divide the friction in the multipliers lam (m,) among the joints at rest, at the pose of scratch.ws.
 
-    Returns the part s of their limits that they need, or UNDECIDED.
+    Returns the part s of their limits that they need.
     """
     count = contacts.place.shape[0]
     flags = contacts.chosen[RESTING]
@@ -140,9 +62,7 @@ def carry(dyn, scratch, contacts, lam):
                 contacts.sticks.vector[LIMIT, k] = limit_of(dyn, contacts.place[k, FRICTION], normal)
                 previous[k] = force[k]
                 force[k] = start[k]
-        part = share(contacts, flags)
-        if part == UNDECIDED:
-            return part
+        part = divide(contacts.compliance, flags, force, contacts.sticks.vector[LIMIT], contacts.sticks.division)
         change = 0.0
         largest = 0.0
         for k in range(count):

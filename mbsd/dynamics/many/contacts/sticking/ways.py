@@ -9,7 +9,6 @@ from __future__ import annotations
 from mbsd.compiling.jit import lazy
 from mbsd.dynamics.many.contacts.arrays import (
     CLOSED,
-    FAILURE,
     FOUND,
     FRICTION,
     KIND,
@@ -21,11 +20,8 @@ from mbsd.dynamics.many.contacts.arrays import (
     WAY,
 )
 from mbsd.dynamics.many.contacts.rows import along, measure
-from mbsd.dynamics.many.contacts.sticking.sharing import UNDECIDED, carry, limit_of
+from mbsd.dynamics.many.contacts.sticking.sharing import carry, limit_of
 from mbsd.equations.joint_friction import normal_forces
-
-NOT_SHARED = -7
-"""FAILURE where joints share their friction in a way that is left to single simulations."""
 
 
 @lazy(None)
@@ -50,8 +46,6 @@ def read_ways(dyn, scratch, contacts, y, forces):
             resting = k
     if resting >= 0 and forces and contacts.clock[SHARING] > 0.0:
         part = carry(dyn, scratch, contacts, contacts.lam)
-        if part == UNDECIDED:
-            contacts.clock[FAILURE] = NOT_SHARED
         contacts.vector[VALUE, resting] = (1.0 - part) * contacts.clock[LOAD]
 
 
@@ -60,5 +54,4 @@ def share_outputs(dyn, scratch, contacts, out, first, end):
     """Divide the friction of joints at rest in outputs ``first`` to ``end`` (left out)."""
     for k in range(first, end):
         measure(dyn, scratch, out.t[k], out.y[k, 0])
-        if carry(dyn, scratch, contacts, out.lam[k]) == UNDECIDED:
-            contacts.clock[FAILURE] = NOT_SHARED
+        carry(dyn, scratch, contacts, out.lam[k])

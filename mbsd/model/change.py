@@ -146,6 +146,8 @@ def _move_ends(m: Model, bar: Body, old: float, new: float) -> None:
             table[name] = replace(entry, i=moved(entry.i), j=moved(entry.j), params=params)  # pyright: ignore[reportIndexIssue]
     for name, marker in m.traces.items():
         m.traces[name] = moved(marker)
+    for name, event in m.events.items():
+        m.events[name] = event.moved(moved)
 
 
 def _refuse_others(m: Model, what: str, values: Mapping[str, Any], known: tuple[str, ...] | list[str]) -> None:

@@ -112,7 +112,7 @@ def test_what_is_left_to_events_is_simulated_by_itself_and_says_so() -> None:
     many = ended().simulate_many(
         0.5, vary={"spring": {"damping": damping}}, measure={"angle": final("rocker.theta")}, steps=STEPS
     )
-    assert "one by one (events" in many.way
+    assert "one by one (event 'late'" in many.way
     for k in range(2):
         m = ended()
         m.change("spring", damping=float(damping[k]))

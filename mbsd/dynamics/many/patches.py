@@ -48,6 +48,8 @@ class Patches:
         self.inertia: np.ndarray | None = None
         columns: list[Column] = []
         m = designs.m
+        if self.ready.packed.states:
+            raise NotPatched("states of forces are found with the start")
         for name, values in designs.changes.items():
             if name in m.forces:
                 columns += self._of_force(name, values)

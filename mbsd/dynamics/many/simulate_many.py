@@ -273,8 +273,11 @@ def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mappi
             return str(why)
         except Exception:
             continue  # a row may fail
-        if run.ready.approaches and any(quantity.reactive for quantity in quantities.values()):
+        reactive = any(quantity.reactive for quantity in quantities.values())
+        if run.ready.approaches and reactive:
             return "reactions where the damping of a contact remembers how fast it approached"
+        if run.ready.following.rows and reactive:
+            return "reactions where points are on curves that cross themselves"
         return None
     return None
 

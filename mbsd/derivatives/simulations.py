@@ -54,7 +54,7 @@ MOST_STEPS = 20_000
 Finish = Callable[[], Tangents]
 """Evaluates tangents at the outputs of which they are asked."""
 Way = Callable[[np.ndarray], tuple[np.ndarray, Finish]]
-"""Of edges of steps the errors of these, and what finishes them."""
+"""Gives the errors of steps between edges, and what finishes them."""
 
 
 class SimulationTangents:

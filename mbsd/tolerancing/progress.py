@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 
 class Progress:
-    """Tells a function of the user the part done, 0 .. 1, which never falls; 1 is told at the end alone."""
+    """Gives a function of the user the part done, 0 .. 1, which never falls; it is 1 at the end alone."""
 
     def __init__(self, function: Callable[[float], object] | None, expected: int) -> None:
         self._function = function
         self._begun, self._share, self._rows, self._done = 0.0, 1.0, max(expected, 1), 0
-        """What was told before the rows that are counted now, what they are of the whole, how many they are, and how
+        """The part before the rows that are counted now, what they are of the whole, how many they are, and how
         many of them are done."""
 
     def more(self, rows: int) -> None:

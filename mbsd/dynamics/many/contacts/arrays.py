@@ -39,16 +39,14 @@ NO_SIGN = 2.0
 
 
 class Friction(NamedTuple):
-    """f contacts with friction; their ways are the last f rows of Contacts."""
+    """f contacts with friction; their ways are the f rows of Contacts behind the gaps."""
 
     gap: Any
     """(f,) int, the row of Contacts that is its gap."""
     number: Any
     """(f, 7)"""
     compliance: Any
-    """(c, c) of rows of Contacts, where contacts that slide push with their friction."""
-    velocity: Any
-    """(3 nb,)"""
+    """(c, c) of rows of Contacts, where contacts that slide push with their friction; empty without any friction."""
     order: Any
     """(c,) int, rows of Contacts in the order of the search: each contact's gap, then its way; joints last."""
     none: Sliding
@@ -81,8 +79,10 @@ NOW, LAST, FOUND = range(3)
 
 
 class Sticks(NamedTuple):
-    """What joints with friction add, for c rows, f joints with friction and n = c + 2 k unknowns, k of them joints."""
+    """What joints with friction add, for c rows and f joints with friction."""
 
+    joint: Any
+    """(k,) int, rows of Contacts that are ways of joints that stick: the last k."""
     vector: Any
     """(5, c)"""
     normal: Any
@@ -95,10 +95,6 @@ class Sticks(NamedTuple):
     """(2, 3 nb) without and with friction of joints."""
     small: Any
     """(c, c)"""
-    tableau: Any
-    """(n, 2 n + 2) of Lemke's method."""
-    basis: Any
-    """(2, n) int: of the tableau, and rows of its ratio test."""
 
 
 class Contacts(NamedTuple):

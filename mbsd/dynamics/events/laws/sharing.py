@@ -13,14 +13,24 @@ from __future__ import annotations
 import numpy as np
 
 SINGULAR = 1e-9
-"""Eigenvalues of G, scaled to a diagonal of ones, below this are zero."""
+"""Eigenvalues (singular values) of G, scaled to a diagonal of ones, below this are zero."""
 
 
-def share(compliance: np.ndarray, forces: np.ndarray, limits: np.ndarray) -> tuple[np.ndarray, float]:
-    """Shared forces (k,) and s, for G (k, k), forces (k,) and limits (k,)."""
+def share(
+    compliance: np.ndarray, forces: np.ndarray, limits: np.ndarray, symmetric: bool = True
+) -> tuple[np.ndarray, float]:
+    """Shared forces (k,) and s, for G (k, k), forces (k,) and limits (k,).
+
+    G is not ``symmetric`` where contacts slide, whose friction follows their normal forces.
+    """
     limits = np.maximum(limits, 1e-12 * float(np.abs(limits).max(initial=0.0)) + 1e-300)
     unit = 1.0 / np.sqrt(np.maximum(np.diag(compliance), 1e-300))
-    value, vector = np.linalg.eigh(compliance * unit * unit[:, None])
+    scaled = compliance * unit * unit[:, None]
+    if symmetric:
+        value, vector = np.linalg.eigh(scaled)
+    else:
+        _, value, rows = np.linalg.svd(scaled)
+        vector = rows.T
     null = vector[:, value < SINGULAR] * unit[:, None] / limits[:, None]
     part = forces / limits
     if not null.shape[1]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.bounds import AT_LIMIT, HAIR, PATIENCE, ROUNDING
+from mbsd.dynamics.events.bounds import AT_LIMIT, HAIR, PATIENCE, ROUNDING, UNSURE
 from mbsd.dynamics.many.contacts.arrays import (
     FORCE,
     FOUND,
@@ -102,8 +102,9 @@ def find_left(contacts):
         for j in range(count):
             if contacts.chosen[TAKING, j] != 0:
                 left += contacts.friction.compliance[k, j] * vector[FORCE, j]
-        by_limit = contacts.compliance[k, k] * vector[LIMIT, k]
-        if abs(left) > AT_LIMIT * max(by_limit, abs(free)):
+        own = contacts.compliance[k, k]
+        others = abs(left - own * vector[FORCE, k])
+        if abs(left) > max(AT_LIMIT * max(own * vector[LIMIT, k], others), UNSURE * abs(free)):
             vector[LEFT, k] = left
 
 

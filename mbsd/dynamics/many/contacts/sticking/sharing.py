@@ -1,8 +1,8 @@
 """How joints at rest share a friction that several of them could carry (events/laws/sharing.py, resting.py, compiled).
 
-Of one freedom alone, where each joint takes the same part s of its limit. With the column G_k1 of the compliance
+Of one freedom alone, where each joint takes the same part s of its limit. With the row G_1k of the compliance
 
-    T_k = s sign(G_k1) L_k,      s = sum_k G_k1 T_k / sum_k |G_k1| L_k
+    T_k = s sign(G_1k) L_k,      s = sum_k G_1k T_k / sum_k |G_1k| L_k
 
 for forces T of any division: virtual work of the one motion. A division with more freedoms is a linear programme, which
 is left to single simulations.
@@ -28,8 +28,8 @@ from mbsd.dynamics.many.contacts.arrays import (
     UNSHARED,
     WAY,
 )
-from mbsd.dynamics.many.contacts.rows import hold_rows, release_rows
-from mbsd.dynamics.many.contacts.sticking.answers import factor, find_answers
+from mbsd.dynamics.many.contacts.rows import hold_rows
+from mbsd.dynamics.many.contacts.sticking.answers import answer_resting
 from mbsd.equations.joint_friction import PIN, PRELOAD, SHAPE, SIZE, STATIC, normal_forces
 
 UNDECIDED = -1.0
@@ -99,12 +99,12 @@ def share(contacts, flags):
     whole = 0.0
     for k in range(count):
         if flags[k] != 0:
-            part += contacts.compliance[k, first] * force[k]
-            whole += abs(contacts.compliance[k, first]) * max(limits[k], least)
+            part += contacts.compliance[first, k] * force[k]
+            whole += abs(contacts.compliance[first, k]) * max(limits[k], least)
     part /= whole
     for k in range(count):
         if flags[k] != 0:
-            sign = math.copysign(1.0, contacts.compliance[k, first]) if contacts.compliance[k, first] != 0.0 else 0.0
+            sign = math.copysign(1.0, contacts.compliance[first, k]) if contacts.compliance[first, k] != 0.0 else 0.0
             force[k] = part * sign * max(limits[k], least)
     return abs(part)
 
@@ -126,9 +126,7 @@ def carry(dyn, scratch, contacts, lam):
         flags[k] = 1 if contacts.place[k, KIND] == WAY and contacts.number[k, CLOSED] > 0.0 else 0
         start[k] = -lam[contacts.place[k, ROW]]
         force[k] = start[k]
-    release_rows(dyn, contacts)
-    factor(dyn, scratch)
-    find_answers(dyn, scratch, contacts, flags)
+    answer_resting(dyn, scratch, contacts, flags)
     hold_rows(dyn, contacts)
     for r in range(lam.shape[0]):
         before[r] = lam[r]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.bounds import AT_LIMIT, HAIR, PATIENCE, ROUNDING, UNSURE
+from mbsd.dynamics.events.bounds import AT_LIMIT, AT_LIMIT_BEYOND, HAIR, PATIENCE, ROUNDING, UNSURE
 from mbsd.dynamics.many.contacts.arrays import (
     FORCE,
     FOUND,
@@ -76,10 +76,10 @@ def _choose(dyn, scratch, contacts, v, halted):
 
 
 @internal
-def _share_rest(contacts):
+def _share_rest(contacts, rounding):
     """Share friction among the joints that stay at rest; returns False where that is undecided."""
     vector = contacts.sticks.vector
-    find_left(contacts)
+    find_left(contacts, rounding)
     within = 0
     for k in range(contacts.place.shape[0]):
         stays = contacts.chosen[RESTING, k] != 0 and vector[LEFT, k] == 0.0
@@ -89,8 +89,11 @@ def _share_rest(contacts):
 
 
 @internal
-def find_left(contacts):
-    """Fill sticks.vector[LEFT] with accelerations of ways at rest under forces, zero where friction holds them."""
+def find_left(contacts, rounding):
+    """Fill sticks.vector[LEFT] with accelerations of ways at rest under forces, zero where friction holds them.
+
+    ``rounding``: part of what acts that counts as none.
+    """
     count = contacts.place.shape[0]
     vector = contacts.sticks.vector
     for k in range(count):
@@ -104,7 +107,7 @@ def find_left(contacts):
                 left += contacts.friction.compliance[k, j] * vector[FORCE, j]
         own = contacts.compliance[k, k]
         others = abs(left - own * vector[FORCE, k])
-        if abs(left) > max(AT_LIMIT * max(own * vector[LIMIT, k], others), UNSURE * abs(free)):
+        if abs(left) > max(rounding * max(own * vector[LIMIT, k], others), UNSURE * abs(free)):
             vector[LEFT, k] = left
 
 
@@ -131,7 +134,7 @@ def _add_sliding(contacts, lam):
 
 
 @internal
-def _try(dyn, scratch, contacts, v, hair):
+def _try(dyn, scratch, contacts, v, hair, rounding):
     """N and T under the normal forces normal[NOW], and those that they give; returns the largest load, -1 if none."""
     sticks = contacts.sticks
     load = sticks.load[1]
@@ -153,7 +156,7 @@ def _try(dyn, scratch, contacts, v, hair):
     pressed = contacts.friction.compliance
     if not solve_with_friction(contacts, pressed, contacts.vector[FREE], STATIC, sticks.vector[FORCE]):
         return -1.0
-    if not _share_rest(contacts):
+    if not _share_rest(contacts, rounding):
         return -1.0
     for k in range(contacts.place.shape[0]):
         if contacts.chosen[TAKING, k] != 0:
@@ -165,7 +168,7 @@ def _try(dyn, scratch, contacts, v, hair):
 
 
 @apart
-def _agree(dyn, scratch, contacts, v, hair):
+def _agree(dyn, scratch, contacts, v, hair, rounding):
     """Repeat that until the normal forces of the joints agree; returns the largest load, -1 if they do not."""
     normal = contacts.sticks.normal
     count = normal.shape[1]
@@ -175,7 +178,7 @@ def _agree(dyn, scratch, contacts, v, hair):
         normal[NOW, k] = before if math.isfinite(before) else 0.0
         normal[LAST, k] = 0.0
     for turn in range(MOST_PASSES):
-        largest = _try(dyn, scratch, contacts, v, hair)
+        largest = _try(dyn, scratch, contacts, v, hair, rounding)
         if largest < 0.0:
             return largest
         worst = 0.0
@@ -211,19 +214,21 @@ def decide(dyn, scratch, contacts, state, halted, slipping):
     gaps = gaps_of(contacts)
     v = state.y[1]
     largest = -1.0
+    hair = 1.0 - HAIR if slipping else 1.0
+    rounding = AT_LIMIT_BEYOND if slipping else AT_LIMIT
     stand(dyn, scratch, state.clock[TIME], state.y)
     begin_deciding(contacts)
     _loads(dyn, scratch, contacts, state.clock[TIME], state.y)
     for _ in range(contacts.friction.gap.shape[0] + 1):
         _choose(dyn, scratch, contacts, v, halted)
-        largest = _agree(dyn, scratch, contacts, v, 1.0 - HAIR if slipping else 1.0)
+        largest = _agree(dyn, scratch, contacts, v, hair, rounding)
         if largest < 0.0:
             return False
         for k in range(count):
             contacts.vector[NORMAL, k] = contacts.sticks.vector[FORCE, k]
         if not breaks(contacts, FAINT * largest):
             break
-    find_left(contacts)
+    find_left(contacts, rounding)
     for k in range(count):
         if k < gaps and not contacts.vector[NORMAL, k] > FAINT * largest:
             contacts.vector[NORMAL, k] = 0.0

@@ -27,6 +27,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     WHERE,
 )
 from mbsd.dynamics.many.contacts.dips import first_dip, may_dip
+from mbsd.dynamics.many.contacts.rows import gaps_of
 from mbsd.dynamics.many.contacts.within import (
     along,
     at_state,
@@ -177,11 +178,11 @@ def first_met(dyn, own, scratch, state, settings, contacts, out, before, after):
     """
     count = contacts.place.shape[0]
     friction = contacts.friction
-    gaps = count - friction.gap.shape[0]
+    gaps = gaps_of(contacts)
     sample(dyn, scratch, contacts)
     for k in range(count):
         contacts.chosen[SKIPPED, k] = 0 if _may_meet(contacts, k) else 1
-    for w in range(count - gaps):
+    for w in range(friction.gap.shape[0]):
         if contacts.number[gaps + w, CLOSED] == 0.0 and contacts.number[gaps + w, SIGN] == 0.0:
             contacts.chosen[SKIPPED, gaps + w] = 1
     for _ in range(count):

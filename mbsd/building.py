@@ -14,6 +14,7 @@ import numpy as np
 from mbsd.base.arguments import several_numbers
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
+from mbsd.model.adding.events import checked_event
 from mbsd.model.body import Body, Marker
 from mbsd.model.contacts.discs import rigid_discs
 from mbsd.model.contacts.line import rigid_contact
@@ -66,7 +67,6 @@ from mbsd.model.joints.revolute import revolute
 from mbsd.model.joints.rolling_disc import rolling_disc
 from mbsd.model.joints.rolling_on_curve import rolling_on_curve
 from mbsd.model.joints.weld import weld
-from mbsd.model.laws.function import checked_pulses
 from mbsd.model.mechanism import Model, Start, StartVelocity, new_name, number_given, own_body
 
 
@@ -182,11 +182,12 @@ class Building(Model):
     def event(
         self,
         name: str,
-        value: Callable[[float, Any], float],
+        value: Callable[..., float],
         direction: int = 0,
         terminal: bool = False,
-        action: Callable[[Any], object] | None = None,
+        action: Callable[..., object] | None = None,
         shortest: float | None = None,
+        frames: Body | Marker | Sequence[Body | Marker] = (),
     ) -> Event:
         """Monitor a scalar: ``value(t, moment)`` passes zero, rising (direction 1), falling (-1) or either (0).
 
@@ -194,21 +195,14 @@ class Building(Model):
         ``action`` is called with the moment and may change velocities and release joints. A scalar that is smooth is
         found below zero however short a time it is there. One that has pulses is not seen between them: ``shortest``
         (s) is how long the shortest thing in it lasts, and it is looked at twice as often.
+
+        With ``frames``, bodies and markers, the functions get numbers and may be compiled with numba.njit:
+        ``value(t, q, v)``, with x, y, theta and their rates of each frame in turn (m, rad, m/s, rad/s; world axes).
+        ``action(t, q, v)`` then gives the velocities vx, vy, omega of each frame from there on, 3 numbers a frame;
+        what the joints forbid of them is taken away. Raises ModelError for what is none of these.
         """
         new_name(self, name, "event", self.events)
-        for what, function in (("value", value), ("action", action)):
-            if not callable(function) and not (what == "action" and function is None):
-                raise ModelError(f"{self.name}: event '{name}': {what} is {shown(function)}; it must be a function")
-        if direction not in (-1, 0, 1):
-            raise ModelError(f"{self.name}: event '{name}': direction is {shown(direction)}; it must be 1, -1 or 0")
-        event = self.events[name] = Event(
-            name,
-            value,
-            direction,
-            bool(terminal),
-            action,
-            checked_pulses(f"{self.name}: event '{name}'", (), shortest)[1],
-        )
+        event = self.events[name] = checked_event(self, name, value, direction, terminal, action, shortest, frames)
         return event
 
     def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:

@@ -200,7 +200,9 @@ def checked(function: F) -> F:
 
     @functools.wraps(function)
     def inner(*given: Any, **keywords: Any) -> Any:
-        where = f"{given[0].name}: {function.__name__}" if method else function.__name__
+        of_one = bool(given) and (method or hasattr(given[0], "bodies"))  # a method, or a function of a mechanism
+        owner = getattr(given[0], "name", None) if of_one else None
+        where = function.__name__ if owner is None else f"{owner}: {function.__name__}"
         _refuse_misnamed(where, given, keywords)
         given_name = given[1] if len(given) > 1 else keywords.get("name")
         what = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -53,6 +54,16 @@ def tell_missed(what: str, law: object) -> None:
     missed = getattr(law, "missed", None)
     if missed:
         warnings.warn(f"{what}: {missed}", ModelWarning, stacklevel=5)
+
+
+def refuse_other_arguments(what: str, function: Callable[..., Any], given: str) -> None:
+    """Raise ModelError for a ``function`` that cannot be called with one argument, as far as its signature says."""
+    try:
+        inspect.signature(function).bind(None)
+    except ValueError:  # compiled functions may not say what they take
+        return
+    except TypeError as error:
+        raise ModelError(f"{what} must be a function of {given}, a single argument: {error}") from None
 
 
 def described(error: BaseException) -> str:

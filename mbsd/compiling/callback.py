@@ -101,10 +101,15 @@ class Callback:
     def _serious(self) -> BaseException | None:
         return None if isinstance(self._error, OF_NUMBERS) else self._error
 
+    @staticmethod
+    def is_machine_code(function: object) -> bool:
+        """Whether a function is compiled with numba."""
+        return isinstance(function, CFunc | Dispatcher)
+
     @property
     def compiled(self) -> bool:
         """Whether it is machine code, of which several threads may call copies."""
-        return isinstance(self.function, CFunc | Dispatcher)
+        return self.is_machine_code(self.function)
 
     @property
     def failed(self) -> bool:

@@ -121,7 +121,7 @@ class Jump:
         far = max(float(np.abs(dq).max()), float(np.abs(dv).max()) / fastest, 1e-300)
 
         def value(packed: Any, t: float, q: np.ndarray, v: np.ndarray) -> float:
-            return float(event.value(t, Moment(packed, t, q, v)))
+            return float(event.value_at(Moment(packed, t, q, v)))
 
         t, q, v, a = float(along.t[k]), along.q[k], along.v[k], along.a[k]
         h, dt = 1e-5 / far, 1e-6 * max(float(along.t[-1] - along.t[0]), 1e-9)

@@ -69,7 +69,7 @@ def _histogram(ax: Any, t: Any) -> None:
     titles = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
     ax.legend(titles.values(), titles.keys(), frameon=False, loc="upper center", ncols=3)
     ax.set_ylim(0, 1.3 * max(1, counts.max()))
-    _plain(ax, xlabel="result", ylabel="machines", title=_title(t))
+    _plain(ax, xlabel=t.quantity, ylabel="machines", title=_title(t))
 
 
 def _line(ax: Any, x: float, name: str, colour: str, style: str) -> None:

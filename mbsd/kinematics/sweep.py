@@ -19,7 +19,7 @@ from mbsd.kinematics.limits.joints import limits_of, refuse_passed
 from mbsd.kinematics.march import March, march_along
 from mbsd.kinematics.multipliers import inverse_dynamics, singularity_margin
 from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepare import prepare, prepare_beside
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
@@ -37,10 +37,11 @@ def sweep(
     steps: int,
     times: Sequence[float] | np.ndarray | None,
     event_rows: bool = False,
+    beside: Prepared | None = None,
 ) -> Solution:
-    """See :meth:`mbsd.mechanism.Mechanism.sweep`."""
+    """See :meth:`mbsd.mechanism.Mechanism.sweep`; ``beside``: a mechanism made ready that differs in numbers alone."""
     grid = sweep_times(m, duration, steps, times)
-    ready = prepare(m, float(grid[0]), float(grid[-1]))
+    ready = _ready(m, beside, float(grid[0]), float(grid[-1]))
     march = march_along(ready, grid)
     if duration is None and times is None and m.drivers:
         whole = _whole_period(m, ready, march, float(grid[-1]))
@@ -89,6 +90,10 @@ def sweep(
         route=ready.route if march.closed else "Newton-Raphson",
     )
     return sol if asked is None else asked.rows(sol)
+
+
+def _ready(m: Model, beside: Prepared | None, start: float, end: float) -> Prepared:
+    return prepare(m, start, end) if beside is None else prepare_beside(m, beside, start, end)
 
 
 def _beside_jumps(ready: Prepared, grid: np.ndarray, march: March) -> Asked | None:

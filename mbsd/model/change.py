@@ -103,6 +103,18 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
     table.update({key: new if key == name else value for key, value in before.items()})
 
 
+def values_of(m: Model, name: str) -> dict[str, Any] | None:
+    """What :func:`change` takes for a name, with its values, derived ones too; None if there is no such name."""
+    for table in connections(m):
+        if name in table:
+            entry: Any = table[name]
+            return {**entry.params, **given(entry)}
+    if not isinstance(name, str) or name not in m.bodies or name == "ground":
+        return None  # pyright: ignore[reportReturnType]
+    body = m.bodies[name]
+    return {key: getattr(body, key) for key in (BODY if body.length is None else BAR)} | given_body(body)
+
+
 def given_body(body: Body) -> dict[str, Any]:
     """Arguments of the method that added it: what the user gave."""
     mass = body.mass if body.mass_given or body.mass > 0 else None
@@ -134,6 +146,8 @@ def _move_ends(m: Model, bar: Body, old: float, new: float) -> None:
             table[name] = replace(entry, i=moved(entry.i), j=moved(entry.j), params=params)  # pyright: ignore[reportIndexIssue]
     for name, marker in m.traces.items():
         m.traces[name] = moved(marker)
+    for name, event in m.events.items():
+        m.events[name] = event.moved(moved)
 
 
 def _refuse_others(m: Model, what: str, values: Mapping[str, Any], known: tuple[str, ...] | list[str]) -> None:

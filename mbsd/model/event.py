@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from mbsd.base.arguments import finite_number
@@ -19,13 +19,28 @@ class Event(WithFunctions):
     """A scalar function of time and motion that a simulation monitors; see :meth:`mbsd.mechanism.Mechanism.event`."""
 
     name: str
-    value: Callable[[float, Any], float]
+    value: Callable[..., float]
     direction: int = 0
     """1: where it rises through zero; -1: where it falls; 0: both."""
     terminal: bool = False
-    action: Callable[[Any], object] | None = None
+    action: Callable[..., object] | None = None
     shortest: float | None = None
     """How long the shortest thing in the function lasts (s)."""
+    frames: tuple[Marker, ...] = ()
+    """Frames whose places and velocities the functions get as numbers; where there are none they get the moment."""
+
+    def value_at(self, moment: Any) -> Any:
+        """What the function gives at a moment of a simulation."""
+        if self.frames and not isinstance(self.value, Reaching):
+            return self.value(moment.t, *moment.numbers(self.frames))
+        return self.value(moment.t, moment)
+
+    def moved(self, move: Callable[[Marker], Marker]) -> Event:
+        """The same with its markers moved."""
+        value = self.value
+        if isinstance(value, Reaching):
+            value = replace(value, frames=tuple(map(move, value.frames)))
+        return replace(self, value=value, frames=tuple(map(move, self.frames)))
 
 
 @dataclass(frozen=True)
@@ -44,31 +59,52 @@ class Happening:
     """Kinetic energy after less before (J), of all that happens at this time; given once."""
 
 
+@dataclass(frozen=True, eq=False)
+class Reaching:
+    """A ready-made function of an event: a number of some frames less a level."""
+
+    measured: Callable[[float, Any, Any], float]
+    """A function of the time, places and velocities of the frames, as functions of the user get them."""
+    frames: tuple[Marker, ...]
+    level: float
+
+    def __call__(self, t: float, moment: Any) -> float:
+        """Its value at a moment."""
+        return self.measured(t, *moment.numbers(self.frames)) - self.level
+
+
+def turned(t: float, q: Any, v: Any) -> float:
+    """The angle of the first frame (rad)."""
+    return q[2]
+
+
+def distance(t: float, q: Any, v: Any) -> float:
+    """From the first frame to the second (m)."""
+    return math.hypot(q[3] - q[0], q[4] - q[1])
+
+
+def turning(t: float, q: Any, v: Any) -> float:
+    """The angular velocity of the first frame (rad/s)."""
+    return v[2]
+
+
 def angle_reaches(body: Body, angle: float) -> Callable[[float, Any], float]:
     """Event function: the angle of a body (rad, counted over turns) less ``angle``."""
     _refuse_other("angle_reaches", body, Body)
-    angle = finite_number("angle_reaches: angle", angle)
-    return lambda t, moment: moment.body(body.name).theta - angle
+    return Reaching(turned, (body.origin,), finite_number("angle_reaches: angle", angle))
 
 
 def distance_reaches(i: Marker, j: Marker, length: float) -> Callable[[float, Any], float]:
     """Event function: the distance of two points (m) less ``length``."""
     _refuse_other("distance_reaches", i, Marker)
     _refuse_other("distance_reaches", j, Marker)
-    length = finite_number("distance_reaches: length", length)
-
-    def value(t: float, moment: Any) -> float:
-        first, second = moment.point(i), moment.point(j)
-        return math.hypot(second.x - first.x, second.y - first.y) - length
-
-    return value
+    return Reaching(distance, (i, j), finite_number("distance_reaches: length", length))
 
 
 def speed_reaches(body: Body, omega: float) -> Callable[[float, Any], float]:
     """Event function: the angular velocity of a body (rad/s) less ``omega``."""
     _refuse_other("speed_reaches", body, Body)
-    omega = finite_number("speed_reaches: omega", omega)
-    return lambda t, moment: moment.body(body.name).omega - omega
+    return Reaching(turning, (body.origin,), finite_number("speed_reaches: omega", omega))
 
 
 def _refuse_other(what: str, value: object, wanted: type) -> None:

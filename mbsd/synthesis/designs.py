@@ -13,13 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.arrays.packing import Packed, pack
-from mbsd.base.errors import MechanismError, ModelError
+from mbsd.base.errors import MechanismError
 from mbsd.kinematics.batch import parameters
 from mbsd.kinematics.design_sweeps import DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.march import kinematics_at
 from mbsd.kinematics.prepare import prepare
 from mbsd.kinematics.prepared import Prepared
 from mbsd.model.mechanism import Model
+from mbsd.synthesis.built import built
 from mbsd.synthesis.changed import changed
 from mbsd.synthesis.conditions import Pin, four_bar, grashof_excess, pins, transmission_angles
 from mbsd.synthesis.path_tangents import path_of, tangents_of_path
@@ -129,10 +130,7 @@ class Designs:
         values = self.varied.values(x)
         if self.build is None:
             return changed(self.m, values)
-        made = self.build(**values)
-        if not isinstance(made, Model):
-            raise ModelError(f"{self.m.name}: fit_path: build returned {type(made).__name__}, not a Mechanism")
-        return made
+        return built(f"{self.m.name}: fit_path", self.build, values)
 
     def changes(self, x: np.ndarray) -> tuple[np.ndarray, list[Moved]]:
         """(n, p) differences from the mechanism itself, and what each moves."""

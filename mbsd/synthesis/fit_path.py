@@ -8,16 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number, number_array, switch, whole_number
+from mbsd.base.arguments import checked, finite_number, number_array, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model, Start
+from mbsd.synthesis.built import refuse_build
 from mbsd.synthesis.designs import Build, Designs
 from mbsd.synthesis.search import Search
 from mbsd.synthesis.target import Target
-from mbsd.synthesis.varied import Value, varied
+from mbsd.synthesis.varied import Value, refuse_names, varied
 
 COARSE, FINE = 120, 360
 """Steps of a motion in the search and in the fit."""
@@ -68,6 +69,7 @@ class PathFit:
         return f"<PathFit of {self.mechanism.name}: mean {self.mean:.3g} m, largest {self.largest:.3g} m>"
 
 
+@checked
 def fit_path(
     m: Any,
     points: Sequence[Sequence[float]] | np.ndarray,
@@ -118,8 +120,11 @@ def fit_path(
     Raises ModelError for arguments that cannot be, SynthesisError where no design closes and meets the conditions,
     and what the mechanism's sweep raises.
     """
+    if not isinstance(m, Model):
+        raise ModelError(f"fit_path: the mechanism is {shown(m)}; give a Mechanism")
     target_points = _points(m, points)
     given = varied(m.name, vary)
+    refuse_names(m, given) if build is None else refuse_build(f"{m.name}: fit_path", build, list(given.sizes))
     m, trace = _traced(m, point, build)
     starts = whole_number(f"{m.name}: fit_path: starts", starts)
     generations = whole_number(f"{m.name}: fit_path: generations", generations)
@@ -137,10 +142,12 @@ def fit_path(
     )  # fmt: skip
     if target.ordered and target.times is not None:
         raise ModelError(f"{m.name}: fit_path: with times the order of the points is theirs; leave out ordered=True")
-    shifts = switch(f"{m.name}: fit_path: free_start", free_start) and target.times is not None
-    search = Search(designs, target, shifts, limit, generations, _told("progress", progress))
+    shifts = switch(f"{m.name}: fit_path: free_start", free_start)
+    if shifts and target.times is None:
+        raise ModelError(f"{m.name}: fit_path: free_start adds a time to those that are given; give times=, too")
+    search = Search(designs, target, shifts, limit, generations, _told(m.name, "progress", progress))
     if better is not None:
-        tell = _told("better", better)
+        tell = _told(m.name, "better", better)
         search.better = lambda x, error: tell(given.values(x[: given.count]), error)
     outcome = search.run(starts, whole_number(f"{m.name}: fit_path: seed", seed, 0))
     if outcome is None:
@@ -200,6 +207,8 @@ def _times(m: Model, times: object, count: int) -> np.ndarray | None:
     moments = number_array(f"{m.name}: fit_path: times", times)
     if moments.shape != (count,):
         raise ModelError(f"{m.name}: fit_path: {count} points have times of shape {moments.shape}; give one time each")
+    if len(np.unique(moments)) < count:
+        raise ModelError(f"{m.name}: fit_path: two points have the same time; the point is at one of them then")
     return moments
 
 
@@ -238,11 +247,11 @@ def _returns(m: Model, grid: np.ndarray) -> bool:
     return bool(abs(turns - round(turns)) < 1e-9 and turns > 0.5)
 
 
-def _told(name: str, function: Callable[[Any, float], object] | None) -> Callable[[Any, float], None]:
+def _told(owner: str, name: str, function: Callable[[Any, float], object] | None) -> Callable[[Any, float], None]:
     if function is None:
         return lambda what, error: None
     if not callable(function):
-        raise ModelError(f"fit_path: {name} is {shown(function)}; it must be a function of two arguments")
+        raise ModelError(f"{owner}: fit_path: {name} is {shown(function)}; it must be a function of two arguments")
     return lambda what, error: (function(what, error), None)[1]
 
 

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
-from mbsd.base.users_function import described
+from mbsd.base.shown import shown
 from mbsd.derivatives.asked import needs_models, needs_reactions, wanted
 from mbsd.derivatives.numbers import Number, number_named, with_values
 from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, slopes_of
@@ -22,6 +23,8 @@ from mbsd.dynamics.simulate import output_times, refuse_bad_steps, simulate
 from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model
 from mbsd.results.columns import columns
+from mbsd.synthesis.built import built, refuse_build
+from mbsd.synthesis.ends import refuse_ends
 from mbsd.synthesis.wishes import Bounds, Condition, function_of_values
 
 Span = tuple[float | None, int, Any]
@@ -64,9 +67,10 @@ class Moves:
         if build is None:
             self.numbers = [number_named(m, name) for name in bounds.names]
             self.given = np.array([number.value for number in self.numbers])
+            refuse_ends(m, bounds, self.numbers)
         else:
             self.given = self._defaults(build)
-        self.free = moves_freely(m) if simulated is None else bool(simulated)
+        self.free = moves_freely(m) if simulated is None else switch(f"{m.name}: optimise: simulate", simulated)
         duration, steps, times = span
         self.grid = output_times(m, duration, steps, times) if self.free else sweep_times(m, duration, steps, times)
         refuse_bad_steps(m, self.grid, tolerance, None)
@@ -105,13 +109,8 @@ class Moves:
         """The mechanism with numbers x. Raises what the author's function raises."""
         if self.build is None:
             return with_values(self.m, self.numbers, list(x))
-        try:
-            made = self.build(**dict(zip(self.bounds.names, map(float, x), strict=True)))
-        except Exception as error:
-            raise ModelError(f"{self.m.name}: optimise: build fails: {described(error)}") from error
-        if not isinstance(made, Model):
-            raise ModelError(f"{self.m.name}: optimise: build returned {type(made).__name__}, not a Mechanism")
-        return made
+        values = dict(zip(self.bounds.names, map(float, x), strict=True))
+        return built(f"{self.m.name}: optimise", self.build, values)
 
     def _tangents(self, model: Model, numbers: list[Number], asked: Mapping[str, Any]) -> Tangents:
         if self.free:
@@ -122,27 +121,23 @@ class Moves:
         if self.build is None:
             return [number_named(model, name) for name in self.bounds.names]
 
-        def built(k: int, value: float) -> Model:
+        def beside(k: int, value: float) -> Model:
             return self.model(np.where(np.arange(len(x)) == k, value, x))
 
         def put(m: Model, value: float) -> None:
             raise AssertionError("it is built")
 
-        return [Number(name, float(x[k]), put, partial(built, k)) for k, name in enumerate(self.bounds.names)]
+        return [Number(name, float(x[k]), put, partial(beside, k)) for k, name in enumerate(self.bounds.names)]
 
     def _defaults(self, build: Callable[..., Any]) -> np.ndarray:
         """(k,) defaults of the author's function, the middle of the bounds where it has none. Raises ModelError."""
-        if not callable(build):
-            raise ModelError(f"{self.m.name}: optimise: build is a {type(build).__name__}; give a function")
+        refuse_build(f"{self.m.name}: optimise", build, self.bounds.names)
         try:
             known = inspect.signature(build).parameters
         except (TypeError, ValueError):
             known = {}
         out = (self.bounds.low + self.bounds.high) / 2
-        free = any(parameter.kind is parameter.VAR_KEYWORD for parameter in known.values())
         for k, name in enumerate(self.bounds.names):
-            if known and name not in known and not free:
-                raise ModelError(f"{self.m.name}: optimise: build has no argument '{name}'; it has {', '.join(known)}")
             default = known[name].default if name in known else None
             if isinstance(default, int | float) and not isinstance(default, bool):
                 out[k] = default
@@ -177,6 +172,6 @@ class Moves:
                 f"measure: largest('{what}') of mbsd.measures"
             )
         raise ModelError(
-            f"{self.m.name}: optimise: {label} is a {type(what).__name__}; give a measure of mbsd.measures, a function "
+            f"{self.m.name}: optimise: {label} is {shown(what)}; give a measure of mbsd.measures, a function "
             "of a solution, or the name of a number that varies"
         )

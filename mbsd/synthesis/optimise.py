@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number, switch, whole_number
+from mbsd.base.arguments import checked, finite_number, positive_number, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
@@ -56,9 +56,13 @@ class Optimum:
 
     def __repr__(self) -> str:
         numbers = ", ".join(f"{name} {value:.6g}" for name, value in self.values.items())
-        return f"<Optimum of {self.mechanism.name}: {self.objective:.6g} at {numbers}; {self.evaluations} motions>"
+        ended = "" if self.met else f"; not met: {self.message}"
+        return (
+            f"<Optimum of {self.mechanism.name}: {self.objective:.6g} at {numbers}; {self.evaluations} motions{ended}>"
+        )
 
 
+@checked
 def optimise(
     m: Any,
     objective: Any,
@@ -104,7 +108,7 @@ def optimise(
     if progress is not None and not callable(progress):
         raise ModelError(f"{m.name}: optimise: progress is {shown(progress)}; it must be a function of two arguments")
     most = whole_number(f"{m.name}: optimise: most", most)
-    precision = finite_number(f"{m.name}: optimise: precision", precision)
+    precision = positive_number(f"{m.name}: optimise: precision", precision)
     sign = -1.0 if switch(f"{m.name}: optimise: maximise", maximise) else 1.0
     moves = Moves(m, bounds, build, objective, conditions, (duration, steps, times), simulate, tolerance)
     first = _first(m, bounds, moves, start)

@@ -8,8 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
 from mbsd.base.shown import shown
+from mbsd.model.mechanism import Model
 
 Value = float | tuple[float, ...]
 FORM = 'give "name": (lowest, highest), or for a place "name": ((lowest, highest), (lowest, highest))'
@@ -54,8 +57,8 @@ def varied(name: str, vary: Mapping[str, Any]) -> Varied:
     rows: list[tuple[float, float]] = []
     for key, bounds in vary.items():
         try:
-            pairs = np.asarray(bounds, float)
-        except (TypeError, ValueError):
+            pairs = number_array(f"{name}: fit_path: bounds of {shown(key)}", bounds, finite=False)
+        except ModelError:
             pairs = np.zeros(0)
         if not isinstance(key, str) or pairs.shape[-1:] != (2,) or pairs.ndim not in (1, 2) or not len(pairs):
             raise ModelError(f"{name}: fit_path: bounds of {shown(key)} are {shown(bounds)}; {FORM}")
@@ -70,3 +73,28 @@ def varied(name: str, vary: Mapping[str, Any]) -> Varied:
         rows += [(float(low), float(high)) for low, high in np.atleast_2d(pairs)]
     bounds = np.array(rows)
     return Varied(sizes, bounds[:, 0], bounds[:, 1])
+
+
+def refuse_names(m: Model, given: Varied) -> None:
+    """Raise ModelError for what is no length and no place of ``m``, bounds that do not fit, and lengths not above 0."""
+    bars = [name for name, body in m.bodies.items() if body.length is not None]
+    lengths = [*bars, *(name for name, joint in m.joints.items() if joint.kind.constraints == ("distance",))]
+    places = [*m.joints, *m.traces]
+    for name, columns, single in given.columns():
+        if name not in lengths and name not in places:
+            known = [*lengths, *(place for place in places if place not in lengths)]
+            raise ModelError(f"{m.name}: fit_path: {no_such('bar, rod, joint or traced point', name, known)}")
+        if single and name not in lengths:
+            raise ModelError(f"{m.name}: fit_path: '{name}' is a place, so give bounds of x and of y: {_PLACE}")
+        if not single and (name not in places or given.sizes[name] != 2):
+            what = "a place, so give bounds of x and of y" if name in places else "a length, so give one pair of bounds"
+            raise ModelError(f"{m.name}: fit_path: '{name}' is {what}: {_PLACE if name in places else _LENGTH}")
+        low, high = float(given.low[columns][0]), float(given.high[columns][0])
+        if single and low <= 0.0:
+            raise ModelError(
+                f"{m.name}: fit_path: '{name}' may be from {low:g} to {high:g} m; a length is above 0, so begin there"
+            )
+
+
+_LENGTH = '"name": (lowest, highest)'
+_PLACE = '"name": ((lowest, highest), (lowest, highest))'

@@ -66,12 +66,13 @@ def bounds_of(m: Model, vary: Any) -> Bounds:
 
 def conditions_of(m: Model, given: Any) -> list[Condition]:
     """Check ``constraints``. Raises ModelError."""
+    given = () if given is None else given
     if isinstance(given, Mapping):
         items = [(str(name), condition) for name, condition in given.items()]
     elif isinstance(given, list | tuple):
         items = [(_name(condition, k), condition) for k, condition in enumerate(given)]
     else:
-        raise ModelError(f"{m.name}: optimise: constraints are {shown(given)}; give a list of conditions. {CONDITION}")
+        raise ModelError(f"{m.name}: optimise: constraints are {shown(given)}; give a list of conditions: {CONDITION}")
     out: list[Condition] = []
     for name, condition in items:
         if not isinstance(condition, tuple | list) or len(condition) != 3:

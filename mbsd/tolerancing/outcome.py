@@ -82,6 +82,8 @@ class Tolerances:
     """(columns,) first derivatives of the result."""
     shares: np.ndarray
     """(d,) parts of the variance by first derivatives."""
+    quantity: str = "result"
+    """What the result is of: a quantity by name, or the name of a function."""
 
     def __len__(self) -> int:
         return len(self.values)

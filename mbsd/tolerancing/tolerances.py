@@ -11,7 +11,7 @@ linkage that strays); Shigley's Mechanical Engineering Design, section 1-13 (sta
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -22,13 +22,16 @@ from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
+from mbsd.tolerancing.dimensions.dimension import Dimension
 from mbsd.tolerancing.machines.functions import function_task
 from mbsd.tolerancing.machines.one_by_one import Machines
+from mbsd.tolerancing.machines.results import named_after
 from mbsd.tolerancing.machines.tasks import Task, task_of
 from mbsd.tolerancing.outcome import Tolerances
-from mbsd.tolerancing.statistics.derivatives import middles, slopes
+from mbsd.tolerancing.progress import Progress
+from mbsd.tolerancing.statistics.derivatives import middles, parts, slopes
 from mbsd.tolerancing.statistics.draws import drawn
-from mbsd.tolerancing.statistics.halving import curved, halving
+from mbsd.tolerancing.statistics.halving import curved, halving, solved_again
 from mbsd.tolerancing.statistics.shares import linear_variances, shares_of, sobol_indices
 from mbsd.tolerancing.statistics.worst import linear_worst, vertex_worst
 from mbsd.tolerancing.statistics.yields import limits_given, within
@@ -83,7 +86,8 @@ def tolerances(
     ``sobol`` adds Sobol's indices, from the largest power of 2 up to n in each of d + 2 sets. ``corners``: whether the
     worst case is also sought at the 2^d corners of all tolerances; by default where they are no more than n.
     ``confidence`` is that of the yield's interval. Equal arguments give equal bytes. ``progress`` is called with the
-    part done. Raises ModelError for names that do not exist, tolerances that pass 0, limits the wrong way, results that
+    part of all machines that is done, those of corners, Sobol's indices and halved tolerances included. Raises
+    ModelError for names that do not exist, tolerances that pass 0, limits the wrong way, results that
     are no number, and what the machine as given raises.
     """
     options = {"n": n, "seed": seed, "duration": duration, "steps": steps, "way": way, "sobol": sobol}
@@ -125,31 +129,43 @@ def asked(
         task = task_of(machine, sizes, result, duration, steps, way, threads)
     _refuse_corners(owner, corners, len(task.dimensions))
     width = sum(len(dimension.columns) for dimension in task.dimensions)
-    refuse_beyond_memory(f"{owner}: tolerances: {n} machines", 5 * n * (1 + width), "Take fewer")
-    return partial(_carried_out, task, n, seed, within_limits, sobol, corners, confidence, progress)
+    numbers = 5 * n * (1 + width) + sobol * 2 ** _power(n) * (5 * width + 2 + len(task.dimensions))
+    refuse_beyond_memory(f"{owner}: tolerances: {n} machines", numbers, "Take fewer")
+    quantity = named_after(machine if result is None else result)
+    return partial(_carried_out, task, quantity, n, seed, within_limits, sobol, corners, confidence, progress)
 
 
 def _carried_out(
-    task: Task, n: int, seed: int, limits: Any, sobol: bool, corners: bool | None, confidence: float, progress: Any
+    task: Task,
+    quantity: str,
+    n: int,
+    seed: int,
+    limits: Any,
+    sobol: bool,
+    corners: bool | None,
+    confidence: float,
+    progress: Any,
 ) -> Tolerances:
     dimensions = task.dimensions
+    with_corners = corners if corners is not None else 2 ** len(dimensions) <= n
+    of_sobol = sobol * (len(dimensions) + 2) * 2 ** _power(n)
+    done = Progress(progress, with_corners * 2 ** len(dimensions) + 2 * n + of_sobol)  # halves may take as many again
     run = _Run(task.machines)
     at = middles(dimensions)
     middle = float(run(at[None])[0])
     slope = slopes(run, dimensions)
     if not np.isfinite([middle, *slope]).all():
         raise ModelError(
-            f"{task.owner}: tolerances: machines in the middle of the tolerances, or a standard deviation beside "
-            "it, fail "
-            f"({', '.join(run.failures)}); the tolerances are too wide for derivatives, or the motion passes a "
-            "dead centre: narrow them, or sweep a part of the motion (duration=...). Where joints repeat others "
-            "or gears mesh, only exact lengths close: leave those out"
+            f"{task.owner}: tolerances: machines {_where(dimensions, middle, slope)} fail ({', '.join(run.failures)}); "
+            "the tolerances are too wide for derivatives, or the motion passes a dead centre: narrow them, or sweep a "
+            "part of the motion (duration=...). Where joints repeat others or gears mesh, only exact lengths close: "
+            "leave those out"
         )
     corner, corners_failed = None, 0
-    if corners if corners is not None else 2 ** len(dimensions) <= n:
-        corner, corners_failed = vertex_worst(run, middle, slope, dimensions)
+    if with_corners:
+        corner, corners_failed = vertex_worst(_Run(task.machines, done), middle, slope, dimensions)
     x = drawn(dimensions, n, seed)
-    run = _Run(task.machines, progress, n)
+    run = _Run(task.machines, done)
     values = run(x)
     if np.isfinite(values).sum() < 2:
         raise ModelError(
@@ -159,27 +175,34 @@ def _carried_out(
     failures = dict(run.failures)
     indices = None
     if sobol:
-        power = max(FEWEST_SOBOL, int(np.log2(n)))
-        indices = sobol_indices(_Run(task.machines), dimensions, power, seed)
+        indices = sobol_indices(_Run(task.machines, done), dimensions, _power(n), seed)
     variances = linear_variances(slope, dimensions)
     linear_std = float(np.sqrt(variances.sum()))
+    again = solved_again(values, curved(values, linear_std), len(dimensions))
+    done.last(int(again.sum()) * len(dimensions))
     halves = halving(
-        _Run(task.machines), dimensions, x, values, slope, curved(values, linear_std),
+        _Run(task.machines, done), dimensions, x, values, slope, again,
         lambda results: np.nan if limits is None else float(within(results, limits).mean()),
     )  # fmt: skip
+    done.end()
     return Tolerances(
         values, x, tuple(_title(column) for d in dimensions for column in d.columns), task.nominal,
         linear_std, linear_worst(middle, slope, dimensions), corner, corners_failed, limits,
         confidence, failures, halves, indices, "; ".join([task.machines.way, *task.notes]), task.owner,
-        tuple(dimensions), slope, shares_of(variances),
+        tuple(dimensions), slope, shares_of(variances), quantity,
     )  # fmt: skip
+
+
+def _power(n: int) -> int:
+    """Power of 2 of the machines in a set for Sobol's indices."""
+    return max(FEWEST_SOBOL, int(np.log2(n)))
 
 
 class _Run:
     """Evaluates rows in parts that fit into memory."""
 
-    def __init__(self, machines: Machines, progress: Callable[[float], object] | None = None, total: int = 1) -> None:
-        self._machines, self._progress, self._total = machines, progress, total
+    def __init__(self, machines: Machines, progress: Progress | None = None) -> None:
+        self._machines, self._progress = machines, progress
         self.failures: Counter[str] = Counter()
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
@@ -191,8 +214,17 @@ class _Run:
             nameless = int(np.isnan(out[part]).sum()) - answers.failures.total()
             self.failures += answers.failures + Counter({NO_NUMBER: nameless})
             if self._progress is not None:
-                self._progress(min(1.0, (first + len(x[part])) / self._total))
+                self._progress.more(len(x[part]))
         return out
+
+
+def _where(dimensions: Sequence[Dimension], middle: float, slope: np.ndarray) -> str:
+    """Where machines fail about the middle, in words."""
+    if not np.isfinite(middle):
+        return "in the middle of the tolerances"
+    own = zip(dimensions, parts(dimensions), strict=True)
+    failing = [f"'{dimension.label}'" for dimension, part in own if not np.isfinite(slope[part]).all()]
+    return f"a standard deviation of {' or '.join(failing)} beside the middle of the tolerances"
 
 
 def _title(column: Any) -> str:

@@ -46,6 +46,8 @@ def _table(t: Any) -> list[str]:
 
 
 def _corners(t: Any) -> str:
+    if t.corners_failed == 2 ** len(t.dimensions):
+        return f"unknown at the corners: all {t.corners_failed} of them fail"
     failed = f", of which {t.corners_failed} fail" if t.corners_failed else ""
     return f"{_from_to(t.vertex_worst)} at the corners{failed}"
 

@@ -208,6 +208,16 @@ def test_many_simulations_vary_the_backlash() -> None:
     assert "in the compiled loop" in many.way
 
 
+def test_check_finds_gears_that_do_not_reach_each_other() -> None:
+    assert not pair().check()
+    assert not pair(internal=True).check()
+    assert not pair(distance=0.0905, teeth=(40, 20), module=3e-3).check()
+    [finding] = pair(teeth=(40, 20), module=3.0).check()
+    assert "its centres are 0.09 m apart at the start, and radii of 60 m and 30 m say 90 m" in str(finding)
+    [finding] = pair(distance=0.15).check()
+    assert "so no teeth mesh" in str(finding)
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [

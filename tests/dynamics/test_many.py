@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+import signal
+import threading
+import time
+import warnings
 from collections.abc import Callable
 
 import numba
@@ -10,6 +14,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError
+from mbsd.base.quiet import quiet
 from mbsd.compiling.jit import COMPILED
 from mbsd.measures import final, largest, samples, smallest
 from mbsd.model.force import ForceKind
@@ -107,7 +112,7 @@ def test_what_is_left_to_events_is_simulated_by_itself_and_says_so() -> None:
     many = ended().simulate_many(
         0.5, vary={"spring": {"damping": damping}}, measure={"angle": final("rocker.theta")}, steps=STEPS
     )
-    assert "one by one (events" in many.way
+    assert "one by one (event 'late'" in many.way
     for k in range(2):
         m = ended()
         m.change("spring", damping=float(damping[k]))
@@ -161,7 +166,19 @@ def test_rows_that_fail_carry_a_reason_and_do_not_stop_the_others() -> None:
         ({"measure": {"x": final("door.thta")}}, "did you mean 'door.theta'"),
         ({"measure": {"x": samples("door.theta", [0.33])}}, "is no output"),
         ({"measure": {"x": largest("door.x"), "x_time": final("door.x")}}, "two columns"),
-        ({"measure": lambda sol: {"x": "text"}}, "must be a number under a name"),
+        ({"measure": lambda sol: {"x": "text"}}, "door: measure gives 'text' as 'x'; it must be a number under a name"),
+        ({"measure": lambda sol: {"x": 1j}}, "must be a number under a name"),
+        ({"measure": lambda sol: {}}, "door: measure gives {}; it must give names and numbers"),
+        ({"measure": lambda: {"x": 1.0}}, "door: measure must be a function of a solution"),
+        (
+            {"measure": lambda sol: {"x": sol.body("dor").x[-1]}},
+            "door: measure fails for the first simulation: .*'dor'",
+        ),
+        ({"measure": lambda sol: {"x": sol.bodies["door"]}}, "measure fails for the first simulation: AttributeError"),
+        ({"vary": {"closer": {3: [1.0]}}}, "give its arguments"),
+        ({"vary": {"closer": {"stiffness": [[1.0, 2.0], [3.0, 4.0]]}}}, r"a single number, .* give \(2,\)"),
+        ({"vary": {"closer": {"stiffness": np.broadcast_to(1.0, 10**12)}}}, "take 100000000 at most"),
+        ({"start": {"door": np.broadcast_to(1.0, 10**12)}}, "take 100000000 at most"),
         ({"duration": 0.0}, "must be positive"),
         ({"steps": 0}, "above zero"),
         ({"threads": 0}, "above zero"),
@@ -187,6 +204,39 @@ def test_progress_is_the_part_done_and_what_it_raises_ends_all() -> None:
 
     with pytest.raises(KeyboardInterrupt):
         door().simulate_many(1.0, vary=vary, measure={"x": final("door.theta")}, steps=400, progress=stop)
+
+
+def test_a_long_simulation_by_itself_ends_when_all_are_to_end() -> None:
+    """A thread of the interpreter sends Ctrl-C while a row that would take minutes is under way in another one."""
+    sender = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
+    m = door()
+    m.change("closer", stiffness=1e6, damping=0.0)
+    sender.start()
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        m.simulate_many(
+            1e5, start={"door": [30.0, 40.0]}, measure=lambda sol: {"x": sol.body("door").theta[-1]}, steps=1
+        )
+    assert time.monotonic() - begun < 20.0
+
+
+def test_threads_that_silence_warnings_leave_them_as_they_were() -> None:
+    before, both = list(warnings.filters), threading.Barrier(2)
+
+    def run(first: bool) -> None:
+        with quiet():
+            both.wait()
+            if first:
+                both.wait()
+        if not first:
+            both.wait()
+
+    threads = [threading.Thread(target=run, args=(first,)) for first in (True, False)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert list(warnings.filters) == before
 
 
 def example(kind: ForceKind) -> Mechanism | None:

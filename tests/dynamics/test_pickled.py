@@ -123,9 +123,10 @@ def test_a_mechanism_is_solved_as_before_and_is_one_whole(solved: dict[str, Solu
     m: Mechanism = pickle.loads(pickle.dumps(solved["bouncing"].mechanism))
     assert m.ground.mechanism is m
     assert m.contacts["floor"].j.body is m.bodies["ball"]
-    cells: Any = getattr(m.events["near"].value, "__closure__", ())
-    bodies = [cell.cell_contents.body for cell in cells if hasattr(cell.cell_contents, "body")]
-    assert bodies
+    cells: Any = getattr(m.events["high"].value, "__closure__", ())
+    markers: Any = getattr(m.events["near"].value, "frames", ())
+    bodies = [*(cell.cell_contents for cell in cells), *(marker.body for marker in markers)]
+    assert [body.name for body in bodies] == ["ball", "ground", "ball"]
     assert all(body is m.bodies[body.name] for body in bodies)
     assert views(m.simulate(0.6, steps=12)) == views(solved["bouncing"])
 

@@ -177,14 +177,25 @@ def test_progress_is_told_and_may_end_the_fit() -> None:
         ({"vary": {"crank": (0.2, 0.1)}}, "'crank' may be from 0.2 to 0.1"),
         ({"vary": {"crank": "long"}}, "bounds of 'crank' are 'long'"),
         ({"vary": {"crnk": (0.1, 0.2)}}, "did you mean 'crank'"),
-        ({"vary": {"crank": (-0.1, 0.2)}}, "must be positive"),
+        ({"vary": {"crank": (-0.1, 0.2)}}, "'crank' may be from -0.1 to 0.2 m; a length is above 0"),
+        ({"vary": {"crank": (False, True)}}, "bounds of 'crank'"),
+        ({"vary": {"D": (0.1, 0.2)}}, "'D' is a place, so give bounds of x and of y"),
+        ({"vary": {"crank": ((0.1, 0.2), (0.1, 0.2))}}, "'crank' is a length, so give one pair"),
+        ({"free_start": True}, "give times=, too"),
+        ({"build": 3}, "build is 3; give a function"),
+        ({"build": lambda crnk=0.1: four_bar()}, "build has no argument 'crank'; it has crnk"),
+        ({"build": lambda crank, rod: four_bar()}, "argument 'rod' of build neither varies nor has a default"),
+        ({"build": lambda crank: 1 / 0}, "build fails: ZeroDivisionError"),
+        ({"build": lambda crank: "four-bar"}, "build returned str, not a Mechanism"),
         ({"points": [(0, 0)]}, "two or more places"),
         ({"points": [(0, 0), (0, 0)]}, "same place"),
         ({"points": [(0, 0), (0, np.nan)]}, "finite"),
         ({"times": [0.0]}, "one time each"),
+        ({"times": [0.1, 0.1]}, "two points have the same time"),
         ({"point": "Q"}, "no traced point 'Q'"),
         ({"least_transmission": 2.0}, "below pi/2"),
         ({"starts": 0}, "starts is 0"),
+        ({"start": 1}, "four-bar: fit_path: there is no argument 'start', did you mean 'starts'"),
         ({"progress": 1}, "must be a function"),
     ],
 )
@@ -192,6 +203,11 @@ def test_what_cannot_be_is_refused(change: dict, says: str) -> None:
     arguments = {"points": [(0.1, 0.2), (0.2, 0.2)], "vary": {"crank": (0.05, 0.2)}} | change
     with pytest.raises(ModelError, match=says):
         fit_path(four_bar(), **arguments)
+
+
+def test_what_is_no_mechanism_is_refused() -> None:
+    with pytest.raises(ModelError, match="fit_path: the mechanism is 3"):
+        fit_path(3, [(0.1, 0.2), (0.2, 0.2)], {"crank": (0.05, 0.2)})
 
 
 def test_where_nothing_closes_or_meets_the_conditions_it_says_so() -> None:

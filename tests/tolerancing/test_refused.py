@@ -45,6 +45,9 @@ def _nothing_runs(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"B": {"x": 1e-5, "play": 1e-5}}, "give Clearance"),
         ({"A": {"y": "m"}}, "by the size of a length"),
         ({"A": {"z": 1e-5}}, "no number 'z'"),
+        ({"D": {"x": 0.5}}, "'D.x' strays by up to 0.5 m, and 'ground' reaches"),
+        ({"P": {"y": 5.0}}, "'P.y' strays by up to 5 m"),
+        ({"B": Clearance(0.5)}, "half of its play, up to 0.25 m, and 'crank' reaches 0.04 m"),
         ({"P": {"z": 1e-5}}, "'P': there is no coordinate 'z'"),
         ({"crank": 1e-5, "coupler": {"length": 1e-5}, "P": {"x": 1e-5}, "D": None}, "'D.x' is None"),
     ],
@@ -85,16 +88,18 @@ def test_results(result: Any, said: str) -> None:
     [
         ({"n": 0}, "n is 0"),
         ({"n": 1}, "n is 1"),
-        ({"n": 1e4}, "n is 10000.0"),
+        ({"n": 1e4}, "four_bar: tolerances: n is 10000.0"),
         ({"seed": -1}, "seed is -1"),
         ({"steps": 0}, "steps is 0"),
         ({"limits": (2.0, 1.0)}, "from 2 to 1; the lowest comes first"),
         ({"limits": (None, None)}, "of which one may be None"),
-        ({"limits": ("low", 1.0)}, "'low'"),
+        ({"limits": ("low", 1.0)}, "lowest is 'low'"),
+        ({"limits": (0.0, float("inf"))}, "highest is inf; give None where there is no limit"),
         ({"limits": 3.0}, "limits are 3.0"),
         ({"confidence": 95.0}, "between 0 and 1"),
         ({"way": "fly"}, "no way 'fly'"),
         ({"threads": 0}, "threads is 0"),
+        ({"threads": 10**6}, "it must be 1024 at most"),
         ({"corners": 3}, "corners is 3"),
         ({"progress": 3}, "progress is 3"),
         ({"sobol": "yes"}, "sobol is 'yes'"),
@@ -134,6 +139,9 @@ def test_driven_and_simulated_are_told_apart() -> None:
         (lambda a="x": a, {"a": 0.1}, "no argument with a number 'a'"),
         (lambda a=1.0: "text", {"a": 0.1}, "result gives 'text'"),
         (lambda a=1.0: 1 / 0, {"a": 0.1}, "ZeroDivisionError"),
+        (lambda a=1.0: float("nan"), {"a": 0.1}, "the machine as it is given has no result"),
+        (lambda a=float("nan"): a, {"a": 0.1}, "no argument with a number 'a'"),
+        (lambda a=1.0: four_bar(), {"a": 0.1}, "result= is missing"),
         (lambda a=1.0: a, {"a": Clearance(1e-5)}, "an argument takes a tolerance"),
         (lambda a=1.0: a, {}, "give names and tolerances"),
         (3, {"a": 0.1}, "give a mechanism, or a function"),
@@ -146,7 +154,9 @@ def test_functions(function: Any, sizes: Any, said: str) -> None:
 
 
 def test_tolerances_too_wide_for_derivatives() -> None:
-    with pytest.raises(ModelError, match="too wide for derivatives"):
+    with pytest.raises(
+        ModelError, match=r"a standard deviation of 'rocker' beside the middle .* too wide for derivatives"
+    ):
         tolerances(four_bar(), {"rocker": Uniform(0.089)}, ANGLE)
 
 

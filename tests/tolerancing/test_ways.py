@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, Tolerances, constant_rate, tolerances
+from mbsd import Mechanism, ModelError, Tolerances, Uniform, constant_rate, tolerances
 from mbsd.measures import final, largest, samples
 from tests.tolerancing.linkages import SIZES, four_bar, rocker_angle, switch
 
@@ -118,7 +118,8 @@ def test_one_by_one_they_have_the_names_of_errors() -> None:
         way="sweep",
     )  # fmt: skip
     assert len(t.failed) == sum(t.failures.values()) > 0
-    assert all("Error (" in reason for reason in t.failures)
+    assert len(t.failures) == len({reason.partition(" (")[0] for reason in t.failures})
+    assert all("Error (nearly" in reason and reason.endswith(")") for reason in t.failures)
 
 
 def test_tables_have_all_digits(tmp_path: Path) -> None:
@@ -142,6 +143,7 @@ def test_the_picture_shows_limits_and_shares(tmp_path: Path) -> None:
     )
     picture = t.plot()
     histogram, bars = picture.figure.axes
+    assert histogram.get_xlabel() == "rocker.theta"
     assert sum(patch.get_height() for patch in histogram.patches) == 500
     assert [line.get_label() for line in histogram.lines].count("limit") == 1  # the other is far away
     assert {label.get_text() for label in bars.get_yticklabels()} == {row.name for row in t.rows}
@@ -151,6 +153,59 @@ def test_the_picture_shows_limits_and_shares(tmp_path: Path) -> None:
     assert (tmp_path / "first.svg").read_bytes() == (tmp_path / "second.svg").read_bytes()
     with pytest.raises(ModelError, match="two axes"):
         t.plot(3)
+
+
+@pytest.mark.parametrize("more", [{}, {"sobol": True}, {"corners": True}])
+def test_progress_rises_to_1_at_the_end_whatever_is_evaluated(more: dict[str, Any]) -> None:
+    told: list[float] = []
+    evaluated = 0
+
+    def bent(a: float = 0.0, b: float = 0.0) -> float:
+        nonlocal evaluated
+        evaluated += 1
+        return a**2 + b
+
+    def progress(part: float) -> None:
+        told.append(part)
+        seen.append(evaluated)
+
+    seen: list[int] = []
+    t = tolerances(bent, {"a": 1.0, "b": 0.1}, n=3000, progress=progress, **more)
+    assert t.curved  # all are solved again for each dimension
+    assert told == sorted(told)
+    assert len(set(told)) == len(told) > 8
+    assert told[-1] == 1.0
+    assert told[-2] < 1.0
+    assert seen[-1] == evaluated
+    assert max(np.diff([0.0, *told])) < 0.5
+
+
+def test_corners_that_all_fail_have_no_worst_case() -> None:
+    t = tolerances(lambda a=0.0: a if abs(a) < 2.5 else np.nan, {"a": Uniform(3.0)}, n=50)
+    assert t.corners_failed == 2
+    assert "unknown at the corners: all 2 of them fail" in str(t)
+
+
+def test_a_function_that_fails_for_a_machine_fails_that_machine_alone() -> None:
+    """What it gives besides numbers is refused, and so is a function that fails for the machine as it is given."""
+
+    def root(a: float = 1.0) -> float:
+        if a > 1.08:
+            raise ValueError("too long")
+        return a**2
+
+    t = tolerances(root, {"a": Uniform(0.1)}, n=100)
+    assert 0 < len(t.failed) == t.failures["the result fails: ValueError: too long"] < 50
+    assert (t.deviations[t.failed, 0] > 0.08).all()
+
+    def measured(sol: Any) -> float:
+        return root(1.0 + 100.0 * (sol.mechanism.bodies["crank"].length - 0.04))
+
+    own = tolerances(four_bar(), {"crank": Uniform(1e-3)}, measured, n=40, steps=4, way="sweep")
+    assert 0 < len(own.failed) == (own.deviations[:, 0] > 0.8e-3).sum()
+    assert own.failures == {"the result fails: ValueError: too long": len(own.failed)}
+    with pytest.raises(ModelError, match="result gives 'long'; it must give a number"):
+        tolerances(lambda a=1.0: "long" if a > 1.08 else a, {"a": Uniform(0.1)}, n=100)
 
 
 def test_machines_without_a_number_are_counted() -> None:

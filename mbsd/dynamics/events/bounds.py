@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 HALVINGS = 40
 """How close to a bounce its return is looked for: this many halvings of a part of a step."""
 ROUNDS = 200
@@ -24,3 +26,21 @@ PASSES = 100
 """Passes in which joints at rest agree on how they share their friction, at most."""
 AGREED = 1e-12
 """Part of the largest friction that may still change."""
+TRIED = np.array([0.1337, 0.5437])
+"""Parts of a step at which the polynomial through a function of the user is tried; no simple fractions, which a period
+might share."""
+ROUGH, ROUGH_HALVES = 0.01, 0.05
+"""Fractions of what the function changes by in a step: what is missed by more is not known; at first, and in halves."""
+PER_SHORTEST = 2.0
+"""Looks at the shortest thing in a function."""
+FAR = 10.0
+"""Times what a function changes by in a step: from there it does not come to zero, and changes may be rounding."""
+NARROWEST = 1.0 / 2048
+MOST_VALUES = 512
+"""Values in one step."""
+NEAR = 1e-11
+"""Gaps below this part of the size (rad) are closed; rates below it by 1 s are zero where bodies rest."""
+ROUNDINGS = ((1.0, 1.0, -1.0, -1.0), (-1.0, 1.0, 1.0, -1.0), (1.0, -1.0, 1.0), (-1.0, -1.0, 1.0, 1.0, 1.0))
+"""Signs, repeated, of small changes of a state."""
+AHEAD = (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
+"""Parts of the duration after which the side is looked for to which an event that is zero goes."""

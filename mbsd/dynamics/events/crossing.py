@@ -26,7 +26,7 @@ def first_crossing(
     samples: Callable[[np.ndarray], Samples],
     true: Callable[[Monitor, float], float],
     looked: Callable[[Monitor, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]],
-    rounding: Callable[[Event, float], float],
+    rounding: Callable[[Event], float],
 ) -> tuple[Monitor, float, float] | None:
     """The monitor that falls through zero first, the part of the step where, and a part where it is negative.
 
@@ -66,7 +66,7 @@ def _falls(
     parts: np.ndarray,
     values: np.ndarray,
     until: float | None,
-    rounding: Callable[[Event, float], float],
+    rounding: Callable[[Event], float],
 ) -> tuple[float, float] | None:
     """Where samples ``values`` at ``parts`` (n,) show a fall through zero, and a part where the scalar is negative."""
     below = np.flatnonzero(values[1:] < -monitor.still)
@@ -77,7 +77,7 @@ def _falls(
         return None
     zero = monitor.still
     if k == 0 and monitor.event is not None and values[0] > zero:
-        zero = rounding(monitor.event, float(values[0]))  # it may have begun here: a root beside it is none
+        zero = rounding(monitor.event)  # it may have begun here: a root beside it is none
     where, negative = _root(monitor, samples, parts, k, float(values[k]), zero)
     if where == 0.0 and monitor.leaves is not None and monitor.leaves(samples(PARTS[[0, -1]])):
         opened = np.flatnonzero(values > monitor.still)

@@ -13,6 +13,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.users_function import described
+from mbsd.compiling.callback import as_numbers
 from mbsd.dynamics.events.bounds import CREEP
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.impact import impacts
@@ -52,7 +53,11 @@ class Jumps:
         moment = Moment(self.packed, float(self.state.clock[TIME]), self.state.y[0].copy(), self.state.y[1].copy())
         assert event.action is not None
         try:
-            event.action(moment)
+            if event.frames:
+                given = event.action(moment.t, *moment.numbers(event.frames))
+                moment.set_numbers(event.frames, as_numbers(given, 3 * len(event.frames)))
+            else:
+                event.action(moment)
         except Exception as error:
             raise ModelError(
                 f"{self.packed.name}: event '{event.name}': its action fails at t = {moment.t:.6g} s: "

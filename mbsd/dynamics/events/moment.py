@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -51,6 +52,13 @@ class Moment:
         """A marker."""
         return self._frame(self._number(marker.body.name), (marker.x, marker.y), marker.angle)
 
+    def numbers(self, frames: Sequence[Marker]) -> tuple[np.ndarray, np.ndarray]:
+        """x, y, theta of each frame in turn (m, rad), and their rates: (3 f,) and (3 f,)."""
+        seen = [self.point(marker) for marker in frames]
+        places = [number for frame in seen for number in (frame.x, frame.y, frame.theta)]
+        rates = [number for frame in seen for number in (frame.vx, frame.vy, frame.omega)]
+        return np.array(places), np.array(rates)
+
     def state(self, force: str, name: str) -> float:
         """A state of a force (SI), such as ``pressure_a`` of a hydraulic cylinder. Raises ModelError for no such."""
         known = {
@@ -69,10 +77,18 @@ class Moment:
 
     def set_velocity(self, name: str, vx: float, vy: float, omega: float) -> None:
         """Give a body's frame a velocity (m/s, m/s, rad/s); what the joints forbid of it is then taken away."""
+        self._set_velocity(name, (0.0, 0.0), (vx, vy, omega))
+
+    def set_numbers(self, frames: Sequence[Marker], velocities: np.ndarray) -> None:
+        """Give frames velocities (3 f,), as :meth:`set_velocity` does."""
+        for marker, velocity in zip(frames, velocities.reshape(-1, 3).tolist(), strict=True):
+            self._set_velocity(marker.body.name, (marker.x, marker.y), velocity)
+
+    def _set_velocity(self, name: str, place: tuple[float, float], velocity: Sequence[float]) -> None:
         what = f"{self.packed.name}: velocity of '{name}' in an event"
-        vx, vy, omega = (finite_number(what, value) for value in (vx, vy, omega))
+        vx, vy, omega = (finite_number(what, value) for value in velocity)
         b = self._number(name, moving=True)
-        x, y = self._arm(b, (0.0, 0.0))
+        x, y = self._arm(b, place)
         self.v[3 * b : 3 * b + 3] = vx + omega * y, vy - omega * x, omega
 
     def push(self, marker: Marker, px: float, py: float, turning: float = 0.0) -> None:

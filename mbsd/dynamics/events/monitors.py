@@ -178,7 +178,7 @@ def checked(packed: Packed, event: Event, moment: Moment) -> float:
     """The value of an event; raises ModelError where the function fails or gives no finite number."""
     what = f"{packed.name}: event '{event.name}'"
     try:
-        value = event.value(moment.t, moment)
+        value = event.value_at(moment)
     except Exception as error:
         raise ModelError(f"{what}: its function fails at t = {moment.t:.6g} s: {described(error)}") from error
     if isinstance(value, np.ndarray) and value.ndim == 0:

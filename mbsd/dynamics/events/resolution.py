@@ -12,17 +12,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-TRIED = np.array([0.1337, 0.5437])
-"""Parts of a step at which the polynomial is tried; no simple fractions, which a period might share."""
-ROUGH = 0.01, 0.05
-"""Fractions of what the function changes by in a step: what is missed by more is not known; at first, and in halves."""
-PER_SHORTEST = 2.0
-"""Looks at the shortest thing in a function."""
-FAR = 10.0
-"""Times what a function changes by in a step: from there it does not come to zero, and changes may be rounding."""
-NARROWEST = 1.0 / 2048
-MOST = 512
-"""Values in one step."""
+from mbsd.dynamics.events.bounds import FAR, MOST_VALUES, NARROWEST, PER_SHORTEST, ROUGH, ROUGH_HALVES, TRIED
+
 AT_ONCE = 64
 
 
@@ -47,21 +38,21 @@ def resolved(
     there = value(TRIED)
     expected = np.array([_lagrange(x, at) @ values for at in TRIED])
     spread = float(np.ptp(np.append(values, there)))
-    if min(values.min(), there.min()) > FAR * spread or not np.abs(there - expected).max() > ROUGH[0] * spread:
+    if min(values.min(), there.min()) > FAR * spread or not np.abs(there - expected).max() > ROUGH * spread:
         return x, values, True
     x, values = _until_negative(*_merged(x, values, TRIED, there))
     rough = np.ones(len(x) - 1, bool)
     while rough.any():
         left = np.flatnonzero(rough)
         middles = 0.5 * (x[left] + x[left + 1])
-        if len(x) + len(middles) > MOST:
+        if len(x) + len(middles) > MOST_VALUES:
             return x, values, False
         there = value(middles)
         near = np.clip(left - 1, 0, len(x) - 4)
         expected = np.array(
             [_lagrange(x[k : k + 4], m) @ values[k : k + 4] for k, m in zip(near, middles, strict=True)]
         )
-        missed = np.abs(there - expected) > ROUGH[1] * np.ptp(np.append(values, there))
+        missed = np.abs(there - expected) > ROUGH_HALVES * np.ptp(np.append(values, there))
         missed |= np.append(missed[1:], False) | np.append(False, missed[:-1])  # one that agrees may do so by chance
         still = missed & (x[left + 1] - x[left] > NARROWEST)
         halves = np.concatenate([x[left[still]], middles[still]])

@@ -5,17 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.arrays.packing import Packed
+from mbsd.dynamics.events.bounds import AHEAD, NEAR, ROUNDINGS
 from mbsd.dynamics.events.moment import Moment
 from mbsd.dynamics.events.monitors import checked
 from mbsd.dynamics.state import TIME, State
 from mbsd.model.event import Event
-
-NEAR = 1e-11
-"""Gaps below this part of the size (rad) are closed; rates below it by 1 s are zero where bodies rest."""
-ROUNDINGS = ((1.0, 1.0, -1.0, -1.0), (-1.0, 1.0, 1.0, -1.0), (1.0, -1.0, 1.0), (-1.0, -1.0, 1.0, 1.0, 1.0))
-"""Signs, repeated, of small changes of a state."""
-AHEAD = (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
-"""Parts of the duration after which the side is looked for to which an event that is zero goes."""
 
 
 def value_of(packed: Packed, event: Event, state: State) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelWarning, SimulationError
 from mbsd.base.warn import warn
+from mbsd.dynamics.events.bounds import NEAR
 from mbsd.dynamics.events.crossing import first_crossing
 from mbsd.dynamics.events.dense import Quintic
 from mbsd.dynamics.events.jumps import Jumps
@@ -29,10 +30,11 @@ from mbsd.dynamics.events.monitors import (
     stick_monitors,
 )
 from mbsd.dynamics.events.resolution import resolved
-from mbsd.dynamics.events.sides import NEAR, rounding_of, side_ahead, value_of
+from mbsd.dynamics.events.sides import rounding_of, side_ahead, value_of
 from mbsd.dynamics.events.start_inside import refuse_inside
-from mbsd.dynamics.prepare.exchange import LOOK, exchange_rows
+from mbsd.dynamics.prepare.exchange import exchange_rows
 from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.rows.bounds import LOOK
 from mbsd.dynamics.rows.held import STICKS
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.recording import Snapshot
@@ -199,8 +201,8 @@ class EventSteps:
                 self._warn_of(monitor, quintic.start, quintic.length, len(x))
             return x, values
 
-        def rounding(event: Event, value: float) -> float:
-            return rounding_of(self.packed, event, value, before)
+        def rounding(event: Event) -> float:
+            return rounding_of(self.packed, event, value_of(self.packed, event, before), before)
 
         monitors = list(self.monitors)
         while monitors:

@@ -19,6 +19,7 @@ from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.model.body import Body
+from mbsd.model.change import values_of
 from mbsd.model.mechanism import Model, Start, StartVelocity
 
 MOST = 100_000_000
@@ -83,9 +84,10 @@ def _plain(value: Any) -> Any:
 
 def designs_of(m: Model, vary: Any, start: Any, moving: Any) -> Designs:
     """Check what is asked for. Raises ModelError for names that do not exist and lists that do not fit."""
+    _refuse_too_many(m, vary, start, moving)
     changes: dict[str, dict[str, np.ndarray]] = {}
     for name, values in _named(m, "vary", vary).items():
-        if not isinstance(values, Mapping):
+        if not isinstance(values, Mapping) or not all(isinstance(key, str) for key in values):
             raise ModelError(
                 f"{m.name}: vary: '{name}' is {shown(values)}; give its arguments and their values, as change() takes "
                 "them: {'spring': {'stiffness': [...]}}"
@@ -111,8 +113,6 @@ def designs_of(m: Model, vary: Any, start: Any, moving: Any) -> Designs:
             )
         if not len(column):
             raise ModelError(f"{m.name}: simulate_many: {what} has no values; give one or more")
-    if count > MOST:
-        raise ModelError(f"{m.name}: simulate_many: {count} simulations; take {MOST} at most, in several calls")
 
     def spread(column: np.ndarray) -> np.ndarray:
         return np.broadcast_to(column, (count, *column.shape[1:]))
@@ -128,6 +128,18 @@ def designs_of(m: Model, vary: Any, start: Any, moving: Any) -> Designs:
     return out
 
 
+def _refuse_too_many(m: Model, *given: Any) -> None:
+    """Raise ModelError for longer lists than there may be, before any is looked through."""
+    for part in given:
+        for values in part.values() if isinstance(part, Mapping) else ():
+            for column in values.values() if isinstance(values, Mapping) else (values,):
+                count = len(column) if isinstance(column, list | tuple) else (np.shape(column) or (1,))[0]
+                if count > MOST:
+                    raise ModelError(
+                        f"{m.name}: simulate_many: {count} simulations; take {MOST} at most, in several calls"
+                    )
+
+
 def _refuse_unknown(designs: Designs) -> None:
     """Raise ModelError for names and arguments that the mechanism does not have, as its own methods do."""
     work = designs.copied()
@@ -137,11 +149,23 @@ def _refuse_unknown(designs: Designs) -> None:
         except ModelError as error:
             if "there is no" in str(error):
                 raise ModelError(str(error).replace(f"{work.name}: ", f"{work.name}: vary: ", 1)) from None
+        _refuse_wide(work, name, values)
     for what, name in [
         *(("start", name) for name in designs.starts),
         *(("moving", name) for name in designs.velocities),
     ]:
         _refuse_held(work, what, work.known_body(name))
+
+
+def _refuse_wide(m: Model, name: str, values: Mapping[str, np.ndarray]) -> None:
+    """Raise ModelError for several numbers a row where the mechanism has a single one."""
+    nominal = values_of(m, name) or {}
+    for key, column in values.items():
+        if column.ndim > 1 and column.shape[1] > 1 and isinstance(nominal.get(key), int | float):
+            raise ModelError(
+                f"{m.name}: vary: {key} of '{name}' is a single number, and its values have shape {column.shape}; "
+                f"give ({len(column)},), a number a simulation"
+            )
 
 
 def _refuse_held(m: Model, what: str, body: Body) -> None:

@@ -38,15 +38,17 @@ def columns_of(
     return out
 
 
-def numbers_of(given: Any) -> dict[str, float]:
+def numbers_of(owner: str, given: Any) -> dict[str, float]:
     """What a function that measures gave. Raises ModelError for anything but names and numbers."""
-    if not isinstance(given, Mapping):
-        raise ModelError(f"measure gives {shown(given)}; it must give names and numbers {{name: number}}")
+    if not isinstance(given, Mapping) or not given:
+        raise ModelError(f"{owner}: measure gives {shown(given)}; it must give names and numbers {{name: number}}")
     out = {}
     for name, value in given.items():
         value = value.item() if getattr(value, "size", 0) == 1 and hasattr(value, "item") else value
         if not isinstance(name, str) or not isinstance(value, bool | int | float):
-            raise ModelError(f"measure gives {shown(value)} as {shown(name)}; it must be a number under a name")
+            raise ModelError(
+                f"{owner}: measure gives {shown(value)} as {shown(name)}; it must be a number under a name"
+            )
         out[name] = float(value)
     return out
 

@@ -52,4 +52,4 @@ class Known:
 def window(out: Outputs, begin: int, end: int) -> Outputs:
     """Outputs ``begin`` to ``end`` (left out) of all rows."""
     y, a, lam, work, margin = (part[:, begin:end] for part in (out.y, out.a, out.lam, out.work, out.margin))
-    return Outputs(y, a, lam, work, margin, out.status, out.steps)
+    return Outputs(out.t[begin:end], y, a, lam, work, margin, out.status, out.steps, out.over)

@@ -62,7 +62,7 @@ class Measure:
         """Raise ModelError where it does not suit output times (T,)."""
 
     def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """By column, (n,) or (n, k) from values (n, T) of each quantity at times (T,)."""
+        """By column, (n,) or (n, k) from values (n, T) of each quantity at times (T,), or (n, T)."""
         raise NotImplementedError
 
 
@@ -84,8 +84,8 @@ class _Extreme(Measure):
 
     def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         values = along[self.quantity]
-        at = np.argmax(self.sign * values, axis=1)
-        return {name: values[np.arange(len(values)), at], name + TIME: t[at]}
+        at, rows = np.argmax(self.sign * values, axis=1), np.arange(len(values))
+        return {name: values[rows, at], name + TIME: np.broadcast_to(t, values.shape)[rows, at]}
 
 
 @dataclass(frozen=True)
@@ -152,10 +152,12 @@ class _Samples(Measure):
                 )
 
     def needed(self, t: np.ndarray) -> np.ndarray:
-        return np.abs(t[:, None] - np.array(self.times)).argmin(axis=0)
+        return np.abs(t[..., None] - np.array(self.times)).argmin(axis=-2)
 
     def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        return {name: along[self.quantity][:, self.needed(t)]}
+        values = along[self.quantity]
+        at = np.broadcast_to(self.needed(t), (len(values), len(self.times)))
+        return {name: np.take_along_axis(values, at, axis=1)}
 
 
 def final(quantity: str) -> Measure:

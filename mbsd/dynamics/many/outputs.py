@@ -17,6 +17,8 @@ from mbsd.dynamics.many.single_run import SingleRun
 class Outputs:
     """Arrays that the compiled loop fills; see there."""
 
+    t: np.ndarray
+    """(T,) s"""
     y: np.ndarray
     a: np.ndarray
     lam: np.ndarray
@@ -24,6 +26,8 @@ class Outputs:
     margin: np.ndarray
     status: np.ndarray
     steps: np.ndarray
+    over: np.ndarray
+    """(R,) when an event of the user ended a simulation (s); infinite where none did."""
 
     @property
     def shape(self) -> tuple[int, int, bool]:
@@ -33,15 +37,22 @@ class Outputs:
     @property
     def arrays(self) -> tuple[np.ndarray, ...]:
         """In the order of the loop's arguments."""
-        return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps
+        return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps, self.over
 
 
-def room_for(count: int, times: int, coordinates: int, rows: int, forces: bool) -> Outputs:
+def until(times: np.ndarray, over: np.ndarray) -> np.ndarray:
+    """Times (T,) of outputs, or (R, T) where a simulation was ``over`` (R,) (s) before the last of them."""
+    return np.minimum(times, over[:, None]) if np.isfinite(over).any() else times
+
+
+def room_for(count: int, t: np.ndarray, coordinates: int, rows: int, forces: bool) -> Outputs:
     """Outputs of ``count`` simulations, used again and again: memory that is touched first costs more than a step.
 
     Without ``forces`` the loop finds neither multipliers nor accelerations.
     """
+    times = len(t)
     return Outputs(
+        t,
         np.zeros((count, times, 2, coordinates)),
         np.zeros((count, times, coordinates)),
         np.zeros((count, times if forces else 0, rows)),
@@ -49,6 +60,7 @@ def room_for(count: int, times: int, coordinates: int, rows: int, forces: bool) 
         np.zeros((count, times)),
         np.zeros(count, np.int64),
         np.zeros(count, np.int64),
+        np.full(count, np.inf),
     )
 
 
@@ -65,6 +77,7 @@ class Reacting:
     lam: np.ndarray
     """(R, T, m)"""
     times: np.ndarray
+    """(T,) or (R, T)"""
     joints: np.ndarray
     """(k,) those that are wanted."""
     rows: np.ndarray
@@ -83,7 +96,10 @@ class Reacting:
             each = zip(which.tolist(), jacobians, q, own, strict=True)
             made = [wrenches(self.packed[k], *parts, joints=self.joints) for k, *parts in each]
             wrench = np.array(made)
-        return Reactive(self.joints.tolist(), wrench, lam[..., packed.driver_rows :], packed.drives(self.times))
+        own_times = self.times if self.times.ndim == 1 else self.times[which]
+        drives = packed.drives(own_times.ravel())
+        drives = drives.reshape(*own_times.shape, *drives.shape[1:])
+        return Reactive(self.joints.tolist(), wrench, lam[..., packed.driver_rows :], drives)
 
 
 def motions_of(
@@ -116,5 +132,5 @@ def motions_of(
         names, q, v, a, out.work[own], some(np.array([part.com[:end] for part in packed])),
         some(np.array([part.system.mass[:end] for part in packed]) if mass is None else mass),
         some(np.array([part.system.inertia[:end] for part in packed]) if inertia is None else inertia),
-        traces, None if reacting is None else reacting.of(which),
+        traces, until(out.t, out.over[which]), None if reacting is None else reacting.of(which),
     )  # fmt: skip

@@ -48,6 +48,8 @@ class Patches:
         self.inertia: np.ndarray | None = None
         columns: list[Column] = []
         m = designs.m
+        if self.ready.packed.states:
+            raise NotPatched("states of forces are found with the start")
         for name, values in designs.changes.items():
             if name in m.forces:
                 columns += self._of_force(name, values)
@@ -270,7 +272,8 @@ def agrees(patches: Patches, row: int, fresh: np.ndarray, content_of: Callable[[
     for first, end in _overwritten(patches.base):
         mine[first:end] = other[first:end]
     rounding = 0.0 if patches.designs.exact else ROUNDING
-    close = np.abs(mine - other) <= rounding * np.maximum(np.abs(other), 1.0)
+    with np.errstate(invalid="ignore"):  # infinite bounds
+        close = np.abs(mine - other) <= rounding * np.maximum(np.abs(other), 1.0)
     return bool((close | (np.isnan(mine) & np.isnan(other)) | (mine == other)).all())
 
 

@@ -38,7 +38,7 @@ class Reactive:
     lam: np.ndarray
     """(R, T, drivers) and rows of what comes behind."""
     drives: np.ndarray
-    """(T, drivers + 1, 3)"""
+    """(T, drivers + 1, 3), or the same for each simulation."""
 
 
 @dataclass
@@ -59,6 +59,8 @@ class Motions:
     inertia: np.ndarray
     traces: dict[str, tuple[int, np.ndarray, float]]
     """For each traced point its body, its places (R or 1, 2) in the author's frame (m), and its angle (rad)."""
+    t: np.ndarray
+    """(T,) s, or (R, T) where events of the user ended some before."""
     reactive: Reactive | None = None
     """If any measure reads it."""
     kept: dict[Any, Any] = field(default_factory=dict)
@@ -92,10 +94,10 @@ class Motions:
     def of_driver(self, number: int, component: str) -> np.ndarray:
         """(R, T) of one component of a driver."""
         assert self.reactive is not None
-        effort, drive = -self.reactive.lam[:, :, number], self.reactive.drives[:, number + 1]
+        effort, drive = -self.reactive.lam[:, :, number], self.reactive.drives[..., number + 1, :]
         if component == "value":
-            return np.broadcast_to(drive[:, 0], effort.shape)
-        return effort if component == "effort" else effort * drive[:, 1]
+            return np.broadcast_to(drive[..., 0], effort.shape)
+        return effort if component == "effort" else effort * drive[..., 1]
 
     def kinetic(self) -> np.ndarray:
         """(R, T) J."""
@@ -128,6 +130,8 @@ def quantity_named(m: Model, name: str, columns: list[str]) -> Quantity:
     plain = [column.rpartition(" [")[0] for column in columns]
     known = dict(zip(plain, columns, strict=True))
     whole, _, component = name.rpartition(".")
+    if name == "t":
+        return Quantity(name, lambda sol: sol.t, lambda motions: np.broadcast_to(motions.t, motions.work.shape))
     if name == "work":
         return Quantity(name, _work, lambda motions: motions.work)
     if name == "kinetic":
@@ -135,7 +139,7 @@ def quantity_named(m: Model, name: str, columns: list[str]) -> Quantity:
     bare = whole.removeprefix("trace ")
     traced = whole not in m.bodies and bare in m.traces and component in FRAME
     if name not in known and not traced:
-        raise ModelError(f"{m.name}: measure: {no_such('quantity', name, [*plain, 'work'])}")
+        raise ModelError(f"{m.name}: measure: {no_such('quantity', name, ['t', *plain, 'work'])}")
     if whole in m.bodies and component in FRAME:
         return Quantity(
             name,

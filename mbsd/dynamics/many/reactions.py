@@ -9,7 +9,8 @@ import numpy as np
 from mbsd.arrays.reactions import rows_of_joints
 from mbsd.dynamics.many.arguments import content, laid_out
 from mbsd.dynamics.many.base import Base
-from mbsd.dynamics.many.outputs import Outputs, Reacting
+from mbsd.dynamics.many.least_norm import shared, shares
+from mbsd.dynamics.many.outputs import Outputs, Reacting, until
 from mbsd.dynamics.many.patches import Patches
 from mbsd.dynamics.many.single_run import SingleRun
 from mbsd.dynamics.many.tabulated_reactions import tabulate_reactions
@@ -20,7 +21,9 @@ class Reactions:
 
     def __init__(self, run: SingleRun, patches: Patches | None, joints: np.ndarray) -> None:
         self.run, self.joints = run, joints
-        self.rows = rows_of_joints(run.ready.packed, joints)
+        packed = run.ready.packed
+        self.least = shares(run.ready)
+        self.rows = np.arange(packed.contact_rows) if self.least else rows_of_joints(packed, joints)
         self.room = np.zeros((0, 0, 0, 6))
         arguments, block, layout = laid_out(self._arguments(run))
         self.base = Base(run, arguments, block, layout, (), block[None].copy())
@@ -50,8 +53,10 @@ class Reactions:
         jacobians = self.room[:count]
         if len(self.rows) or not known:
             tabulate_reactions(
-                *self.base.arguments, self.base.block, fresh, place, value, times, out.y, out.status, self.rows,
-                jacobians, out.lam, known,
+                *self.base.arguments, self.base.block, fresh, place, value, times, out.over, out.y, out.status,
+                self.rows, jacobians, out.lam, known,
             )  # fmt: skip
         packed = [run.ready.packed for run in runs]
-        return Reacting(packed, out.y, jacobians, out.lam, times, self.joints, self.rows)
+        if self.least:
+            return shared(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints)
+        return Reacting(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, self.rows)

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.integrators.formulation import derivative
-from mbsd.dynamics.many.contacts.steps import go_on
+from mbsd.dynamics.many.contacts.steps import NOT_SOLVED, OVER, go_on
+from mbsd.dynamics.many.repeated.exchange import again, opens
 from mbsd.dynamics.many.through import through
 from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, TIME, Output
 
@@ -45,7 +46,7 @@ def take_up(state, block, kept, counts):
 @threaded
 def run_rows(
     dyn, scratch, state, settings, contacts, method, block, fresh, place, value, t, before, after, at_once, most, near,
-    stop, upto, kept, counts, y, a, lam, work, margin, status, steps,
+    stop, upto, kept, counts, y, a, lam, work, margin, status, steps, over,
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 
@@ -55,10 +56,12 @@ def run_rows(
     ``after``. ``at_once`` steps are taken between two looks at ``stop`` (1,), ``most`` altogether. Where ``near`` is
     above 0, a row ends where its margin falls below this part of the largest so far (runs/carried_steps.py). Rows whose
     status (R,) is WAITING begin, those UNDERWAY go on. With ``upto`` outputs, less than T, they are put away in
-    ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY.
+    ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY. ``over`` (R,) is when (s) an event of the user ended a row,
+    infinite where none did; the outputs behind are then that moment.
     """
     end = t[t.shape[0] - 1]
     whole = upto == t.shape[0]
+    repeating = contacts.repeated.place.shape[0] > 0
     for r in range(y.shape[0]):
         if status[r] != WAITING and status[r] != UNDERWAY:
             continue
@@ -92,14 +95,29 @@ def run_rows(
                 counted = state.count[ACCEPTED]
             if not whole and state.count[NEXT] >= upto:
                 break
-            if contacts.place.shape[0] > 0 or contacts.wheels.markers.shape[0] > 0:
+            written = state.count[NEXT]
+            if (
+                contacts.place.shape[0] > 0
+                or contacts.wheels.markers.shape[0] > 0
+                or contacts.curves.place.shape[0] > 0
+                or contacts.events.table.shape[0] > 0
+            ):
                 ended = go_on(dyn, scratch, state, settings, contacts, out, end, at_once, before, after)
+            elif repeating:
+                ended = again(
+                    dyn, scratch, state, out, settings, contacts.repeated, end, at_once, before, after, method
+                )
             else:
                 ended = through(dyn, scratch, state, out, settings, end, at_once, before, after, method)
+            if repeating and opens(dyn, scratch, contacts.repeated, out, written, state.count[NEXT]):
+                ended = NOT_SOLVED
             if near > 0.0 and ended != REACHED:
                 widest = max(widest, scratch.report[0])
                 if not scratch.report[0] > near * widest:
                     ended = NEARLY_SINGULAR
+        if ended == OVER:
+            ended = REACHED
+            over[r] = state.clock[TIME]
         status[r] = STOPPED if stop[0] != 0 else ended
         if not whole and status[r] == PAUSED and state.count[NEXT] >= upto:
             put_away(state, block, widest, kept[r], counts[r])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import warnings
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -17,7 +16,9 @@ from mbsd.base.arguments import whole_number
 from mbsd.base.cores import cores
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
+from mbsd.base.quiet import quiet
 from mbsd.base.shown import shown
+from mbsd.base.users_function import described, refuse_other_arguments
 from mbsd.dynamics.many.designs import Designs, designs_of
 from mbsd.dynamics.many.done import Done, joined, numbers_of
 from mbsd.dynamics.many.early import windows_of
@@ -42,9 +43,13 @@ NUMBERS_AT_ONCE = 400_000
 """Numbers of a chunk's outputs."""
 NUMBERS_OF_A_BODY = 12
 """Numbers of an output of a body and its joints."""
+NUMBERS_OF_A_ROW = 12
+"""Numbers' room that a simulation takes beside its columns: what varies, its reasons, its part of a chunk."""
 LOOK = 0.2
 """s between two looks at the keyboard."""
 REASON = "reason"
+WRONGLY_WRITTEN = (NameError, AttributeError, TypeError, KeyError, ImportError, ModelError)
+"""What a function raises that is wrong for any simulation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +167,8 @@ def simulations(
     quantities = {} if callable(measures) else quantities_of(designs, measures)
     why = _why_single(designs, asked, measures, quantities)
     width = 1 if callable(measures) else sum(column[0].size for column in _empty(measures, 1).values())
-    refuse_beyond_memory(f"{m.name}: {designs.count} simulations", 3 * width * designs.count, "Take fewer at once")
+    numbers = (3 * width + NUMBERS_OF_A_ROW) * designs.count
+    refuse_beyond_memory(f"{m.name}: {designs.count} simulations", numbers, "Take fewer at once")
     if callable(measures):
         _refuse_no_numbers(designs, asked, measures)
     pausing = asked.integrator in PAUSED_ANYWHERE
@@ -176,8 +182,7 @@ def simulations(
         [len(grid)] if callable(measures) or not pausing else windows_of(len(grid), measures, quantities),
         any(quantity.reactive for quantity in quantities.values()),
     )
-    with warnings.catch_warnings():  # here, as threads share what is shown
-        warnings.simplefilter("ignore")
+    with quiet():  # here, as threads share what is shown
         done = _all(work, len(m.bodies), min(threads or cores(), designs.count), progress)
     table = done.columns if callable(measures) else _empty(measures, designs.count) | done.columns
     return Simulations(table, done.reasons, done.alone, work.note)
@@ -192,6 +197,7 @@ def _empty(measures: Mapping[str, Measure], count: int) -> dict[str, np.ndarray]
 def checked_measures(m: Model, measure: Any, grid: np.ndarray) -> Measures:
     """As given, checked."""
     if callable(measure):
+        refuse_other_arguments(f"{m.name}: measure", measure, "a solution")
         return measure
     if not isinstance(measure, Mapping) or not measure:
         raise ModelError(
@@ -221,15 +227,23 @@ def quantities_of(designs: Designs, measures: Mapping[str, Measure]) -> dict[str
 
 
 def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], Any]) -> None:
-    """Raise ModelError if ``measure`` gives anything but numbers of the first simulation."""
+    """Raise ModelError if ``measure`` gives anything but numbers of the first simulation, or is written wrongly.
+
+    Else what it raises is the reason of that row.
+    """
     model = designs.copied()
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            given = measure(simulated(designs.put(model, 0), asked))
-    except Exception:
-        return  # that is the reason of the first row
-    numbers_of(given)
+    with quiet():
+        try:
+            sol = simulated(designs.put(model, 0), asked)
+        except Exception:
+            return
+        try:
+            given = measure(sol)
+        except WRONGLY_WRITTEN as error:
+            raise ModelError(f"{designs.m.name}: measure fails for the first simulation: {described(error)}") from error
+        except Exception:
+            return
+    numbers_of(designs.m.name, given)
 
 
 def _column_names(designs: Designs) -> list[str]:
@@ -259,8 +273,11 @@ def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mappi
             return str(why)
         except Exception:
             continue  # a row may fail
-        if run.ready.approaches and any(quantity.reactive for quantity in quantities.values()):
+        reactive = any(quantity.reactive for quantity in quantities.values())
+        if run.ready.approaches and reactive:
             return "reactions where the damping of a contact remembers how fast it approached"
+        if run.ready.following.rows and reactive:
+            return "reactions where points are on curves that cross themselves"
         return None
     return None
 

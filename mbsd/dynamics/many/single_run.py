@@ -14,18 +14,21 @@ from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.many.arguments import kind_of
 from mbsd.dynamics.many.contacts.arrays import Contacts
 from mbsd.dynamics.many.contacts.made import contacts_of, why_not
+from mbsd.dynamics.many.events import made as events_made
 from mbsd.dynamics.many.methods import USUAL, number_of
+from mbsd.dynamics.many.repeated import made as repeated_made
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.runs.carried_steps import NEAR, can_carry
 from mbsd.dynamics.runs.embed import embedded_at_start
 from mbsd.dynamics.runs.independent_steps import IndependentSteps
-from mbsd.dynamics.runs.run import REFERENCE, Run
+from mbsd.dynamics.runs.run import INDEPENDENT, REFERENCE, Run
 from mbsd.dynamics.runs.to_end import independent_steps
 from mbsd.dynamics.state import State
 from mbsd.equations.interactions.switching import SWITCHING
 from mbsd.kinematics.limits.joints import limits_of
 from mbsd.model.body import Marker
+from mbsd.model.event import Event
 from mbsd.model.mechanism import Model
 
 
@@ -58,6 +61,8 @@ class SingleRun:
     """Independent ones, if it has some."""
     traces: dict[str, Marker]
     """Traced points as they are now."""
+    events: list[Event]
+    """Those of the user."""
 
     @property
     def steps_at_once(self) -> int:
@@ -96,7 +101,8 @@ class SingleRun:
     @cached_property
     def near(self) -> float:
         """Part of the largest margin below which steps are carried across a nearly singular pose; 0 where none are."""
-        carried = self.independent is None and self.run.formulation == REFERENCE and can_carry(self.run)
+        reference = self.independent is None and self.run.formulation == REFERENCE
+        carried = reference and not self.events and can_carry(self.run)
         return NEAR if carried else 0.0
 
     @property
@@ -110,49 +116,46 @@ class SingleRun:
     @cached_property
     def contacts(self) -> Contacts:
         """Contacts and joints that stick, which the loop meets, and wheels that it looks at step by step."""
-        return contacts_of(self.ready, self.state if self.independent is None else self.independent.own)
+        state = self.state if self.independent is None else self.independent.own
+        return contacts_of(self.ready, state, self.events, self.run.settings.longest)
 
 
 def single_run(m: Model, asked: Asked) -> SingleRun:
     """Prepare it as ``simulate`` does. Raises what ``simulate`` raises, and NotCompiled."""
     if number_of(asked.integrator) is None:
         raise NotCompiled(f"method '{asked.integrator.name}' has no loop over many")
-    if m.events:
-        raise NotCompiled("events are functions of Python")
-    times = asked.times
+    times, events = asked.times, list(m.events.values())
+    if events and asked.formulation == INDEPENDENT:
+        raise NotCompiled("formulation='independent' does not know events")
     ready = prepare_dynamics(m, float(times[0]), float(times[-1]), contacts=True)
-    _refuse(m, ready)
-    if number_of(asked.integrator) != USUAL and (ready.switches.contacts or ready.sticks or ready.following):
+    _refuse(ready, events)
+    if number_of(asked.integrator) != USUAL and (ready.switches.contacts or ready.sticks or ready.following or events):
         raise NotCompiled(
-            "stops, contacts, joints that stick and wheels that may meet are met by 'dop853' alone, not by "
+            "events, stops, contacts, joints that stick and wheels that may meet are met by 'dop853' alone, not by "
             f"'{asked.integrator.name}'"
         )
     longest = asked.step or float(np.diff(times).max())
     run = Run(
         ready, asked.integrator, asked.tolerance, longest, float(times[-1] - times[0]), asked.options, asked.formulation
     )
+    why = events_made.why_not(events, run.settings.longest)
+    if why is not None:
+        raise NotCompiled(why)
     state, _ = ready.begun(times)
     ready.approaches.forget()
-    independent = independent_steps(run, state)
+    independent = None if events else independent_steps(run, state)
     if independent is not None and independent.genevas:
         raise NotCompiled("steps end where the pin of a Geneva enters its slot")
     made = None if independent is None else embedded_at_start(ready)
-    return SingleRun(ready, run, state, independent, [] if made is None else made.coordinates, {**m.traces})
+    return SingleRun(ready, run, state, independent, [] if made is None else made.coordinates, {**m.traces}, events)
 
 
-def _refuse(m: Model, ready: PreparedDynamics) -> None:
+def _refuse(ready: PreparedDynamics, events: list[Event]) -> None:
     """Raise NotCompiled for what Python decides between steps, and what it looks at after a simulation."""
     packed = ready.packed
-    why = why_not(ready)
+    why = why_not(ready, events) or repeated_made.why_not(ready)
     if why is not None:
         raise NotCompiled(why)
-    if ready.following.rows:
-        raise NotCompiled("points on curves that cross themselves are followed step by step")
-    if ready.switches.spare or ready.dropped:
-        raise NotCompiled("joints repeat others, of which a set is chosen anew on the way")
-    for force in packed.forces:
-        if force.kind.chamber is not None or force.kind.states is not None:
-            raise NotCompiled(f"force '{force.name}' is looked after between outputs")
     slow = [callback.what for callback in packed.specials.callbacks if not callback.compiled]
     if slow:
         raise NotCompiled(f"{slow[0]}: the function is one of Python; compile it with numba.njit")

@@ -9,10 +9,10 @@ from mbsd.equations.assembly import position
 
 
 @threaded
-def tabulate_reactions(dyn, scratch, block, fresh, place, value, t, y, status, rows, jacobians, lam, known):
+def tabulate_reactions(dyn, scratch, block, fresh, place, value, t, over, y, status, rows, jacobians, lam, known):
     """Fill ``rows`` (k,) of J into compact jacobians (R, T, k, 6) and, unless ``known``, lam (R, T, m).
 
-    States are y (R, T, 2, 3 nb).
+    States are y (R, T, 2, 3 nb), at t (T,) (s) or, where that is earlier, at ``over`` (R,).
 
     Rows of ``block``, ``fresh``, ``place`` and ``value`` are those of run_rows, for Dynamics and its scratch alone.
     """
@@ -26,7 +26,7 @@ def tabulate_reactions(dyn, scratch, block, fresh, place, value, t, y, status, r
             block[place[i]] = value[r, i]
         for k in range(t.shape[0]):
             if not known:
-                derivative(dyn, scratch, t[k], y[r, k], scratch.stages[0], lam[r, k])
+                derivative(dyn, scratch, min(t[k], over[r]), y[r, k], scratch.stages[0], lam[r, k])
             if rows.shape[0] == 0:
                 continue
             position(dyn.system, y[r, k, 0], scratch.drive, scratch.ws)

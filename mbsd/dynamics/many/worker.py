@@ -9,16 +9,18 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.stopping import stops_when
 from mbsd.base.users_function import described
 from mbsd.dynamics.many.arguments import content
 from mbsd.dynamics.many.base import Base, based_on
 from mbsd.dynamics.many.contacts.steps import NOT_SOLVED
+from mbsd.dynamics.many.cylinders import can_be, has_cylinders
 from mbsd.dynamics.many.designs import Built, Designs
 from mbsd.dynamics.many.done import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.many.early import STEPS, Known, window
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.methods import number_of
-from mbsd.dynamics.many.outputs import Outputs, Reacting, motions_of, room_for
+from mbsd.dynamics.many.outputs import Outputs, Reacting, motions_of, room_for, until
 from mbsd.dynamics.many.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.many.quantities import Motions, Quantity
 from mbsd.dynamics.many.reactions import Reactions
@@ -37,10 +39,12 @@ COMPARED = 6
 """Rows that are prepared for comparison."""
 NEAR = 1e-9
 """Part of the size, and rad, by which a start may differ from what it is."""
-OTHER, FAILED = -2, -4
-"""Status of rows that the loop is not made for, and of those beside which a function of the user failed."""
+OTHER, FAILED, NO_ROOM = -2, -4, -10
+"""Status of rows that the loop is not made for, of those beside which a function of the user failed, and of those whose
+gas or oil cannot be as it was found."""
 LEFT = {
     OTHER: "its start is that of another branch",
+    NO_ROOM: "its gas or oil has no room or pressure somewhere",
     FAILED: "a function of the user failed in one of them",
     NOT_SOLVED: "what happened at an event there is decided by single simulations",
     NEARLY_SINGULAR: "it came near a singular pose",
@@ -81,6 +85,10 @@ class Work:
     """Numbers of rows that need not be."""
     note: str | None = None
     """Why not, if so."""
+
+    def unwanted(self) -> bool:
+        """Whether all is to stop."""
+        return bool(self.stop[0])
 
 
 class Worker:
@@ -164,7 +172,7 @@ class Worker:
         def motions(out: Outputs, which: np.ndarray, reacting: Reacting | None = None) -> Motions:
             return motions_of(runs, out, which, mass, inertia, reacting)
 
-        out = self._run(self.base.fresh, self.patches.place, value, motions)
+        out = self._run(self.base.fresh, self.patches.place, value, motions, runs)
         odd = np.array([reason is not None for reason in reasons])
         if q is not None:  # closed forms may stand on another branch than the start does
             odd |= np.abs(out.y[:, 0, 0] - q).max(axis=1) > NEAR * self.base.run.ready.packed.size
@@ -177,6 +185,9 @@ class Worker:
         alike: dict[Any, dict[int, SingleRun]] = {}
         done: dict[int, Done] = {}
         for row in rows:
+            if self.work.unwanted():
+                done[row] = failed(STOP)
+                continue
             try:
                 run = self._run_of(row)
                 alike.setdefault(run.kind, {})[row] = run
@@ -198,7 +209,7 @@ class Worker:
             return motions_of(own, out, which, None, None, reacting)
 
         fresh = np.array([content(run.arguments) for run in own])
-        out = self._run(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), motions)
+        out = self._run(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), motions, own)
         reacting = self._reactions(None).of_runs(own, out, times) if self.work.reactive else None
         together = self._measured(list(runs), lambda which: motions(out, which, reacting), out)
         return {row: together.row(k) for k, row in enumerate(runs)}
@@ -210,20 +221,23 @@ class Worker:
             self.reactions = Reactions(self.base.run, patches, np.array(wanted, np.int64))
         return self.reactions
 
-    def _run(self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, motions: MotionsOf) -> Outputs:
-        """Rows to their end, or as far as there is something to measure."""
+    def _run(
+        self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, motions: MotionsOf, runs: Sequence[SingleRun]
+    ) -> Outputs:
+        """Rows to their end, or as far as there is something to measure; they are those of ``runs``, or like it."""
         assert self.base is not None
         run, ready, times = self.base.run, self.base.run.ready, self.work.asked.times
         count, whole = max(len(fresh), len(value)), len(times)
         forces = run.outputs_count or any(quantity.forces for quantity in self.work.quantities.values())
         shape = len(ready.initial.q), len(ready.packed.ws.phi), forces
         if self.room is None or len(self.room.status) < count or self.room.shape != shape:
-            self.room = room_for(count, whole, *shape)
-        out = Outputs(*(array[:count] for array in self.room.arrays))
+            self.room = room_for(count, times, *shape)
+        out = Outputs(times, *(array[:count] for array in self.room.arrays))
         out.status[:] = WAITING
+        out.over[:] = np.inf
         run.forget()
         stops, windows, method = ready.stops, self.work.windows, number_of(self.work.asked.integrator)
-        early = len(windows) > 1
+        early, written = len(windows) > 1, np.full(count, whole)
         kept = np.zeros((count if early else 0, len(self.base.block) + 1))
         counts = np.zeros((len(kept), len(run.state.count)), np.int64)
         known = (
@@ -241,10 +255,16 @@ class Worker:
             assert known is not None
             seen = slice(max(begin - 1, 0), upto)
             look = motions(window(out, seen.start, upto), underway)
-            out.status[known.look(underway, times[seen], look)] = REACHED  # outputs behind are not read
+            done = known.look(underway, times[seen], look)
+            out.status[done], written[done] = REACHED, upto  # outputs behind are not read
         if run.failed:  # in some row, or in a trial step that was not taken: single simulations can tell
             out.status[out.status == REACHED] = FAILED
             run.forget()
+        if has_cylinders(ready.packed):
+            for k in np.flatnonzero(out.status == REACHED).tolist():
+                packed, end = runs[min(k, len(runs) - 1)].ready.packed, written[k]
+                if not can_be(packed, np.minimum(times[:end], out.over[k]), out.y[k, :end]):
+                    out.status[k] = NO_ROOM
         return out
 
     def _measured(self, rows: Sequence[int], motions: Callable[[np.ndarray], Motions], out: Outputs) -> Done:
@@ -261,7 +281,7 @@ class Worker:
                 columns[name][at] = values
 
         if len(good):
-            put(self._columns(motions(good)), good)
+            put(self._columns(motions(good), out.over[good]), good)
         for k in np.flatnonzero(out.status != REACHED).tolist():
             status = int(out.status[k])
             done = failed(STOP) if status == STOPPED else self._single(rows[k], LEFT.get(status, SMALL))
@@ -269,21 +289,22 @@ class Worker:
             reasons[k], alone[k] = done.reasons[0], done.alone[0]
         return Done(columns, reasons, alone)
 
-    def _columns(self, motions: Motions) -> dict[str, np.ndarray]:
+    def _columns(self, motions: Motions, over: np.ndarray) -> dict[str, np.ndarray]:
         assert isinstance(self.work.measures, Mapping)
         along = {}
         for name, quantity in self.work.quantities.items():
             assert quantity.of_motions is not None
             along[name] = quantity.of_motions(motions)
-        return columns_of(self.work.measures, self.work.asked.times, along)
+        return columns_of(self.work.measures, until(self.work.asked.times, over), along)
 
     # -- by simulate ---------------------------------------------------------------------------------------------
 
     def _single(self, row: int, why: str) -> Done:
-        if self.work.stop[0]:
+        if self.work.unwanted():
             return failed(STOP, why)
         try:
-            columns = self._simulated(row)
+            with stops_when(self.work.unwanted):
+                columns = self._simulated(row)
         except Exception as error:
             return failed(described(error), why)
         return Done(columns, [None], [why])
@@ -292,7 +313,7 @@ class Worker:
         measures = self.work.measures
         sol = simulated(self.designs.put(self.model, row), self.work.asked)
         if not isinstance(measures, Mapping):
-            return {name: np.array([value]) for name, value in numbers_of(measures(sol)).items()}
+            return {name: np.array([value]) for name, value in numbers_of(sol.mechanism.name, measures(sol)).items()}
         along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}
         return columns_of(measures, sol.t, along)
 

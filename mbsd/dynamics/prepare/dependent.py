@@ -14,6 +14,7 @@ import numpy as np
 from mbsd.base.errors import SingularPoseError
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.rows.bounds import OPENED_BY
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -22,8 +23,7 @@ BESIDE = (0.003, 0.001)
 """How far beside the start is looked, in sizes and rad; nearer where the links do not close, or a row opens: from afar
 they may have closed on another branch."""
 CLOSED = 1e-9
-OPENED = 1e-7
-"""Residuals (sizes, rad) of rows that hold, and of rows that do not."""
+"""Residuals (sizes, rad) of rows that hold."""
 PASSES = 30
 
 
@@ -45,7 +45,7 @@ def refuse_singular_start(ready: PreparedDynamics, kept: list[int], rows: int) -
             packed.specials.check()
             gaps = np.abs(packed.ws.phi * scale)
             if gaps[kept].max(initial=0.0) <= CLOSED:
-                opened = [row for row in ready.dropped if not gaps[row] <= OPENED]
+                opened = [row for row in ready.dropped if not gaps[row] <= OPENED_BY]
                 if not opened:
                     break
         if opened:
@@ -69,7 +69,7 @@ def refuse_opened(ready: PreparedDynamics, times: np.ndarray, phi: np.ndarray) -
         return
     packed, rows = ready.packed, np.array(ready.dropped)
     gaps = np.abs(phi[:, rows] * packed.row_scale()[rows])
-    late = np.flatnonzero(~(gaps.max(axis=1) <= OPENED))
+    late = np.flatnonzero(~(gaps.max(axis=1) <= OPENED_BY))
     if len(late):
         k = int(late[0])
         row = int(rows[np.argmax(gaps[k])])

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics
     from mbsd.dynamics.state import State
 
-LOOK = 10
-"""Steps between two looks."""
 WORN = 1e3
 """As BETTER where friction of joints comes from these rows' multipliers: other rows divide the load otherwise."""
 

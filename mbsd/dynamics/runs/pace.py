@@ -15,6 +15,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from mbsd.base.errors import SimulationError
+from mbsd.base.stopping import end_if_unwanted
 from mbsd.dynamics.runs.runaway import Growth, growth_of, runaway
 from mbsd.dynamics.runs.stuck import diagnosis
 from mbsd.dynamics.state import ACCEPTED, REJECTED, TIME, State
@@ -49,6 +50,7 @@ class Pace:
         ``current`` gives the state in reference coordinates, if not that of the start of the run; ``extra`` counts work
         that is no step, as many steps as it is worth. Raises SimulationError if the run is stuck.
         """
+        end_if_unwanted()
         at = float(self.state.clock[TIME])
         if self.progress is not None:
             if self.end > self.start:

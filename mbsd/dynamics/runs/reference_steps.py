@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from mbsd.dynamics import state as run_state
-from mbsd.dynamics.prepare.exchange import LOOK, exchange_rows
+from mbsd.dynamics.prepare.exchange import exchange_rows
+from mbsd.dynamics.rows.bounds import LOOK
 from mbsd.dynamics.runs.refusal import refusal
 from mbsd.dynamics.runs.run import Run
 

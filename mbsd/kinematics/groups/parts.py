@@ -85,7 +85,8 @@ class _Parts:
 
     def add_block(self) -> bool:
         """Add the smallest block whose neighbours are known; False if it is too large or cannot be written."""
-        left = [row for row in sorted(self.rows) if row not in self._used()]
+        used = self._used()
+        left = [row for row in sorted(self.rows) if row not in used]
         members = fixed_bodies(self.packed, self.plan.known, left, self.pattern)
         block = None if members is None else hanging(self.plan, members, left)
         if block is None:

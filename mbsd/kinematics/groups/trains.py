@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -131,20 +132,28 @@ class Trains:
 
     def _at_one_pin(self, marker: int) -> dict[int, np.ndarray]:
         """Bodies that pins hold together at the point of a marker, and their arms to it."""
-        packed, system = self.packed, self.packed.system
-        near = SAME_POINT * packed.size
+        system, near = self.packed.system, SAME_POINT * self.packed.size
         arms = {int(system.marker_body[marker]): system.marker_arm[marker]}
-        grows = True
-        while grows:
-            grows = False
-            for joint, (i, j) in zip(packed.joints, packed.markers, strict=True):
-                if joint.kind.constraints != ("point",):
+        waiting = list(arms)
+        while waiting:
+            body = waiting.pop(0)
+            x, y = arms[body]
+            for here, there in self._pins.get(body, ()):
+                other = int(system.marker_body[there])
+                if other in arms:
                     continue
-                for here, there in ((i, j), (j, i)):
-                    body, other = int(system.marker_body[here]), int(system.marker_body[there])
-                    if body not in arms or other in arms:
-                        continue
-                    if np.abs(system.marker_arm[here] - arms[body]).max() <= near:
-                        arms[other] = system.marker_arm[there]
-                        grows = True
+                at = system.marker_arm[here]
+                if abs(at[0] - x) <= near and abs(at[1] - y) <= near:
+                    arms[other] = system.marker_arm[there]
+                    waiting.append(other)
         return arms
+
+    @cached_property
+    def _pins(self) -> dict[int, list[tuple[int, int]]]:
+        """By body, markers of its pins on it and on the other body."""
+        out: dict[int, list[tuple[int, int]]] = {}
+        for joint, (i, j) in zip(self.packed.joints, self.packed.markers, strict=True):
+            if joint.kind.constraints == ("point",):
+                for here, there in ((i, j), (j, i)):
+                    out.setdefault(int(self.packed.system.marker_body[here]), []).append((int(here), int(there)))
+        return out

@@ -7,7 +7,7 @@ is the value that F has when all other constraints are closed, unless the joint 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -49,9 +49,10 @@ def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> bool:
         return given
     special, numbers = packed.system.special.copy(), packed.system.numbers.copy()
     system = packed.system.changed(special=special.view(), numbers=numbers.view())  # sees what is written here
+    pins = _pins_of(packed, q)
     for k in phased:
         i, j, at = (int(system.special[k, column]) for column in (MARKER_I, MARKER_J, AT))
-        arm = _arm_of(packed, q, i, j)
+        arm = _arm_of(packed, q, pins, i, j)
         if arm is not None:
             special[k, ARM] = arm
             line = _place(packed, q, j) - _place(packed, q, i)
@@ -103,18 +104,29 @@ def _place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
     return q[3 * body : 3 * body + 2] + np.array([c * x - s * y, s * x + c * y])
 
 
-def _arm_of(packed: Packed, q: np.ndarray, i: int, j: int) -> int | None:
+class _Pins(NamedTuple):
+    """All pins in a pose."""
+
+    places: np.ndarray
+    """(k, 2) m."""
+    bodies: np.ndarray
+    """(k, 2) numbers of the bodies that each joins."""
+
+
+def _pins_of(packed: Packed, q: np.ndarray) -> _Pins:
+    markers = [pair for joint, pair in zip(packed.joints, packed.markers, strict=True) if joint.kind.pair == "pin"]
+    both = np.array(markers, dtype=np.int64).reshape(-1, 2)
+    places = np.array([_place(packed, q, i) for i in both[:, 0]]).reshape(-1, 2)
+    return _Pins(places, packed.system.marker_body[both])
+
+
+def _arm_of(packed: Packed, q: np.ndarray, pins: _Pins, i: int, j: int) -> int | None:
     """The body with pins at the centres i and j: it carries the line of centres, ground too. None if there is none."""
-    centres = _place(packed, q, i), _place(packed, q, j)
-    pins: list[set[int]] = []
-    for centre, own in zip(centres, (i, j), strict=True):
-        sharing = {int(packed.system.marker_body[own])}
-        for joint, markers in zip(packed.joints, packed.markers, strict=True):
-            if joint.kind.pair == "pin":
-                near = np.linalg.norm(_place(packed, q, markers[0]) - centre) < SAME_PLACE * packed.size
-                sharing |= {int(packed.system.marker_body[marker]) for marker in markers} if near else set()
-        pins.append(sharing)
-    return min(pins[0] & pins[1], default=None)
+    sharing: list[set[int]] = []
+    for marker in (i, j):
+        near = np.hypot(*(pins.places - _place(packed, q, marker)).T) < SAME_PLACE * packed.size
+        sharing.append({int(packed.system.marker_body[marker]), *pins.bodies[near].ravel().tolist()})
+    return min(sharing[0] & sharing[1], default=None)
 
 
 def _turned_to(packed: Packed, q: np.ndarray, markers: tuple[int, int], angles: tuple[float, float]) -> np.ndarray:

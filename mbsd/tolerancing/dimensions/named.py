@@ -17,11 +17,12 @@ from typing import Any
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
-from mbsd.model.change import BAR, BODY, given, given_body
+from mbsd.model.change import values_of
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, connections
 from mbsd.tolerancing.dimensions.clearance import Clearance
 from mbsd.tolerancing.dimensions.dimension import Column, Dimension, LoosePlay, PushedPlay, Size
+from mbsd.tolerancing.dimensions.reach import refuse_beyond
 from mbsd.tolerancing.dimensions.spreads import spread_of
 
 PIN, PLAY = "revolute", "play"
@@ -98,7 +99,7 @@ def _plain(m: Model, name: Any, value: Any) -> list[Dimension]:
     if name not in every or name == "ground":
         known = [*_lengths(m), *m.joints, *m.traces]
         raise ModelError(f"{m.name}: tolerances: {no_such('bar, rod, joint or traced point', name, known)}")
-    numbers = [key for key, nominal in (_arguments(m, name) or {}).items() if _single(nominal)]
+    numbers = [key for key, nominal in (values_of(m, name) or {}).items() if _single(nominal)]
     if not numbers:
         raise ModelError(f"{m.name}: tolerances: '{name}' has neither a length nor a number that could stray")
     raise ModelError(
@@ -111,7 +112,7 @@ def _named(m: Model, name: Any, key: str, value: Any) -> Dimension:
     """One number of a name."""
     if key in AXES and (name in m.traces or name in m.joints):
         return _coordinate(m, name, key, value)
-    known = _arguments(m, name)
+    known = values_of(m, name)
     if known is None and name in m.traces:
         raise ModelError(f"{m.name}: tolerances: '{name}': {no_such('coordinate', key, AXES)}")
     if known is None:
@@ -139,24 +140,13 @@ def _single(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _arguments(m: Model, name: Any) -> dict[str, Any]:
-    """What ``change`` takes for a name, with its values; None if there is no such name."""
-    for table in connections(m):
-        if name in table:
-            entry: Any = table[name]
-            return {**entry.params, **given(entry)}
-    if not isinstance(name, str) or name not in m.bodies or name == "ground":
-        return None  # pyright: ignore[reportReturnType]
-    body = m.bodies[name]
-    known = BODY if body.length is None else BAR
-    return {key: getattr(body, key) for key in known} | given_body(body)
-
-
 def _coordinate(m: Model, name: str, axis: str, value: Any) -> Dimension:
     marker = m.traces.get(name) or first_marker(m, name)
     nominal = marker.x if axis == "x" else marker.y
     column = Column("place", name, axis, nominal)
-    return _size(m.name, f"{name}.{axis}", value, column, math.hypot(marker.x, marker.y) or None)
+    size = _size(m.name, f"{name}.{axis}", value, column, math.hypot(marker.x, marker.y) or None)
+    refuse_beyond(m, f"'{name}.{axis}' strays by", max(map(abs, size.limits)), marker)
+    return size
 
 
 def first_marker(m: Model, name: str) -> Any:
@@ -202,6 +192,10 @@ def _play(m: Model, name: Any, clearance: Any) -> LoosePlay:
         raise ModelError(
             f"{m.name}: tolerances: '{name}' is no pin but a {m.joints[name].kind.name}; play is that of a pin in "
             "its bore"
+        )
+    for marker in (m.joints[name].i, m.joints[name].j):
+        refuse_beyond(
+            m, f"the pin of '{name}' lies off its bore's centre by half of its play,", 0.5 * clearance.limits[1], marker
         )
     columns = tuple(Column("bore", name, axis) for axis in AXES)
     return LoosePlay(name, columns, clearance.play, clearance=clearance)

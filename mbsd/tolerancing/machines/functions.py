@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,8 +16,8 @@ from mbsd.dynamics.many.measures import Measure
 from mbsd.model.mechanism import Model
 from mbsd.tolerancing.dimensions.named import numbers_of
 from mbsd.tolerancing.machines.one_by_one import computed
-from mbsd.tolerancing.machines.results import OfSolution, number_of, result_given
-from mbsd.tolerancing.machines.tasks import Task
+from mbsd.tolerancing.machines.results import OfSolution, called, number_of, result_given
+from mbsd.tolerancing.machines.tasks import Task, alone
 
 
 def function_task(function: Any, sizes: Any, result: Any, duration: float | None, steps: int) -> Task:
@@ -29,13 +31,24 @@ def function_task(function: Any, sizes: Any, result: Any, duration: float | None
     nominal = _defaults(owner, function)
     dimensions = numbers_of(owner, nominal, sizes)
     if result is None:
-        measure: Callable[[Any], Any] = lambda given: given  # noqa: E731
+        measure: Callable[[Any], Any] = partial(_itself, owner)
     elif isinstance(result_given(owner, result), Measure):
         measure = _swept_measure(owner, result, duration, steps)
     else:
-        measure = lambda given: number_of(owner, result(given))  # noqa: E731
-    machines = computed(owner, function, [column for d in dimensions for column in d.columns], measure)
-    return Task(owner, dimensions, machines, machines.at(np.zeros(len(dimensions))))
+        measure = lambda given: number_of(owner, called(owner, result, given))  # noqa: E731
+    columns = [column for d in dimensions for column in d.columns]
+    machines = computed(owner, function, columns, measure)
+    return Task(owner, dimensions, machines, alone(owner, machines, columns))
+
+
+def _itself(owner: str, given: Any) -> Any:
+    """What the function gives is the result. Raises ModelError for a mechanism."""
+    if isinstance(given, Model):
+        raise ModelError(
+            f"{owner}: tolerances: it gives a mechanism, and result= is missing; give a measure of mbsd.measures, such "
+            "as largest('P.y'), or a function of the mechanism that gives a number"
+        )
+    return given
 
 
 def _defaults(owner: str, function: Callable[..., Any]) -> dict[str, float]:
@@ -47,7 +60,10 @@ def _defaults(owner: str, function: Callable[..., Any]) -> dict[str, float]:
     return {
         p.name: float(p.default)
         for p in parameters
-        if isinstance(p.default, kinds) and not isinstance(p.default, bool) and p.kind is not p.POSITIONAL_ONLY
+        if isinstance(p.default, kinds)
+        and not isinstance(p.default, bool)
+        and p.kind is not p.POSITIONAL_ONLY
+        and math.isfinite(p.default)
     }
 
 

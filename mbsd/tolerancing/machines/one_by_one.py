@@ -9,22 +9,26 @@ computed  by a function of the user
 from __future__ import annotations
 
 import copy
-import warnings
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any, Protocol
 
 import numpy as np
 
 from mbsd.base.errors import MechanismError, ModelError
+from mbsd.base.quiet import quiet
 from mbsd.dynamics.many.measures import Measure
 from mbsd.model.change import change
 from mbsd.model.mechanism import Model
 from mbsd.synthesis.changed import lengthen, put_place
 from mbsd.tolerancing.dimensions.dimension import Column
 from mbsd.tolerancing.dimensions.named import first_marker
-from mbsd.tolerancing.machines.results import NAME, OfSolution, called, number_of
+from mbsd.tolerancing.machines.results import NAME, FailingResult, NoNumber, OfSolution, called, number_of
+
+LONGEST = 200
+"""Letters of a reason."""
 
 
 @dataclass
@@ -51,9 +55,9 @@ class Machines(Protocol):
 
 
 def reason_of(error: MechanismError) -> str:
-    """The type of an error: what failed alike is counted together, whatever its numbers."""
-    said = (type(error).__doc__ or "").strip().partition("\n")[0].rstrip(".")
-    return f"{type(error).__name__} ({said[:1].lower()}{said[1:]})" if said else type(error).__name__
+    """The type of an error and its first sentence."""
+    said = " ".join(str(error).split()).partition(". ")[0].rstrip(".")
+    return f"{type(error).__name__} ({said[:LONGEST]})" if said else type(error).__name__
 
 
 class OneByOne:
@@ -63,6 +67,8 @@ class OneByOne:
 
     def __init__(self, way: str, evaluate: Callable[[np.ndarray], float]) -> None:
         self.way, self._evaluate = way, evaluate
+        self._reasons: dict[type[MechanismError], str] = {}
+        """What failed by an error of one type is counted together, under what the first of them said."""
 
     def at(self, row: np.ndarray) -> float:
         """The result of a row. Raises what it raises."""
@@ -71,26 +77,31 @@ class OneByOne:
     def __call__(self, x: np.ndarray) -> Answers:
         """The result of each row."""
         out = Answers(np.full(len(x), np.nan))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with quiet():
             for k, row in enumerate(x):
                 try:
                     out.values[k] = self._evaluate(row)
-                except ModelError as error:
-                    if "tolerances: result" in str(error):
-                        raise
-                    out.failures[reason_of(error)] += 1
+                except FailingResult as error:
+                    out.failures[error.reason] += 1
+                except NoNumber:
+                    raise
                 except MechanismError as error:
-                    out.failures[reason_of(error)] += 1
+                    out.failures[self._reasons.setdefault(type(error), reason_of(error))] += 1
         return out
 
 
 def swept(m: Model, columns: Sequence[Column], result: Measure | Callable[[Any], Any], grid: np.ndarray) -> OneByOne:
-    """Machines swept one by one over times ``grid`` (T,)."""
+    """Machines swept one by one over times ``grid`` (T,); they share the plan of ``m``."""
+    from mbsd.kinematics.prepare import prepare
     from mbsd.kinematics.sweep import sweep
 
     of_solution = OfSolution(m, result)
-    return OneByOne("swept one by one", lambda row: of_solution(sweep(with_numbers(m, columns, row), None, 1, grid)))
+    own = cache(lambda: prepare(m, float(grid[0]), float(grid[-1])))  # once, and if any is asked for
+
+    def evaluate(row: np.ndarray) -> float:
+        return of_solution(sweep(with_numbers(m, columns, row), None, 1, grid, beside=own()))
+
+    return OneByOne("swept one by one", evaluate)
 
 
 def with_numbers(m: Model, columns: Sequence[Column], row: np.ndarray) -> Any:
@@ -120,7 +131,7 @@ class Simulated:
     ) -> None:
         self._m, self._columns, self._options = m, columns, dict(options)
         self._result: Any = {NAME: result} if isinstance(result, Measure) else self._of_solution(result)
-        self.at_once = 10_000
+        self.at_once = 2000  # of more, progress would say nothing for long
         for column in columns:
             if column.kind not in ("length", "argument"):
                 what = "play" if column.kind in ("bore", "reaction") else "place"
@@ -141,9 +152,9 @@ class Simulated:
         many = self._m.simulate_many(vary=vary, measure=self._result, **self._options)
         self.way = f"simulated: {many.way}"
         failures: Counter[str] = Counter(" ".join(reason.split())[:120] for reason in many.reason if reason)
-        wrong = next((reason for reason in failures if "tolerances: result" in reason), None)
+        wrong = next((reason for reason in failures if reason.startswith(f"{NoNumber.__name__}: ")), None)
         if wrong:
-            raise ModelError(wrong)
+            raise NoNumber(wrong.partition(": ")[2])
         return Answers(many[NAME].reshape(len(x)), failures)
 
 

@@ -17,6 +17,19 @@ from mbsd.model.mechanism import Model
 NAME = "result"
 
 
+class NoNumber(ModelError):
+    """The function that gives the result gives something else than a number."""
+
+
+class FailingResult(ModelError):
+    """The function that gives the result raised an error."""
+
+    @property
+    def reason(self) -> str:
+        """What it raised, as the reason of a machine."""
+        return f"the result fails: {described(self.__cause__ or self)}"
+
+
 def result_given(owner: str, result: Any) -> Measure | Callable[[Any], Any]:
     """``result``, which must be a measure or a function. Raises ModelError."""
     if isinstance(result, Measure) or (callable(result) and not isinstance(result, type)):
@@ -27,14 +40,22 @@ def result_given(owner: str, result: Any) -> Measure | Callable[[Any], Any]:
     )
 
 
+def named_after(result: Any) -> str:
+    """What a result is of: its measure's quantity, or the name of its function."""
+    if isinstance(result, Measure):
+        return result.quantity
+    name = getattr(result, "__name__", "")
+    return name if name.isidentifier() else NAME
+
+
 def numbers_of_batch(owner: str, given: Any, count: int) -> np.ndarray:
     """(n,) what a function of a Batch gave. Raises ModelError for anything else."""
     values = np.asarray(given)
     if values.dtype.kind not in "fiub" or values.shape != (count,):
         what = f"an array {values.shape}" if values.dtype.kind in "fiub" and values.ndim else shown(given)
         raise ModelError(
-            f"{owner}: tolerances: result gives {what} of {count} machines; it must give a number of each, as in "
-            'lambda batch: batch.points["P"][:, :, 1].max(axis=1)'
+            f"{owner}: tolerances: result gives {what} of {count} machine{'s' * (count > 1)}; it must give a number of "
+            'each, as in lambda batch: batch.points["P"][:, :, 1].max(axis=1)'
         )
     return values.astype(float)
 
@@ -43,18 +64,18 @@ def number_of(owner: str, given: Any) -> float:
     """What a function of a single machine gave. Raises ModelError for no number."""
     value = given.item() if getattr(given, "size", 0) == 1 and hasattr(given, "item") else given
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ModelError(f"{owner}: tolerances: result gives {shown(given)}; it must give a number")
+        raise NoNumber(f"{owner}: tolerances: result gives {shown(given)}; it must give a number")
     return float(value)
 
 
 def called(owner: str, function: Callable[..., Any], *given: Any, **named: Any) -> Any:
-    """What a function of the user gives; what it raises becomes a ModelError, but for those of mechanisms."""
+    """What a function of the user gives. Raises FailingResult for what it raises, but for errors of mechanisms."""
     try:
         return function(*given, **named)
     except MechanismError:
         raise
     except Exception as error:
-        raise ModelError(f"{owner}: tolerances: result fails: {described(error)}") from error
+        raise FailingResult(f"{owner}: tolerances: result fails: {described(error)}") from error
 
 
 def measured(owner: str, measure: Measure, t: np.ndarray, along: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -13,6 +13,7 @@ from mbsd.base.arguments import whole_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.dynamics.many.measures import Measure
+from mbsd.kinematics.batch import MOST_THREADS
 from mbsd.tolerancing.dimensions.dimension import Dimension, LoosePlay
 from mbsd.tolerancing.dimensions.named import dimensions_of, pushed
 from mbsd.tolerancing.machines.batched import Batched, push_directions, serves
@@ -37,8 +38,8 @@ def task_of(m: Any, sizes: Any, result: Any, duration: float | None, steps: int,
     """That of a mechanism; see :func:`mbsd.tolerances`. Raises ModelError."""
     if way not in WAYS:
         raise ModelError(f"{m.name}: tolerances: {no_such('way', way, WAYS)}")
-    if threads is not None:
-        whole_number(f"{m.name}: tolerances: threads", threads)
+    if threads is not None and whole_number(f"{m.name}: tolerances: threads", threads) > MOST_THREADS:
+        raise ModelError(f"{m.name}: tolerances: threads is {threads}; it must be {MOST_THREADS} at most")
     result = result_given(m.name, result)
     dimensions = dimensions_of(m, sizes)
     _refuse_twice(m.name, dimensions)
@@ -80,7 +81,7 @@ def _driven(
                     "swept all at once, and these are not; take Clearance(..., direction='any')"
                 )
         machines: Machines = swept(m, columns, result, grid)
-        return Task(m.name, dimensions, machines, _alone(m.name, machines, columns), _notes([], pins))
+        return Task(m.name, dimensions, machines, alone(m.name, machines, columns), _notes([], pins))
     pushes = push_directions(ideal, [pin.label for pin in pins if pin.clearance.direction != "any"])
     dimensions = [_settled(m.name, d, pushes) for d in dimensions]
     columns = [column for d in dimensions for column in d.columns]
@@ -88,7 +89,7 @@ def _driven(
     poses = np.ascontiguousarray(ideal.q.reshape(len(grid), -1))
     machines = Batched(m, columns, result, grid, known, poses, threads)
     loose = [pin for pin in pins if pin.label not in known]
-    return Task(m.name, dimensions, machines, _alone(m.name, machines, columns), _notes(list(known), loose))
+    return Task(m.name, dimensions, machines, alone(m.name, machines, columns), _notes(list(known), loose))
 
 
 def _settled(owner: str, dimension: Dimension, pushes: Mapping[str, np.ndarray | None]) -> Dimension:
@@ -110,7 +111,7 @@ def _notes(known: Sequence[str], loose: Sequence[Any]) -> list[str]:
     return out + ([f"gap in any direction: {', '.join(pin.label for pin in loose)}"] if loose else [])
 
 
-def _alone(owner: str, machines: Machines, columns: Sequence[Any]) -> float:
+def alone(owner: str, machines: Machines, columns: Sequence[Any]) -> float:
     """The result of the mechanism as it is given. Raises ModelError where it has none."""
     if isinstance(machines, OneByOne):
         value = machines.at(np.zeros(len(columns)))
@@ -133,7 +134,7 @@ def _simulated(
     columns = [column for d in dimensions for column in d.columns]
     options = {"duration": duration, "steps": steps, "threads": threads}
     machines = Simulated(m, columns, result, options)
-    return Task(m.name, dimensions, machines, _alone(m.name, machines, columns))
+    return Task(m.name, dimensions, machines, alone(m.name, machines, columns))
 
 
 def _refuse_twice(owner: str, dimensions: Sequence[Dimension]) -> None:

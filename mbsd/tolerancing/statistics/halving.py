@@ -40,25 +40,30 @@ def curved(values: np.ndarray, linear_std: float) -> bool:
     return abs(std - linear_std) > off * max(std, linear_std) + ROUNDING * float(np.abs(good).max())
 
 
+def solved_again(values: np.ndarray, all_of_them: bool, count: int) -> np.ndarray:
+    """(n,) machines to be solved again for each of ``count`` dimensions: all, or those that failed if they are few."""
+    failed = np.isnan(values)
+    if all_of_them:
+        return np.ones(len(values), bool)
+    return failed if failed.sum() * count <= len(values) else np.zeros(len(values), bool)  # they stay failed
+
+
 def halving(
     evaluate: Evaluate,
     dimensions: Sequence[Dimension],
     x: np.ndarray,
     values: np.ndarray,
     slopes: np.ndarray,
-    again: bool,
+    again: np.ndarray,
     part_within: Callable[[np.ndarray], float],
 ) -> Halving:
-    """Halve one tolerance after the other of machines (n, columns) with results (n,); ``again`` solves all of them."""
-    solved = np.ones(len(x), bool) if again else np.isnan(values)
-    if not again and solved.sum() * len(dimensions) > len(x):
-        solved[:] = False  # they stay failed
+    """Halve one tolerance after the other of machines (n, columns) with results (n,); solve those ``again`` (n,)."""
     out = np.zeros((2, len(dimensions)))
     for k, (dimension, part) in enumerate(zip(dimensions, parts(dimensions), strict=True)):
         other = x.copy()
         other[:, part] = dimension.halved(x[:, part])
         results = values + (other - x)[:, part] @ slopes[part]
-        if solved.any():
-            results[solved] = evaluate(other[solved])
+        if again.any():
+            results[again] = evaluate(other[again])
         out[:, k] = np.nanstd(results, ddof=1), part_within(results)
-    return Halving(out[0], out[1], again)
+    return Halving(out[0], out[1], bool(again.all()))

@@ -52,12 +52,12 @@ def sobol_indices(evaluate: Evaluate, dimensions: Sequence[Dimension], power: in
     width = sum(d.draws for d in dimensions)
     points = Points(2 * width, scramble=True, rng=np.random.default_rng(seed)).random_base2(power)
     a, b = (deviations(dimensions, u) for u in (points[:, :width], points[:, width:]))
-    sets = [a, b]
+    results = [evaluate(a), evaluate(b)]
     for part in parts(dimensions):
-        mixed = a.copy()
-        mixed[:, part] = b[:, part]
-        sets.append(mixed)
-    values = np.stack([evaluate(x) for x in sets])
+        own = a.copy()
+        own[:, part] = b[:, part]
+        results.append(evaluate(own))
+    values = np.stack(results)
     good = np.isfinite(values).all(axis=0)
     f_a, f_b, mixed = values[0, good], values[1, good], values[2:, good]
     variance = float(np.concatenate([f_a, f_b]).var()) if good.any() else 0.0

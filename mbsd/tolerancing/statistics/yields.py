@@ -35,7 +35,13 @@ def limits_given(owner: str, limits: Any) -> Limits | None:
     what = f"{owner}: tolerances: limits"
     if not isinstance(limits, tuple | list) or len(limits) != 2 or limits[0] is limits[1] is None:
         raise ModelError(f"{what} are {shown(limits)}; give (lowest, highest), of which one may be None")
-    low, high = (None if value is None else finite_number(what, value) for value in limits)
+    for name, value in zip(("lowest", "highest"), limits, strict=True):
+        if isinstance(value, float) and math.isinf(value):
+            raise ModelError(f"{what}: {name} is {value}; give None where there is no limit")
+    low, high = (
+        None if value is None else finite_number(f"{what}: {name}", value)
+        for name, value in zip(("lowest", "highest"), limits, strict=True)
+    )
     if low is not None and high is not None and low >= high:
         raise ModelError(f"{what} are from {low:g} to {high:g}; the lowest comes first")
     return low, high

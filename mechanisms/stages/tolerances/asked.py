@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
 TAKEN = ("sizes", "result", "limits", "n", "seed", "duration", "steps", "way", "sobol", "corners", "confidence")
 """Arguments of mbsd.tolerances that a result may give."""
-USUAL = 10_000
-"""Machines where nothing is said."""
 FORM = 'def tolerances(p): return {"far_end": {"sizes": {"crank": 5e-5}, "result": largest("slider.x")}}'
 
 
@@ -69,19 +67,19 @@ def _ready(name: str, file: str, result: str, m: Mechanism, options: dict[str, A
 
     try:
         with loading.author_code(name), solving.model_warnings_said():
-            return ready(copy.deepcopy(m), **options, progress=_progress(f"{name}: {result}", options.get("n", USUAL)))
+            return ready(copy.deepcopy(m), **options, progress=_progress(f"{name}: {result}"))
     except MechanismError as error:
         raise UserError(f"{file}: '{result}': {error}") from error
 
 
-def _progress(what: str, n: int) -> Callable[[float], None]:
-    """Says now and then how many machines are solved, where that takes long."""
+def _progress(what: str) -> Callable[[float], None]:
+    """Says now and then what part of the machines is solved, where that takes long."""
     bar: list[console.Shown] = []
 
     def progress(part: float) -> None:
         if not bar:
-            bar.append(console.Shown("tolerances", what, n, "machines"))
-        bar[0].count = round(part * n) - 1
+            bar.append(console.Shown("tolerances", what, 100, "per cent of its machines"))
+        bar[0].count = max(1, int(100 * part)) - 1
         bar[0].advance()
 
     return progress

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mbsd.dynamics.many.events.arrays import Events
+from mbsd.dynamics.many.repeated.arrays import Repeated
 from mbsd.dynamics.reference.sliding import Sliding
 
 ROW, BLOCK, SIDE, KIND, RELATIVE, FRICTION = range(6)
@@ -72,6 +74,17 @@ class Wheels(NamedTuple):
     """mbsd.dynamics.state.State: where a step began."""
 
 
+class Curves(NamedTuple):
+    """Points on curves that cross themselves or their continuations; see arrays/curve_branches.py."""
+
+    place: Any
+    """(k, 4) int: the row in Workspace.relative, markers i and j, and where its numbers begin."""
+    numbers: Any
+    """Those of their equations."""
+    feet: Any
+    """(k,) parameters of feet after a step."""
+
+
 LIMIT, FORCE, UNSHARED, PREVIOUS, LEFT = range(5)
 """Rows of Sticks.vector: limits of friction; normal forces and friction; friction before it is shared, and as it was
 shared last; accelerations that friction leaves, and friction that would hold joints alone."""
@@ -121,8 +134,10 @@ class Contacts(NamedTuple):
     """(m,)"""
     force: Any
     """(3 nb,)"""
+    parts: Any
+    """(6,) PARTS."""
     samples: Any
-    """(6, c) what is looked at along a step, at PARTS: see within.read."""
+    """(c, 6) what is looked at along a step, at PARTS: see within.read."""
     answer: Any
     """(c, 3 nb) change of velocities by a unit impulse along each row."""
     compliance: Any
@@ -148,3 +163,8 @@ class Contacts(NamedTuple):
     friction: Friction
     """The contacts with friction."""
     wheels: Wheels
+    curves: Curves
+    events: Events
+    """Those of the user; e-th of them is met as row c + e."""
+    repeated: Repeated
+    """Rows of joints that repeat others."""

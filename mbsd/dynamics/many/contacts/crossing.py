@@ -6,7 +6,6 @@ k: a row of Contacts, whose scalar within.py says.
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.bounds import HALVINGS
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
 from mbsd.dynamics.many.contacts.arrays import (
     BEYOND,
@@ -26,7 +25,9 @@ from mbsd.dynamics.many.contacts.arrays import (
     WAY,
     WHERE,
 )
-from mbsd.dynamics.many.contacts.dips import first_dip, may_dip
+from mbsd.dynamics.many.contacts.dips import may_dip
+from mbsd.dynamics.many.contacts.events.crossing import first_event
+from mbsd.dynamics.many.contacts.roots import MOST_ROOTS, SAMPLES, dips_before, root_between
 from mbsd.dynamics.many.contacts.rows import gaps_of
 from mbsd.dynamics.many.contacts.within import (
     along,
@@ -42,63 +43,14 @@ from mbsd.dynamics.reference.acceleration import derivative
 
 ROUNDING = 1e-10
 """Rounding of forces, as part of the largest."""
-CLOSE = 1e-14
-MOST_ROOTS = 80
-SAMPLES = 6
 
 
 @internal
 def still_of(contacts, k):
     """Values of row k above minus this are rounding."""
+    if k >= contacts.place.shape[0]:
+        return 0.0
     return ROUNDING * contacts.clock[LOAD] if contacts.number[k, CLOSED] > 0.0 else contacts.number[k, NEAR]
-
-
-@apart
-def quintic_root(dyn, scratch, contacts, k, level, left, right, at_left, at_right):
-    """Part of the step between ``left`` and ``right`` where the quintic of row k passes ``level``."""
-    a = right
-    fa = at_right - level
-    b = left
-    fb = at_left - level
-    c = a
-    fc = fa
-    part = fa / (fa - fb)
-    for _ in range(MOST_ROOTS):
-        part = min(max(part, 1e-9), 1.0 - 1e-9)
-        x = a + part * (b - a)
-        f = on_quintic(dyn, scratch, contacts, k, x) - level
-        a, fa, b, fb, c, fc = narrowed(a, fa, b, fb, x, f)
-        if f == 0.0 or abs(b - a) <= CLOSE:
-            break
-        part = next_part(a, fa, b, fb, c, fc)
-    return a
-
-
-@apart
-def _root(dyn, scratch, contacts, k, i, still, zero):
-    """Between two parts of the step, and a part where it is negative; the first counts as zero up to ``zero``."""
-    left = PARTS[i]
-    right = PARTS[i + 1]
-    at_left = contacts.samples[i, k]
-    at_right = contacts.samples[i + 1, k]
-    level = min(0.0, max(at_left, -still))
-    negative = right
-    if at_left <= zero:
-        start = left
-        positive = -1.0
-        for _ in range(HALVINGS):
-            middle = 0.5 * (start + right)
-            value = on_quintic(dyn, scratch, contacts, k, middle)
-            if value - level > 0.0:
-                positive = middle
-                at_left = value
-                break
-            right = middle
-            at_right = value
-        if positive < 0.0:
-            return start, negative
-        left = positive
-    return quintic_root(dyn, scratch, contacts, k, level, left, right, at_left, at_right), negative
 
 
 @apart
@@ -121,22 +73,36 @@ def _leaves(dyn, scratch, contacts, k):
 def _falls(dyn, scratch, contacts, k, until):
     """Where samples of contact k show a fall through zero before ``until``, and a part where it is negative; -1, -1."""
     still = still_of(contacts, k)
+    values = contacts.samples[k]
     first = 0
-    while first < SAMPLES - 1 and not contacts.samples[first + 1, k] < -still:
+    while first < SAMPLES - 1 and not values[first + 1] < -still:
         first += 1
     if first == SAMPLES - 1 or PARTS[first] >= until:
         return -1.0, -1.0
-    where, negative = _root(dyn, scratch, contacts, k, first, still, still)
+    where, negative = root_between(
+        dyn, scratch, contacts, k, PARTS[first], PARTS[first + 1], values[first], values[first + 1], still, still
+    )
     gap = contacts.place[k, KIND] == GAP and contacts.number[k, CLOSED] == 0.0
     if where == 0.0 and gap and _leaves(dyn, scratch, contacts, k):
         opened = 0
-        while opened < SAMPLES and not contacts.samples[opened, k] > still:
+        while opened < SAMPLES and not values[opened] > still:
             opened += 1
-        while opened < SAMPLES - 1 and not contacts.samples[opened + 1, k] < -still:
+        while opened < SAMPLES - 1 and not values[opened + 1] < -still:
             opened += 1
         if opened >= SAMPLES - 1:
             return -1.0, -1.0
-        where, negative = _root(dyn, scratch, contacts, k, opened, still, still)
+        where, negative = root_between(
+            dyn,
+            scratch,
+            contacts,
+            k,
+            PARTS[opened],
+            PARTS[opened + 1],
+            values[opened],
+            values[opened + 1],
+            still,
+            still,
+        )
     return where, negative
 
 
@@ -144,48 +110,44 @@ def _falls(dyn, scratch, contacts, k, until):
 def _met_of(dyn, own, scratch, settings, contacts, out, before, after, k, until):
     """Where the scalar of row k first falls through zero, and a part where it is negative; -1, -1 where it does not."""
     where, negative = _falls(dyn, scratch, contacts, k, until)
-    count = SAMPLES
-    if where >= 0.0:
-        count = 0
-        while count < SAMPLES and PARTS[count] <= where:
-            count += 1
-    above, below = first_dip(dyn, own, scratch, settings, contacts, out, before, after, k, count, still_of(contacts, k))
-    if below >= 0.0:
-        high = on_quintic(dyn, scratch, contacts, k, above)
-        low = on_quintic(dyn, scratch, contacts, k, below)
-        where = 0.5 * (above + below)
-        negative = below
-        if high > 0.0 > low:
-            where = quintic_root(dyn, scratch, contacts, k, 0.0, above, below, high, low)
-    return where, negative
+    still = still_of(contacts, k)
+    return dips_before(
+        dyn, own, scratch, settings, contacts, out, before, after, k, contacts.parts, contacts.samples[k], SAMPLES,
+        still, where, negative,
+    )  # fmt: skip
 
 
 @internal
 def _may_meet(contacts, k):
     """Whether samples of contact k leave it open that it falls through zero; most steps end here."""
     still = still_of(contacts, k)
+    values = contacts.samples[k]
+    may = False
     for i in range(1, SAMPLES):
-        if contacts.samples[i, k] < -still or may_dip(contacts, k, i - 1, SAMPLES, still):
-            return True
-    return False
+        may = may or values[i] < -still or may_dip(contacts.parts, values, i - 1, SAMPLES, still)
+    return may
 
 
 @apart
 def first_met(dyn, own, scratch, state, settings, contacts, out, before, after):
     """The row whose scalar is the first to fall through zero within the step to ``state``; -1: none.
 
-    WHERE and BEYOND of the clock are set.
+    What comes behind the last row is an event of the user. WHERE and BEYOND of the clock are set.
     """
     count = contacts.place.shape[0]
     friction = contacts.friction
     gaps = gaps_of(contacts)
-    sample(dyn, scratch, contacts)
+    events = contacts.events.table.shape[0]
+    if count > 0:
+        sample(dyn, scratch, contacts)
+    for e in range(events):
+        contacts.events.skipped[e] = 0
     for k in range(count):
         contacts.chosen[SKIPPED, k] = 0 if _may_meet(contacts, k) else 1
     for w in range(friction.gap.shape[0]):
         if contacts.number[gaps + w, CLOSED] == 0.0 and contacts.number[gaps + w, SIGN] == 0.0:
             contacts.chosen[SKIPPED, gaps + w] = 1
-    for _ in range(count):
+    for _ in range(count + events):
         best = -1
         for turn in range(2 * count):  # joints at rest come last where several are met at once
             k = friction.order[turn % count]
@@ -198,6 +160,8 @@ def first_met(dyn, own, scratch, state, settings, contacts, out, before, after):
                 best = k
                 contacts.clock[WHERE] = where
                 contacts.clock[BEYOND] = negative
+        if events > 0:
+            best = first_event(dyn, own, scratch, settings, contacts, out, before, after, best)
         if best < 0 or contacts.clock[WHERE] == 0.0:
             return best
         if contacts.clock[BEYOND] == 1.0:
@@ -209,7 +173,10 @@ def first_met(dyn, own, scratch, state, settings, contacts, out, before, after):
             return best
         if contacts.clock[FAILURE] != 0.0:
             return -1
-        contacts.chosen[SKIPPED, best] = 1  # the quintic falls below zero, the motion does not
+        if best < count:  # the quintic falls below zero, the motion does not
+            contacts.chosen[SKIPPED, best] = 1
+        else:
+            contacts.events.skipped[best - count] = 1
     return -1
 
 

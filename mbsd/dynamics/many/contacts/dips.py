@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import apart, inlined, internal
 from mbsd.dynamics.events.dips import AT_END, INSIDE, NARROWEST, NEAR, SLACK, UNSURE
-from mbsd.dynamics.many.contacts.arrays import LENGTH, MOST_LOOKS, PARTS, START
+from mbsd.dynamics.many.contacts.arrays import LENGTH, MOST_LOOKS, START
 from mbsd.dynamics.many.contacts.within import of_motion, on_quintic
 
 A, FA, B, FB, FALLS, RISES = range(6)
@@ -34,26 +34,26 @@ def _put(piece, a, fa, b, fb, falls, rises):
 
 
 @inlined
-def _slopes(contacts, k, i, count):
+def _slopes(x, values, i, count):
     """Slopes of the lines through the samples on both sides of the i-th interval; 0 where there are none."""
     left = 0.0
     right = 0.0
     if i > 0:
-        left = (contacts.samples[i, k] - contacts.samples[i - 1, k]) / (PARTS[i] - PARTS[i - 1])
+        left = (values[i] - values[i - 1]) / (x[i] - x[i - 1])
     if i + 2 < count:
-        right = (contacts.samples[i + 2, k] - contacts.samples[i + 1, k]) / (PARTS[i + 2] - PARTS[i + 1])
+        right = (values[i + 2] - values[i + 1]) / (x[i + 2] - x[i + 1])
     return left, right
 
 
 @internal
-def may_dip(contacts, k, i, count, still):
-    """Whether contact k may fall below -``still`` in the i-th interval, by its first ``count`` samples alone."""
-    fa = contacts.samples[i, k]
-    fb = contacts.samples[i + 1, k]
+def may_dip(x, values, i, count, still):
+    """Whether a scalar may fall below -``still`` in the i-th interval, by its first ``count`` values at x alone."""
+    fa = values[i]
+    fb = values[i + 1]
     if i == 0 and min(fa, fb) <= still:
         return False  # it has just left zero
-    width = PARTS[i + 1] - PARTS[i]
-    left, right = _slopes(contacts, k, i, count)
+    width = x[i + 1] - x[i]
+    left, right = _slopes(x, values, i, count)
     if (i > 0 and left >= 0.0) or (i + 2 < count and right <= 0.0):
         return False
     level = -still + NEAR * max(fa + still, fb + still, 0.0)
@@ -63,13 +63,13 @@ def may_dip(contacts, k, i, count, still):
 
 
 @internal
-def _interval(dyn, scratch, contacts, k, i, count):
+def _interval(dyn, scratch, contacts, k, x, values, i, count):
     """Fill intervals[0] with the i-th."""
-    a = PARTS[i]
-    b = PARTS[i + 1]
-    fa = contacts.samples[i, k]
-    fb = contacts.samples[i + 1, k]
-    left, right = _slopes(contacts, k, i, count)
+    a = x[i]
+    b = x[i + 1]
+    fa = values[i]
+    fb = values[i + 1]
+    left, right = _slopes(x, values, i, count)
     near = AT_END * (b - a)
     falls = (on_quintic(dyn, scratch, contacts, k, a + near) - fa) / near
     rises = (fb - on_quintic(dyn, scratch, contacts, k, b - near)) / near
@@ -117,17 +117,17 @@ def _searched(dyn, own, scratch, settings, contacts, out, before, after, k, leve
 
 
 @apart
-def first_dip(dyn, own, scratch, settings, contacts, out, before, after, k, count, still):
-    """Parts between which contact k first falls below -``still`` among the first ``count`` samples; -1: it does not."""
-    low = contacts.samples[0, k]
+def first_dip(dyn, own, scratch, settings, contacts, out, before, after, k, x, values, count, still):
+    """Parts between which row k first falls below -``still`` among ``count`` values at x; -1: it does not."""
+    low = values[0]
     high = low
     for i in range(1, count):
-        low = min(low, contacts.samples[i, k])
-        high = max(high, contacts.samples[i, k])
+        low = min(low, values[i])
+        high = max(high, values[i])
     for i in range(count - 1):
-        if not may_dip(contacts, k, i, count, still):
+        if not may_dip(x, values, i, count, still):
             continue
-        _interval(dyn, scratch, contacts, k, i, count)
+        _interval(dyn, scratch, contacts, k, x, values, i, count)
         kept_falls = contacts.intervals[0, FALLS]
         kept_rises = contacts.intervals[0, RISES]
         level = UNSURE * (high - low) - still
@@ -138,10 +138,7 @@ def first_dip(dyn, own, scratch, settings, contacts, out, before, after, k, coun
             t = contacts.clock[START] + contacts.clock[LENGTH] * below
             if of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, t) < -still:
                 return above, below
-        _put(
-            contacts.intervals[0], PARTS[i], contacts.samples[i, k], PARTS[i + 1], contacts.samples[i + 1, k],
-            kept_falls, kept_rises,
-        )  # fmt: skip
+        _put(contacts.intervals[0], x[i], values[i], x[i + 1], values[i + 1], kept_falls, kept_rises)
         above, below = _searched(dyn, own, scratch, settings, contacts, out, before, after, k, -still, True)
         if below >= 0.0:
             return above, below

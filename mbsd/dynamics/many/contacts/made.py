@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from mbsd.arrays.curve_branches import CURVES
+from mbsd.dynamics.events.bounds import NEAR as CLOSED_GAP
 from mbsd.dynamics.events.laws.division import division_of
-from mbsd.dynamics.events.sides import NEAR as CLOSED_GAP
 from mbsd.dynamics.events.steps import STILL
 from mbsd.dynamics.many.contacts.arrays import (
     BESIDE,
@@ -25,10 +28,13 @@ from mbsd.dynamics.many.contacts.arrays import (
     STATIC,
     WAY,
     Contacts,
+    Curves,
     Friction,
     Sticks,
     Wheels,
 )
+from mbsd.dynamics.many.events.made import events_of
+from mbsd.dynamics.many.repeated.made import repeated_of
 from mbsd.dynamics.prepare.following import SHORTEST
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.schur import Schur
@@ -36,26 +42,31 @@ from mbsd.dynamics.reference.sequence import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import State
+from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
 from mbsd.equations.constraints.relative import ROW as RELATIVE_ROW
 from mbsd.kinematics.limits.free_wheels import HALF, MET
+from mbsd.model.event import Event
 from mbsd.model.teeth import with_radii
 
 MOST = 40
 """Contacts of which all meet all others in small full matrices."""
 
 
-def why_not(ready: PreparedDynamics) -> str | None:
-    """Why events of this mechanism are left to single simulations, or None."""
+def why_not(ready: PreparedDynamics, events: Sequence[Event]) -> str | None:
+    """Why events of this mechanism, and those of the user, are left to single simulations, or None."""
     contacts, sticks = ready.switches.contacts, ready.sticks
-    if (contacts or sticks) and ready.approaches:
-        return f"'{[*contacts, *sticks][0].name}' is beside a contact that remembers how fast it began"
+    if (contacts or sticks or events) and ready.approaches:
+        return f"'{[*contacts, *sticks, *events][0].name}' is beside a contact that remembers how fast it began"
     if len(contacts) + len(sticks) > MOST:
         return f"it has {len(contacts) + len(sticks)} contacts and joints that stick; {MOST} at most"
     return None
 
 
-def contacts_of(ready: PreparedDynamics, state: State) -> Contacts:
-    """Those of a run at its start; all are open, and all joints slide."""
+def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], longest: float) -> Contacts:
+    """Those of a run at its start, and events of the user; all are open, and all joints slide.
+
+    ``longest``: of all steps (s).
+    """
     own = _places(ready)
     c, n3, rows = len(own), state.y.shape[1], len(state.lam)
     pushing = c + 2 * len(_rough(ready)) + 2 * len(ready.sticks)
@@ -74,7 +85,8 @@ def contacts_of(ready: PreparedDynamics, state: State) -> Contacts:
         np.zeros((2, n3)),
         np.zeros(rows),
         np.zeros(n3),
-        np.zeros((len(PARTS), c)),
+        PARTS.copy(),
+        np.zeros((c, len(PARTS))),
         np.zeros((c, n3)),
         np.zeros((c, c)),
         np.zeros((c, c)),
@@ -87,6 +99,9 @@ def contacts_of(ready: PreparedDynamics, state: State) -> Contacts:
         _sticks_of(ready, c, n3, rows),
         _friction_of(ready, c, n3, rows),
         _wheels_of(ready, another()),
+        _curves_of(ready),
+        events_of(ready, events, longest),
+        repeated_of(ready),
     )
 
 
@@ -164,13 +179,28 @@ def _wheels_of(ready: PreparedDynamics, before: State) -> Wheels:
     )
 
 
+def _curves_of(ready: PreparedDynamics) -> Curves:
+    """Points on curves that cross themselves."""
+    special, rows = ready.packed.system.special, ready.following.rows
+    own = {(row.i, row.j) for row in rows}
+    place = [
+        (k, int(entry[MARKER_I]), int(entry[MARKER_J]), int(entry[AT]))
+        for k, entry in enumerate(special)
+        if ready.packed.specials.names[k] in CURVES and (int(entry[MARKER_I]), int(entry[MARKER_J])) in own
+    ]
+    numbers = ready.packed.system.numbers.copy() if rows else np.zeros(0)
+    return Curves(np.array(place, np.int64).reshape(-1, 4), numbers, np.zeros(len(place)))
+
+
 def _without(ready: PreparedDynamics) -> tuple[Schur, np.ndarray]:
     """What steps need while all contacts are open."""
     packed, schur, special = ready.packed, ready.dynamics.schur, ready.packed.system.special
     if not ready.switches.contacts and not ready.sticks:
         return schur, special
-    blocks = schur.rows[(schur.rows >= 0).any(axis=1)]
-    kept = blocks[np.argsort(blocks.max(axis=1))]
     others = int((special[:, RELATIVE_ROW] < packed.contact_rows).sum())
     first = special[:others] if (special[:others, RELATIVE_ROW] < packed.contact_rows).all() else special
+    if ready.switches.spare:
+        return schur, first  # rows that stand in for others are planned in it
+    blocks = schur.rows[(schur.rows >= 0).any(axis=1)]
+    kept = blocks[np.argsort(blocks.max(axis=1))]
     return plan_schur(packed.system.row_body, np.ascontiguousarray(kept, np.int64))[0], first

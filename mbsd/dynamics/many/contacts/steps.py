@@ -26,19 +26,24 @@ from mbsd.dynamics.many.contacts.arrays import (
     WHEN,
 )
 from mbsd.dynamics.many.contacts.crossing import event_time, first_met
+from mbsd.dynamics.many.contacts.events.happening import ENDED, HAPPENED, happen
 from mbsd.dynamics.many.contacts.jumps import resolve
 from mbsd.dynamics.many.contacts.rows import hold_rows, measure
 from mbsd.dynamics.many.contacts.sticking.jumps import resolve_friction
 from mbsd.dynamics.many.contacts.sticking.ways import share_outputs
 from mbsd.dynamics.many.contacts.wheels import advance_to
 from mbsd.dynamics.many.contacts.within import fit
+from mbsd.dynamics.many.events.sides import begin_sides, find_sides
+from mbsd.dynamics.many.repeated.exchange import hold_independent, look
 from mbsd.dynamics.many.through import NO_LIMIT, copy_state, cross
 from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, begin
+from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, begin, record_here
 from mbsd.equations.system import System
 
 NOT_SOLVED = -7
 """Status of rows with an event that is left to single simulations."""
+OVER = -8
+"""Status of rows that an event of the user has ended."""
 INSIDE = 1e-6
 """A contact that starts deeper than this part of the size (rad) inside is refused."""
 AT_ONE_TIME, MOST = 500, 20_000
@@ -57,11 +62,15 @@ def _restart(dyn, scratch, contacts, state):
     for r in range(state.lam.shape[0]):
         load = max(load, abs(state.lam[r]))
     contacts.clock[LOAD] = load
+    if contacts.events.table.shape[0] > 0:
+        find_sides(contacts.events, state)
 
 
 @internal
 def _resolve(dyn, scratch, contacts, state, met):
-    if dyn.loads.friction.shape[0] > 0 and contacts.place.shape[0] > 0:
+    if contacts.place.shape[0] == 0:
+        return True
+    if dyn.loads.friction.shape[0] > 0:
         return resolve_friction(dyn, scratch, contacts, state, met)
     return resolve(dyn, scratch, contacts, state, met)
 
@@ -77,6 +86,8 @@ def _close_at_start(dyn, scratch, contacts, state):
         gap = contacts.place[k, KIND] == GAP
         if gap and scratch.ws.phi[contacts.place[k, ROW]] * contacts.number[k, SCALE] < -INSIDE:
             return False
+    if contacts.events.table.shape[0] > 0:
+        begin_sides(contacts.events, state)
     if not _resolve(dyn, scratch, contacts, state, -1):
         return False
     _restart(dyn, scratch, contacts, state)
@@ -156,12 +167,29 @@ def _any_held(contacts):
     return held
 
 
+@internal
+def _jump(dyn, scratch, contacts, state, met):
+    """What changes at an event; whether that is decided here, and there are not too many."""
+    return _counted(contacts, state.clock[TIME]) and _resolve(dyn, scratch, contacts, state, met)
+
+
+@internal
+def _end(scratch, state, out):
+    """Make the outputs that are left the state itself, at which an event of the user ends the simulation."""
+    while state.count[NEXT] < out.t.shape[0]:
+        record_here(scratch, state, out)
+
+
 @lazy(int)
 def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
     hold_rows(dyn, contacts)
+    repeated = contacts.repeated
+    hold_independent(dyn, repeated)
     if contacts.clock[BEGUN] == 0.0 and not _close_at_start(dyn, scratch, contacts, state):
         return NOT_SOLVED
     for _ in range(steps):
+        if repeated.place.shape[0] > 0:
+            look(dyn, scratch, repeated, state, 1)
         own = dyn if _any_held(contacts) else _open(dyn, contacts)
         cross(state, before, after)
         begin(own, scratch, state)
@@ -187,7 +215,17 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
                 return REACHED
             continue
         begin(own, scratch, state)
-        if not _counted(contacts, state.clock[TIME]) or not _resolve(dyn, scratch, contacts, state, met):
+        count = contacts.place.shape[0]
+        passed = HAPPENED
+        if met >= count:
+            passed = happen(dyn, scratch, contacts, state, met - count)
+            if passed == ENDED:
+                if contacts.clock[SHARING] > 0.0:
+                    return NOT_SOLVED
+                _end(scratch, state, out)
+                return OVER
+            met = -1
+        if passed == HAPPENED and not _jump(dyn, scratch, contacts, state, met):
             return NOT_SOLVED
         _restart(dyn, scratch, contacts, state)
     return PAUSED
@@ -204,4 +242,4 @@ def _none(dyn, scratch, state, settings, contacts, out, end, steps, before, afte
 
 
 go_on = alternatives({Dynamics: _meet, Embedding: _none})
-"""Go on to ``end`` (s), ``steps`` steps at most, meeting contacts; returns a status of ``advance``, or NOT_SOLVED."""
+"""Go on to ``end`` (s), ``steps`` steps at most, meeting events; returns a status of ``advance``, or one of these."""

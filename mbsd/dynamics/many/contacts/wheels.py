@@ -1,6 +1,7 @@
-"""Steps while wheels that no body carries may run into each other: kinematics/limits/free_wheels.py, compiled.
+"""Steps while wheels may run into each other, and points follow curves that cross themselves: prepare/following.py.
 
-A step takes two centres at most half their way to each other; where they meet, a single simulation says so.
+A step takes two centres at most half their way to each other, and a foot no farther than its curve allows; where wheels
+meet, a single simulation says so.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from mbsd.dynamics.many.contacts.arrays import HALF, SHORTEST
 from mbsd.dynamics.many.methods import USUAL
 from mbsd.dynamics.many.through import copy_state, through
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STEP_TOO_SMALL, TIME
+from mbsd.equations.relative.curve_pieces import CLOSED, FARTHEST, SPAN, U, X, Y, find_foot
+from mbsd.equations.system import LAST
 
 
 @internal
@@ -64,8 +67,42 @@ def _met(system, wheels, y):
     return met
 
 
+@internal
+def _find_feet(system, ws, curves, q):
+    """Fill curves.feet at q (3 nb,); returns the farthest that one of them goes, as part of how far it may."""
+    most = 0.0
+    for k in range(curves.place.shape[0]):
+        i = curves.place[k, 1]
+        j = curves.place[k, 2]
+        relative = ws.relative[curves.place[k, 0]]
+        numbers = curves.numbers[curves.place[k, 3] :]
+        b = 3 * system.marker_body[i]
+        d = 3 * system.marker_body[j]
+        c = math.cos(q[b + 2])
+        s = math.sin(q[b + 2])
+        e = math.cos(q[d + 2])
+        f = math.sin(q[d + 2])
+        px = q[b] + (c * system.marker_arm[i, 0] - s * system.marker_arm[i, 1])
+        py = q[b + 1] + (s * system.marker_arm[i, 0] + c * system.marker_arm[i, 1])
+        dx = q[d] + (e * system.marker_arm[j, 0] - f * system.marker_arm[j, 1]) - px
+        dy = q[d + 1] + (f * system.marker_arm[j, 0] + e * system.marker_arm[j, 1]) - py
+        ux = c * system.marker_axis[i, 0] - s * system.marker_axis[i, 1]
+        uy = s * system.marker_axis[i, 0] + c * system.marker_axis[i, 1]
+        relative[X] = ux * dx + uy * dy
+        relative[Y] = ux * dy - uy * dx
+        find_foot(numbers, relative)
+        curves.feet[k] = relative[U]
+        way = abs(curves.feet[k] - relative[LAST])
+        if numbers[CLOSED] != 0.0:
+            way = min(way, abs(numbers[SPAN] - way))
+        most = max(most, way / numbers[FARTHEST])
+    return most
+
+
 @lazy(int)
-def _step_by_step(dyn, scratch, state, out, settings, wheels, end, steps, before, after):
+def _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, before, after):
+    wheels = contacts.wheels
+    curves = contacts.curves
     kept = wheels.before
     while True:
         copy_state(kept, state)
@@ -76,10 +113,13 @@ def _step_by_step(dyn, scratch, state, out, settings, wheels, end, steps, before
                 return status
             taken = state.clock[TIME] - kept.clock[TIME]
             farthest = _approach(dyn.system, wheels, kept.y, state.y, taken)
+            farthest = max(farthest, _find_feet(dyn.system, scratch.ws, curves, state.y[0]))
             if farthest <= 1.0 or taken <= wheels.bounds[SHORTEST] * settings.longest:
                 break
             copy_state(state, kept)
             target = kept.clock[TIME] + taken / (2.0 * farthest)
+        for k in range(curves.place.shape[0]):
+            scratch.ws.relative[curves.place[k, 0], LAST] = curves.feet[k]
         if _met(dyn.system, wheels, state.y):
             return STEP_TOO_SMALL
         steps -= state.count[ACCEPTED] - kept.count[ACCEPTED]
@@ -91,7 +131,7 @@ def _step_by_step(dyn, scratch, state, out, settings, wheels, end, steps, before
 
 @internal
 def advance_to(dyn, scratch, state, out, settings, contacts, end, steps, before, after):
-    """``through`` by the usual integrator, a step at a time where wheels may meet."""
-    if contacts.wheels.markers.shape[0] > 0:
-        return _step_by_step(dyn, scratch, state, out, settings, contacts.wheels, end, steps, before, after)
+    """``through`` by the usual integrator, a step at a time where wheels may meet or points follow curves."""
+    if contacts.wheels.markers.shape[0] > 0 or contacts.curves.place.shape[0] > 0:
+        return _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, before, after)
     return through(dyn, scratch, state, out, settings, end, steps, before, after, USUAL)

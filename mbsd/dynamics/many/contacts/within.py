@@ -30,6 +30,7 @@ from mbsd.dynamics.many.contacts.arrays import (
 from mbsd.dynamics.many.contacts.rows import along, gaps, gaps_of, measure_gaps
 from mbsd.dynamics.many.contacts.sticking.ways import read_ways
 from mbsd.dynamics.many.contacts.wheels import advance_to
+from mbsd.dynamics.many.events.values import signed
 from mbsd.dynamics.many.through import NO_LIMIT, copy_state
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.state import NEXT, REACHED, TIME
@@ -118,22 +119,29 @@ def sample(dyn, scratch, contacts):
             gaps(dyn, scratch, t, contacts.pose[0])
         _values(dyn, scratch, contacts, contacts.pose, forces)
         for k in range(contacts.place.shape[0]):
-            contacts.samples[i, k] = contacts.vector[VALUE, k]
+            contacts.samples[k, i] = contacts.vector[VALUE, k]
+
+
+@internal
+def _value(dyn, scratch, contacts, t, y, k):
+    """What is looked at of row k at a state y (2, 3 nb); behind the last row are events of the user."""
+    if k >= contacts.place.shape[0]:
+        return signed(contacts.events, k - contacts.place.shape[0], t, y)
+    read(dyn, scratch, contacts, t, y, contacts.number[k, CLOSED] > 0.0)
+    return contacts.vector[VALUE, k]
 
 
 @apart
 def on_quintic(dyn, scratch, contacts, k, x):
     """What is looked at of row k at the part x of the step, on the quintic."""
     t = stand_at(contacts, x)
-    read(dyn, scratch, contacts, t, contacts.pose, contacts.number[k, CLOSED] > 0.0)
-    return contacts.vector[VALUE, k]
+    return _value(dyn, scratch, contacts, t, contacts.pose, k)
 
 
 @internal
 def at_state(dyn, scratch, contacts, state, k):
     """The same of a state."""
-    read(dyn, scratch, contacts, state.clock[TIME], state.y, contacts.number[k, CLOSED] > 0.0)
-    return contacts.vector[VALUE, k]
+    return _value(dyn, scratch, contacts, state.clock[TIME], state.y, k)
 
 
 @apart

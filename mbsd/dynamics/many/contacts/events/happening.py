@@ -1,0 +1,52 @@
+"""What an event of the user does: it is noted, ends the simulation, or changes velocities."""
+
+from __future__ import annotations
+
+from mbsd.compiling.callback import call
+from mbsd.compiling.jit import lazy
+from mbsd.dynamics.many.contacts.rows import release_rows
+from mbsd.dynamics.many.events.arrays import (
+    ACTION,
+    ACTION_FIRST,
+    ACTION_FRAMES,
+    DIRECTION,
+    ENDS,
+    SIDE,
+)
+from mbsd.dynamics.many.events.values import read_frames
+from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.state import TIME
+
+PASSED, HAPPENED, ENDED = range(3)
+"""It passed zero the other way; it happened; the simulation ends there."""
+
+
+@lazy(int)
+def happen(dyn, scratch, contacts, state, e):
+    """Let event e happen at a state, whose function has just passed zero there."""
+    events = contacts.events
+    table = events.table
+    side = -1 if events.number[e, SIDE] < 0.0 else 1
+    events.number[e, SIDE] = -side
+    if table[e, DIRECTION] != 0 and table[e, DIRECTION] != -side:
+        return PASSED
+    if table[e, ENDS] != 0:
+        return ENDED
+    if table[e, ACTION] != 0:
+        v = state.y[1]
+        first = table[e, ACTION_FIRST]
+        count = table[e, ACTION_FRAMES]
+        read_frames(events, first, count, state.y[0], v)
+        call(table[e, ACTION], state.clock[TIME], events.inputs, events.outputs)  # pyright: ignore[reportCallIssue]
+        for i in range(count):
+            b = 3 * events.body[first + i]
+            x = events.inputs[3 * i] - state.y[0, b]
+            y = events.inputs[3 * i + 1] - state.y[0, b + 1]
+            omega = events.outputs[3 * i + 2]
+            v[b] = events.outputs[3 * i] + omega * y
+            v[b + 1] = events.outputs[3 * i + 1] - omega * x
+            v[b + 2] = omega
+        release_rows(dyn, contacts)
+        project(dyn, scratch, state.clock[TIME], state.y, 2)
+        events.number[e, SIDE] = 0.0  # it may go back to where it came from
+    return HAPPENED

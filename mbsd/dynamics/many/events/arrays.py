@@ -1,0 +1,49 @@
+"""Events of the user as arrays that the compiled loop reads and overwrites; empty where there are none."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+VALUE, FIRST, FRAMES, DIRECTION, ENDS, ACTION, ACTION_FIRST, ACTION_FRAMES = range(8)
+"""Columns of Events.table: address of the function; its first frame, and how many it has; rising 1, falling -1, both 0;
+whether the simulation ends there; address of the action, 0 where there is none; its frames."""
+SIDE, LEVEL, SHORTEST = range(3)
+"""Columns of Events.number: sign of the value, 0 where that is zero; what is taken off the function's number; how long
+the shortest thing in it lasts (s), 0 where nothing is said."""
+
+
+class Events(NamedTuple):
+    """e events with f frames, of a mechanism of nb bodies."""
+
+    table: Any
+    """(e, 8) int"""
+    number: Any
+    """(e, 3)"""
+    body: Any
+    """(f,) int"""
+    arm: Any
+    """(f, 3) from the centre of mass in the body's axes (m), and angle (rad)."""
+    inputs: Any
+    """(i,) of a function: places of its frames, then their rates."""
+    outputs: Any
+    """(o,)"""
+    near: Any
+    """(4,) factors of the time that change it by what counts as nothing."""
+    away: Any
+    """(4, 3 nb) the same for coordinates and velocities, to be added."""
+    span: Any
+    """(1,) duration (s)."""
+    pose: Any
+    """(2, 3 nb)"""
+    parts: Any
+    """(n,) parts of a step, rising, at which an event is looked at."""
+    values: Any
+    """(n,) its values there, with the sign of its side."""
+    more: Any
+    """(2, n) the same while more are put between them."""
+    there: Any
+    """(2, n) values in the middle of intervals, and by how much they are not those that neighbours let expect."""
+    rough: Any
+    """(2, n) int, flags of intervals that are not known well enough; now and next."""
+    skipped: Any
+    """(e,) int"""

@@ -1,0 +1,109 @@
+"""Events of the user of a prepared run for the compiled loop, or why they do not go there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from mbsd.compiling.callback import Callback
+from mbsd.compiling.jit import COMPILED
+from mbsd.dynamics.events.bounds import MOST_VALUES, NEAR, PER_SHORTEST, ROUNDINGS
+from mbsd.dynamics.many.events import ready_made
+from mbsd.dynamics.many.events.arrays import ACTION_FRAMES, SHORTEST, Events
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.model.body import Marker
+from mbsd.model.event import Event, Reaching
+
+READY_MADE = {name: getattr(ready_made, name) for name in ("turned", "turning", "distance")}
+MOST = 20_000
+"""Values of an event in one step."""
+
+
+def why_not(events: Sequence[Event], longest: float) -> str | None:
+    """Why these events are left to single simulations, or None. ``longest``: of all steps (s)."""
+    for event in events:
+        if _looks(event, longest) > MOST:
+            return f"event '{event.name}': its shortest is less than 1/{MOST // 2} of the longest step"
+        for what, function in (("function", event.value), ("action", event.action)):
+            if function is None or isinstance(function, Reaching):
+                continue
+            if not event.frames:
+                return f"event '{event.name}': its {what} gets a moment, not the numbers of frames"
+            if not Callback.is_machine_code(function):
+                return f"event '{event.name}': its {what} is one of Python; compile it with numba.njit"
+    return None
+
+
+def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float) -> Events:
+    """Those of a run, whose steps are ``longest`` (s) at most, at its start."""
+    packed, frames = ready.packed, list[Marker]()
+    table, number = [], []
+    for event in events:
+        what, first = f"{packed.name}: event '{event.name}'", len(frames)
+        seen = event.value.frames if isinstance(event.value, Reaching) else event.frames
+        frames += seen
+        action, acting = 0, len(frames)
+        if event.action is not None:
+            action = _address(ready, event.action, event.frames, 3 * len(event.frames), f"{what}: its action")
+            frames += event.frames
+        ends, kinds = int(event.terminal), (acting, len(frames) - acting)
+        value = _value(ready, event.value, seen, what)
+        table.append((value, first, len(seen), event.direction, ends, action, *kinds))
+        number.append((0.0, event.value.level if isinstance(event.value, Reaching) else 0.0, event.shortest or 0.0))
+    most = max((len(frames) for frames in [[], *(event.frames for event in events), *_ready(events)]), default=0)
+    n3, looks = len(ready.initial.q), max((_looks(event, longest) for event in events), default=0)
+    return Events(
+        np.array(table, np.int64).reshape(-1, ACTION_FRAMES + 1),
+        np.array(number).reshape(-1, SHORTEST + 1),
+        np.array([packed.body_names.index(marker.body.name) for marker in frames], np.int64),
+        np.array([_arm(ready, marker) for marker in frames]).reshape(-1, 3),
+        np.zeros(6 * most),
+        np.zeros(max(3 * most, 1)),
+        np.array([1.0 + signs[0] * NEAR for signs in ROUNDINGS]),
+        _away(ready),
+        np.array([ready.end - ready.start]),
+        np.zeros((2, n3)),
+        np.zeros(looks),
+        np.zeros(looks),
+        np.zeros((2, looks)),
+        np.zeros((2, looks)),
+        np.zeros((2, looks), np.int64),
+        np.zeros(len(events), np.int64),
+    )
+
+
+def _ready(events: Sequence[Event]) -> list[tuple[Marker, ...]]:
+    return [event.value.frames for event in events if isinstance(event.value, Reaching)]
+
+
+def _looks(event: Event, longest: float) -> int:
+    """Room for the values of an event in one step."""
+    asked = math.ceil(PER_SHORTEST * longest / event.shortest) if event.shortest else 0
+    return 16 + max(MOST_VALUES, asked)
+
+
+def _value(ready: PreparedDynamics, value: Callable[..., Any], frames: Sequence[Marker], what: str) -> int:
+    if not isinstance(value, Reaching):
+        return _address(ready, value, frames, 1, f"{what}: its function")
+    if COMPILED:
+        return READY_MADE[value.measured.__name__].address
+    return _address(ready, value.measured, frames, 1, what)
+
+
+def _address(ready: PreparedDynamics, function: Any, frames: Sequence[Marker], outputs: int, what: str) -> int:
+    parts = 3 * len(frames), 3 * len(frames)
+    return ready.packed.specials.callback(what, lambda name: Callback(function, parts, outputs, name)).address
+
+
+def _arm(ready: PreparedDynamics, marker: Marker) -> tuple[float, float, float]:
+    x, y = ready.packed.com[ready.packed.body_names.index(marker.body.name)]
+    return marker.x - x, marker.y - y, marker.angle
+
+
+def _away(ready: PreparedDynamics) -> np.ndarray:
+    """(4, 3 nb), as events/sides.py has them."""
+    sizes = np.concatenate([np.zeros(3), ready.packed.column_scale()])
+    return np.array([NEAR * sizes * np.resize(signs, len(sizes)) for signs in ROUNDINGS])

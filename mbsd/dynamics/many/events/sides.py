@@ -1,0 +1,65 @@
+"""The side of zero on which events are: events/sides.py, compiled."""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import apart, lazy
+from mbsd.dynamics.events.bounds import AHEAD
+from mbsd.dynamics.many.events.arrays import SIDE
+from mbsd.dynamics.many.events.values import value_of
+from mbsd.dynamics.state import TIME
+
+
+@apart
+def rounding_of(events, e, t, y):
+    """How much the value of event e at t (s) and y (2, 3 nb) changes where these do by what counts as nothing."""
+    value = value_of(events, e, t, y[0], y[1])
+    pose = events.pose
+    most = 0.0
+    for k in range(events.away.shape[0]):
+        for part in range(2):
+            for c in range(pose.shape[1]):
+                pose[part, c] = y[part, c] + events.away[k, c]
+        most = max(most, abs(value_of(events, e, t * events.near[k], pose[0], pose[1]) - value))
+    return most
+
+
+@apart
+def _side(events, e, t, y):
+    value = value_of(events, e, t, y[0], y[1])
+    if abs(value) <= rounding_of(events, e, t, y) or value == 0.0:
+        return 0.0
+    return 1.0 if value > 0.0 else -1.0
+
+
+@apart
+def _side_ahead(events, e, t, y, a):
+    """The sign that an event whose value is zero has next; 0 if it stays zero. a: accelerations (3 nb,)."""
+    side = _side(events, e, t, y)
+    if side != 0.0:
+        return side
+    rounding = rounding_of(events, e, t, y)
+    pose = events.pose
+    for part in AHEAD:
+        s = part * events.span[0]
+        for c in range(pose.shape[1]):
+            pose[0, c] = y[0, c] + s * y[1, c] + s * s / 2 * a[c]
+            pose[1, c] = y[1, c] + s * a[c]
+        ahead = value_of(events, e, t + s, pose[0], pose[1])
+        if abs(ahead) > 10.0 * rounding:
+            return 1.0 if ahead > 0.0 else -1.0
+    return 0.0
+
+
+@lazy(None)
+def begin_sides(events, state):
+    """On which side all events are at the start."""
+    for e in range(events.table.shape[0]):
+        events.number[e, SIDE] = _side(events, e, state.clock[TIME], state.y)
+
+
+@lazy(None)
+def find_sides(events, state):
+    """To which side those go that are zero."""
+    for e in range(events.table.shape[0]):
+        if events.number[e, SIDE] == 0.0:
+            events.number[e, SIDE] = _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1])

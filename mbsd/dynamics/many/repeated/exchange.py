@@ -1,0 +1,234 @@
+"""Rows that hold, exchanged for better ones on the way: prepare/exchange.py, compiled.
+
+Pivoted QR of J^T is here the pivoted Cholesky factor of J J^T, which takes the same rows in the same order; the least
+singular value of some rows is the root of the least eigenvalue of their products, found by inverse iteration.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.alternatives import alternatives
+from mbsd.compiling.jit import apart, inlined, internal, lazy
+from mbsd.dynamics.embedding.arrays import Embedding
+from mbsd.dynamics.many.repeated.arrays import BETTER, BLOCK, HELD, OPENED, ROW, SCALE, SIDE, STEPS
+from mbsd.dynamics.many.through import through
+from mbsd.dynamics.reference.arrays import Dynamics
+from mbsd.dynamics.rows.bounds import LOOK, OPENED_BY
+from mbsd.dynamics.state import PAUSED, TIME
+from mbsd.equations.assembly import position
+from mbsd.equations.laws import evaluate_laws
+
+TURNS = 40
+"""Turns of inverse iteration."""
+
+
+@internal
+def hold_independent(dyn, repeated):
+    """Let the rows hold that should."""
+    for i in range(repeated.place.shape[0]):
+        held = repeated.number[i, HELD] > 0.0
+        dyn.schur.rows[repeated.place[i, BLOCK], repeated.place[i, SIDE]] = repeated.place[i, ROW] if held else -1
+
+
+@apart
+def _measure(dyn, scratch, t, q):
+    """Fill scratch.ws.phi and scratch.ws.jac at q (3 nb,) and t (s)."""
+    if scratch.drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
+    position(dyn.system, q, scratch.drive, scratch.ws)
+
+
+@apart
+def _find_products(dyn, scratch, repeated, t, q):
+    """Fill jac and gram at q (3 nb,)."""
+    _measure(dyn, scratch, t, q)
+    jac = repeated.jac
+    size = repeated.size
+    for i in range(jac.shape[0]):
+        row = repeated.place[i, ROW]
+        for c in range(jac.shape[1]):
+            jac[i, c] = 0.0
+        for side in range(2):
+            at = 3 * dyn.system.row_body[row, side]
+            for c in range(3):
+                jac[i, at + c] += scratch.ws.jac[row, 3 * side + c] * repeated.number[i, SCALE] * size[at + c]
+        for j in range(i + 1):
+            product = 0.0
+            for c in range(jac.shape[1]):
+                product += jac[i, c] * jac[j, c]
+            repeated.gram[i, j] = product
+            repeated.gram[j, i] = product
+
+
+@internal
+def _take(repeated, order, n, i):
+    """Make row i the n-th of the factor; returns False where it follows from those before."""
+    gram = repeated.gram
+    factor = repeated.factor
+    order[n] = i
+    for m in range(n):
+        value = gram[i, order[m]]
+        for k in range(m):
+            value -= factor[n, k] * factor[m, k]
+        factor[n, m] = value / factor[m, m]
+    own = gram[i, i]
+    for m in range(n):
+        own -= factor[n, m] ** 2
+    if not own > 0.0:
+        return False
+    factor[n, n] = math.sqrt(own)
+    return True
+
+
+@apart
+def _least(repeated, count):
+    """The least eigenvalue of the products of the first ``count`` rows of the factor."""
+    factor = repeated.factor
+    x = repeated.left[1]
+    for n in range(count):
+        x[n] = 1.0 + 0.1 * math.sin(3.0 * n)
+    least = 0.0
+    for _ in range(TURNS):
+        size = 0.0
+        for n in range(count):
+            size += x[n] * x[n]
+        size = math.sqrt(size)
+        for n in range(count):
+            x[n] /= size
+        for n in range(count):
+            for m in range(n):
+                x[n] -= factor[n, m] * x[m]
+            x[n] /= factor[n, n]
+        under = 0.0  # of the unit vector before: x^T A^-1 x
+        for n in range(count):
+            under += x[n] * x[n]
+        for n in range(count - 1, -1, -1):
+            for m in range(n + 1, count):
+                x[n] -= factor[m, n] * x[m]
+            x[n] /= factor[n, n]
+        least = 1.0 / under
+    return least
+
+
+@apart
+def _choose(repeated, count):
+    """Put ``count`` rows furthest from dependent in order[1], with their factor; whether there are so many."""
+    order = repeated.order[1]
+    left = repeated.left[0]
+    whole = repeated.whole
+    rows = repeated.place.shape[0]
+    for i in range(rows):
+        left[i] = repeated.gram[i, i]
+    for n in range(count):
+        best = -1
+        for i in range(rows):
+            if left[i] > 0.0 and (best < 0 or left[i] > left[best]):
+                best = i
+        if best < 0:
+            return False
+        order[n] = best
+        whole[best, n] = math.sqrt(left[best])
+        left[best] = -1.0
+        for i in range(rows):
+            if left[i] < 0.0:
+                continue
+            value = repeated.gram[i, best]
+            for m in range(n):
+                value -= whole[i, m] * whole[best, m]
+            whole[i, n] = value / whole[best, n]
+            left[i] = max(left[i] - whole[i, n] ** 2, 0.0)
+    for n in range(count):
+        for m in range(n + 1):
+            repeated.factor[n, m] = whole[order[n], m]
+    return True
+
+
+@apart
+def _exchange(dyn, scratch, repeated, t, q):
+    """Hold other rows at q (3 nb,) and t (s) where they are clearly further from dependent."""
+    _find_products(dyn, scratch, repeated, t, q)
+    rows = repeated.place.shape[0]
+    number = repeated.number
+    count = 0
+    independent = True
+    for i in range(rows):
+        if number[i, HELD] > 0.0:
+            independent = independent and _take(repeated, repeated.order[0], count, i)
+            count += 1
+    least = _least(repeated, count) if independent else 0.0
+    if not _choose(repeated, count) or not _least(repeated, count) > repeated.clock[BETTER] ** 2 * least:
+        return
+    for i in range(rows):
+        if number[i, HELD] > 0.0:
+            number[i, HELD] = 0.0
+            number[i, OPENED] = 2.0
+    for n in range(count):
+        i = repeated.order[1, n]
+        number[i, HELD] = 1.0
+        if number[i, OPENED] == 2.0:
+            number[i, OPENED] = 0.0
+    for i in range(rows):
+        number[i, OPENED] = min(number[i, OPENED], 1.0)
+    hold_independent(dyn, repeated)
+
+
+@lazy(None)
+def look(dyn, scratch, repeated, state, steps):
+    """Exchange rows if it is time to, before so many steps are taken."""
+    if repeated.clock[STEPS] % LOOK == 0.0:
+        _exchange(dyn, scratch, repeated, state.clock[TIME], state.y[0])
+    repeated.clock[STEPS] += steps
+
+
+@lazy(bool)
+def _opens(dyn, scratch, repeated, out, first, end):
+    """Whether a row that did not hold once is open in one of the outputs ``first`` to ``end`` (left out)."""
+    open_now = False
+    for k in range(first, end):
+        _measure(dyn, scratch, out.t[k], out.y[k, 0])
+        for i in range(repeated.place.shape[0]):
+            if repeated.number[i, OPENED] > 0.0:
+                gap = abs(scratch.ws.phi[repeated.place[i, ROW]] * repeated.number[i, SCALE])
+                open_now = open_now or not gap <= OPENED_BY
+    return open_now
+
+
+@lazy(int)
+def _again(dyn, scratch, state, out, settings, repeated, end, steps, before, after, method):
+    """``through``, with a look at the rows now and then."""
+    hold_independent(dyn, repeated)
+    status = PAUSED
+    taken = 0
+    while status == PAUSED and taken < steps:
+        some = min(steps - taken, LOOK - int(repeated.clock[STEPS]) % LOOK)
+        look(dyn, scratch, repeated, state, some)
+        status = through(dyn, scratch, state, out, settings, end, some, before, after, method)
+        taken += some
+    return status
+
+
+@inlined
+def _no_row_opens(dyn, scratch, repeated, out, first, end):
+    return False
+
+
+@inlined
+def _never(dyn, scratch, state, out, settings, repeated, end, steps, before, after, method):
+    return PAUSED
+
+
+@inlined
+def _opens_where(dyn, scratch, repeated, out, first, end):
+    return _opens(dyn, scratch, repeated, out, first, end)
+
+
+@inlined
+def _go_again(dyn, scratch, state, out, settings, repeated, end, steps, before, after, method):
+    return _again(dyn, scratch, state, out, settings, repeated, end, steps, before, after, method)
+
+
+again = alternatives({Dynamics: _go_again, Embedding: _never})
+"""``through``, with a look at the rows now and then; never in independent coordinates."""
+opens = alternatives({Dynamics: _opens_where, Embedding: _no_row_opens})
+"""Whether a row that did not hold once is open in one of the outputs ``first`` to ``end`` (left out)."""

@@ -1,0 +1,48 @@
+"""Rows that repeat others, of a prepared run for the compiled loop, or why they do not go there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbsd.dynamics.many.repeated.arrays import BETTER, HELD, OPENED, SCALE, Repeated
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.kinematics.pose.mobility import BETTER as FACTOR
+
+MOST = 60
+"""Rows of joints of which some repeat others."""
+
+
+def why_not(ready: PreparedDynamics) -> str | None:
+    """Why a mechanism whose joints repeat others is left to single simulations, or None."""
+    if not ready.switches.spare and not ready.dropped:
+        return None
+    if len(ready.dynamics.loads.friction):
+        return "joints repeat others, and their friction depends on which of them carries"
+    rows = ready.packed.contact_rows
+    return f"joints repeat others, and have {rows} rows; {MOST} at most" if rows > MOST else None
+
+
+def repeated_of(ready: PreparedDynamics) -> Repeated:
+    """Those of a run at its start."""
+    packed, switches = ready.packed, ready.switches
+    spare = set(switches.spare)
+    rows = [row for row in sorted(switches.place) if row < packed.contact_rows] if spare else []
+    k, n3, scale = len(rows), len(ready.initial.q), packed.row_scale()
+    number = np.zeros((k, SCALE + 1))
+    number[:, HELD] = [row not in spare for row in rows]
+    number[:, OPENED] = [row in spare for row in rows]
+    number[:, SCALE] = [scale[row] for row in rows]
+    clock = np.zeros(BETTER + 1)
+    clock[BETTER] = FACTOR
+    return Repeated(
+        np.array([(row, *switches.place[row]) for row in rows], np.int64).reshape(-1, 3),
+        number,
+        clock,
+        np.concatenate([np.zeros(3), packed.column_scale()]) if k else np.zeros(0),
+        np.zeros((k, n3)),
+        np.zeros((k, k)),
+        np.zeros((k, k)),
+        np.zeros((k, k)),
+        np.zeros((2, k)),
+        np.zeros((2, k), np.int64),
+    )

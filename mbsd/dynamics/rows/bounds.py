@@ -1,0 +1,8 @@
+"""Bounds of rows of joints that repeat others, for single simulations and for the compiled loop over many."""
+
+from __future__ import annotations
+
+LOOK = 10
+"""Steps between two looks at which rows hold."""
+OPENED_BY = 1e-7
+"""Residuals (sizes, rad) of rows that do not hold."""

@@ -1,0 +1,53 @@
+"""Events of the user added to a mechanism: what is given is checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from mbsd.base.errors import ModelError
+from mbsd.base.shown import shown
+from mbsd.model.body import Body, Marker
+from mbsd.model.event import Event
+from mbsd.model.laws.function import checked_pulses
+from mbsd.model.mechanism import Model, own_body
+
+
+def checked_event(
+    m: Model,
+    name: str,
+    value: Any,
+    direction: Any,
+    terminal: bool,
+    action: Any,
+    shortest: float | None,
+    frames: Body | Marker | Sequence[Body | Marker],
+) -> Event:
+    """The event that these arguments of :meth:`mbsd.mechanism.Mechanism.event` say. Raises ModelError."""
+    event = f"{m.name}: event '{name}'"
+    seen = _frames(m, event, frames)
+    for what, function in (("value", value), ("action", action)):
+        if what == "action" and function is None:
+            continue
+        if not callable(function):
+            raise ModelError(f"{event}: {what} is {shown(function)}; it must be a function")
+        if not seen and type(function).__module__.startswith("numba."):
+            raise ModelError(
+                f"{event}: {what} is compiled with numba, which knows no moment; say of which bodies and markers it "
+                "gets the numbers, frames=(arm, tip), and take them as value(t, q, v)"
+            )
+    if direction not in (-1, 0, 1):
+        raise ModelError(f"{event}: direction is {shown(direction)}; it must be 1, -1 or 0")
+    names = [marker.body.name for marker in seen]
+    if action is not None and ("ground" in names or len(set(names)) < len(names)):
+        raise ModelError(f"{event}: its action gives velocities to frames; take each moving body once, not ground")
+    return Event(name, value, direction, bool(terminal), action, checked_pulses(event, (), shortest)[1], seen)
+
+
+def _frames(m: Model, event: str, frames: Any) -> tuple[Marker, ...]:
+    given = (frames,) if isinstance(frames, Body | Marker) else frames
+    if not isinstance(given, Sequence) or not all(isinstance(frame, Body | Marker) for frame in given):
+        raise ModelError(f"{event}: frames are {shown(frames)}; give bodies and markers: frames=(arm, arm.end)")
+    for frame in given:
+        own_body(m, frame if isinstance(frame, Body) else frame.body, f"event of frames ({event})")
+    return tuple(frame.origin if isinstance(frame, Body) else frame for frame in given)

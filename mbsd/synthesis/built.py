@@ -1,0 +1,43 @@
+"""What a function of the author builds of numbers: looked at before it is called, and what it gives."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from mbsd.base.errors import MechanismError, ModelError
+from mbsd.base.shown import shown
+from mbsd.base.users_function import described
+from mbsd.model.mechanism import Model
+
+
+def refuse_build(what: str, build: Any, names: Sequence[str]) -> None:
+    """Raise ModelError for what is no function of arguments ``names``, as far as its signature says."""
+    if not callable(build):
+        raise ModelError(f"{what}: build is {shown(build)}; give a function that returns the mechanism")
+    try:
+        parameters = inspect.signature(build).parameters
+    except (TypeError, ValueError):
+        return
+    if any(p.kind is p.VAR_KEYWORD for p in parameters.values()):
+        return
+    for name in names:
+        if name not in parameters or parameters[name].kind is inspect.Parameter.POSITIONAL_ONLY:
+            raise ModelError(f"{what}: build has no argument '{name}'; it has {', '.join(parameters) or 'none'}")
+    for name, p in parameters.items():
+        if name not in names and p.default is p.empty and p.kind is not p.VAR_POSITIONAL:
+            raise ModelError(f"{what}: argument '{name}' of build neither varies nor has a default; give it one")
+
+
+def built(what: str, build: Callable[..., Any], values: Mapping[str, Any]) -> Model:
+    """What ``build`` returns. Raises ModelError for anything but a Mechanism, and for errors that are none of mbsd."""
+    try:
+        made = build(**values)
+    except MechanismError:
+        raise
+    except Exception as error:
+        raise ModelError(f"{what}: build fails: {described(error)}") from error
+    if not isinstance(made, Model):
+        raise ModelError(f"{what}: build returned {type(made).__name__}, not a Mechanism")
+    return made

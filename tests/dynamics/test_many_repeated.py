@@ -1,0 +1,109 @@
+"""Joints that repeat others in the compiled loop over simulations: what single simulations of the same rows give."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism, constant_rate
+from mbsd.dynamics.runs import reference_steps
+from mbsd.measures import final, largest, samples
+
+STEPS = 40
+
+
+def cranks(turning: float = 0.0, stops: bool = False, motor: bool = False) -> Mechanism:
+    """Three equal cranks, of which the third repeats the others; where they turn they lie flat twice a turn."""
+    m = Mechanism("cranks", gravity=(0, -9.81))
+    coupler = m.bar("coupler", 0.6, mass=1.0)
+    pins = []
+    for k, (x, y) in enumerate(((0.0, 0.0), (0.6, 0.0), (0.25, 0.2))):
+        crank = m.bar(f"crank{k}", 0.3, mass=0.4)
+        pins.append(m.revolute(f"A{k}", m.ground.at(x, y), crank.start))
+        m.revolute(f"B{k}", crank.end, coupler.at(x, y))
+    m.torsion_spring("spring", m.ground, m.bodies["crank0"], 1.0 if not turning else 0.0, 0.05)
+    if stops:
+        m.stop("end", pins[0], lower=math.radians(-130), upper=math.radians(-30), restitution=0.4)
+    if motor:
+        m.drive_angle("motor", m.bodies["crank1"], constant_rate(9.0))
+    m.start_near(crank0=-60, crank1=-60, crank2=-60)
+    if turning:
+        m.start_moving(crank0=turning)
+    return m
+
+
+def doors() -> Mechanism:
+    """A leaf on two hinges of one axis, beside a slider on two rails."""
+    m = Mechanism("doors", gravity=(0, -9.81))
+    leaf, cart = m.bar("leaf", 0.8, mass=2.0), m.body("cart", mass=1.0, inertia=0.05)
+    m.revolute("hinge", m.ground.at(0, 0), leaf.start)
+    m.revolute("other", m.ground.at(0, 0), leaf.at(0, 0))
+    m.prismatic("rail", m.ground.at(1.2, -0.5), cart.origin)
+    m.prismatic("rail2", m.ground.at(1.2, -0.4), cart.at(0, 0.1))
+    m.spring("tie", leaf.end, cart.origin, 30.0, 0.6, free_length=0.3)
+    m.start_near(leaf=-20, cart=(1.2, -0.5, 0))
+    return m
+
+
+Build = Callable[[], Mechanism]
+CASES: dict[str, tuple[Build, float, dict[str, tuple[str, float, float]], str, str]] = {
+    "swinging": (cranks, 2.0, {"spring": ("stiffness", 0.5, 4.0)}, "crank0", "A2.fx"),
+    "turning": (lambda: cranks(12.0), 1.5, {"coupler": ("mass", 0.5, 2.0)}, "crank2", "B1.fy"),
+    "stops": (lambda: cranks(stops=True), 1.5, {"spring": ("stiffness", 2.0, 9.0)}, "crank0", "A1.fy"),
+    "motor": (lambda: cranks(motor=True), 1.0, {"crank2": ("mass", 0.2, 2.0)}, "crank2", "motor.effort"),
+    "doors": (doors, 2.0, {"tie": ("stiffness", 10.0, 60.0)}, "leaf", "other.fy"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_rows_that_repeat_others_hold_as_in_single_simulations(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    build, duration, varied, body, own = CASES[case]
+    random, count = np.random.default_rng(7), 10
+    vary = {name: {key: random.uniform(low, high, count)} for name, (key, low, high) in varied.items()}
+    measures: dict[str, Any] = {
+        "theta": samples(f"{body}.theta", [0.5 * duration, duration]),
+        "omega": final(f"{body}.omega"),
+        "own": largest(own),
+        "work": final("work"),
+    }
+    many = build().simulate_many(duration, vary=vary, measure=measures, steps=STEPS)
+    assert many.alone == [None] * count, many.way
+    assert "anew" not in many.way
+    exchanged, exchange = set[int](), reference_steps.exchange_rows
+
+    def noted(ready: Any, state: Any) -> None:
+        before = set(ready.dropped)
+        exchange(ready, state)
+        exchanged.update(set(ready.dropped) - before)
+
+    monkeypatch.setattr(reference_steps, "exchange_rows", noted)
+    struck = 0
+    for k in range(count):
+        m = build()
+        for name, values in vary.items():
+            m.change(name, **{key: float(column[k]) for key, column in values.items()})
+        sol = m.simulate(duration, steps=STEPS)
+        struck += sum(event.what == "impact" for event in sol.events)
+        reaction = dict(zip([c.rpartition(" [")[0] for c in sol.columns()], sol.columns().values(), strict=True))[own]
+        np.testing.assert_allclose(many["theta"][k], sol.body(body).theta[[STEPS // 2, STEPS]], atol=1e-10)
+        np.testing.assert_allclose(many["omega"][k], sol.body(body).omega[-1], atol=1e-9)
+        np.testing.assert_allclose(many["own"][k], reaction.max(), rtol=1e-8)
+        if case == "motor":  # where the rows that hold lie flat, what a driver gives is known as well as tolerated
+            sol = m.simulate(duration, steps=STEPS, tolerance=1e-12)
+        assert sol.work is not None
+        np.testing.assert_allclose(many["work"][k], sol.work[-1], atol=5e-6 if case == "motor" else 1e-9)
+    assert (case == "turning") <= bool(exchanged)
+    assert (case == "stops") <= (struck >= count)
+
+
+def test_friction_of_joints_that_repeat_others_is_left_to_single_simulations() -> None:
+    m = cranks()
+    m.friction("rub", "A2", 0.1, radius=0.02)
+    many = m.simulate_many(
+        0.3, vary={"spring": {"stiffness": [1.0, 2.0]}}, measure={"w": final("crank0.omega")}, steps=4
+    )
+    assert many.way.startswith("2 one by one (joints repeat others, and their friction")

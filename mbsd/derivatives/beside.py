@@ -26,14 +26,14 @@ def set_beside(q, v, way_q, way_v, per_size, per_speed, reach, ahead_q, behind_q
 def displace(q, v, directions_q, directions_v, some, per_size, per_speed, reach, out_q, out_v, steps):
     """Fill out_q, out_v (2, S, T, 3 nb) with states ahead of and behind q, v (T, 3 nb) along ``some`` (S,) directions.
 
-    Directions are (D, T, 3 nb). States go as far as ``reach``, in sizes of coordinates, 1 / ``per_size`` (3 nb,), and
-    of the fastest speed, 1 / ``per_speed``; steps (S, T) take by how many times the directions.
+    Directions are (D, T, 3 nb). States go as far as ``reach`` (T,), in sizes of coordinates, 1 / ``per_size`` (3 nb,),
+    and of the fastest speed, 1 / ``per_speed``; steps (S, T) take by how many times the directions.
     """
     for d in range(some.shape[0]):
         own = some[d]
         for k in range(q.shape[0]):
             steps[d, k] = set_beside(
-                q[k], v[k], directions_q[own, k], directions_v[own, k], per_size, per_speed, reach,
+                q[k], v[k], directions_q[own, k], directions_v[own, k], per_size, per_speed, reach[k],
                 out_q[0, d, k], out_q[1, d, k], out_v[0, d, k], out_v[1, d, k],
             )  # fmt: skip
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def differentiated(
-    terms: Terms, nodes: Nodes, own: Own, per_size: np.ndarray, per_speed: float, reach: float, asked: np.ndarray
+    terms: Terms, nodes: Nodes, own: Own, per_size: np.ndarray, per_speed: float, reach: np.ndarray, asked: np.ndarray
 ) -> Made:
     """What ``differentiate`` makes; ``asked`` (R,) are the nodes of which everything is wanted."""
     packed, (count, n, f), numbers = terms.packed, nodes.free.shape, len(own.load)

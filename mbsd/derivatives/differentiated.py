@@ -150,7 +150,7 @@ def differentiate(system, loads, laws, ws, nodes, own, inertia, per_size, per_sp
         for i in range(count):
             d = i if i < f else i + f
             steps[i] = set_beside(
-                q, v, way_q[d], scratch.still, per_size, per_speed, reach,
+                q, v, way_q[d], scratch.still, per_size, per_speed, reach[k],
                 scratch.first_q[i], scratch.first_q[count + i], near_v[i], near_v[count + i],
             )  # fmt: skip
         tabulate_all(system, scratch.drives, scratch.first_q, near_v, ws, scratch.phi, jac, gamma)
@@ -165,7 +165,7 @@ def differentiate(system, loads, laws, ws, nodes, own, inertia, per_size, per_sp
         # what J a - gamma and Q - J^T lam change by with both
         for d in range(last):
             steps[d] = set_beside(
-                q, v, way_q[d], way_v[d], per_size, per_speed, reach,
+                q, v, way_q[d], way_v[d], per_size, per_speed, reach[k],
                 scratch.q[d], scratch.q[last + d], near_v[d], near_v[last + d],
             )  # fmt: skip
         tabulate_all(system, scratch.drives, scratch.q, near_v, ws, scratch.phi, jac, gamma)

@@ -19,9 +19,19 @@ from mbsd.derivatives.compiled_nodes import can_differentiate, differentiated
 from mbsd.derivatives.differentiated import Made, Nodes, Own
 from mbsd.derivatives.linear_motion import NODES, carried
 from mbsd.derivatives.stretch import Carried, Stretch, Tangents, joined
-from mbsd.derivatives.tangents import LOOSE, along_directions, by_numbers, differences, per_scales, refuse_large
+from mbsd.derivatives.tangents import (
+    LOOSE,
+    along_directions,
+    by_numbers,
+    differences,
+    has_kinks,
+    per_scales,
+    refuse_large,
+    shortened,
+    steps_along,
+)
 from mbsd.derivatives.terms import Along, Change, Left, Terms
-from mbsd.derivatives.variants import TINY, Variants
+from mbsd.derivatives.variants import Variants
 
 REACH = 1e-5
 """How far differences along a direction go: sizes, rad, parts of the fastest speed."""
@@ -35,7 +45,7 @@ WORST = 30.0
 
 def slight_changes(f: int, fastest: float, every: list[Variants]) -> np.ndarray:
     """(2 f, P) changes of s and s' that are rounding where the number changes by all of itself."""
-    numbers = np.array([abs(variants.step) / TINY for variants in every])
+    numbers = np.array([variants.size for variants in every])
     return SLIGHT * np.repeat([1.0, fastest], f)[:, None] / numbers
 
 
@@ -122,6 +132,7 @@ class _Piece:
         self.free = np.ascontiguousarray(inverse[:, :, len(self.rows) :])
         self.f, self.n = len(basis), inverse.shape[1]
         self.inertia, self._scale = self.terms.inertia[3:], 1.0 / whole.scale
+        self.reach = self._reaches()
         self.effort = self._efforts(whole)
         self.off = 0.0 if whole.solved else self._solve()
 
@@ -133,6 +144,16 @@ class _Piece:
         a = _wide(a[0])
         self.along = replace(self.along, a=a, lam=lam[0])
         return float(np.abs(a - about).max(initial=0.0)) / max(float(np.abs(a).max(initial=0.0)), 1e-300)
+
+    def _reaches(self) -> np.ndarray:
+        """(T,) how far differences go: less where a contact is stiff."""
+        part = np.ones(len(self.along.t))
+        if has_kinks(self.terms):
+            for i in range(self.f):
+                way = _wide(self.free[:, :, i])
+                step = steps_along(self.terms, self.along, way, np.zeros_like(way), REACH)
+                part = np.minimum(part, shortened(self.terms, self.along, way, np.zeros_like(way), step))
+        return REACH * part
 
     def _efforts(self, whole: FreeTangents) -> np.ndarray | None:
         """(T, n, r) E of the rows that hold, where that is more than J^T: with friction in them; else None."""
@@ -200,7 +221,7 @@ class _Piece:
             nodes = Nodes(*(np.ascontiguousarray(part[here]) for part in known), rows=self.rows)
             changes = Own(position, own.velocity, own.acceleration, own.load, some)
             inside = at[(at >= begin) & (at < begin + AT_ONCE)] - begin
-            parts.append(differentiated(self.terms, nodes, changes, *per_scale, REACH, inside))
+            parts.append(differentiated(self.terms, nodes, changes, *per_scale, self.reach[here], inside))
         if len(parts) == 1:
             return parts[0]
         joined_parts = zip(*parts, strict=True)
@@ -215,7 +236,7 @@ class _Piece:
         positions[:f, :, 3:] = velocities[f : 2 * f, :, 3:] = np.moveaxis(self.free, 2, 0)
         close(self.fixed, self.rows, some, position, positions[2 * f :])
         self._speeds(positions, velocities, some, own)
-        change = along_directions(self.terms, self.along, positions, velocities, REACH)
+        change = along_directions(self.terms, self.along, positions, velocities, self.reach)
         bend, load = change.acceleration, change.load
         bend[2 * f :] += own.acceleration
         load[2 * f :] += own.load
@@ -257,7 +278,7 @@ class _Piece:
         some, rows = np.concatenate([np.arange(self.f), 2 * self.f + numbers]), self.jac.shape[1]
         change = Change(*(np.zeros((len(out), len(self.along.t), size)) for size in (rows, rows, 3 + self.n)))
         still = np.zeros_like(positions)
-        differences(self.terms, self.along, positions, still, REACH, some, change, forces=False)
+        differences(self.terms, self.along, positions, still, self.reach, some, change, forces=False)
         change.velocity[2 * self.f :] += own.velocity
         close(self.fixed, self.rows, some, change.velocity, out)
 

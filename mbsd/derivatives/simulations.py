@@ -25,9 +25,9 @@ from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.smooth_motion import CLOSE, Motion, NotSmooth, between, looked_at_closely, motion_of
 from mbsd.derivatives.stretch import Stretch, Tangents, joined
 from mbsd.derivatives.sweeps import along_of, displaced
-from mbsd.derivatives.tangents import Tangent
+from mbsd.derivatives.tangents import Tangent, has_kinks
 from mbsd.derivatives.terms import Along, terms_of
-from mbsd.derivatives.variants import SECOND, TINY, Variation, models_of
+from mbsd.derivatives.variants import KINKED, SECOND, TINY, Variation, models_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics, started
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated import Course, Repeated
@@ -42,6 +42,8 @@ ENOUGH = 5e-6
 """Error of tangents, as part of the largest, beyond which nodes come closer."""
 AIMED = 1e-6
 """What they then come to."""
+OF_KINKS = 0.05
+"""Part of these where contacts by penalty have kinks, of which the estimate knows too little."""
 MOST = 6
 """So often at most."""
 DOUBTFUL = 1e-3
@@ -76,7 +78,8 @@ class SimulationTangents:
         packed = first.packed
         contacts = packed.joints[len(packed.joints) - packed.contacts :] if packed.contacts else []
         variation = Variation(m, self.terms, span, self._closed, contacts, starts=True)
-        self.variants = [variation.of(number, SECOND, TINY) for number in numbers]
+        step = TINY * (KINKED if has_kinks(self.terms) else 1.0)
+        self.variants = [variation.of(number, SECOND, step) for number in numbers]
         self.variation = variation
         reached = grid[grid <= first.t[-1]]
         self._met = np.append(
@@ -98,16 +101,17 @@ class SimulationTangents:
     def _refined(self, way: Way, edges: np.ndarray) -> tuple[Tangents, float]:
         """Tangents by one of the ways below, with steps as short as errors ask for, and their error."""
         before = error = 0.0
+        part = OF_KINKS if has_kinks(self.terms) else 1.0
         for turn in range(MOST):
             errors, finish = way(edges)
             before, error = error, float(errors.sum())
-            if error <= ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
+            if error <= part * ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
                 break
-            finer = refined(edges, errors, AIMED)
+            finer = refined(edges, errors, part * AIMED)
             if len(finer) > MOST_STEPS:
                 break
             edges = finer
-        if error > ENOUGH and turn == MOST - 1:  # where forces jump, a node meets them or misses them by chance
+        if error > part * ENOUGH and turn == MOST - 1:  # where forces jump, a node meets them or misses them by chance
             error = max(before, error)
         if error > DOUBTFUL:
             warn(
@@ -122,7 +126,7 @@ class SimulationTangents:
         """Errors of steps between edges, and what evaluates the tangents at outputs. Raises NotSmooth."""
         ready = self._runs.ready
         coordinates = suits(ready)
-        if self._first.q is None or ready is None or coordinates is None:
+        if self._first.q is None or ready is None or coordinates is None or has_kinks(self.terms):
             raise NotSmooth
         independent = IndependentTangents(ready, coordinates, self._runs.tolerance, self.variants)
         line = independent.carry(between(self._first, nodes_of(edges, self._met)).along, self._begun())

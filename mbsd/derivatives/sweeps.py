@@ -11,9 +11,9 @@ import numpy as np
 from mbsd.arrays.reactions import wrenches
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.numbers import Number
-from mbsd.derivatives.tangents import Inverse, Tangent, tangent
+from mbsd.derivatives.tangents import Inverse, Tangent, has_kinks, tangent
 from mbsd.derivatives.terms import Along, Terms, terms_of
-from mbsd.derivatives.variants import STEP, Variant, Variants, Variation, models_of
+from mbsd.derivatives.variants import KINKED, STEP, Variant, Variants, Variation, models_of
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
@@ -41,14 +41,15 @@ class SweepTangents:
         if rows < unknowns:
             raise ModelError(f"{m.name}: derivatives of a sweep need a driver for every freedom")
         inverse = Inverse(self.terms, self.along, bool(sol.mobility.redundant_rows))
+        usual = STEP * (KINKED if has_kinks(self.terms) else 1.0)
         self.variants: list[Variants] = []
         self.tangents: list[Tangent] = []
         for number in numbers:
-            variants = variation.of(number)
+            variants = variation.of(number, step=usual)
             tangent_of = tangent(self.terms, self.along, inverse, variants)
             far = _extent(self.terms, tangent_of.q) * variants.step
             if far > FAR:  # near a toggle a small change of a length is a large one of the pose
-                variants = variation.of(number, step=STEP * FAR / far)
+                variants = variation.of(number, step=usual * FAR / far)
             if sol.states is not None:
                 tangent_of.states = self._states(variants, tangent_of)
             self.variants.append(variants)

@@ -25,6 +25,9 @@ REACH = 1e-4
 """How far a difference along a direction goes: sizes, rad, and parts of the fastest speed."""
 LOOSE = 1e-9
 """Part of the largest singular value below which one is zero."""
+PART_OF_LOAD, SLIGHT_LOAD, SHORTEST = 3e-3, 1e-6, 1e-4
+"""Part of a load by which it may change in a difference; part of the largest load that counts as one; least part of a
+usual step."""
 AT_ONCE = 100_000
 """Numbers of Jacobians that are made at once: as many as stay near the processor."""
 OPENED = 1e-6
@@ -196,6 +199,7 @@ def along_direction(
     step = steps_along(terms, along, q, v, reach)
     offsets, weights = order
     if along.approached is None:
+        step = step * shortened(terms, along, q, v, step)
         shifts, width = offsets[:, None, None] * step[:, None], q.shape[1]
         moved_q, moved_v = along.q + shifts * q, along.v + shifts * v
         left = terms.left(along, moved_q.reshape(-1, width), moved_v.reshape(-1, width))
@@ -210,15 +214,44 @@ def along_direction(
     return combined(parts, weights[:, None, None] / step[:, None])
 
 
-def along_directions(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: float) -> Change:
-    """The same along D directions (D, T, 3 nb) at once, by central differences of second order."""
+def has_kinks(terms: Terms) -> bool:
+    """Whether forces may change within much less than the size of the mechanism, as those of contacts do."""
+    loads = terms.loads
+    return loads is not None and len(loads.interaction) + len(loads.user) > 0
+
+
+def shortened(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """(T,) parts of the steps (T,) along a direction q, v (T, 3 nb) within which forces change by little of themselves.
+
+    A stiff contact yields by less than a usual step, which would go from one side of its kink to the other.
+    """
+    if not has_kinks(terms):
+        return np.ones(len(step))
+    own = np.abs(terms.applied(along)).max(axis=1)
+    ahead, behind = (
+        terms.applied(along.moved(along.q + side * step[:, None] * q, along.v + side * step[:, None] * v))
+        for side in (1.0, -1.0)
+    )
+    change = np.abs(ahead - behind).max(axis=1)
+    least = np.maximum(own, SLIGHT_LOAD * own.max(initial=0.0))
+    return np.clip(
+        PART_OF_LOAD * least / np.where(change > 0.0, change, np.inf),
+        SHORTEST,
+        1.0,
+        where=change > 0.0,
+        out=np.ones(len(step)),
+    )
+
+
+def along_directions(terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: np.ndarray) -> Change:
+    """The same along D directions (D, T, 3 nb) at once, by central differences of second order that reach (T,) far."""
     out = Change(*(np.zeros((len(q), len(along.t), size)) for size in (*[len(terms.packed.ws.phi)] * 2, q.shape[2])))
     differences(terms, along, q, v, reach, np.flatnonzero(q.any(axis=(1, 2)) | v.any(axis=(1, 2))), out)
     return out
 
 
 def differences(
-    terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: float, some: np.ndarray, out: Change,
+    terms: Terms, along: Along, q: np.ndarray, v: np.ndarray, reach: np.ndarray, some: np.ndarray, out: Change,
     forces: bool = True,
 ) -> None:  # fmt: skip
     """Fill what belongs to directions ``some`` of D, (D, T, 3 nb), in ``out``; without ``forces`` as if none acted."""

@@ -26,6 +26,8 @@ from mbsd.model.mechanism import Model
 
 STEP, TINY = 1e-4, 1e-5
 """Steps of a number, as parts of itself, or of the size of the mechanism, or of 1: of fourth and of second order."""
+KINKED = 1e-2
+"""Part of these steps where contacts yield by less than they move them."""
 FOURTH = (np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12)
 """Offsets and weights of the central difference of fourth order."""
 SECOND = (np.array([-1.0, 1.0]), np.array([-0.5, 0.5]))
@@ -60,6 +62,8 @@ class Variants:
     weights: np.ndarray
     """(k,) of the variants, for a derivative by the number: / step."""
     variants: list[Variant]
+    size: float
+    """What the step is a part of: the number itself, or what stands for one that is zero."""
 
     def slope(self, of: Callable[[Variant], np.ndarray]) -> np.ndarray:
         """The derivative by the number of what ``of`` gives of a variant."""
@@ -108,7 +112,7 @@ class Variation:
         for (offsets, weights), sign in ((order, 1.0), (AHEAD, 1.0), (AHEAD, -1.0)):
             try:
                 made = [self._variant(number, offset * sign, h) for offset in offsets]
-                return Variants(number, sign * h, weights, made)
+                return Variants(number, sign * h, weights, made, abs(size))
             except (ModelError, AssemblyError) as error:
                 first = first or (error if isinstance(error, ModelError) else ModelError(str(error)))
         raise ModelError(f"{self.base.packed.name}: no derivative by '{number.name}': {first}") from first

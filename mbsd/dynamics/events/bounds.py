@@ -14,6 +14,10 @@ DEPENDENT = 1e-9
 """Part of its compliance that the rows before must leave of a row."""
 AT_LIMIT = 1e-10
 """Part of the limit of friction: closer to it a contact slides."""
+AT_LIMIT_BEYOND = 1e-12
+"""The same of joints where one has come to its limit: contacts may leave it little of the motion that it had alone."""
+UNSURE = 1e-13
+"""Part of the acceleration of a way without normal forces and friction that is rounding of what these leave of it."""
 HAIR = 1e-9
 """Part of their limits that joints at rest lack when one of them has just come to its limit."""
 ROUNDING, PATIENCE = 1e-9, 20

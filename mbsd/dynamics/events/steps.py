@@ -170,7 +170,7 @@ class EventSteps:
         return held is not None and any(stick.state == STICKS and not held[stick.way] for stick in self.sticks)
 
     def _carried(self, time: float, q: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, float]:
-        return carried(self.jumps.compliance(time, q), self.sticks, lam)
+        return carried(self.jumps.compliance(time, q), self.sticks, self.switches, lam)
 
     def _spare(self, samples: Samples) -> np.ndarray:
         """(S,) 1 - s"""

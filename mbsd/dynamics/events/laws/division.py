@@ -4,7 +4,8 @@ Joints p of a basis, as many as there are freedoms, move as they like, and the o
 
     rate_k = sum_p R_pk rate_p
 
-so that forces T with the same  b_p = T_p + sum_k R_pk T_k  of each p move nothing differently. For parts T_k / s
+so that forces T with the same  b_p = T_p + sum_k R_pk T_k  of each p move nothing differently: R are rows of the
+compliance G, reduced by rows, and  R d = 0  where  G d = 0, also where G is not symmetric. For parts T_k / s
 
     largest t   with   T_p / s + sum_k R_pk T_k / s = t b_p,   |T_k| / s <= L_k;      s = 1 / t
 
@@ -32,6 +33,8 @@ from mbsd.compiling.jit import internal, kernel
 
 SINGULAR = 1e-9
 """Eigenvalues and pivots of a compliance, scaled to a diagonal of ones, below this are zero."""
+CLEARLY = 2.0
+"""An entry off the diagonal is the pivot where it is so many times as large: none is where G is symmetric."""
 RESTS = 1e-9
 """Part of the largest rate of a motion below which a joint rests."""
 LEAST = 1e-12
@@ -99,6 +102,26 @@ def _exchange(table, owner, n, row, k):
 
 
 @internal
+def _find_pivot(table, taken, n):
+    """Row and column of a large entry in rows not ``taken`` (n,), -1 of none; on the diagonal where G is symmetric."""
+    row = -1
+    column = -1
+    largest = SINGULAR
+    for i in range(n):
+        if taken[i] == 0 and abs(table[i, i]) >= largest and (row < 0 or abs(table[i, i]) > largest):
+            largest = abs(table[i, i])
+            row = i
+            column = i
+    for i in range(n):
+        for k in range(n):
+            if taken[i] == 0 and abs(table[i, k]) > CLEARLY * largest:
+                largest = abs(table[i, k]) / CLEARLY
+                row = i
+                column = k
+    return row, column
+
+
+@internal
 def _find_basis(compliance, work, n):
     """Fill the table with R and find b of what is to divide, by pivots of the compliance; returns how many freedoms."""
     table = work.table
@@ -113,14 +136,11 @@ def _find_basis(compliance, work, n):
             table[i, j] = compliance[joint[i], joint[j]] / (number[UNIT, i] * number[UNIT, j])
     rank = 0
     for _ in range(n):
-        pivot = -1
-        for i in range(n):
-            if taken[i] == 0 and table[i, i] >= SINGULAR and (pivot < 0 or table[i, i] > table[pivot, pivot]):
-                pivot = i
-        if pivot < 0:
+        row, column = _find_pivot(table, taken, n)
+        if row < 0:
             break
-        _exchange(table, owner, n, pivot, pivot)
-        taken[pivot] = 1
+        _exchange(table, owner, n, row, column)
+        taken[row] = 1
         rank += 1
     for i in range(n):
         number[LOAD, i] = 0.0
@@ -256,8 +276,8 @@ def _settle(work, n, first):
 def divide(compliance, flags, force, limit, work):
     """Divide the friction ``force`` (c,) of the joints in ``flags`` (c,); returns the largest part s of their limits.
 
-    ``compliance`` (c, c): rates by forces; ``limit`` (c,); what is not in ``flags`` stays as it is. s above 1: they
-    cannot hold.
+    ``compliance`` (c, c): rates by forces, its diagonal positive; ``limit`` (c,); what is not in ``flags`` stays as it
+    is. s above 1: they cannot hold.
     """
     number = work.number
     n = _begin(compliance, flags, force, limit, work)
@@ -277,7 +297,9 @@ def divide(compliance, flags, force, limit, work):
             number[VALUE, k] = 0.0
         number[GIVEN, k] -= number[VALUE, k]
     _find_basis(compliance, work, n)
-    for k in range(n):  # what rates below RESTS have left out
-        number[VALUE, k] += number[LOAD, k]
+    for i in range(n):  # what rates below RESTS have left out
+        if work.place[OWNER, i] >= 0:
+            number[VALUE, work.place[OWNER, i]] += number[LOAD, i]
+    for k in range(n):
         force[work.place[PLACE, k]] = number[VALUE, k] / number[UNIT, k]
     return part

@@ -1,7 +1,19 @@
 """Joints at rest that hold each other: what each carries, and how near they are to giving way.
 
 One set of rows holds them, and its multipliers carry all. The friction is shared among all joints at rest (sharing.py);
-their limits depend on reactions, which change with the shares, so it is shared again until both agree.
+their limits depend on reactions, which change with the shares, so it is shared again until both agree. Contacts that
+are closed react, so that their gaps stay closed, and with them the friction of those that slide:
+
+    V = V_t - V_h G_h^-1 G_ht,   G = J_t V     h: rows of contacts that hold; the gap of one that slides pushes along
+                                               its way too
+
+V (n, k) are accelerations by unit friction T. What contacts hold by themselves no joint needs to. Where contacts slide,
+G is not symmetric, and two questions part:
+
+    V d = 0     T may change by d: nothing moves differently. As  V^T M V d = 0  it is one of a symmetric compliance
+    G d = 0     joints stay at rest, though what else moves may move differently, as the contacts press more or less
+
+The first is how friction is shared, the second how near joints are to giving way: Coulomb's law asks no more of them.
 """
 
 from __future__ import annotations
@@ -12,27 +24,75 @@ import numpy as np
 
 from mbsd.arrays.friction_along import normals_along
 from mbsd.dynamics.events.bounds import AGREED, PASSES
+from mbsd.dynamics.events.laws.complementarity import gives_way
 from mbsd.dynamics.events.laws.compliance import Compliance
-from mbsd.dynamics.events.laws.sharing import share
+from mbsd.dynamics.events.laws.sharing import share, share_any
 from mbsd.dynamics.rows.held import STICKS
 from mbsd.dynamics.rows.joint_sticks import JointStick
+from mbsd.dynamics.rows.switches import RunContact, Switches
 
 
-def carried(at: Compliance, sticks: Sequence[JointStick], lam: np.ndarray) -> tuple[np.ndarray, float]:
+def carried(
+    at: Compliance, sticks: Sequence[JointStick], switches: Switches, lam: np.ndarray
+) -> tuple[np.ndarray, float]:
     """Multipliers (m,) with the friction shared, and the part s of their limits that the joints need; lam (m,)."""
     resting = [stick for stick in sticks if stick.state == STICKS]
     ways = [stick.way for stick in resting]
     directions = at.generalised(ways)
     dv, lam_of = at.answers(directions)
     compliance, start, part = directions.T @ dv, -lam[ways], 0.0
+    held = switches.held()
+    pushing = [(row, contact) for contact in switches.contacts for row in _rows(contact) if held[row]]
+    moved, sharing = np.arange(len(ways)), compliance
+    sliding = any(contact.way is not None and contact.sign for _, contact in pushing)
+    if pushing:
+        dv, lam_of = _reacting(at, pushing, directions, dv, lam_of)
+        compliance = sharing = directions.T @ dv
+        if sliding:
+            sharing = dv.T @ (dv / at.dynamics.inverse[3:, None])
+        moved = np.array([k for k, way in enumerate(ways) if gives_way(at, way, compliance[k, k])], np.int64)
+        compliance, sharing = compliance[np.ix_(moved, moved)], sharing[np.ix_(moved, moved)]
     forces, out = start, lam
     for _ in range(PASSES):
         normal = normals_along(at.packed, at.dynamics.loads, at.q[None], at.compact[None], out[None])[0]
-        limits = np.array([stick.limit(normal) for stick in resting])
-        shared, part = share(compliance, start, limits)
+        limits = np.array([resting[k].limit(normal) for k in moved])
+        shared = start.copy()
+        if len(moved):
+            shared[moved], part = share(sharing, start[moved], limits)
+            if sliding:
+                part = share_any(compliance, start[moved], limits)[1]
         change = float(np.abs(shared - forces).max())
         forces, out = shared, lam + lam_of @ (shared - start)
         out[ways] = -shared
         if change <= AGREED * float(np.abs(shared).max()):
             break
     return out, part
+
+
+def _rows(contact: RunContact) -> list[int]:
+    return [contact.gap] if contact.way is None else [contact.gap, contact.way]
+
+
+def _reacting(
+    at: Compliance,
+    pushing: Sequence[tuple[int, RunContact]],
+    directions: np.ndarray,
+    dv: np.ndarray,
+    lam_of: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """V (n, k) and multipliers (m, k) of unit friction of joints, where rows of contacts hold and react."""
+    rows = [row for row, _ in pushing]
+    across = at.generalised(rows)
+    pushed, factors = across.copy(), np.zeros(len(rows))
+    for k, (row, contact) in enumerate(pushing):
+        if row == contact.gap and contact.way is not None and contact.sign:
+            factors[k] = contact.friction * contact.sign
+            pushed[:, k] -= factors[k] * at.generalised([contact.way])[:, 0]
+    answers, lam_by = at.answers(pushed)
+    forces = -np.linalg.solve(across.T @ answers, across.T @ dv)
+    lam_of = lam_of + lam_by @ forces
+    for k, (row, contact) in enumerate(pushing):
+        lam_of[row] -= forces[k]
+        if factors[k]:
+            lam_of[contact.way or 0] += factors[k] * forces[k]
+    return dv + answers @ forces, lam_of

@@ -18,7 +18,7 @@ from mbsd.dynamics.events.laws.division import SINGULAR, divide, division_of
 
 
 def share(compliance: np.ndarray, forces: np.ndarray, limits: np.ndarray) -> tuple[np.ndarray, float]:
-    """Shared forces (k,) and s, for G (k, k), forces (k,) and limits (k,)."""
+    """Shared forces (k,) and s, for a symmetric G (k, k), forces (k,) and limits (k,)."""
     limits = np.maximum(limits, 1e-12 * float(np.abs(limits).max(initial=0.0)) + 1e-300)
     unit = 1.0 / np.sqrt(np.maximum(np.diag(compliance), 1e-300))
     value, vector = np.linalg.eigh(compliance * unit * unit[:, None])
@@ -30,6 +30,11 @@ def share(compliance: np.ndarray, forces: np.ndarray, limits: np.ndarray) -> tup
         normal = np.linalg.svd(null.T)[2][-1]
         s = float(normal @ part) / float(np.abs(normal).sum())
         return s * np.sign(normal) * limits, abs(s)
+    return share_any(compliance, forces, limits)
+
+
+def share_any(compliance: np.ndarray, forces: np.ndarray, limits: np.ndarray) -> tuple[np.ndarray, float]:
+    """Shared forces (k,) and s for any G whose diagonal is positive, as where contacts slide."""
     out, count = np.ascontiguousarray(forces).copy(), len(forces)
     flags = np.ones(count, np.int64)
     return out, float(divide(np.ascontiguousarray(compliance), flags, out, limits, division_of(count)))

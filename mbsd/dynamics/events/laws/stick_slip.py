@@ -18,7 +18,7 @@ import numpy as np
 
 from mbsd.arrays.friction_along import REMEDY, friction_under, jam, normals_along
 from mbsd.base.errors import SimulationError
-from mbsd.dynamics.events.bounds import AT_LIMIT, HAIR, PATIENCE, ROUNDING
+from mbsd.dynamics.events.bounds import AT_LIMIT, AT_LIMIT_BEYOND, HAIR, PATIENCE, ROUNDING, UNSURE
 from mbsd.dynamics.events.laws.complementarity import complementarity, gives_way
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.sharing import share
@@ -172,9 +172,11 @@ class _Moment:
     def _left(self, forces: np.ndarray, limits: np.ndarray) -> np.ndarray:
         """(k,) accelerations of the ways under N and T (c + k,), zero where friction up to ``limits`` (k,) holds."""
         c = len(self.gaps)
-        left = (self.compliance @ forces + self.free)[c:]
-        by_limit = np.diag(self.compliance)[c:] * limits
-        return np.where(np.abs(left) <= AT_LIMIT * np.maximum(by_limit, np.abs(self.free[c:])), 0.0, left)
+        left, own = (self.compliance @ forces + self.free)[c:], np.diag(self.compliance)[c:]
+        others = np.abs(left - own * forces[c:])
+        rounding = AT_LIMIT_BEYOND if self.case.slipping else AT_LIMIT
+        zero = np.maximum(rounding * np.maximum(own * limits, others), UNSURE * np.abs(self.free[c:]))
+        return np.where(np.abs(left) <= zero, 0.0, left)
 
     def _agreed(self, pick: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """N and T (c + k,), the limits (k,) of joints at rest under them, and the largest load."""

@@ -41,16 +41,15 @@ NO_SIGN = 2.0
 
 
 class Friction(NamedTuple):
-    """f contacts with friction; their ways are the last f rows of Contacts."""
+    """f contacts with friction; their ways are the f rows of Contacts behind the gaps."""
 
     gap: Any
     """(f,) int, the row of Contacts that is its gap."""
     number: Any
     """(f, 7)"""
     compliance: Any
-    """(c, c) of rows of Contacts, where contacts that slide push with their friction."""
-    velocity: Any
-    """(3 nb,)"""
+    """(c, c) of rows of Contacts, where contacts that slide push with their friction; scratch of sharing, too;
+    empty without any friction."""
     order: Any
     """(c,) int, rows of Contacts in the order of the search: each contact's gap, then its way; joints last."""
     none: Sliding
@@ -88,14 +87,16 @@ class Curves(NamedTuple):
 
 LIMIT, FORCE, UNSHARED, PREVIOUS, LEFT = range(5)
 """Rows of Sticks.vector: limits of friction; normal forces and friction; friction before it is shared, and as it was
-shared last; accelerations that friction leaves."""
+shared last; accelerations that friction leaves, and friction that would hold joints alone."""
 NOW, LAST, FOUND = range(3)
 """Rows of Sticks.normal: normal forces used now, their last error, those that the multipliers give."""
 
 
 class Sticks(NamedTuple):
-    """What joints with friction add, for c rows, f joints with friction and n = c + 2 k unknowns, k of them joints."""
+    """What joints with friction add, for c rows and f joints with friction."""
 
+    joint: Any
+    """(k,) int, rows of Contacts that are ways of joints that stick: the last k."""
     vector: Any
     """(5, c)"""
     normal: Any
@@ -108,10 +109,6 @@ class Sticks(NamedTuple):
     """(2, 3 nb) without and with friction of joints."""
     division: Any
     """mbsd.dynamics.events.laws.division.Division, of c rows."""
-    tableau: Any
-    """(n, 2 n + 2) of Lemke's method."""
-    basis: Any
-    """(2, n) int: of the tableau, and rows of its ratio test."""
 
 
 class Contacts(NamedTuple):

@@ -28,6 +28,7 @@ from mbsd.dynamics.many.contacts.arrays import (
 from mbsd.dynamics.many.contacts.dips import may_dip
 from mbsd.dynamics.many.contacts.events.crossing import first_event
 from mbsd.dynamics.many.contacts.roots import MOST_ROOTS, SAMPLES, dips_before, root_between
+from mbsd.dynamics.many.contacts.rows import gaps_of
 from mbsd.dynamics.many.contacts.within import (
     along,
     at_state,
@@ -135,7 +136,7 @@ def first_met(dyn, own, scratch, state, settings, contacts, out, before, after):
     """
     count = contacts.place.shape[0]
     friction = contacts.friction
-    gaps = count - friction.gap.shape[0]
+    gaps = gaps_of(contacts)
     events = contacts.events.table.shape[0]
     if count > 0:
         sample(dyn, scratch, contacts)
@@ -143,7 +144,7 @@ def first_met(dyn, own, scratch, state, settings, contacts, out, before, after):
         contacts.events.skipped[e] = 0
     for k in range(count):
         contacts.chosen[SKIPPED, k] = 0 if _may_meet(contacts, k) else 1
-    for w in range(count - gaps):
+    for w in range(friction.gap.shape[0]):
         if contacts.number[gaps + w, CLOSED] == 0.0 and contacts.number[gaps + w, SIGN] == 0.0:
             contacts.chosen[SKIPPED, gaps + w] = 1
     for _ in range(count + events):

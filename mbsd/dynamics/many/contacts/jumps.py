@@ -29,7 +29,6 @@ from mbsd.dynamics.many.contacts.arrays import (
     STAYING,
     TAKING,
     TOUCHING,
-    WAY,
 )
 from mbsd.dynamics.many.contacts.friction.decisions import find_friction, note_met, slide_or_stick
 from mbsd.dynamics.many.contacts.friction.pushes import solve_with_friction
@@ -37,6 +36,7 @@ from mbsd.dynamics.many.contacts.pushes import find_compliance, solve_pushes
 from mbsd.dynamics.many.contacts.rows import (
     along,
     find_rates,
+    gaps_of,
     give,
     hold_rows,
     keep_independent,
@@ -54,18 +54,51 @@ FAINT = 1e-12
 
 
 @internal
-def _take_ways(contacts, flags):
-    """Put the ways of contacts in ``flags`` (c,) there as well."""
+def take_ways(contacts, flags):
+    """Put the ways of contacts in ``flags`` (c,) there as well, and none of joints."""
     gap = contacts.friction.gap
-    for w in range(gap.shape[0]):
-        flags[flags.shape[0] - gap.shape[0] + w] = flags[gap[w]]
+    gaps = gaps_of(contacts)
+    for k in range(gaps, flags.shape[0]):
+        flags[k] = flags[gap[k - gaps]] if k - gaps < gap.shape[0] else 0
+
+
+@internal
+def find_touching(scratch, contacts, met):
+    """Fill chosen[TOUCHING] with the gaps that are closed, of ``met`` at any rate; returns how many."""
+    gap = contacts.friction.gap
+    gaps = gaps_of(contacts)
+    struck = gap[met - gaps] if gaps <= met < gaps + gap.shape[0] else met
+    touching = 0
+    for k in range(gaps):
+        near = scratch.ws.phi[contacts.place[k, ROW]] <= CLOSE * contacts.number[k, NEAR]
+        clutch = contacts.place[k, KIND] == CLUTCH
+        contacts.chosen[TOUCHING, k] = 1 if near or k == struck or clutch else 0
+        touching += contacts.chosen[TOUCHING, k]
+    take_ways(contacts, contacts.chosen[TOUCHING])
+    return touching
+
+
+@internal
+def find_staying(contacts, opens):
+    """Fill chosen[STAYING] with the touching gaps that do not separate by vector[RATE]; returns how many.
+
+    ``opens``: the gap that has just opened, -1 if none has.
+    """
+    staying = 0
+    for k in range(gaps_of(contacts)):
+        slow = contacts.vector[RATE, k] <= max(contacts.number[k, SETTLE], contacts.number[k, REST])
+        contacts.chosen[STAYING, k] = 1 if contacts.chosen[TOUCHING, k] != 0 and slow and k != opens else 0
+        staying += contacts.chosen[STAYING, k]
+    take_ways(contacts, contacts.chosen[STAYING])
+    return staying
 
 
 @internal
 def _push(contacts):
     """Fill vector[NORMAL] with impulses of the rows in chosen[TAKING], for the rates in vector[RATE]."""
     if contacts.friction.gap.shape[0] > 0:
-        return solve_with_friction(contacts, contacts.compliance, contacts.vector[RATE], KINETIC)
+        vector = contacts.vector
+        return solve_with_friction(contacts, contacts.compliance, vector[RATE], KINETIC, vector[NORMAL])
     return solve_pushes(contacts, contacts.vector[RATE])
 
 
@@ -74,7 +107,7 @@ def impacts(dyn, scratch, contacts, v):
     """Let the contacts in chosen[TOUCHING] that approach push, in rounds; returns False where none can."""
     count = contacts.place.shape[0]
     friction = contacts.friction
-    gaps = count - friction.gap.shape[0]
+    gaps = gaps_of(contacts)
     taking = contacts.chosen[TAKING]
     vector = contacts.vector
     for k in range(gaps, count):
@@ -97,8 +130,8 @@ def impacts(dyn, scratch, contacts, v):
             none = last or rebound < contacts.number[k, SETTLE]
             vector[GIVEN, k] = 0.0 if none else contacts.number[k, RESTITUTION]
             bounces = bounces or (taking[k] != 0 and vector[GIVEN, k] != 0.0)
-        _take_ways(contacts, taking)
-        for w in range(count - gaps):
+        take_ways(contacts, taking)
+        for w in range(friction.gap.shape[0]):
             friction.number[w, BESIDE] = 0.0
         if not _push(contacts):
             return False
@@ -107,7 +140,7 @@ def impacts(dyn, scratch, contacts, v):
             continue
         for k in range(gaps):
             vector[GIVEN, k] *= vector[NORMAL, k]
-        for w in range(count - gaps):
+        for w in range(friction.gap.shape[0]):
             friction.number[w, BESIDE] = friction.number[w, KINETIC] * vector[GIVEN, friction.gap[w]]
         find_rates(dyn, scratch, contacts, v)
         for k in range(count):
@@ -156,7 +189,7 @@ def _decide(dyn, scratch, contacts, t, y):
             return False
     elif not solve_pushes(contacts, contacts.vector[FREE]):
         return False
-    for k in range(count - ways):
+    for k in range(gaps_of(contacts)):
         if not contacts.vector[NORMAL, k] > FAINT * largest:
             contacts.vector[NORMAL, k] = 0.0
     return True
@@ -169,35 +202,24 @@ def resolve(dyn, scratch, contacts, state, met):
     Returns False where that is impossible: a single simulation says why.
     """
     count = contacts.place.shape[0]
-    gap = contacts.friction.gap
-    gaps = count - gap.shape[0]
+    gaps = gaps_of(contacts)
     number = contacts.number
     chosen = contacts.chosen
     v = state.y[1]
-    opens = 0 <= met < gaps and number[met, CLOSED] > 0.0
-    struck = gap[met - gaps] if met >= gaps else met
+    opens = met if 0 <= met < gaps and number[met, CLOSED] > 0.0 else -1
     t = state.clock[TIME]
     if gaps < count:
         note_met(contacts, met, state.lam)
     release_rows(dyn, contacts)
     derivative(dyn, scratch, t, state.y, contacts.rates, contacts.lam)
-    touching = 0
-    for k in range(gaps):
-        near = scratch.ws.phi[contacts.place[k, ROW]] <= CLOSE * number[k, NEAR]
-        chosen[TOUCHING, k] = 1 if near or k == struck or contacts.place[k, KIND] == CLUTCH else 0
-        touching += chosen[TOUCHING, k]
-    _take_ways(contacts, chosen[TOUCHING])
+    touching = find_touching(scratch, contacts, met)
     find_compliance(dyn, scratch, contacts, chosen[TOUCHING])
     if touching > 0 and not impacts(dyn, scratch, contacts, v):
         return False
     find_rates(dyn, scratch, contacts, v)
-    staying = 0
+    staying = find_staying(contacts, opens)
     for k in range(gaps):
-        slow = contacts.vector[RATE, k] <= max(number[k, SETTLE], number[k, REST])
-        chosen[STAYING, k] = 1 if chosen[TOUCHING, k] != 0 and slow and not (opens and k == met) else 0
         chosen[TAKING, k] = 0
-        staying += chosen[STAYING, k]
-    _take_ways(contacts, chosen[STAYING])
     if staying > 0:
         if not _decide(dyn, scratch, contacts, t, state.y):
             return False
@@ -214,7 +236,7 @@ def resolve(dyn, scratch, contacts, state, met):
         if chosen[TAKING, k] != 0 and contacts.place[k, KIND] == CLUTCH:
             move_zero(scratch, contacts, k)
     if gaps < count:
-        slide_or_stick(dyn, scratch, contacts)
+        slide_or_stick(scratch, contacts)
     keep_independent(contacts, chosen[TAKING])
     for k in range(count):
         number[k, HELD] = 1.0 * chosen[KEPT, k]
@@ -231,18 +253,19 @@ def moving(dyn, scratch, contacts, v):
     moving = False
     find_rates(dyn, scratch, contacts, v)
     gap = contacts.friction.gap
-    gaps = contacts.place.shape[0] - gap.shape[0]
+    gaps = gaps_of(contacts)
     for k in range(gaps):
         holds = contacts.vector[NORMAL, k] > 0.0
         rate, rest = contacts.vector[RATE, k], contacts.number[k, REST]
         creeps = contacts.chosen[STAYING, k] != 0 and not holds and rate < -CREEP * rest
-        sticks = contacts.place[k, KIND] == WAY and contacts.number[k, SIGN] == 0.0
-        contacts.chosen[TAKING, k] = 1 if holds or creeps or sticks else 0
+        contacts.chosen[TAKING, k] = 1 if holds or creeps else 0
         moving = moving or creeps or (holds and abs(rate) > rest)
     for w in range(gap.shape[0]):
         p = gaps + w
         rests = contacts.vector[NORMAL, gap[w]] > 0.0 and abs(contacts.vector[RATE, p]) <= contacts.number[p, REST]
         contacts.chosen[TAKING, p] = 1 if rests else 0
+    for k in range(gaps + gap.shape[0], contacts.place.shape[0]):
+        contacts.chosen[TAKING, k] = 1 if contacts.number[k, SIGN] == 0.0 else 0
     if moving:
         keep_independent(contacts, contacts.chosen[TAKING])
     return moving

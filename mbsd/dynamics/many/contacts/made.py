@@ -55,9 +55,6 @@ MOST = 40
 def why_not(ready: PreparedDynamics, events: Sequence[Event]) -> str | None:
     """Why events of this mechanism, and those of the user, are left to single simulations, or None."""
     contacts, sticks = ready.switches.contacts, ready.sticks
-    for contact in contacts:
-        if contact.friction and len(ready.dynamics.loads.friction):
-            return f"'{contact.name}' has friction beside that of joints"
     if (contacts or sticks or events) and ready.approaches:
         return f"'{[*contacts, *sticks, *events][0].name}' is beside a contact that remembers how fast it began"
     if len(contacts) + len(sticks) > MOST:
@@ -72,7 +69,7 @@ def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], 
     """
     own = _places(ready)
     c, n3, rows = len(own), state.y.shape[1], len(state.lam)
-    pushing = c + 2 * len(_rough(ready))
+    pushing = c + 2 * len(_rough(ready)) + 2 * len(ready.sticks)
 
     def another() -> State:
         return State(*(np.zeros_like(part) for part in state))
@@ -141,16 +138,14 @@ def _numbers(ready: PreparedDynamics) -> list[tuple[float, ...]]:
 def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Sticks:
     frictions = len(ready.dynamics.loads.friction) if c else 0
     own = c if frictions else 0
-    n = own + 2 * len(ready.sticks)
     return Sticks(
+        np.arange(c - len(ready.sticks), c),
         np.zeros((LEFT + 1, own)),
         np.zeros((FOUND + 1, frictions)),
         np.zeros((own, rows)),
         np.zeros((2, rows)),
         np.zeros((2, n3)),
         division_of(own),
-        np.zeros((n, 2 * n + 2)),
-        np.zeros((2, n), np.int64),
     )
 
 
@@ -162,12 +157,11 @@ def _friction_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Frictio
     number = np.zeros((len(rough), BESIDE + 1))
     number[:, KINETIC] = [contact.friction for _, contact in rough]
     number[:, STATIC] = [contact.static_friction for _, contact in rough]
-    own = c if rough else 0
+    own = c if rough or len(ready.dynamics.loads.friction) else 0
     return Friction(
         np.array([k for k, _ in rough], np.int64),
         number,
         np.zeros((own, own)),
-        np.zeros(n3),
         np.array([*order, *range(len(order), c)], np.int64),
         sliding_for(np.zeros((0, 2), np.int64), n3, rows),
     )

@@ -97,8 +97,6 @@ def solve_pushes(contacts, rates):
         n += 1
     if fastest == 0.0:
         fastest = 1.0
-    least = 0.0
-    lowest = 0
     for i in range(n):
         unit = 1.0 / math.sqrt(alone[places[i]])
         for j in range(n):
@@ -107,10 +105,8 @@ def solve_pushes(contacts, rates):
             tableau[i, n + j] = -contacts.compliance[places[i], places[j]] * unit * other / size
         tableau[i, 2 * n] = -1.0
         tableau[i, 2 * n + 1] = rates[places[i]] * unit / fastest
-        if tableau[i, 2 * n + 1] < least:
-            least = tableau[i, 2 * n + 1]
-            lowest = i
-    if least >= 0.0:
+    lowest = lowest_row(tableau, n)
+    if lowest < 0:
         return True
     if not pivot_to_end(tableau, contacts.basis[0], n, lowest):
         return False
@@ -120,6 +116,18 @@ def solve_pushes(contacts, rates):
             k = places[variable - n]
             normal[k] = max(tableau[i, 2 * n + 1], 0.0) * fastest / size / math.sqrt(alone[k])
     return True
+
+
+@internal
+def lowest_row(tableau, n):
+    """The row of a tableau (n, 2 n + 2) where its right-hand side is the lowest; -1 where none is negative."""
+    lowest = -1
+    least = 0.0
+    for i in range(n):
+        if tableau[i, 2 * n + 1] < least:
+            least = tableau[i, 2 * n + 1]
+            lowest = i
+    return lowest
 
 
 @internal

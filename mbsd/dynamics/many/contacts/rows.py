@@ -6,7 +6,19 @@ import math
 
 from mbsd.compiling.jit import apart, internal, merged
 from mbsd.dynamics.events.bounds import DEPENDENT
-from mbsd.dynamics.many.contacts.arrays import BLOCK, HELD, KEPT, RATE, RELATIVE, ROW, SHIFT, SIDE, TAKING
+from mbsd.dynamics.many.contacts.arrays import (
+    BLOCK,
+    HELD,
+    KEPT,
+    KINETIC,
+    RATE,
+    RELATIVE,
+    ROW,
+    SHIFT,
+    SIDE,
+    SIGN,
+    TAKING,
+)
 from mbsd.equations.assembly import position
 from mbsd.equations.constraints.relative import rows as relative_rows
 from mbsd.equations.laws import evaluate_laws
@@ -49,11 +61,20 @@ def along(dyn, scratch, row, u):
 
 
 @internal
+def gaps_of(contacts):
+    """Number of gaps, the first rows of Contacts; those of ways of contacts, then of joints, are behind them."""
+    return contacts.place.shape[0] - contacts.friction.gap.shape[0] - contacts.sticks.joint.shape[0]
+
+
+@internal
 def hold_rows(dyn, contacts):
-    """Let the rows hold that should."""
+    """Let the rows hold that should, and contacts slide as they do."""
     for k in range(contacts.place.shape[0]):
         held = contacts.number[k, HELD] > 0.0
         dyn.schur.rows[contacts.place[k, BLOCK], contacts.place[k, SIDE]] = contacts.place[k, ROW] if held else -1
+    gaps = gaps_of(contacts)
+    for w in range(contacts.friction.gap.shape[0]):
+        dyn.sliding.table[w, 0] = contacts.friction.number[w, KINETIC] * contacts.number[gaps + w, SIGN]
 
 
 @internal

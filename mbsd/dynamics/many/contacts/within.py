@@ -27,7 +27,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     STATIC,
     VALUE,
 )
-from mbsd.dynamics.many.contacts.rows import along, gaps, measure_gaps
+from mbsd.dynamics.many.contacts.rows import along, gaps, gaps_of, measure_gaps
 from mbsd.dynamics.many.contacts.sticking.ways import read_ways
 from mbsd.dynamics.many.contacts.wheels import advance_to
 from mbsd.dynamics.many.events.values import signed
@@ -75,7 +75,7 @@ def stand_at(contacts, x):
 def _values(dyn, scratch, contacts, y, forces):
     """Fill vector[VALUE] at a state y (2, 3 nb) that was measured; what depends on forces only with ``forces``."""
     friction = contacts.friction
-    count = contacts.place.shape[0] - friction.gap.shape[0]
+    count = gaps_of(contacts)
     for k in range(count):
         row = contacts.place[k, ROW]
         if contacts.number[k, CLOSED] > 0.0:

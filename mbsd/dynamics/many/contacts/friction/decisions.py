@@ -10,7 +10,6 @@ import math
 from mbsd.compiling.jit import internal, lazy
 from mbsd.dynamics.events.bounds import AT_LIMIT
 from mbsd.dynamics.many.contacts.arrays import (
-    ALONE,
     BESIDE,
     BROKEN,
     CLOSED,
@@ -30,18 +29,18 @@ from mbsd.dynamics.many.contacts.arrays import (
     TAKING,
 )
 from mbsd.dynamics.many.contacts.friction.pushes import solve_with_friction
-from mbsd.dynamics.many.contacts.pushes import STIFF
-from mbsd.dynamics.many.contacts.rows import find_rates, keep_independent, move_zero, stop
+from mbsd.dynamics.many.contacts.friction.resting import find_resting
+from mbsd.dynamics.many.contacts.rows import gaps_of, move_zero
 
 
 @internal
 def note_met(contacts, met, lam):
     """Fill FORCED after the row ``met`` of contacts fell through zero, the multipliers lam (m,) being those before."""
     number = contacts.friction.number
-    gaps = contacts.place.shape[0] - number.shape[0]
+    gaps = gaps_of(contacts)
     for w in range(number.shape[0]):
         number[w, FORCED] = NO_SIGN
-    if met >= gaps:
+    if gaps <= met < gaps + number.shape[0]:
         slips = contacts.number[met, CLOSED] > 0.0
         force = lam[contacts.place[met, ROW]]
         number[met - gaps, FORCED] = math.copysign(1.0, force) if slips and force != 0.0 else 0.0
@@ -54,50 +53,32 @@ def find_friction(dyn, scratch, contacts, v, faint):
     vector[FREE] are the accelerations of all rows without N and T, v (3 nb,) the velocities; an N up to ``faint`` is
     none. Returns False where no N and T are possible.
     """
-    number = contacts.friction.number
-    for w in range(number.shape[0]):
-        number[w, BROKEN] = number[w, FORCED]
-    for _ in range(number.shape[0] + 1):
-        _guess(dyn, scratch, contacts, v)
-        _press(contacts)
-        if not solve_with_friction(contacts, contacts.friction.compliance, contacts.vector[FREE], STATIC):
+    begin_deciding(contacts)
+    for _ in range(contacts.friction.gap.shape[0] + 1):
+        find_resting(dyn, scratch, contacts, v, -1)
+        guess(contacts)
+        press(contacts)
+        pressed = contacts.friction.compliance
+        if not solve_with_friction(contacts, pressed, contacts.vector[FREE], STATIC, contacts.vector[NORMAL]):
             return False
-        if not _breaks(contacts, faint):
+        if not breaks(contacts, faint):
             break
     return True
 
 
 @internal
-def _guess(dyn, scratch, contacts, v):
-    """Fill GUESS: signs of rates, 0 of ways at rest; these are taken to be so exactly, as others may rest with them."""
-    friction = contacts.friction
-    number = friction.number
-    resting = contacts.chosen[TAKING]
-    gaps = contacts.place.shape[0] - number.shape[0]
-    own = friction.velocity
-    for k in range(resting.shape[0]):
-        resting[k] = 0
-    for c in range(v.shape[0]):
-        own[c] = v[c]
-    find_rates(dyn, scratch, contacts, own)
-    more = True
-    while more:
-        more = False
-        for w in range(number.shape[0]):
-            p = gaps + w
-            if contacts.chosen[STAYING, friction.gap[w]] == 0 or resting[p] != 0:
-                continue
-            gives = contacts.compliance[p, p] > STIFF * contacts.vector[ALONE, p]
-            slow = number[w, BROKEN] == 0.0 or abs(contacts.vector[RATE, p]) <= contacts.number[p, REST]
-            if gives and slow:
-                resting[p] = 1
-                more = True
-        if more:
-            for c in range(v.shape[0]):
-                own[c] = v[c]
-            keep_independent(contacts, resting)
-            stop(dyn, scratch, contacts, own)
-            find_rates(dyn, scratch, contacts, own)
+def begin_deciding(contacts):
+    """No static friction has broken but that of a contact which has just come to its limit."""
+    number = contacts.friction.number
+    for w in range(number.shape[0]):
+        number[w, BROKEN] = number[w, FORCED]
+
+
+@internal
+def guess(contacts):
+    """Fill GUESS: signs of rates, 0 of ways at rest, after find_resting."""
+    number = contacts.friction.number
+    gaps = gaps_of(contacts)
     for w in range(number.shape[0]):
         rate = contacts.vector[RATE, gaps + w]
         number[w, GUESS] = 0.0
@@ -108,14 +89,17 @@ def _guess(dyn, scratch, contacts, v):
 
 
 @internal
-def _press(contacts):
-    """Choose the rows that push, and let the normal forces of sliding contacts push with their friction."""
+def press(contacts):
+    """Choose the gaps and ways of contacts that push, and let normal forces of sliding ones push with their friction.
+
+    Of joints those in chosen[STAYING], where none is.
+    """
     friction = contacts.friction
     number = friction.number
     pressed = friction.compliance
     taking = contacts.chosen[TAKING]
     count = taking.shape[0]
-    gaps = count - number.shape[0]
+    gaps = gaps_of(contacts)
     for k in range(count):
         taking[k] = contacts.chosen[STAYING, k]
         for j in range(count):
@@ -130,12 +114,12 @@ def _press(contacts):
 
 
 @internal
-def _breaks(contacts, faint):
-    """Fill NEXT_SIGN; whether static friction was at its limit somewhere, where less holds once it slides."""
+def breaks(contacts, faint):
+    """Fill NEXT_SIGN by N and T in vector[NORMAL]; whether static friction broke where less holds once it slides."""
     friction = contacts.friction
     number = friction.number
-    gaps = contacts.place.shape[0] - number.shape[0]
-    breaks = False
+    gaps = gaps_of(contacts)
+    broken = False
     for w in range(number.shape[0]):
         number[w, NEXT_SIGN] = number[w, GUESS]
         normal = contacts.vector[NORMAL, friction.gap[w]]
@@ -146,16 +130,16 @@ def _breaks(contacts, faint):
             number[w, NEXT_SIGN] = -math.copysign(1.0, along)
             if number[w, STATIC] > number[w, KINETIC]:
                 number[w, BROKEN] = number[w, NEXT_SIGN]
-                breaks = True
-    return breaks
+                broken = True
+    return broken
 
 
 @internal
-def slide_or_stick(dyn, scratch, contacts):
+def slide_or_stick(scratch, contacts):
     """Let contacts slide and stick as NEXT_SIGN says, those with a normal force; choose the ways that stick."""
     friction = contacts.friction
     number = friction.number
-    gaps = contacts.place.shape[0] - number.shape[0]
+    gaps = gaps_of(contacts)
     for w in range(number.shape[0]):
         p = gaps + w
         closed = contacts.number[friction.gap[w], CLOSED] > 0.0
@@ -163,6 +147,5 @@ def slide_or_stick(dyn, scratch, contacts):
         if sticks and not contacts.number[p, CLOSED] > 0.0:
             move_zero(scratch, contacts, p)
         contacts.number[p, SIGN] = number[w, NEXT_SIGN] if closed else 0.0
-        dyn.sliding.table[w, 0] = number[w, KINETIC] * contacts.number[p, SIGN]
         contacts.number[p, CLOSED] = 1.0 if sticks else 0.0
         contacts.chosen[TAKING, p] = 1 if sticks else 0

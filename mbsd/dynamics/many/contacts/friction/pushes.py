@@ -1,8 +1,9 @@
-"""Normal forces and friction of contacts at a pose, as forces or as impulses.
+"""Normal forces and friction at a pose, as forces or as impulses.
 
     0 <= N complementary to g + G_n N + G_nt T >= 0;    |T| <= mu N + L, and the way rests or goes against T
 
-events/laws/complementarity.py, compiled; the formulas in N, T = T+ - T- and the slack of the limit stand there.
+L is the whole limit of a joint, whose normal force is none of N. This is events/laws/complementarity.py, compiled; the
+formulas in N, T = T+ - T- and the slack of the limit stand there.
 """
 
 from __future__ import annotations
@@ -10,33 +11,33 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import lazy
-from mbsd.dynamics.many.contacts.arrays import ALONE, BESIDE, NORMAL, TAKING
-from mbsd.dynamics.many.contacts.pushes import STIFF, pivot_to_end
+from mbsd.dynamics.many.contacts.arrays import ALONE, BESIDE, LIMIT, TAKING
+from mbsd.dynamics.many.contacts.pushes import STIFF, lowest_row, pivot_to_end
+from mbsd.dynamics.many.contacts.rows import gaps_of
 
 
 @lazy(bool)
-def solve_with_friction(contacts, compliance, rates, coefficient):
-    """Fill vector[NORMAL] with N of the gaps and T of the ways in chosen[TAKING], 0 of others.
+def solve_with_friction(contacts, compliance, rates, coefficient, out):
+    """Fill out (c,) with N of the gaps and T of the ways in chosen[TAKING], 0 of others.
 
     ``compliance`` (c, c) and ``rates`` (c,) are those without N and T; ``coefficient`` is the column of Friction.number
-    with mu, L stands in BESIDE. Returns False where nothing gives way, or no N and T are possible.
+    with mu. L stands in its BESIDE, of joints in LIMIT. Returns False where nothing gives way, or no N and T are
+    possible.
     """
     taking = contacts.chosen[TAKING]
     alone = contacts.vector[ALONE]
-    normal = contacts.vector[NORMAL]
     tableau = contacts.tableau
     places = contacts.basis[1]
     friction = contacts.friction
     rows = taking.shape[0]
-    gaps = rows - friction.gap.shape[0]
+    gaps = gaps_of(contacts)
+    joints = rows - contacts.sticks.joint.shape[0]
     both = 0
     first = 0
     size = 0.0
     fastest = 0.0
     for p in range(rows):
-        normal[p] = 0.0
-        if p == gaps:
-            first = both
+        out[p] = 0.0
         if taking[p] == 0:
             continue
         if p < gaps and not compliance[p, p] > STIFF * alone[p]:
@@ -45,6 +46,8 @@ def solve_with_friction(contacts, compliance, rates, coefficient):
         fastest = max(fastest, abs(rates[p]) / math.sqrt(alone[p]))
         places[both] = p
         both += 1
+        if p < gaps:
+            first = both
     if size == 0.0:
         size = 1.0
     if fastest == 0.0:
@@ -74,24 +77,22 @@ def solve_with_friction(contacts, compliance, rates, coefficient):
                     tableau[i + ways, n + j + ways] = -value
     for k in range(ways):
         way = places[first + k]
-        number = friction.number[way - gaps]
-        own = math.sqrt(alone[way])
+        unit = 1.0 / math.sqrt(alone[way])
         slack = first + 2 * ways + k
         tableau[first + k, n + slack] = -1.0
         tableau[first + ways + k, n + slack] = -1.0
         tableau[slack, n + first + k] = 1.0
         tableau[slack, n + first + ways + k] = 1.0
-        tableau[slack, last] = number[BESIDE] * own * size / fastest
+        if way >= joints:
+            tableau[slack, last] = contacts.sticks.vector[LIMIT, way] / unit * size / fastest
+            continue
+        number = friction.number[way - gaps]
+        tableau[slack, last] = number[BESIDE] / unit * size / fastest
         for j in range(first):
             if places[j] == friction.gap[way - gaps]:
-                tableau[slack, n + j] = -number[coefficient] * own / math.sqrt(alone[places[j]])
-    least = 0.0
-    lowest = 0
-    for i in range(n):
-        if tableau[i, last] < least:
-            least = tableau[i, last]
-            lowest = i
-    if least >= 0.0:
+                tableau[slack, n + j] = -number[coefficient] / unit / math.sqrt(alone[places[j]])
+    lowest = lowest_row(tableau, n)
+    if lowest < 0:
         return True
     if not pivot_to_end(tableau, contacts.basis[0], n, lowest):
         return False
@@ -102,5 +103,5 @@ def solve_with_friction(contacts, compliance, rates, coefficient):
         value = max(tableau[i, last], 0.0) * fastest / size
         back = variable >= both
         p = places[variable - ways] if back else places[variable]
-        normal[p] += (-value if back else value) / math.sqrt(alone[p])
+        out[p] += (-value if back else value) / math.sqrt(alone[p])
     return True

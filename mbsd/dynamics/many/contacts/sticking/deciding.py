@@ -5,34 +5,35 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.bounds import AT_LIMIT, HAIR, PATIENCE, ROUNDING
+from mbsd.dynamics.events.bounds import AT_LIMIT, AT_LIMIT_BEYOND, HAIR, PATIENCE, ROUNDING, UNSURE
 from mbsd.dynamics.events.laws.division import divide
 from mbsd.dynamics.many.contacts.arrays import (
-    ALONE,
     FORCE,
     FOUND,
     FREE,
     FRICTION,
-    KIND,
+    GUESS,
+    KINETIC,
     LAST,
     LEFT,
     LIMIT,
     NORMAL,
     NOW,
+    RATE,
     REST,
     RESTING,
     ROW,
     SIGN,
-    STAYING,
+    STATIC,
     TAKING,
     TOUCHING,
-    WAY,
 )
+from mbsd.dynamics.many.contacts.friction.decisions import begin_deciding, breaks, guess, press
+from mbsd.dynamics.many.contacts.friction.pushes import solve_with_friction
+from mbsd.dynamics.many.contacts.friction.resting import find_resting, gives
 from mbsd.dynamics.many.contacts.jumps import FAINT
-from mbsd.dynamics.many.contacts.pushes import STIFF
-from mbsd.dynamics.many.contacts.rows import along, find_rates, keep_independent, stop
+from mbsd.dynamics.many.contacts.rows import along, gaps_of
 from mbsd.dynamics.many.contacts.sticking.answers import respond, stand
-from mbsd.dynamics.many.contacts.sticking.complementarity import solve_forces
 from mbsd.dynamics.many.contacts.sticking.sharing import limit_of
 from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import FAINT as FAINT_LOAD
@@ -41,55 +42,19 @@ from mbsd.equations.loads import apply_loads
 
 
 @internal
-def _gives(contacts, k):
-    """Whether a force along way k moves anything: none does at a turning point, or where drivers alone move it."""
-    return contacts.compliance[k, k] > STIFF * contacts.vector[ALONE, k]
-
-
-@internal
-def _rests(dyn, scratch, contacts, k, u, halted):
-    """Whether way k is at rest at velocities u (3 nb,), or has just come to rest."""
-    rate = along(dyn, scratch, contacts.place[k, ROW], u)
-    return _gives(contacts, k) and (k == halted or abs(rate) <= contacts.number[k, REST])
-
-
-@apart
-def _find_signs(dyn, scratch, contacts, v, halted):
-    """Signs of sliding of joints at velocities v (3 nb,), those at rest taken to be so exactly: others may be, too.
-
-    chosen[RESTING] are those at rest, whose forces are to decide.
-    """
-    count = contacts.place.shape[0]
+def _find_signs(dyn, contacts, halted):
+    """Signs of sliding of joints, after find_resting; chosen[RESTING] are those whose forces are to decide."""
     resting = contacts.chosen[RESTING]
-    u = contacts.rates[0]
-    for c in range(v.shape[0]):
-        u[c] = v[c]
-    for k in range(count):
-        resting[k] = 1 if contacts.place[k, KIND] == WAY and _rests(dyn, scratch, contacts, k, u, halted) else 0
-    known = -1
-    more = 0
-    for k in range(count):
-        more += resting[k]
-    while more > max(known, 0):
-        known = more
-        for c in range(v.shape[0]):
-            u[c] = v[c]
-        keep_independent(contacts, resting)
-        stop(dyn, scratch, contacts, u)
-        more = 0
-        for k in range(count):
-            if contacts.place[k, KIND] == WAY and _rests(dyn, scratch, contacts, k, u, halted):
-                resting[k] = 1
-            more += resting[k]
-    for k in range(count):
-        if contacts.place[k, KIND] != WAY:
-            continue
-        rate = 0.0 if k == halted else along(dyn, scratch, contacts.place[k, ROW], u)
-        sign = contacts.number[k, SIGN]
+    joints = contacts.place.shape[0] - contacts.sticks.joint.shape[0]
+    for k in range(contacts.place.shape[0]):
         resting[k] = 0
+        if k < joints:
+            continue
+        rate = contacts.vector[RATE, k]
+        sign = contacts.number[k, SIGN]
         if abs(rate) > contacts.number[k, REST]:
             sign = math.copysign(1.0, rate)
-        elif _gives(contacts, k):
+        elif gives(contacts, k):
             sign = 0.0
             resting[k] = 1
         elif k == halted:
@@ -101,10 +66,22 @@ def _find_signs(dyn, scratch, contacts, v, halted):
 
 
 @internal
-def _share_rest(contacts):
+@internal
+def _choose(dyn, scratch, contacts, v, halted):
+    """Choose what slides and what is at rest at velocities v (3 nb,), and the rows whose forces are sought."""
+    find_resting(dyn, scratch, contacts, v, halted)
+    guess(contacts)
+    _find_signs(dyn, contacts, halted)
+    press(contacts)
+    for k in range(contacts.place.shape[0] - contacts.sticks.joint.shape[0], contacts.place.shape[0]):
+        contacts.chosen[TAKING, k] = contacts.chosen[RESTING, k]
+
+
+@internal
+def _share_rest(contacts, rounding):
     """Share friction among the joints that stay at rest."""
     vector = contacts.sticks.vector
-    find_left(contacts)
+    find_left(contacts, rounding)
     within = 0
     for k in range(contacts.place.shape[0]):
         stays = contacts.chosen[RESTING, k] != 0 and vector[LEFT, k] == 0.0
@@ -116,8 +93,11 @@ def _share_rest(contacts):
 
 
 @internal
-def find_left(contacts):
-    """Fill sticks.vector[LEFT] with accelerations of ways at rest under forces, zero where friction holds them."""
+def find_left(contacts, rounding):
+    """Fill sticks.vector[LEFT] with accelerations of ways at rest under forces, zero where friction holds them.
+
+    ``rounding``: part of what acts that counts as none.
+    """
     count = contacts.place.shape[0]
     vector = contacts.sticks.vector
     for k in range(count):
@@ -128,9 +108,10 @@ def find_left(contacts):
         left = free
         for j in range(count):
             if contacts.chosen[TAKING, j] != 0:
-                left += contacts.compliance[k, j] * vector[FORCE, j]
-        by_limit = contacts.compliance[k, k] * vector[LIMIT, k]
-        if abs(left) > AT_LIMIT * max(by_limit, abs(free)):
+                left += contacts.friction.compliance[k, j] * vector[FORCE, j]
+        own = contacts.compliance[k, k]
+        others = abs(left - own * vector[FORCE, k])
+        if abs(left) > max(rounding * max(own * vector[LIMIT, k], others), UNSURE * abs(free)):
             vector[LEFT, k] = left
 
 
@@ -145,7 +126,19 @@ def _loads(dyn, scratch, contacts, t, y):
 
 
 @internal
-def _try(dyn, scratch, contacts, v, hair):
+def _add_sliding(contacts, lam):
+    """Add what the friction of sliding contacts under vector[FORCE] changes of the multipliers lam (m,)."""
+    friction = contacts.friction
+    for w in range(friction.gap.shape[0]):
+        normal = contacts.sticks.vector[FORCE, friction.gap[w]]
+        force = -friction.number[w, KINETIC] * friction.number[w, GUESS] * normal
+        if force != 0.0:
+            for r in range(lam.shape[0]):
+                lam[r] += contacts.sticks.borne[gaps_of(contacts) + w, r] * force
+
+
+@internal
+def _try(dyn, scratch, contacts, v, hair, rounding):
     """N and T under the normal forces normal[NOW], and those that they give; returns the largest load, -1 if none."""
     sticks = contacts.sticks
     load = sticks.load[1]
@@ -164,19 +157,21 @@ def _try(dyn, scratch, contacts, v, hair):
             sticks.vector[LIMIT, k] = hair * limit_of(dyn, contacts.place[k, FRICTION], sticks.normal[NOW])
         if contacts.chosen[TAKING, k] != 0:
             contacts.vector[FREE, k] = along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row]
-    if not solve_forces(contacts):
+    pressed = contacts.friction.compliance
+    if not solve_with_friction(contacts, pressed, contacts.vector[FREE], STATIC, sticks.vector[FORCE]):
         return -1.0
-    _share_rest(contacts)
+    _share_rest(contacts, rounding)
     for k in range(contacts.place.shape[0]):
         if contacts.chosen[TAKING, k] != 0:
             for r in range(lam.shape[0]):
                 lam[r] += sticks.borne[k, r] * sticks.vector[FORCE, k]
+    _add_sliding(contacts, lam)
     normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, sticks.normal[FOUND])
     return largest
 
 
 @apart
-def _agree(dyn, scratch, contacts, v, hair):
+def _agree(dyn, scratch, contacts, v, hair, rounding):
     """Repeat that until the normal forces of the joints agree; returns the largest load, -1 if they do not."""
     normal = contacts.sticks.normal
     count = normal.shape[1]
@@ -186,7 +181,7 @@ def _agree(dyn, scratch, contacts, v, hair):
         normal[NOW, k] = before if math.isfinite(before) else 0.0
         normal[LAST, k] = 0.0
     for turn in range(MOST_PASSES):
-        largest = _try(dyn, scratch, contacts, v, hair)
+        largest = _try(dyn, scratch, contacts, v, hair, rounding)
         if largest < 0.0:
             return largest
         worst = 0.0
@@ -213,29 +208,33 @@ def _agree(dyn, scratch, contacts, v, hair):
 
 @apart
 def decide(dyn, scratch, contacts, state, halted, slipping):
-    """Normal forces of the gaps in chosen[STAYING], and number[SIGN] of the joints; whether there are some.
+    """Normal forces of the gaps in chosen[STAYING], NEXT_SIGN of their ways, number[SIGN] of joints; whether some are.
 
     All rows that events switch are released. ``halted``: the joint that has just come to rest, -1 if none has;
     ``slipping``: one at rest has just come to its limit.
     """
     count = contacts.place.shape[0]
+    gaps = gaps_of(contacts)
     v = state.y[1]
+    largest = -1.0
+    hair = 1.0 - HAIR if slipping else 1.0
+    rounding = AT_LIMIT_BEYOND if slipping else AT_LIMIT
     stand(dyn, scratch, state.clock[TIME], state.y)
-    find_rates(dyn, scratch, contacts, v)
-    _find_signs(dyn, scratch, contacts, v, halted)
-    for k in range(count):
-        taking = contacts.chosen[RESTING, k] if contacts.place[k, KIND] == WAY else contacts.chosen[STAYING, k]
-        contacts.chosen[TAKING, k] = taking
+    begin_deciding(contacts)
     _loads(dyn, scratch, contacts, state.clock[TIME], state.y)
-    largest = _agree(dyn, scratch, contacts, v, 1.0 - HAIR if slipping else 1.0)
-    if largest < 0.0:
-        return False
-    find_left(contacts)
+    for _ in range(contacts.friction.gap.shape[0] + 1):
+        _choose(dyn, scratch, contacts, v, halted)
+        largest = _agree(dyn, scratch, contacts, v, hair, rounding)
+        if largest < 0.0:
+            return False
+        for k in range(count):
+            contacts.vector[NORMAL, k] = contacts.sticks.vector[FORCE, k]
+        if not breaks(contacts, FAINT * largest):
+            break
+    find_left(contacts, rounding)
     for k in range(count):
-        contacts.vector[NORMAL, k] = 0.0
-        if contacts.place[k, KIND] != WAY:
-            normal = contacts.sticks.vector[FORCE, k]
-            contacts.vector[NORMAL, k] = normal if normal > FAINT * largest else 0.0
+        if k < gaps and not contacts.vector[NORMAL, k] > FAINT * largest:
+            contacts.vector[NORMAL, k] = 0.0
         elif contacts.chosen[RESTING, k] != 0:
             left = contacts.sticks.vector[LEFT, k]
             contacts.number[k, SIGN] = math.copysign(1.0, left) if left != 0.0 else 0.0

@@ -11,6 +11,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     FOUND,
     FRICTION,
     KIND,
+    LEFT,
     LIMIT,
     PREVIOUS,
     RESTING,
@@ -18,8 +19,8 @@ from mbsd.dynamics.many.contacts.arrays import (
     UNSHARED,
     WAY,
 )
-from mbsd.dynamics.many.contacts.rows import hold_rows, release_rows
-from mbsd.dynamics.many.contacts.sticking.answers import factor, find_answers
+from mbsd.dynamics.many.contacts.rows import hold_rows
+from mbsd.dynamics.many.contacts.sticking.answers import answer_resting
 from mbsd.equations.joint_friction import PIN, PRELOAD, SHAPE, SIZE, STATIC, normal_forces
 
 
@@ -29,6 +30,27 @@ def limit_of(dyn, k, normal):
     number = dyn.loads.friction_number[k]
     lever = number[SIZE] if dyn.loads.friction[k, SHAPE] == PIN else 1.0
     return number[STATIC] * lever * (normal[k] + number[PRELOAD])
+
+
+@internal
+def _find_moved(dyn, contacts, flags):
+    """Fill friction.compliance of the joints in ``flags`` (c,) with V^T M V where contacts slide; whether any does."""
+    sliding = False
+    for w in range(dyn.sliding.table.shape[0]):
+        sliding = sliding or dyn.sliding.table[w, 0] != 0.0
+    if not sliding:
+        return False
+    answer = contacts.answer
+    for k in range(flags.shape[0]):
+        for j in range(k + 1):
+            if flags[k] == 0 or flags[j] == 0:
+                continue
+            both = 0.0
+            for c in range(3, answer.shape[1]):
+                both += answer[k, c] * answer[j, c] / dyn.inverse[c]
+            contacts.friction.compliance[k, j] = both
+            contacts.friction.compliance[j, k] = both
+    return True
 
 
 @apart
@@ -42,16 +64,18 @@ def carry(dyn, scratch, contacts, lam):
     force = contacts.sticks.vector[FORCE]
     start = contacts.sticks.vector[UNSHARED]
     previous = contacts.sticks.vector[PREVIOUS]
+    held = contacts.sticks.vector[LEFT]
+    limit = contacts.sticks.vector[LIMIT]
     before = contacts.sticks.lam[0]
     normal = contacts.sticks.normal[FOUND]
     for k in range(count):
         flags[k] = 1 if contacts.place[k, KIND] == WAY and contacts.number[k, CLOSED] > 0.0 else 0
         start[k] = -lam[contacts.place[k, ROW]]
         force[k] = start[k]
-    release_rows(dyn, contacts)
-    factor(dyn, scratch)
-    find_answers(dyn, scratch, contacts, flags)
+    answer_resting(dyn, scratch, contacts, flags)
     hold_rows(dyn, contacts)
+    sliding = _find_moved(dyn, contacts, flags)
+    moved = contacts.friction.compliance if sliding else contacts.compliance
     for r in range(lam.shape[0]):
         before[r] = lam[r]
     part = 0.0
@@ -59,10 +83,13 @@ def carry(dyn, scratch, contacts, lam):
         normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, normal)
         for k in range(count):
             if flags[k] != 0:
-                contacts.sticks.vector[LIMIT, k] = limit_of(dyn, contacts.place[k, FRICTION], normal)
+                limit[k] = limit_of(dyn, contacts.place[k, FRICTION], normal)
                 previous[k] = force[k]
                 force[k] = start[k]
-        part = divide(contacts.compliance, flags, force, contacts.sticks.vector[LIMIT], contacts.sticks.division)
+                held[k] = start[k]
+        part = divide(moved, flags, force, limit, contacts.sticks.division)
+        if sliding:
+            part = divide(contacts.compliance, flags, held, limit, contacts.sticks.division)
         change = 0.0
         largest = 0.0
         for k in range(count):

@@ -10,14 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, harmonic
-from mbsd.base.errors import MechanismError
-from mbsd.measures import samples
+from tests.dynamics.beside_single_runs import assert_as_single_ones
 from tools.models.rough import rub
 
 pytestmark = pytest.mark.slow
 MACHINES = 15
-EXACT, ERROR = 2e-9, 3.0
-"""As in test_many_random_sticking.py."""
 
 
 def between(low: float, high: float) -> st.SearchStrategy[float]:
@@ -111,34 +108,12 @@ def strikers(draw: st.DrawFn) -> tuple[Mechanism, str]:
 
 @pytest.mark.parametrize("machines", [chains, pushers, carriers, strikers])
 def test_random_machines_slide_and_stick_as_single_ones(machines) -> None:
-    met = []
+    met: list[int] = []
 
     @settings(max_examples=MACHINES)
     @given(machines(), st.integers(1, 40), st.sampled_from([1e-8, 1e-10]))
     def agree(machine: tuple[Mechanism, str], steps: int, tolerance: float) -> None:
-        m, body = machine
-        times = np.linspace(0.0, 1.0, steps + 1)
-        parts = ("x", "theta", "omega")
-        measure = {part: samples(f"{body}.{part}", times.tolist()) for part in parts}
-        mass = m.bodies[body].mass
-        many = m.simulate_many(
-            vary={body: {"mass": [mass, 1.1 * mass]}}, measure=measure, times=times, tolerance=tolerance, threads=1
-        )
-        for k, own in enumerate((mass, 1.1 * mass)):
-            m.change(body, mass=own)
-            if many.reason[k] is not None:
-                with pytest.raises(MechanismError) as raised:
-                    m.simulate(times=times, tolerance=tolerance)
-                assert str(raised.value) in str(many.reason[k])
-                continue
-            sol = m.simulate(times=times, tolerance=tolerance)
-            met.append(len(sol.events))
-            assert many.alone[k] is None, many.way
-            near = m.simulate(times=times, tolerance=0.1 * tolerance)
-            for part in parts:
-                there, closer = (getattr(each.body(body), part) for each in (sol, near))
-                allowed = EXACT + ERROR * float(np.abs(there - closer).max())
-                np.testing.assert_allclose(many[part][k], there, atol=allowed, err_msg=part)
+        met.extend(assert_as_single_ones(*machine, 1.0, steps, tolerance))
 
     agree()
     assert np.mean(met) > 2

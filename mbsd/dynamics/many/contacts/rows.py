@@ -19,19 +19,10 @@ from mbsd.dynamics.many.contacts.arrays import (
     SIGN,
     TAKING,
 )
-from mbsd.equations.assembly import position
 from mbsd.equations.constraints.relative import rows as relative_rows
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.markers import place
 from mbsd.equations.system import ZERO
-
-
-@apart
-def measure(dyn, scratch, t, q):
-    """Fill scratch.ws.phi and scratch.ws.jac at q (3 nb,) and t (s)."""
-    if scratch.drive.shape[0] > 1:
-        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
-    position(dyn.system, q, scratch.drive, scratch.ws)
 
 
 @merged

@@ -12,12 +12,11 @@ from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, inlined, internal, lazy
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.many.repeated.arrays import BETTER, BLOCK, HELD, OPENED, ROW, SCALE, SIDE, STEPS
+from mbsd.dynamics.many.rows_at import measure
 from mbsd.dynamics.many.through import through
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.rows.bounds import LOOK, OPENED_BY
 from mbsd.dynamics.state import PAUSED, TIME
-from mbsd.equations.assembly import position
-from mbsd.equations.laws import evaluate_laws
 
 TURNS = 40
 """Turns of inverse iteration."""
@@ -32,17 +31,9 @@ def hold_independent(dyn, repeated):
 
 
 @apart
-def _measure(dyn, scratch, t, q):
-    """Fill scratch.ws.phi and scratch.ws.jac at q (3 nb,) and t (s)."""
-    if scratch.drive.shape[0] > 1:
-        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
-    position(dyn.system, q, scratch.drive, scratch.ws)
-
-
-@apart
 def _find_products(dyn, scratch, repeated, t, q):
     """Fill jac and gram at q (3 nb,)."""
-    _measure(dyn, scratch, t, q)
+    measure(dyn, scratch, t, q)
     jac = repeated.jac
     size = repeated.size
     for i in range(jac.shape[0]):
@@ -186,7 +177,7 @@ def _opens(dyn, scratch, repeated, out, first, end):
     """Whether a row that did not hold once is open in one of the outputs ``first`` to ``end`` (left out)."""
     open_now = False
     for k in range(first, end):
-        _measure(dyn, scratch, out.t[k], out.y[k, 0])
+        measure(dyn, scratch, out.t[k], out.y[k, 0])
         for i in range(repeated.place.shape[0]):
             if repeated.number[i, OPENED] > 0.0:
                 gap = abs(scratch.ws.phi[repeated.place[i, ROW]] * repeated.number[i, SCALE])

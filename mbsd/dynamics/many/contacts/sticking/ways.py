@@ -19,8 +19,9 @@ from mbsd.dynamics.many.contacts.arrays import (
     VALUE,
     WAY,
 )
-from mbsd.dynamics.many.contacts.rows import along, measure
+from mbsd.dynamics.many.contacts.rows import along
 from mbsd.dynamics.many.contacts.sticking.sharing import carry, limit_of
+from mbsd.dynamics.many.rows_at import measure
 from mbsd.equations.joint_friction import normal_forces
 
 

@@ -1,0 +1,42 @@
+"""Motions of the compiled loop over many simulations beside those of single ones, with friction."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mbsd import Mechanism
+from mbsd.base.errors import MechanismError
+from mbsd.measures import samples
+
+EXACT, ERROR = 2e-9, 3.0
+"""How far motions may differ, beside so many times what a tenth of the tolerance changes: rounding at an event moves
+the steps after it, and where a normal force has a kink, the error of the method with them."""
+PARTS = ("x", "theta", "omega")
+
+
+def assert_as_single_ones(m: Mechanism, body: str, duration: float, steps: int, tolerance: float) -> list[int]:
+    """Two masses of a body in the loop and alone; returns how many events single simulations met.
+
+    Raises AssertionError where motions differ, or where a reason is not that of the single simulation.
+    """
+    times = np.linspace(0.0, duration, steps + 1)
+    measure = {part: samples(f"{body}.{part}", times.tolist()) for part in PARTS}
+    masses, met = [m.bodies[body].mass, 1.1 * m.bodies[body].mass], []
+    many = m.simulate_many(vary={body: {"mass": masses}}, measure=measure, times=times, tolerance=tolerance, threads=1)
+    for k, mass in enumerate(masses):
+        m.change(body, mass=mass)
+        if many.reason[k] is not None:
+            with pytest.raises(MechanismError) as raised:
+                m.simulate(times=times, tolerance=tolerance)
+            assert str(raised.value) in str(many.reason[k])
+            continue
+        sol = m.simulate(times=times, tolerance=tolerance)
+        met.append(len(sol.events))
+        assert many.alone[k] is None, many.way
+        near = m.simulate(times=times, tolerance=0.1 * tolerance)
+        for part in PARTS:
+            there, closer = (getattr(each.body(body), part) for each in (sol, near))
+            allowed = EXACT + ERROR * float(np.abs(there - closer).max())
+            np.testing.assert_allclose(many[part][k], there, atol=allowed, err_msg=part)
+    return met

@@ -2,7 +2,7 @@
 
     A = df/d(z, z'),   B = df/dp        by central differences; then s'' = A (s, s') + B, as free_tangents.py has it
 
-A state costs a tenth of what it costs in reference coordinates, where these are asked for at outputs alone. It is for
+A node costs about a third of what it costs in reference coordinates, which are used at outputs alone. It is for
 mechanisms whose bodies closed forms place, by angles. Source: Wehage, Haug 1982 (partitioning).
 """
 

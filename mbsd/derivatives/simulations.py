@@ -89,10 +89,11 @@ class SimulationTangents:
         edges = first_edges((span[0], float(reached[-1])), self._met, self._first.t, longest)
         for way in (self._in_independent_coordinates, self._between_looks, self._at_nodes):
             try:
-                made, self.error = self._refined(way, edges)
+                made, error = self._refined(way, edges)
                 break
             except NotSmooth:
                 continue
+        self.error = error
         """Estimate of the largest error of the tangents, as part of the largest."""
         self.tangents = [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
 

@@ -19,8 +19,6 @@ STEPS_OF_METHOD = 0.2
 AGAIN, FEW = 3, 2
 """A motion is looked at again so often at most, as long as a step somewhere has no more gaps than so many, or the
 integrator took more steps than there were looks."""
-
-
 CLOSE = 1e-4
 """Error of accelerations between looks, as part of the largest, beyond which the motion is simulated at the nodes."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import strategies as st
 
 from mbsd import Mechanism
 from mbsd.base.errors import MechanismError
@@ -19,6 +20,11 @@ moves a single simulation by some ten tolerances."""
 SMALLER = (0.1, 0.4)
 """Tolerances of these samples, as parts of the one that is tested."""
 PARTS = ("x", "theta", "omega")
+
+
+def between(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers of a machine."""
+    return st.floats(low, high, allow_nan=False)
 
 
 def assert_as_single_ones(m: Mechanism, body: str, duration: float, steps: int, tolerance: float) -> list[int]:

@@ -10,15 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, harmonic
-from tests.dynamics.beside_single_runs import assert_as_single_ones
+from tests.dynamics.beside_single_runs import assert_as_single_ones, between
 from tools.models.rough import rub
 
 pytestmark = pytest.mark.slow
 MACHINES = 15
-
-
-def between(low: float, high: float) -> st.SearchStrategy[float]:
-    return st.floats(low, high, allow_nan=False)
 
 
 @st.composite

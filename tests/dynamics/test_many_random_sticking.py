@@ -10,14 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, harmonic, polynomial
-from tests.dynamics.beside_single_runs import assert_as_single_ones
+from tests.dynamics.beside_single_runs import assert_as_single_ones, between
 
 pytestmark = pytest.mark.slow
 MACHINES = 25
-
-
-def between(low: float, high: float) -> st.SearchStrategy[float]:
-    return st.floats(low, high, allow_nan=False)
 
 
 @st.composite

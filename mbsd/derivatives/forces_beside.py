@@ -8,15 +8,9 @@ dQ is the central difference of forces at two values of their numbers. Source: H
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from mbsd.compiling.jit import internal, kernel
-from mbsd.derivatives.near_numbers import Near
-from mbsd.derivatives.variants import TINY
-from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.equations.loads import apply_elements
 
 
@@ -33,27 +27,6 @@ class ForcesBeside(NamedTuple):
     place: Any
     """(F, 2, e, 6) Loads.place on both sides, as ``number``."""
     number: Any
-
-
-def forces_beside(arrays: Embedding, gravity: np.ndarray, mass: np.ndarray, every: Sequence[Near]) -> ForcesBeside:
-    """Numbers near those of ``arrays``, with gravity (2,) and masses (nb,)."""
-    inertia, weight = np.zeros((2, len(every), 3 * len(mass)))
-    which: list[int] = []
-    for k, near in enumerate(every):
-        inertia[k], weight[k] = near.inertia, near.weight(gravity, mass)
-        if near.loads:
-            which.append(k)
-    loads, shape = arrays.loads, (len(which), 2)
-    place, number = (np.broadcast_to(part, (*shape, *part.shape)).copy() for part in (loads.place, loads.number))
-    per = np.zeros(len(which))
-    for f, k in enumerate(which):
-        h = TINY * every[k].size
-        per[f] = 0.5 / h
-        for part, name in ((place, "place"), (number, "number")):
-            if name in every[k].loads:
-                part[f, 0] -= h * every[k].loads[name]
-                part[f, 1] += h * every[k].loads[name]
-    return ForcesBeside(inertia, weight, np.array(which, np.int64), per, place, number)
 
 
 @internal

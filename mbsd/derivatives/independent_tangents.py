@@ -13,11 +13,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from mbsd.derivatives.between_looks import between_looks
-from mbsd.derivatives.forces_beside import forces_beside, slopes_of_forces
+from mbsd.derivatives.forces_beside import slopes_of_forces
 from mbsd.derivatives.free_tangents import REACH, at_rows, slight_changes
 from mbsd.derivatives.linear_motion import Carried, carried
 from mbsd.derivatives.rates_beside import FIRST, Held, motions_beside, rates_beside
-from mbsd.derivatives.sides import Sides
+from mbsd.derivatives.sides import Sides, forces_beside
 from mbsd.derivatives.smooth_motion import CLOSE, NotSmooth
 from mbsd.derivatives.stretch import Stretch, Tangents
 from mbsd.derivatives.terms import Along, Terms

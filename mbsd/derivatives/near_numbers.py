@@ -45,7 +45,7 @@ class Near:
     com: np.ndarray
     """(nb, 2)"""
     loads: dict[str, np.ndarray]
-    """Of those arrays of the loads that change."""
+    """Arrays of the loads that change."""
     traces: dict[str, np.ndarray]
     """(2,) places of traced points that change."""
     packed: Packed | None

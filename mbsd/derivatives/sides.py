@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.arrays.packing import Packed
+from mbsd.derivatives.forces_beside import ForcesBeside
 from mbsd.derivatives.near_numbers import Near, NearNumbers
 from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.smooth_motion import NotSmooth
@@ -168,3 +169,24 @@ class BothSides:
             own["number"] = self._rows(terms.packed)
             own["number"][:, AVOID] = arrays.number[:, AVOID]
         return arrays._replace(**own)
+
+
+def forces_beside(arrays: Embedding, gravity: np.ndarray, mass: np.ndarray, every: Sequence[Near]) -> ForcesBeside:
+    """Numbers near those of ``arrays``, with gravity (2,) and masses (nb,)."""
+    inertia, weight = np.zeros((2, len(every), 3 * len(mass)))
+    which: list[int] = []
+    for k, near in enumerate(every):
+        inertia[k], weight[k] = near.inertia, near.weight(gravity, mass)
+        if near.loads:
+            which.append(k)
+    loads, shape = arrays.loads, (len(which), 2)
+    place, number = (np.broadcast_to(part, (*shape, *part.shape)).copy() for part in (loads.place, loads.number))
+    per = np.zeros(len(which))
+    for f, k in enumerate(which):
+        h = TINY * every[k].size
+        per[f] = 0.5 / h
+        for part, name in ((place, "place"), (number, "number")):
+            if name in every[k].loads:
+                part[f, 0] -= h * every[k].loads[name]
+                part[f, 1] += h * every[k].loads[name]
+    return ForcesBeside(inertia, weight, np.array(which, np.int64), per, place, number)

@@ -158,17 +158,17 @@ def test_a_start_that_least_energy_decides_is_packed_number_by_number(monkeypatc
     m.start_moving(a=3.0)  # b and c move as little as they can, which their masses decide
     m.velocities.pop("b")
     m.velocities.pop("c")
-    found: list[bool] = []
+    straight: list[bool] = []
     own = near_numbers.NearNumbers.of
 
     def noted(self: near_numbers.NearNumbers, number: Number) -> near_numbers.Near | None:
         near = own(self, number)
-        found.append(near is not None)
+        straight.append(near is not None)
         return near
 
     monkeypatch.setattr(near_numbers.NearNumbers, "of", noted)
     check_derivatives(m, ["b.theta", "c.omega"], ["c.mass", "s.stiffness", "a.length", "a.moving.omega"], 0.3, 10)
-    assert found == [False, True, False, False]
+    assert straight == [False, True, False, False]
 
 
 def test_a_number_that_cannot_grow_is_taken_from_below() -> None:

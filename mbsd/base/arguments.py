@@ -119,7 +119,7 @@ def _entries(value: Any, at: str = "", level: int = 0) -> Iterator[tuple[str, An
 
 
 def _number(what: str, value: object) -> None:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+    if isinstance(value, bool) or not isinstance(value, NUMBERS):
         raise ModelError(f"{what} is {shown(value)}; it must be a number")
 
 

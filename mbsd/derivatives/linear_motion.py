@@ -15,6 +15,7 @@ from numpy.polynomial import legendre
 from scipy.special import roots_jacobi
 
 from mbsd.compiling.jit import internal, kernel
+from mbsd.equations.gauss import eliminate
 
 NODES = 8
 """Nodes of a step, without its end."""
@@ -131,38 +132,6 @@ def fill_side(h, a, b, weights, s, first, side):
                         row[c] += factor * (s[g, c] + h * weights[n, 0] * s[f + g, c])
 
 
-@internal
-def solve(matrix, side):
-    """Replace side (n, c) by the solution of matrix (n, n), by elimination with the largest pivot of each column."""
-    size = matrix.shape[0]
-    for k in range(size):
-        pivot = k
-        for r in range(k + 1, size):
-            if abs(matrix[r, k]) > abs(matrix[pivot, k]):
-                pivot = r
-        if pivot != k:
-            for c in range(k, size):
-                matrix[k, c], matrix[pivot, c] = matrix[pivot, c], matrix[k, c]
-            for c in range(side.shape[1]):
-                side[k, c], side[pivot, c] = side[pivot, c], side[k, c]
-        per = 1.0 / matrix[k, k]
-        for r in range(k + 1, size):
-            factor = matrix[r, k] * per
-            if factor != 0.0:
-                for c in range(k + 1, size):
-                    matrix[r, c] -= factor * matrix[k, c]
-                for c in range(side.shape[1]):
-                    side[r, c] -= factor * side[k, c]
-    for k in range(size - 1, -1, -1):
-        for r in range(k + 1, size):
-            factor = matrix[k, r]
-            for c in range(side.shape[1]):
-                side[k, c] -= factor * side[r, c]
-        per = 1.0 / matrix[k, k]
-        for c in range(side.shape[1]):
-            side[k, c] *= per
-
-
 @kernel
 def march(t, a, b, weights, matrix, side, out, rates):
     """Fill out and rates (8 d + 1, 2 f, c) from out[0], by ``weights`` (8, 9); matrix and side are scratch.
@@ -176,7 +145,7 @@ def march(t, a, b, weights, matrix, side, out, rates):
         rate_at(a[first], b[first], out[first], rates[first])
         fill_matrix(h, a[own], weights, matrix)
         fill_side(h, a[own], b[own], weights, out[first], rates[first], side)
-        solve(matrix, side)
+        eliminate(matrix, side)
         for i in range(NODES):
             node = out[first + 1 + i]
             for k in range(f):

@@ -13,6 +13,8 @@ from typing import Any
 
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
+from mbsd.compiling.kernel_arguments import refuse_others
+
 
 @dataclass(frozen=True)
 class Apart:
@@ -64,6 +66,7 @@ class KernelLibrary(JITCodeLibrary):
         linked = []
         for library in dict.fromkeys(self._linking_libraries):
             if not isinstance(library, KernelLibrary):
+                refuse_others(self._final_module, library._get_module_for_linking())
                 linked.append(library)
             elif library.apart is not None:
                 self.calls[library.apart.name] = library.apart

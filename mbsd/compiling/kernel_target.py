@@ -15,6 +15,7 @@ from numba.core.registry import CPUTarget
 from numba.core.targetconfig import ConfigStack
 from numba.core.typing import Context
 
+from mbsd.compiling.kernel_arguments import MODELS, KernelContext
 from mbsd.compiling.kernel_library import KernelCode
 
 _LOCK = threading.Lock()
@@ -64,10 +65,12 @@ class _GenericTarget(CPUTarget):
         with _LOCK:
             if self._context is None:
                 context = copy.copy(registry.cpu_target.target_context)
+                context.__class__ = KernelContext
                 context.cached_internal_func = {}
                 context.__dict__.pop("nrt", None)  # it knows the context that it was made for
                 context._internal_codegen = KernelCode("mbsd.exec")
                 context.typing_context = types_
+                context.data_model_manager = MODELS
                 self._context = context
             return self._context
 

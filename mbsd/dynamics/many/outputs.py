@@ -85,8 +85,8 @@ class Reacting:
 
     def of(self, which: np.ndarray) -> Reactive:
         """Reactions of some rows."""
-        packed, jacobians, lam = self.packed[0], self.jacobians[which], self.lam[which]
-        q, own = self.y[which, :, 0], lam[..., self.rows]
+        packed, some = self.packed[0], slice(None) if len(which) == len(self.y) else which  # views, where all are meant
+        jacobians, q, own = self.jacobians[some], self.y[some, :, 0], self.lam[some][..., self.rows]
         count, times = q.shape[:2]
         if len(self.packed) == 1:
             compact, poses, multipliers = (part.reshape(count * times, *part.shape[2:]) for part in (jacobians, q, own))
@@ -99,7 +99,7 @@ class Reacting:
         own_times = self.times if self.times.ndim == 1 else self.times[which]
         drives = packed.drives(own_times.ravel())
         drives = drives.reshape(*own_times.shape, *drives.shape[1:])
-        return Reactive(self.joints.tolist(), wrench, lam[..., packed.driver_rows :], drives)
+        return Reactive(self.joints.tolist(), wrench, self.lam[some, :, packed.driver_rows :], drives)
 
 
 def motions_of(

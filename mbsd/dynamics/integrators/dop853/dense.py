@@ -33,13 +33,23 @@ def interpolant(dyn, scratch, state, h, work):
                     change += A[s, j] * k[j, part, c]
                 dense[7, part, c] = state.y[part, c] + h * change
         power[s] = derivative(dyn, scratch, t + C[s] * h, dense[7], k[s], scratch.multipliers)
+    for part in range(2):
+        for c in range(3, n3):
+            fourth = 0.0
+            fifth = 0.0
+            sixth = 0.0
+            seventh = 0.0
+            for j in range(16):
+                rate = k[j, part, c]
+                fourth += D[0, j] * rate
+                fifth += D[1, j] * rate
+                sixth += D[2, j] * rate
+                seventh += D[3, j] * rate
+            dense[3, part, c] = h * fourth
+            dense[4, part, c] = h * fifth
+            dense[5, part, c] = h * sixth
+            dense[6, part, c] = h * seventh
     for row in range(4):
-        for part in range(2):
-            for c in range(3, n3):
-                change = 0.0
-                for j in range(16):
-                    change += D[row, j] * k[j, part, c]
-                dense[3 + row, part, c] = h * change
         change = 0.0
         for j in range(16):
             change += D[row, j] * power[j]

@@ -18,10 +18,11 @@ import math
 from mbsd.compiling.jit import inlined, kernel
 from mbsd.dynamics.integrators.dop853.crossing import LANDED, crossing, nearness
 from mbsd.dynamics.integrators.dop853.dense import interpolant, write_outputs
-from mbsd.dynamics.integrators.dop853.tableau import E3, E5, A, B, C
+from mbsd.dynamics.integrators.dop853.sums import sum_stages, sum_step
+from mbsd.dynamics.integrators.dop853.tableau import B, C
 from mbsd.dynamics.integrators.formulation import accelerate, begin_run, derivative, project, record_here, settle
 from mbsd.dynamics.integrators.kind import Integrator, register
-from mbsd.dynamics.integrators.step_size import allowed, first_step
+from mbsd.dynamics.integrators.step_size import first_step
 from mbsd.dynamics.state import (
     ACCEPTED,
     CHOOSE,
@@ -61,63 +62,12 @@ SAFETY, BETA = 0.7, 0.04
 """Constants of a cautious step-size control: a rejected step costs eleven evaluations, more than longer steps save."""
 SMALL = -9.0
 """Logarithm of the least error that steers the next steps."""
-FEW = 9
-"""Columns of a state below which it is summed entry by entry."""
 UNCLEAR_STEP = 0.7
 """How a step is shortened within which independent coordinates have no clear pose."""
 CONTRACTION = 0.1
 """The second projection must change the pose by less than this part of the first."""
 ROUNDING = 1e-9
 """Changes below this (sizes, rad) are rounding in an ill-conditioned pose, and accepted."""
-
-
-@inlined
-def sum_stages(y, k, s, h, trial):
-    """The state of stage s, from the derivatives k of those before it."""
-    n3 = y.shape[1]
-    if n3 < FEW:  # sums stay in registers
-        for c in range(3, n3):
-            rise = 0.0
-            gain = 0.0
-            for j in range(s):
-                rise += A[s, j] * k[j, 0, c]
-                gain += A[s, j] * k[j, 1, c]
-            trial[0, c] = y[0, c] + h * rise
-            trial[1, c] = y[1, c] + h * gain
-        return
-    for part in range(2):
-        for c in range(3, n3):
-            trial[part, c] = A[s, 0] * k[0, part, c]
-        for j in range(1, s):
-            factor = A[s, j]
-            if factor != 0.0:
-                for c in range(3, n3):
-                    trial[part, c] += factor * k[j, part, c]
-        for c in range(3, n3):
-            trial[part, c] = y[part, c] + h * trial[part, c]
-
-
-@inlined
-def sum_step(y, k, h, settings, trial):
-    """The state at the end of a step; returns its error relative to what is allowed."""
-    n3 = y.shape[1]
-    fifth = 0.0
-    third = 0.0
-    for part in range(2):
-        for c in range(3, n3):
-            change = 0.0
-            e5 = 0.0
-            e3 = 0.0
-            for j in range(12):
-                change += B[j] * k[j, part, c]
-                e5 += E5[j] * k[j, part, c]
-                e3 += E3[j] * k[j, part, c]
-            trial[part, c] = y[part, c] + h * change
-            scale = allowed(settings, y, trial, part, c)
-            fifth += (e5 / scale) ** 2
-            third += (e3 / scale) ** 2
-    both = (fifth + 0.01 * third) * max(2 * (n3 - 3), 1)
-    return h * fifth / math.sqrt(both) if both > 0.0 else 0.0  # squares of what rests may be too small for a number
 
 
 @inlined

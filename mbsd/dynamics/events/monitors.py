@@ -36,7 +36,7 @@ CLOSES, LOCKS, OPENS, SLIPS, HALTS, USER = "closes", "locks", "opens", "slips", 
 
 
 Divide = Callable[[float, np.ndarray, np.ndarray], tuple[np.ndarray, float]]
-"""Of a time (s), a pose (3 nb,) and multipliers (m,): the multipliers divided, and the part s."""
+"""Multipliers divided, and the part s, from a time (s), a pose (3 nb,) and multipliers (m,)."""
 
 
 class Samples:

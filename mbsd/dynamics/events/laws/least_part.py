@@ -18,7 +18,7 @@ from mbsd.dynamics.events.laws.holding import hold, holding_of
 PULLED = 1e300
 """Part where contacts would have to pull."""
 LARGE = 1e6
-"""Parts above this are not told from each other."""
+"""Parts above this count as this one."""
 RAW, UNIT, OWN, FORCE, SCALED_UNIT, SCALED, BALANCE, ALLOWED, WEIGHT = range(9)
 """Rows of Together.number: forces that hold in one way; what makes rates of rows dimensionless; limits L, from the
 first on; forces that are found; then scratch."""

@@ -6,6 +6,8 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 
+import numpy as np
+
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
@@ -45,8 +47,15 @@ class Bar:
 def write(rows: Sequence[Row], bars: Sequence[Bar]) -> None:
     """out/bench.json and out/bars.json, whole."""
     for name, entries in (("bench.json", rows), ("bars.json", bars)):
-        text = json.dumps([asdict(row) for row in entries], indent=1) + "\n"
+        text = json.dumps([asdict(row) for row in entries], indent=1, default=_plain) + "\n"
         write_bytes(out_root() / name, text.encode())
+
+
+def _plain(value: object) -> object:
+    """A scalar of numpy as Python's. Raises TypeError for anything else."""
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"{value!r} is no number of a benchmark")
 
 
 def read() -> tuple[list[Row], list[Bar]]:

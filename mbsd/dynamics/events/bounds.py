@@ -18,6 +18,10 @@ AT_LIMIT_BEYOND = 1e-12
 """The same of joints where one has come to its limit: contacts may leave it little of the motion that it had alone."""
 UNSURE = 1e-13
 """Part of the acceleration of a way without normal forces and friction that is rounding of what these leave of it."""
+GRAZING = 1e-7
+"""Part of what acts on a gap below which its acceleration is none, where a contact closes that does not push yet."""
+BEGINS = 1e-300
+"""Normal force of a contact that holds though it does not push yet (N)."""
 HAIR = 1e-9
 """Part of their limits that joints at rest lack when one of them has just come to its limit."""
 ROUNDING, PATIENCE = 1e-9, 20
@@ -26,6 +30,10 @@ PASSES = 100
 """Passes in which joints at rest agree on how they share their friction, at most."""
 AGREED = 1e-12
 """Part of the largest friction that may still change."""
+PASSES_TOGETHER, AGREED_TOGETHER = 30, 1e-11
+"""Passes in which contacts and joints that hold together agree on their limits, at most; what may still change."""
+WEAKEST = 1e-9
+"""Part of the largest limit that each has at least, where limits are weights."""
 TRIED = np.array([0.1337, 0.5437])
 """Parts of a step at which the polynomial through a function of the user is tried; no simple fractions, which a period
 might share."""

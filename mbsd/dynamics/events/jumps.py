@@ -19,8 +19,9 @@ from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.impact import impacts
 from mbsd.dynamics.events.laws.independent import independent
 from mbsd.dynamics.events.laws.stick_slip import Case, Verdict, decide
+from mbsd.dynamics.events.laws.together import one_by_one
 from mbsd.dynamics.events.moment import Moment
-from mbsd.dynamics.events.monitors import HALTS, OPENS, SLIPS, Monitor
+from mbsd.dynamics.events.monitors import CLOSES, HALTS, OPENS, SLIPS, Monitor
 from mbsd.dynamics.reference.arrays import Scratch
 from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.rows.held import OPEN, RELEASED, SLIDES, STICKS
@@ -102,10 +103,12 @@ class Jumps:
             self._set(at, self._settled(at, self._case(monitor, staying, forced)), before)
 
     def _case(self, monitor: Monitor | None, staying: list[RunContact], forced: dict[str, float]) -> Case:
-        case = Case(staying, self.sticks, self.state.y[1], self.still, forced)
-        if monitor is not None and monitor.stick is not None:
-            case.slipping = monitor.what == SLIPS
-            case.halted = monitor.stick.name if monitor.what == HALTS else None
+        by_turns = one_by_one(self.switches.contacts, self.sticks)
+        case = Case(staying, self.sticks, self.state.y[1], self.still, forced, one_by_one=by_turns)
+        if monitor is not None:
+            case.slipping = monitor.what == SLIPS and monitor.contact is None
+            case.touched = monitor.name if monitor.what == CLOSES else None
+            case.halted = monitor.stick.name if monitor.stick is not None and monitor.what == HALTS else None
         return case
 
     def _settled(self, at: Compliance, case: Case) -> Verdict:

@@ -3,7 +3,7 @@
 open contact       its gap                      open clutch        its rate
 closed contact     its normal force N           sticking contact   mu N - |T|; of a joint its limit less |T|
 sliding contact    its speed, sign kept         event of the user  its value, sign kept
-joints at rest that share their friction        1 - s, the part of their limits that they need (sharing.py)
+at rest, where they share their friction        1 - s, the part of their limits that they need (sharing.py, together.py)
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from mbsd.base.arguments import LARGEST
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
+from mbsd.dynamics.events.laws.least_part import PULLED
 from mbsd.dynamics.events.moment import Moment
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, Scratch
@@ -34,6 +35,10 @@ ROUNDING = 1e-10
 CLOSES, LOCKS, OPENS, SLIPS, HALTS, USER = "closes", "locks", "opens", "slips", "halts", "event"
 
 
+Divide = Callable[[float, np.ndarray, np.ndarray], tuple[np.ndarray, float]]
+"""Multipliers divided, and the part s, from a time (s), a pose (3 nb,) and multipliers (m,)."""
+
+
 class Samples:
     """Times (S,) with coordinates and velocities (S, 3 nb), and all that monitors read there, computed when asked."""
 
@@ -45,6 +50,7 @@ class Samples:
         self._rows: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
         self._lam: np.ndarray | None = None
         self._gamma: np.ndarray | None = None
+        self._divided: tuple[np.ndarray, np.ndarray] | None = None
 
     def residuals(self) -> np.ndarray:
         """(S, m)"""
@@ -62,6 +68,14 @@ class Samples:
             for k, t in enumerate(self.t):
                 derivative(self.dynamics, self.scratch, t, np.stack([self.q[k], self.v[k]]), out, self._lam[k])
         return self._lam
+
+    def divided(self, divide: Divide) -> tuple[np.ndarray, np.ndarray]:
+        """Multipliers (S, m) with what rows at rest share divided among them, and the parts s (S,) that they need."""
+        if self._divided is None:
+            along = zip(self.t, self.q, self.multipliers(), strict=True)
+            shares = [divide(*sample) for sample in along]
+            self._divided = np.array([lam for lam, _ in shares]), np.array([part for _, part in shares])
+        return self._divided
 
     def bends(self) -> np.ndarray:
         """(S, m) J a - gamma: second derivatives of the residuals."""
@@ -101,6 +115,8 @@ class Monitor:
     """Values above minus this are rounding."""
     contact: RunContact | None = None
     stick: JointStick | None = None
+    together: bool = False
+    """Whether it is of all that is at rest."""
     event: Event | None = None
     stops: bool = True
     """False for an event of the user that passes zero the other way: it is only noted."""
@@ -108,8 +124,13 @@ class Monitor:
     """From the begin and the end of a step: whether the scalar rises away from zero there, by its rates."""
 
 
-def contact_monitors(contact: RunContact, near: np.ndarray, still: np.ndarray, load: float) -> list[Monitor]:
-    """Monitors of a contact in its present state. ``near``, ``still`` (m,): rounding."""
+def contact_monitors(
+    contact: RunContact, near: np.ndarray, still: np.ndarray, load: float, shares: Divide | None, together: bool
+) -> list[Monitor]:
+    """Monitors of a contact in its present state. ``near``, ``still`` (m,): rounding.
+
+    ``shares`` divides the forces of what is at rest, ``together`` with contacts that stick.
+    """
     gap, way, name, sign = contact.gap, contact.way or 0, contact.name, contact.sign
     if contact.state == OPEN:
         if contact.always_closed:
@@ -119,7 +140,7 @@ def contact_monitors(contact: RunContact, near: np.ndarray, still: np.ndarray, l
             return bool((s.rates()[:, gap] > -still[gap]).all() and (s.bends()[0, gap] > 0.0))
 
         return [Monitor(name, CLOSES, lambda s: s.residuals()[:, gap], near[gap], contact, leaves=leaves)]
-    out = [Monitor(name, OPENS, lambda s: -s.multipliers()[:, gap], ROUNDING * load, contact)]
+    out = [Monitor(name, OPENS, _push(gap, shares, load), ROUNDING * load, contact)]
     if contact.way is None:
         return out
     mu = contact.static_friction
@@ -128,18 +149,31 @@ def contact_monitors(contact: RunContact, near: np.ndarray, still: np.ndarray, l
         def reserve(s: Samples) -> np.ndarray:
             return -mu * s.multipliers()[:, gap] - np.abs(s.multipliers()[:, way])
 
-        out.append(Monitor(name, SLIPS, reserve, ROUNDING * load, contact))
+        if not together:
+            out.append(Monitor(name, SLIPS, reserve, ROUNDING * load, contact))
     elif contact.state == SLIDES:
         out.append(Monitor(name, HALTS, lambda s: sign * s.rates()[:, way], still[way], contact))
     return out
 
 
+def _push(gap: int, shares: Divide | None, load: float) -> Callable[[Samples], np.ndarray]:
+    """The normal force of a contact, below zero where no others hold."""
+    if shares is None:
+        return lambda s: -s.multipliers()[:, gap]
+
+    def push(s: Samples) -> np.ndarray:
+        lam, part = s.divided(shares)
+        return np.where((part >= PULLED) & (lam[:, gap] > -ROUNDING * load), -load, -lam[:, gap])
+
+    return push
+
+
 def stick_monitors(
-    sticks: Sequence[JointStick], together: Callable[[Samples], np.ndarray] | None, still: np.ndarray, load: float
+    sticks: Sequence[JointStick], shares: Divide | None, name: str, still: np.ndarray, load: float
 ) -> list[Monitor]:
     """Monitors of joints that stick by events.
 
-    ``together`` (S,): 1 - s of those at rest, if they share their friction.
+    ``shares`` divides the forces of what is at rest, if that is done; ``name``: of the first of it.
     """
     out, resting = [], []
     for stick in sticks:
@@ -147,9 +181,14 @@ def stick_monitors(
             out.append(Monitor(stick.name, HALTS, _speed(stick), still[stick.way], stick=stick))
         elif stick.state == STICKS:
             resting.append(stick)
-    if together is not None:
-        return [*out, Monitor(resting[0].name, SLIPS, together, ROUNDING, stick=resting[0])]
+    if shares is not None:
+        return [*out, Monitor(name, SLIPS, lambda s: _spare(s, shares), ROUNDING, together=True)]
     return out + [Monitor(stick.name, SLIPS, _reserve(stick), ROUNDING * load, stick=stick) for stick in resting]
+
+
+def _spare(samples: Samples, shares: Divide) -> np.ndarray:
+    """(S,) 1 - s"""
+    return 1.0 - np.minimum(samples.divided(shares)[1], 2.0)
 
 
 def _speed(stick: JointStick) -> Callable[[Samples], np.ndarray]:

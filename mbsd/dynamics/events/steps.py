@@ -22,7 +22,9 @@ from mbsd.dynamics.events.crossing import first_crossing
 from mbsd.dynamics.events.dense import Quintic
 from mbsd.dynamics.events.jumps import Jumps
 from mbsd.dynamics.events.laws.resting import carried
+from mbsd.dynamics.events.laws.together import held_together, shares_contacts
 from mbsd.dynamics.events.monitors import (
+    Divide,
     Monitor,
     Samples,
     contact_monitors,
@@ -88,6 +90,8 @@ class EventSteps:
         self._told = 0
         self._times: list[float] = []
         self._unresolved: set[str] = set()
+        self._shares: Divide | None = None
+        self._together = False
 
     # -- going on -----------------------------------------------------------------------------------------------
 
@@ -157,25 +161,25 @@ class EventSteps:
         following = int(self.state.count[NEXT])
         if following > self._told:
             self.held[self._told : following] = self.switches.held()
-            if self._sharing:
+            if self._shares is not None:
                 for k in range(self._told, following):
-                    self.out.lam[k] = self._carried(self.out.t[k], self.out.y[k, 0], self.out.lam[k])[0]
+                    self.out.lam[k] = self._shares(self.out.t[k], self.out.y[k, 0], self.out.lam[k])[0]
             self._told = following
 
     # -- joints at rest that share their friction ---------------------------------------------------------------
 
-    @property
-    def _sharing(self) -> bool:
-        held = self.switches.held() if self.sticks else None
-        return held is not None and any(stick.state == STICKS and not held[stick.way] for stick in self.sticks)
+    def _find_shares(self) -> None:
+        """Find what divides the forces of joints and contacts at rest, if one set of rows does not say them."""
+        held = self.switches.held() if self.switches.place else np.zeros(0, bool)
+        self._together = shares_contacts(self.switches, self.sticks, held)
+        sharing = any(stick.state == STICKS and not held[stick.way] for stick in self.sticks)
+        self._shares = self._held_together if self._together else self._carried if sharing else None
 
     def _carried(self, time: float, q: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, float]:
         return carried(self.jumps.compliance(time, q), self.sticks, self.switches, lam)
 
-    def _spare(self, samples: Samples) -> np.ndarray:
-        """(S,) 1 - s"""
-        along = zip(samples.t, samples.q, samples.multipliers(), strict=True)
-        return np.array([1.0 - self._carried(*sample)[1] for sample in along])
+    def _held_together(self, time: float, q: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, float]:
+        return held_together(self.jumps.compliance(time, q), self.sticks, self.switches, lam)
 
     # -- finding ------------------------------------------------------------------------------------------------
 
@@ -307,10 +311,11 @@ class EventSteps:
         self._make_valid()
         load = max(float(np.abs(self.dynamics.weight[3:]).max()), float(np.abs(state.lam).max(initial=0.0)), 1e-300)
         self.monitors = []
+        self._find_shares()
         for contact in self.switches.contacts:
-            self.monitors += contact_monitors(contact, self.near, self.still, load)
-        together = self._spare if self._sharing else None
-        self.monitors += stick_monitors(self.sticks, together, self.still, load)
+            self.monitors += contact_monitors(contact, self.near, self.still, load, self._shares, self._together)
+        resting = (part.name for part in (*self.sticks, *self.switches.contacts) if part.state == STICKS)
+        self.monitors += stick_monitors(self.sticks, self._shares, next(resting, ""), self.still, load)
         for event in self.events:
             if self.now.events[event.name] == 0.0:
                 self.now.events[event.name] = side_ahead(
@@ -329,12 +334,12 @@ class EventSteps:
         )
 
     def _row(self) -> tuple:
-        state = self.state
+        state, shares = self.state, self._shares
         return (
             float(state.clock[TIME]),
             state.y.copy(),
             state.dy[1].copy(),
-            self._carried(state.clock[TIME], state.y[0], state.lam)[0] if self._sharing else state.lam.copy(),
+            state.lam.copy() if shares is None else shares(float(state.clock[TIME]), state.y[0], state.lam)[0],
             float(state.clock[WORK]),
             float(self.run.scratch.report[0]),
             self.switches.held(),

@@ -47,7 +47,7 @@ def complementarity(
     _refuse_driven(at, taking, compliance)
     c, k = len(taking), len(ways)
     n, t = slice(0, c), slice(c, c + k)
-    unit = 1.0 / np.sqrt(_alone(at, [*(contact.gap for contact in taking), *ways]))
+    unit = 1.0 / np.sqrt(alone(at, [*(contact.gap for contact in taking), *ways]))
     g = compliance * unit * unit[:, None]
     size = float(np.abs(np.diag(g)).max(initial=0.0)) or 1.0
     g /= size
@@ -86,7 +86,7 @@ def _paradox(at: Compliance, taking: Sequence[RunContact], why: str) -> Simulati
     )
 
 
-def _alone(at: Compliance, rows: Sequence[int]) -> np.ndarray:
+def alone(at: Compliance, rows: Sequence[int]) -> np.ndarray:
     """(k,) compliance of rows that their bodies would have without joints."""
     out = at.dynamics.inverse[3:] @ at.generalised(rows) ** 2
     return np.where(out > 0.0, out, 1.0)
@@ -94,7 +94,7 @@ def _alone(at: Compliance, rows: Sequence[int]) -> np.ndarray:
 
 def gives_way(at: Compliance, row: int, compliance: float) -> bool:
     """Whether a force along ``row`` moves anything, its compliance with the joints being ``compliance``."""
-    return compliance > STIFF * float(_alone(at, [row])[0])
+    return compliance > STIFF * float(alone(at, [row])[0])
 
 
 def _refuse_driven(at: Compliance, taking: Sequence[RunContact], compliance: np.ndarray) -> None:

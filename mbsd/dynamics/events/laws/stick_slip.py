@@ -18,10 +18,12 @@ import numpy as np
 
 from mbsd.arrays.friction_along import REMEDY, friction_under, jam, normals_along
 from mbsd.base.errors import SimulationError
-from mbsd.dynamics.events.bounds import AT_LIMIT, AT_LIMIT_BEYOND, HAIR, PATIENCE, ROUNDING, UNSURE
-from mbsd.dynamics.events.laws.complementarity import complementarity, gives_way
+from mbsd.dynamics.events.bounds import AT_LIMIT, AT_LIMIT_BEYOND, BEGINS, GRAZING, HAIR, PATIENCE, ROUNDING, UNSURE
+from mbsd.dynamics.events.laws.complementarity import alone, complementarity, gives_way
 from mbsd.dynamics.events.laws.compliance import Compliance
+from mbsd.dynamics.events.laws.least_part import PULLED
 from mbsd.dynamics.events.laws.sharing import share
+from mbsd.dynamics.events.laws.together import divided
 from mbsd.dynamics.rows.held import RELEASED, SLIDES
 from mbsd.dynamics.rows.joint_sticks import JointStick
 from mbsd.dynamics.rows.switches import RunContact
@@ -60,7 +62,11 @@ class Case:
     halted: str | None = None
     """The joint that has just come to rest."""
     slipping: bool = False
-    """A joint at rest has just come to the limit of its friction."""
+    """Joints at rest, or all that is at rest together, have just come to the limit of their friction."""
+    touched: str | None = None
+    """The contact that has just closed without an impact."""
+    one_by_one: bool = False
+    """Whether contacts come to their limits one by one; see together.py."""
 
 
 def decide(at: Compliance, case: Case) -> Verdict:
@@ -147,15 +153,20 @@ class _Moment:
         pick[np.arange(len(rough)), rough] = [closed[k].static_friction for k in rough]
         forces, limits, largest = self._agreed(pick)
         normal, along = forces[:c], forces[c:]
-        limits = pick @ normal + limits
+        limits = self._hair * pick @ normal + limits
         left = self._left(forces, limits)
         contacts = []
         for k, contact in enumerate(closed):
             holds = normal[k] > 1e-12 * largest
             direction = self.sliding[k]
+            if not holds and contact.name == self.case.touched and self._begins(k, forces):
+                if k in rough:
+                    direction = float(np.sign(left[rough.index(k)]))
+                contacts.append(Decision(contact, BEGINS, direction))
+                continue
             if k in rough and holds:
                 w = rough.index(k)
-                if abs(along[w]) >= limits[w] * (1.0 - AT_LIMIT):
+                if abs(along[w]) >= limits[w] * (1.0 - AT_LIMIT) and (left[w] or self.case.one_by_one):
                     direction = -float(np.sign(along[w]))
             contacts.append(Decision(contact, float(normal[k]) if holds else 0.0, direction))
         breaking = {
@@ -168,6 +179,14 @@ class _Moment:
         for w, stick in enumerate(self.resting, len(rough)):
             self.signs[stick.name] = float(np.sign(left[w]))
         return Verdict(contacts, self.signs)
+
+    def _begins(self, k: int, forces: np.ndarray) -> bool:
+        """Whether gap k neither opens nor needs a push yet: it closes because its push begins now.
+
+        So it is where the load of a box passes over its middle foot, from one outer foot to the other.
+        """
+        acting = np.append(self.compliance[k] * forces, self.free[k])
+        return abs(float(acting.sum())) <= GRAZING * float(np.abs(acting).max())
 
     def _left(self, forces: np.ndarray, limits: np.ndarray) -> np.ndarray:
         """(k,) accelerations of the ways under N and T (c + k,), zero where friction up to ``limits`` (k,) holds."""
@@ -184,16 +203,15 @@ class _Moment:
         packed, loads = at.packed, at.dynamics.loads
         x = np.nan_to_num(loads.normal[X].copy())
         last, weight = np.zeros_like(x), 1.0
-        hair = 1.0 - HAIR if self.case.slipping else 1.0
         for passes in range(MOST_PASSES):
             load = self.loads + friction_under(packed, loads, at.q[None], v[None], x[None])[0]
             a, lam = at.accelerations(load, self.gamma)
             self.free = self.directions.T @ a - self.gamma[[*self.gaps, *self.ways]]
-            limits = np.array([0.0] * len(self.rough) + [hair * stick.limit(x) for stick in self.resting])
+            limits = np.array([0.0] * len(self.rough) + [self._hair * stick.limit(x) for stick in self.resting])
             forces = np.concatenate(
-                complementarity(at, self.case.closed, self.ways, self.compliance, self.free, pick, limits)
+                complementarity(at, self.case.closed, self.ways, self.compliance, self.free, self._hair * pick, limits)
             )
-            forces = self._shared(forces, limits)
+            forces = self._shared(forces, self._hair * pick, limits)
             normal_forces = normals_along(
                 packed, loads, at.q[None], at.compact[None], (lam + self.lam_of @ forces)[None]
             )[0]
@@ -209,13 +227,30 @@ class _Moment:
             x = np.maximum(x + weight * gap, 0.0)
         raise SimulationError(f"{packed.name}: at t = {at.time:.6g} s {jam(packed, x)}. {REMEDY}.")
 
-    def _shared(self, forces: np.ndarray, limits: np.ndarray) -> np.ndarray:
-        """T of joints that stay at rest, shared among them where that changes no motion."""
+    @property
+    def _hair(self) -> float:
+        return 1.0 - HAIR if self.case.slipping else 1.0
+
+    def _shared(self, forces: np.ndarray, pick: np.ndarray, limits: np.ndarray) -> np.ndarray:
+        """T of joints that stay at rest, shared where that changes no motion; with contacts that stick N, too.
+
+        ``pick`` (k, c) N and ``limits`` (k,) are what friction may be.
+        """
         c = len(self.gaps)
-        still = np.flatnonzero(self._left(forces, limits) == 0.0)
+        still = np.flatnonzero(self._left(forces, pick @ forces[:c] + limits) == 0.0)
         within = still[still >= len(self.rough)]
+        pushing = np.flatnonzero(forces[:c] > 0.0)
+        sticking = [w for w in still[still < len(self.rough)] if self.rough[w] in pushing]
         out = forces.copy()
-        if len(within) > 1:
+        if sticking and len(within):
+            members = np.array([*sticking, *within])
+            rows = np.array([*pushing, *(c + members)])
+            unit = 1.0 / np.sqrt(alone(self.at, [[*self.gaps, *self.ways][row] for row in rows]))
+            g, part = self.compliance[np.ix_(rows, rows)], np.ix_(members, pushing)
+            shares, needed = divided(g, forces[rows], unit, pick[part], limits[members], np.ones(len(rows)))
+            if needed != PULLED:
+                out[rows] = shares
+        elif len(within) > 1:
             rows = c + within
             out[rows] = share(self.compliance[np.ix_(rows, rows)], forces[rows], limits[within])[0]
         return out

@@ -29,14 +29,17 @@ SKIPPED, TOUCHING, STAYING, TAKING, KEPT, RESTING = range(6)
 BEGUN, WHEN, AT_ONCE, MET, LOAD, START, LENGTH, WHERE, BEYOND, FAILURE, SHARING = range(11)
 """Entries of Contacts.clock: whether the run has begun; time of the last event (s), events at that time, events so far;
 the largest load; the step's start and length (s); where in it something was met, and a part where it is beyond; the
-status with which a step to some time within it failed; whether joints at rest share their friction."""
+status with which a step to some time within it failed; whether what is at rest shares its forces: APART, JOINTS among
+themselves, or joints and contacts TOGETHER."""
+APART, JOINTS, TOGETHER = 0.0, 1.0, 2.0
 PARTS = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
 """Parts of a step at which gaps and normal forces are looked at, as events/crossing.py does."""
 MOST_LOOKS = 80
-KINETIC, STATIC, FORCED, BROKEN, GUESS, NEXT_SIGN, BESIDE = range(7)
+KINETIC, STATIC, FORCED, BROKEN, GUESS, NEXT_SIGN, BESIDE, HOLDING = range(8)
 """Columns of Friction.number: coefficients while it slides and while it sticks; the direction in which what was met
 lets it leave its place, 0 where it came to rest, NO_SIGN else; the same once static friction has broken; that in which
-it is taken to slide, and what comes out; friction that may act beside that of the normal force."""
+it is taken to slide, and what comes out; friction that may act beside that of the normal force; STATIC, or a hair less
+where all that is at rest has come to its limit."""
 NO_SIGN = 2.0
 
 
@@ -46,7 +49,7 @@ class Friction(NamedTuple):
     gap: Any
     """(f,) int, the row of Contacts that is its gap."""
     number: Any
-    """(f, 7)"""
+    """(f, 8)"""
     compliance: Any
     """(c, c) of rows of Contacts, where contacts that slide push with their friction; scratch of sharing, too;
     empty without any friction."""
@@ -109,6 +112,8 @@ class Sticks(NamedTuple):
     """(2, 3 nb) without and with friction of joints."""
     division: Any
     """mbsd.dynamics.events.laws.division.Division, of c rows."""
+    together: Any
+    """mbsd.dynamics.events.laws.least_part.Together, of c rows."""
 
 
 class Contacts(NamedTuple):

@@ -6,12 +6,13 @@ events/jumps.py, events/laws/impact.py and stick_slip.py for contacts, compiled;
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.bounds import CREEP, ROUNDS
+from mbsd.dynamics.events.bounds import AT_LIMIT, BEGINS, CREEP, ROUNDS
 from mbsd.dynamics.many.contacts.arrays import (
     BESIDE,
     CLOSED,
     CLUTCH,
     FREE,
+    GAP,
     GIVEN,
     HELD,
     KEPT,
@@ -30,7 +31,13 @@ from mbsd.dynamics.many.contacts.arrays import (
     TAKING,
     TOUCHING,
 )
-from mbsd.dynamics.many.contacts.friction.decisions import find_friction, note_met, slide_or_stick
+from mbsd.dynamics.many.contacts.friction.decisions import (
+    begin_touched,
+    find_friction,
+    note_met,
+    one_by_one,
+    slide_or_stick,
+)
 from mbsd.dynamics.many.contacts.friction.pushes import solve_with_friction
 from mbsd.dynamics.many.contacts.pushes import find_compliance, solve_pushes
 from mbsd.dynamics.many.contacts.rows import (
@@ -156,10 +163,10 @@ def impacts(dyn, scratch, contacts, v):
 
 
 @apart
-def _decide(dyn, scratch, contacts, t, y):
+def _decide(dyn, scratch, contacts, t, y, touched):
     """Fill vector[NORMAL] with the normal forces of the contacts in chosen[STAYING]; whether there are some.
 
-    All contacts are released, and a state y (2, 3 nb) is what they begin with.
+    All contacts are released, and a state y (2, 3 nb) is what they begin with; ``touched``: the gap that has closed.
     """
     count = contacts.place.shape[0]
     ways = contacts.friction.gap.shape[0]
@@ -189,8 +196,10 @@ def _decide(dyn, scratch, contacts, t, y):
             return False
     elif not solve_pushes(contacts, contacts.vector[FREE]):
         return False
+    compliance = contacts.friction.compliance if ways > 0 else contacts.compliance
+    begin_touched(contacts, compliance, touched, FAINT * largest, AT_LIMIT)
     for k in range(gaps_of(contacts)):
-        if not contacts.vector[NORMAL, k] > FAINT * largest:
+        if contacts.vector[NORMAL, k] != BEGINS and not contacts.vector[NORMAL, k] > FAINT * largest:
             contacts.vector[NORMAL, k] = 0.0
     return True
 
@@ -199,7 +208,8 @@ def _decide(dyn, scratch, contacts, t, y):
 def resolve(dyn, scratch, contacts, state, met):
     """Impacts, and what contacts do from now on, after the scalar of row ``met`` fell through zero; -1: at the start.
 
-    Returns False where that is impossible: a single simulation says why.
+    Returns False where that is impossible, which a single simulation says, and where contacts that stick hold together
+    and lose friction once they slide, which one shares.
     """
     count = contacts.place.shape[0]
     gaps = gaps_of(contacts)
@@ -221,13 +231,14 @@ def resolve(dyn, scratch, contacts, state, met):
     for k in range(gaps):
         chosen[TAKING, k] = 0
     if staying > 0:
-        if not _decide(dyn, scratch, contacts, t, state.y):
+        touched = met if met >= 0 and contacts.place[met, KIND] == GAP and opens < 0 else -1
+        if not _decide(dyn, scratch, contacts, t, state.y, touched):
             return False
         for _ in range(staying):
             if not moving(dyn, scratch, contacts, v):
                 break
             stop(dyn, scratch, contacts, v)
-            if not _decide(dyn, scratch, contacts, t, state.y):
+            if not _decide(dyn, scratch, contacts, t, state.y, touched):
                 return False
         for k in range(gaps):
             chosen[TAKING, k] = 1 if contacts.vector[NORMAL, k] > 0.0 else 0
@@ -238,10 +249,12 @@ def resolve(dyn, scratch, contacts, state, met):
     if gaps < count:
         slide_or_stick(scratch, contacts)
     keep_independent(contacts, chosen[TAKING])
+    alone = False
     for k in range(count):
         number[k, HELD] = 1.0 * chosen[KEPT, k]
+        alone = alone or (k >= gaps and chosen[TAKING, k] != 0 and chosen[KEPT, k] == 0)
     hold_rows(dyn, contacts)
-    return True
+    return not alone or one_by_one(contacts)
 
 
 @internal

@@ -9,13 +9,14 @@ import numpy as np
 from mbsd.arrays.curve_branches import CURVES
 from mbsd.dynamics.events.bounds import NEAR as CLOSED_GAP
 from mbsd.dynamics.events.laws.division import division_of
+from mbsd.dynamics.events.laws.least_part import together_of
 from mbsd.dynamics.events.steps import STILL
 from mbsd.dynamics.many.contacts.arrays import (
-    BESIDE,
     CLUTCH,
     FOUND,
     FRICTION,
     GAP,
+    HOLDING,
     KINETIC,
     LEFT,
     MOST_LOOKS,
@@ -146,6 +147,7 @@ def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Sticks:
         np.zeros((2, rows)),
         np.zeros((2, n3)),
         division_of(own),
+        together_of(own),
     )
 
 
@@ -154,7 +156,7 @@ def _friction_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Frictio
     rough, count = _rough(ready), len(ready.switches.contacts)
     way_of = {k: count + w for w, (k, _) in enumerate(rough)}
     order = [row for k in range(count) for row in ([k, way_of[k]] if k in way_of else [k])]
-    number = np.zeros((len(rough), BESIDE + 1))
+    number = np.zeros((len(rough), HOLDING + 1))
     number[:, KINETIC] = [contact.friction for _, contact in rough]
     number[:, STATIC] = [contact.static_friction for _, contact in rough]
     own = c if rough or len(ready.dynamics.loads.friction) else 0

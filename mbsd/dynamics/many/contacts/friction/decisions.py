@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import internal, lazy
-from mbsd.dynamics.events.bounds import AT_LIMIT
+from mbsd.dynamics.events.bounds import AT_LIMIT, BEGINS, GRAZING, UNSURE
 from mbsd.dynamics.many.contacts.arrays import (
     BESIDE,
     BROKEN,
@@ -16,6 +16,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     FORCED,
     FREE,
     GUESS,
+    HOLDING,
     KINETIC,
     NEXT_SIGN,
     NO_SIGN,
@@ -46,6 +47,56 @@ def note_met(contacts, met, lam):
         number[met - gaps, FORCED] = math.copysign(1.0, force) if slips and force != 0.0 else 0.0
 
 
+@internal
+def one_by_one(contacts):
+    """Whether contacts may come to their limits one by one; see events/laws/together.py."""
+    number = contacts.friction.number
+    out = contacts.sticks.joint.shape[0] == 0
+    for w in range(number.shape[0]):
+        out = out and number[w, STATIC] <= number[w, KINETIC]
+    return out
+
+
+@internal
+def acceleration_of(contacts, compliance, forces, k):
+    """Acceleration of row k under N and T in ``forces`` (c,) of chosen[TAKING], and what acts most on it."""
+    out = contacts.vector[FREE, k]
+    most = abs(out)
+    for j in range(contacts.place.shape[0]):
+        if contacts.chosen[TAKING, j] != 0:
+            part = compliance[k, j] * forces[j]
+            out += part
+            most = max(most, abs(part))
+    return out, most
+
+
+@internal
+def left_of(contacts, forces, k, limit, rounding):
+    """Acceleration of way k, zero where friction up to ``limit`` holds it; ``rounding``: part that counts as none."""
+    left = acceleration_of(contacts, contacts.friction.compliance, forces, k)[0]
+    own = contacts.compliance[k, k]
+    others = abs(left - own * forces[k])
+    zero = max(rounding * max(own * limit, others), UNSURE * abs(contacts.vector[FREE, k]))
+    return left if abs(left) > zero else 0.0
+
+
+@internal
+def begin_touched(contacts, compliance, touched, faint, rounding):
+    """Let gap ``touched`` hold that has just closed, where it does not push yet: its push begins now."""
+    if touched < 0 or contacts.chosen[STAYING, touched] == 0 or contacts.vector[NORMAL, touched] > faint:
+        return
+    left, most = acceleration_of(contacts, compliance, contacts.vector[NORMAL], touched)
+    if abs(left) > GRAZING * most:
+        return
+    friction = contacts.friction
+    gaps = gaps_of(contacts)
+    for w in range(friction.gap.shape[0]):
+        if friction.gap[w] == touched and friction.number[w, GUESS] == 0.0:
+            along = left_of(contacts, contacts.vector[NORMAL], gaps + w, 0.0, rounding)
+            friction.number[w, NEXT_SIGN] = math.copysign(1.0, along) if along != 0.0 else 0.0
+    contacts.vector[NORMAL, touched] = BEGINS
+
+
 @lazy(bool)
 def find_friction(dyn, scratch, contacts, v, faint):
     """Fill vector[NORMAL] with N and T of the contacts in chosen[STAYING], and NEXT_SIGN.
@@ -53,25 +104,26 @@ def find_friction(dyn, scratch, contacts, v, faint):
     vector[FREE] are the accelerations of all rows without N and T, v (3 nb,) the velocities; an N up to ``faint`` is
     none. Returns False where no N and T are possible.
     """
-    begin_deciding(contacts)
+    begin_deciding(contacts, 1.0)
     for _ in range(contacts.friction.gap.shape[0] + 1):
         find_resting(dyn, scratch, contacts, v, -1)
         guess(contacts)
         press(contacts)
         pressed = contacts.friction.compliance
-        if not solve_with_friction(contacts, pressed, contacts.vector[FREE], STATIC, contacts.vector[NORMAL]):
+        if not solve_with_friction(contacts, pressed, contacts.vector[FREE], HOLDING, contacts.vector[NORMAL]):
             return False
-        if not breaks(contacts, faint):
+        if not breaks(contacts, faint, AT_LIMIT):
             break
     return True
 
 
 @internal
-def begin_deciding(contacts):
-    """No static friction has broken but that of a contact which has just come to its limit."""
+def begin_deciding(contacts, hair):
+    """No static friction has broken but that of a contact that has come to its limit; ``hair``: part of it left."""
     number = contacts.friction.number
     for w in range(number.shape[0]):
         number[w, BROKEN] = number[w, FORCED]
+        number[w, HOLDING] = hair * number[w, STATIC]
 
 
 @internal
@@ -114,19 +166,23 @@ def press(contacts):
 
 
 @internal
-def breaks(contacts, faint):
+def breaks(contacts, faint, rounding):
     """Fill NEXT_SIGN by N and T in vector[NORMAL]; whether static friction broke where less holds once it slides."""
     friction = contacts.friction
     number = friction.number
     gaps = gaps_of(contacts)
     broken = False
+    plain = one_by_one(contacts)
     for w in range(number.shape[0]):
         number[w, NEXT_SIGN] = number[w, GUESS]
         normal = contacts.vector[NORMAL, friction.gap[w]]
         along = contacts.vector[NORMAL, gaps + w]
         if contacts.chosen[TAKING, gaps + w] == 0 or not normal > faint or along == 0.0:
             continue
-        if abs(along) >= number[w, STATIC] * normal * (1.0 - AT_LIMIT):
+        limit = number[w, HOLDING] * normal
+        if abs(along) < limit * (1.0 - AT_LIMIT):
+            continue
+        if plain or left_of(contacts, contacts.vector[NORMAL], gaps + w, limit, rounding) != 0.0:
             number[w, NEXT_SIGN] = -math.copysign(1.0, along)
             if number[w, STATIC] > number[w, KINETIC]:
                 number[w, BROKEN] = number[w, NEXT_SIGN]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.bounds import AT_LIMIT, AT_LIMIT_BEYOND, HAIR, PATIENCE, ROUNDING, UNSURE
+from mbsd.dynamics.events.bounds import AT_LIMIT, AT_LIMIT_BEYOND, BEGINS, HAIR, PATIENCE, ROUNDING
 from mbsd.dynamics.events.laws.division import divide
 from mbsd.dynamics.many.contacts.arrays import (
     FORCE,
@@ -13,6 +13,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     FREE,
     FRICTION,
     GUESS,
+    HOLDING,
     KINETIC,
     LAST,
     LEFT,
@@ -24,17 +25,17 @@ from mbsd.dynamics.many.contacts.arrays import (
     RESTING,
     ROW,
     SIGN,
-    STATIC,
     TAKING,
     TOUCHING,
 )
-from mbsd.dynamics.many.contacts.friction.decisions import begin_deciding, breaks, guess, press
+from mbsd.dynamics.many.contacts.friction.decisions import begin_deciding, begin_touched, breaks, guess, left_of, press
 from mbsd.dynamics.many.contacts.friction.pushes import solve_with_friction
 from mbsd.dynamics.many.contacts.friction.resting import find_resting, gives
 from mbsd.dynamics.many.contacts.jumps import FAINT
 from mbsd.dynamics.many.contacts.rows import along, gaps_of
 from mbsd.dynamics.many.contacts.sticking.answers import respond, stand
 from mbsd.dynamics.many.contacts.sticking.sharing import limit_of
+from mbsd.dynamics.many.contacts.sticking.together import divide_together
 from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import FAINT as FAINT_LOAD
 from mbsd.equations.joint_friction import MOST_PASSES, SENSE, SETTLED, X, apply_friction, normal_forces
@@ -66,7 +67,6 @@ def _find_signs(dyn, contacts, halted):
 
 
 @internal
-@internal
 def _choose(dyn, scratch, contacts, v, halted):
     """Choose what slides and what is at rest at velocities v (3 nb,), and the rows whose forces are sought."""
     find_resting(dyn, scratch, contacts, v, halted)
@@ -79,15 +79,29 @@ def _choose(dyn, scratch, contacts, v, halted):
 
 @internal
 def _share_rest(contacts, rounding):
-    """Share friction among the joints that stay at rest."""
+    """Share friction among the joints that stay at rest, with contacts that stick N and T."""
     vector = contacts.sticks.vector
+    number = contacts.friction.number
+    gaps = gaps_of(contacts)
+    mixed = False
     find_left(contacts, rounding)
     within = 0
     for k in range(contacts.place.shape[0]):
         stays = contacts.chosen[RESTING, k] != 0 and vector[LEFT, k] == 0.0
         contacts.chosen[TOUCHING, k] = 1 if stays else 0
         within += contacts.chosen[TOUCHING, k]
-    if within > 1:
+    for w in range(number.shape[0]):
+        k = contacts.friction.gap[w]
+        limit = number[w, HOLDING] * vector[FORCE, k]
+        at_rest = within > 0 and contacts.chosen[TAKING, gaps + w] != 0 and vector[FORCE, k] > 0.0
+        if at_rest and left_of(contacts, vector[FORCE], gaps + w, limit, rounding) == 0.0:
+            contacts.chosen[TOUCHING, gaps + w] = 1
+            mixed = True
+    if mixed:
+        for k in range(gaps):
+            contacts.chosen[TOUCHING, k] = 1 if contacts.chosen[TAKING, k] != 0 and vector[FORCE, k] > 0.0 else 0
+        divide_together(contacts, contacts.chosen[TOUCHING], vector[FORCE], vector[LIMIT], HOLDING)
+    elif within > 1:
         sticks = contacts.sticks
         divide(contacts.compliance, contacts.chosen[TOUCHING], vector[FORCE], vector[LIMIT], sticks.division)
 
@@ -104,15 +118,7 @@ def find_left(contacts, rounding):
         vector[LEFT, k] = 0.0
         if contacts.chosen[RESTING, k] == 0:
             continue
-        free = contacts.vector[FREE, k]
-        left = free
-        for j in range(count):
-            if contacts.chosen[TAKING, j] != 0:
-                left += contacts.friction.compliance[k, j] * vector[FORCE, j]
-        own = contacts.compliance[k, k]
-        others = abs(left - own * vector[FORCE, k])
-        if abs(left) > max(rounding * max(own * vector[LIMIT, k], others), UNSURE * abs(free)):
-            vector[LEFT, k] = left
+        vector[LEFT, k] = left_of(contacts, vector[FORCE], k, vector[LIMIT, k], rounding)
 
 
 @internal
@@ -158,7 +164,7 @@ def _try(dyn, scratch, contacts, v, hair, rounding):
         if contacts.chosen[TAKING, k] != 0:
             contacts.vector[FREE, k] = along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row]
     pressed = contacts.friction.compliance
-    if not solve_with_friction(contacts, pressed, contacts.vector[FREE], STATIC, sticks.vector[FORCE]):
+    if not solve_with_friction(contacts, pressed, contacts.vector[FREE], HOLDING, sticks.vector[FORCE]):
         return -1.0
     _share_rest(contacts, rounding)
     for k in range(contacts.place.shape[0]):
@@ -207,11 +213,12 @@ def _agree(dyn, scratch, contacts, v, hair, rounding):
 
 
 @apart
-def decide(dyn, scratch, contacts, state, halted, slipping):
+def decide(dyn, scratch, contacts, state, halted, slipping, touched):
     """Normal forces of the gaps in chosen[STAYING], NEXT_SIGN of their ways, number[SIGN] of joints; whether some are.
 
     All rows that events switch are released. ``halted``: the joint that has just come to rest, -1 if none has;
-    ``slipping``: one at rest has just come to its limit.
+    ``slipping``: one at rest, or all that is at rest, has just come to its limit; ``touched``: the gap that has just
+    closed, -1 if none has.
     """
     count = contacts.place.shape[0]
     gaps = gaps_of(contacts)
@@ -220,7 +227,7 @@ def decide(dyn, scratch, contacts, state, halted, slipping):
     hair = 1.0 - HAIR if slipping else 1.0
     rounding = AT_LIMIT_BEYOND if slipping else AT_LIMIT
     stand(dyn, scratch, state.clock[TIME], state.y)
-    begin_deciding(contacts)
+    begin_deciding(contacts, hair)
     _loads(dyn, scratch, contacts, state.clock[TIME], state.y)
     for _ in range(contacts.friction.gap.shape[0] + 1):
         _choose(dyn, scratch, contacts, v, halted)
@@ -229,11 +236,12 @@ def decide(dyn, scratch, contacts, state, halted, slipping):
             return False
         for k in range(count):
             contacts.vector[NORMAL, k] = contacts.sticks.vector[FORCE, k]
-        if not breaks(contacts, FAINT * largest):
+        if not breaks(contacts, FAINT * largest, rounding):
             break
     find_left(contacts, rounding)
+    begin_touched(contacts, contacts.friction.compliance, touched, FAINT * largest, rounding)
     for k in range(count):
-        if k < gaps and not contacts.vector[NORMAL, k] > FAINT * largest:
+        if k < gaps and contacts.vector[NORMAL, k] != BEGINS and not contacts.vector[NORMAL, k] > FAINT * largest:
             contacts.vector[NORMAL, k] = 0.0
         elif contacts.chosen[RESTING, k] != 0:
             left = contacts.sticks.vector[LEFT, k]

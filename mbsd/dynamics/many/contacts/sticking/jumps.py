@@ -4,20 +4,25 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import internal, lazy
 from mbsd.dynamics.many.contacts.arrays import (
+    APART,
     CLOSED,
     CLUTCH,
     FRICTION,
+    GAP,
     HELD,
+    JOINTS,
     KEPT,
     KIND,
     NORMAL,
     SHARING,
     SIGN,
+    SLIDE,
     TAKING,
+    TOGETHER,
     TOUCHING,
     WAY,
 )
-from mbsd.dynamics.many.contacts.friction.decisions import note_met, slide_or_stick
+from mbsd.dynamics.many.contacts.friction.decisions import note_met, one_by_one, slide_or_stick
 from mbsd.dynamics.many.contacts.jumps import find_staying, find_touching, impacts, moving
 from mbsd.dynamics.many.contacts.rows import (
     find_rates,
@@ -35,19 +40,19 @@ from mbsd.equations.joint_friction import SENSE
 
 
 @internal
-def _settled(dyn, scratch, contacts, state, staying, halted, slipping):
+def _settled(dyn, scratch, contacts, state, staying, halted, slipping, touched):
     """Decide, and again once the ``staying`` gaps that hold are at rest; returns False where nothing is possible."""
     if staying == 0 and contacts.sticks.joint.shape[0] == 0:
         for k in range(contacts.place.shape[0]):
             contacts.vector[NORMAL, k] = 0.0
         return True
-    if not decide(dyn, scratch, contacts, state, halted, slipping):
+    if not decide(dyn, scratch, contacts, state, halted, slipping, touched):
         return False
     for _ in range(staying):
         if not moving(dyn, scratch, contacts, state.y[1]):
             return True
         stop(dyn, scratch, contacts, state.y[1])
-        if not decide(dyn, scratch, contacts, state, halted, slipping):
+        if not decide(dyn, scratch, contacts, state, halted, slipping, touched):
             return False
     return True
 
@@ -72,11 +77,16 @@ def _set(dyn, scratch, contacts):
             move_zero(scratch, contacts, k)
         number[k, CLOSED] = 1.0 * taking[k]
     keep_independent(contacts, taking)
-    contacts.clock[SHARING] = 0.0
+    sharing = False
+    mixed = False
+    plain = one_by_one(contacts)
+    gaps = gaps_of(contacts)
     for k in range(count):
         number[k, HELD] = 1.0 * contacts.chosen[KEPT, k]
-        if k >= joints and taking[k] != 0 and number[k, HELD] == 0.0:
-            contacts.clock[SHARING] = 1.0
+        if k >= gaps and taking[k] != 0:
+            sharing = sharing or (number[k, HELD] == 0.0 and (k >= joints or not plain))
+            mixed = mixed or k < joints
+    contacts.clock[SHARING] = (TOGETHER if mixed else JOINTS) if sharing else APART
     hold_rows(dyn, contacts)
 
 
@@ -90,7 +100,8 @@ def resolve_friction(dyn, scratch, contacts, state, met):
     v = state.y[1]
     closed = met >= 0 and contacts.number[met, CLOSED] > 0.0
     joint = met >= 0 and contacts.place[met, KIND] == WAY
-    note_met(contacts, met, state.lam)
+    together = closed and contacts.place[met, KIND] == SLIDE and contacts.clock[SHARING] == TOGETHER
+    note_met(contacts, -1 if together else met, state.lam)
     release_rows(dyn, contacts)
     stand(dyn, scratch, state.clock[TIME], state.y)
     touching = find_touching(scratch, contacts, met)
@@ -102,7 +113,9 @@ def resolve_friction(dyn, scratch, contacts, state, met):
     find_rates(dyn, scratch, contacts, v)
     staying = find_staying(contacts, met if closed else -1)
     halted = met if joint and not closed else -1
-    if not _settled(dyn, scratch, contacts, state, staying, halted, joint and closed):
+    slipping = (joint and closed) or together
+    touched = met if met >= 0 and contacts.place[met, KIND] == GAP and not closed else -1
+    if not _settled(dyn, scratch, contacts, state, staying, halted, slipping, touched):
         return False
     _set(dyn, scratch, contacts)
     return True

@@ -1,13 +1,15 @@
 """What is monitored of joints that stick, as events/monitors.py has it.
 
 slides    its speed, sign kept
-sticks    its limit less |T|; where joints share their friction  1 - s  of all of them, times the largest load
+sticks    its limit less |T|; where what is at rest shares its forces  1 - s  of all of it, times the largest load
 """
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import lazy
+from mbsd.compiling.jit import internal, lazy
+from mbsd.dynamics.events.laws.least_part import PULLED
 from mbsd.dynamics.many.contacts.arrays import (
+    APART,
     CLOSED,
     FOUND,
     FRICTION,
@@ -16,13 +18,27 @@ from mbsd.dynamics.many.contacts.arrays import (
     ROW,
     SHARING,
     SIGN,
+    SLIDE,
+    TOGETHER,
     VALUE,
     WAY,
 )
-from mbsd.dynamics.many.contacts.rows import along
+from mbsd.dynamics.many.contacts.rows import along, gaps_of
 from mbsd.dynamics.many.contacts.sticking.sharing import carry, limit_of
+from mbsd.dynamics.many.contacts.sticking.together import carry_together
 from mbsd.dynamics.many.rows_at import measure
 from mbsd.equations.joint_friction import normal_forces
+
+ROUNDING = 1e-10
+"""Rounding of forces, as part of the largest."""
+
+
+@internal
+def _share(dyn, scratch, contacts, lam):
+    """Divide lam (m,) at the pose of scratch.ws; returns s."""
+    if contacts.clock[SHARING] == TOGETHER:
+        return carry_together(dyn, scratch, contacts, lam)
+    return carry(dyn, scratch, contacts, lam)
 
 
 @lazy(None)
@@ -30,9 +46,12 @@ def read_ways(dyn, scratch, contacts, y, forces):
     """Fill vector[VALUE] of ways at a state y (2, 3 nb) at which contacts.lam are the multipliers, if ``forces``."""
     normal = contacts.sticks.normal[FOUND]
     resting = -1
+    sharing = contacts.clock[SHARING]
     if forces:
         normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, contacts.lam, normal)
     for k in range(contacts.place.shape[0]):
+        if contacts.place[k, KIND] == SLIDE and sharing == TOGETHER and contacts.number[k, CLOSED] > 0.0:
+            contacts.vector[VALUE, k] = contacts.clock[LOAD]
         if contacts.place[k, KIND] != WAY:
             continue
         row = contacts.place[k, ROW]
@@ -40,14 +59,21 @@ def read_ways(dyn, scratch, contacts, y, forces):
             contacts.vector[VALUE, k] = contacts.number[k, SIGN] * along(dyn, scratch, row, y[1])
             continue
         contacts.vector[VALUE, k] = contacts.clock[LOAD]
-        if forces and contacts.clock[SHARING] == 0.0:
+        if forces and sharing == APART:
             limit = limit_of(dyn, contacts.place[k, FRICTION], normal)
             contacts.vector[VALUE, k] = limit - abs(contacts.lam[row])
         if resting < 0:
             resting = k
-    if resting >= 0 and forces and contacts.clock[SHARING] > 0.0:
-        part = carry(dyn, scratch, contacts, contacts.lam)
-        contacts.vector[VALUE, resting] = (1.0 - part) * contacts.clock[LOAD]
+    if forces and sharing != APART:
+        part = _share(dyn, scratch, contacts, contacts.lam)
+        for k in range(contacts.place.shape[0]):
+            if resting < 0 and contacts.place[k, KIND] == SLIDE and contacts.number[k, CLOSED] > 0.0:
+                resting = k
+            if k < gaps_of(contacts) and contacts.number[k, CLOSED] > 0.0:
+                push = -contacts.lam[contacts.place[k, ROW]]
+                pulls = part == PULLED and push < ROUNDING * contacts.clock[LOAD]
+                contacts.vector[VALUE, k] = -contacts.clock[LOAD] if pulls else push
+        contacts.vector[VALUE, resting] = (1.0 - min(part, 2.0)) * contacts.clock[LOAD]
 
 
 @lazy(None)
@@ -55,4 +81,4 @@ def share_outputs(dyn, scratch, contacts, out, first, end):
     """Divide the friction of joints at rest in outputs ``first`` to ``end`` (left out)."""
     for k in range(first, end):
         measure(dyn, scratch, out.t[k], out.y[k, 0])
-        carry(dyn, scratch, contacts, out.lam[k])
+        _share(dyn, scratch, contacts, out.lam[k])

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import importlib
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from benchmarks import machines, table
+from benchmarks import machines, rows, table
 from benchmarks.derivatives import SWEEP
 from benchmarks.derivatives import measure as derivatives
 from benchmarks.dynamics import CODES, chain, n_four_bar, pins, squeezer
@@ -33,6 +34,15 @@ def test_our_calls_solve_what_the_peers_calls_solve() -> None:
     sweep, changed, simulation = errors.values()
     assert max(sweep, changed) < 1e-12
     assert 0.0 < simulation < 1e-5
+
+
+def test_rows_are_written_whatever_their_numbers_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rows, "out_root", lambda: tmp_path)
+    error = np.float64(1e-9)
+    every = [Row("gradient", "mbsd", "1", "", 1e-3, error, {"largest": error}, within_limits=error < 1e-6)]
+    bars = [Bar("gradient, simulations", 4.0, np.float64(3.2), "", "", np.float64(3.2) <= 4.0, most=True)]
+    rows.write(every, bars)
+    assert rows.read() == (every, bars)
 
 
 def test_the_error_of_a_call_sees_what_is_wrong() -> None:

@@ -117,6 +117,8 @@ def _all() -> int:
     for part in (
         calls.measured,
         batch.measured,
+        simulations.measured,
+        tolerances.measured,
         synthesis.measured,
         derivatives.measured,
         machines.measured,

@@ -22,6 +22,11 @@ Wanted = Mapping[str, Callable[[Solution], np.ndarray]]
 
 def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], np.ndarray]]:
     """By label, a function that gives a number or numbers of a solution. Raises ModelError for what cannot be."""
+    return {label: _function(m, label, each, sol) for label, each in labelled(m, of).items()}
+
+
+def labelled(m: Model, of: Any) -> dict[str, Any]:
+    """What is asked for by label: quantities by name, measures, functions. Raises ModelError for anything else."""
     given, of = of, _several(of)
     if isinstance(of, list | tuple):
         of = {each if isinstance(each, str) else str(k): each for k, each in enumerate(of)}
@@ -30,7 +35,13 @@ def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], n
             f"{m.name}: of is {shown(given)}; give names of quantities, a measure, or labels and quantities: "
             "{'x': 'P.x'}"
         )
-    return {str(label): _function(m, str(label), each, sol) for label, each in of.items()}
+    for label, each in of.items():
+        if not isinstance(each, str | Measure) and not callable(each):
+            raise ModelError(
+                f"{m.name}: '{label}' is {shown(each)}; give the name of a quantity, a measure such as "
+                "largest('motor.effort') of mbsd.measures, or a function of a solution"
+            )
+    return {str(label): each for label, each in of.items()}
 
 
 def _several(of: Any) -> Any:
@@ -77,12 +88,7 @@ def _function(m: Model, label: str, given: Any, sol: Solution) -> Callable[[Solu
             return given.of(label, sol.t, along)[label][0]
 
         return measured
-    if callable(given):
-        return lambda sol: _numbers(m, label, given, sol)
-    raise ModelError(
-        f"{m.name}: '{label}' is {shown(given)}; give the name of a quantity, a measure such as "
-        "largest('motor.effort') of mbsd.measures, or a function of a solution"
-    )
+    return lambda sol: _numbers(m, label, given, sol)
 
 
 def _quantity(m: Model, name: str, sol: Solution) -> Callable[[Solution], np.ndarray]:
@@ -115,12 +121,12 @@ def _numbers(m: Model, label: str, given: Callable[[Solution], Any], sol: Soluti
     except Exception as error:
         raise ModelError(f"{m.name}: the function '{label}' fails: {described(error)}") from error
     try:
-        out = np.asarray(value, float)
-    except (TypeError, ValueError):
-        out = np.asarray(np.nan)
-    if isinstance(value, str) or value is None or not np.isfinite(out).all():
+        out = np.asarray(value)
+    except (TypeError, ValueError):  # rows of several lengths
+        out = np.asarray(None)
+    if out.dtype.kind not in "fiu" or not out.size or not np.isfinite(out).all():
         raise ModelError(f"{m.name}: '{label}' gives {shown(value)}; it must give a number, or an array of them")
-    return out
+    return out.astype(float)
 
 
 def taken(sol: Solution, rows: np.ndarray) -> Solution:

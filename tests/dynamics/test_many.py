@@ -184,6 +184,12 @@ def test_rows_that_fail_carry_a_reason_and_do_not_stop_the_others() -> None:
         ({"threads": 0}, "above zero"),
         ({"tolerance": 5.0}, "tolerance is 5"),
         ({"method": "dop835"}, "did you mean"),
+        ({"method": "rk4", "formulation": "independent"}, "method 'rk4' works in reference coordinates"),
+        (
+            {"vary": {"closer": {"name": [1.0, 2.0]}}},
+            "vary: 'closer': there is no argument 'name'; there is: stiffness",
+        ),
+        ({"progress": lambda: None}, "progress must be a function of the part done, 0 .. 1: too many"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(asked: dict, words: str) -> None:
@@ -204,6 +210,8 @@ def test_progress_is_the_part_done_and_what_it_raises_ends_all() -> None:
 
     with pytest.raises(KeyboardInterrupt):
         door().simulate_many(1.0, vary=vary, measure={"x": final("door.theta")}, steps=400, progress=stop)
+    with pytest.raises(ZeroDivisionError):  # it is no error of a simulation
+        door().simulate_many(1.0, vary=vary, measure={"x": final("door.theta")}, steps=400, progress=lambda part: 1 / 0)
 
 
 def test_a_long_simulation_by_itself_ends_when_all_are_to_end() -> None:

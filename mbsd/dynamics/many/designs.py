@@ -17,11 +17,13 @@ import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.model.body import Body
 from mbsd.model.change import values_of
 from mbsd.model.mechanism import Model, Start, StartVelocity
 
+NAME = "name"
 MOST = 100_000_000
 """Simulations of one call."""
 
@@ -144,6 +146,9 @@ def _refuse_unknown(designs: Designs) -> None:
     """Raise ModelError for names and arguments that the mechanism does not have, as its own methods do."""
     work = designs.copied()
     for name, values in designs.changes.items():
+        if NAME in values:  # the word by which change() takes the name itself
+            known = [key for key in values_of(work, name) or () if key != NAME]
+            raise ModelError(f"{work.name}: vary: '{name}': {no_such('argument', NAME, known)}")
         try:
             work.change(name, **{key: _plain(column[0]) for key, column in values.items()})
         except ModelError as error:

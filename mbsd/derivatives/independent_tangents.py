@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mbsd.arrays.laws import compiled_laws
 from mbsd.derivatives.free_tangents import REACH, at_rows, slight_changes
 from mbsd.derivatives.linear_motion import Carried, carried
 from mbsd.derivatives.rates_beside import FIRST, rates_beside
@@ -115,6 +116,8 @@ class IndependentTangents:
         own = {"inertia": terms.inertia, "weight": terms.weight, "numbers": system.numbers, "gravity": system.gravity}
         if terms.loads is not None and terms.laws is not None:
             own |= {"loads": terms.loads, "laws": terms.laws}
+        elif any(a is not b for a, b in zip(terms.packed.motions, self.ready.packed.motions, strict=True)):
+            own["laws"] = compiled_laws(terms.packed, self.ready.start, self.ready.end)  # of drivers alone
         if not variant.same_places:
             choice = next(choices(terms.packed, self.ready.initial.q, self.f), None)
             groups = None if choice is None else choice.plan.groups()

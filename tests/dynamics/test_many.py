@@ -153,6 +153,7 @@ def test_rows_that_fail_carry_a_reason_and_do_not_stop_the_others() -> None:
     [
         ({"vary": {"closr": {"stiffness": [1.0]}}}, "did you mean 'closer'"),
         ({"vary": {"closer": {"stifness": [1.0]}}}, "did you mean 'stiffness'"),
+        ({"vary": {"hinge": {"x": [1.0]}}}, r"there is no argument .x.; .* vary in a study: study.build"),
         ({"vary": {"closer": {"stiffness": [1.0, 2.0], "damping": [1.0, 2.0, 3.0]}}}, "equally long"),
         ({"vary": {"closer": {"stiffness": []}}}, "no values"),
         ({"vary": {"closer": {"stiffness": ["stiff"]}}}, "must be a number"),

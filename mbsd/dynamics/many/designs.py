@@ -21,9 +21,12 @@ from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.model.body import Body
 from mbsd.model.change import values_of
-from mbsd.model.mechanism import Model, Start, StartVelocity
+from mbsd.model.mechanism import Model, Start, StartVelocity, connections
 
 NAME = "name"
+ELSEWHERE = (
+    ". Places and numbers of laws, which change() does not take, vary in a study: study(build, grid, simulated(...))"
+)
 MOST = 100_000_000
 """Simulations of one call."""
 
@@ -153,13 +156,18 @@ def _refuse_unknown(designs: Designs) -> None:
             work.change(name, **{key: _plain(column[0]) for key, column in values.items()})
         except ModelError as error:
             if "there is no" in str(error):
-                raise ModelError(str(error).replace(f"{work.name}: ", f"{work.name}: vary: ", 1)) from None
+                said = str(error).replace(f"{work.name}: ", f"{work.name}: vary: ", 1)
+                raise ModelError(f"{said}{ELSEWHERE if name in _known(work) else ''}") from None
         _refuse_wide(work, name, values)
     for what, name in [
         *(("start", name) for name in designs.starts),
         *(("moving", name) for name in designs.velocities),
     ]:
         _refuse_held(work, what, work.known_body(name))
+
+
+def _known(m: Model) -> set[str]:
+    return {*(name for table in connections(m) for name in table), *m.bodies}
 
 
 def _refuse_wide(m: Model, name: str, values: Mapping[str, np.ndarray]) -> None:

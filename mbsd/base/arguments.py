@@ -20,6 +20,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
+from mbsd.base.progress import from_user
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
 
@@ -224,6 +225,8 @@ def checked(function: F) -> F:
         try:
             return function(*positional, **keywords)
         except (ArithmeticError, np.linalg.LinAlgError, MemoryError, RecursionError) as error:
+            if from_user(error):
+                raise
             raise ModelError(
                 f"{what}: numbers go beyond what can be computed ({described(error)}). Look at the largest and "
                 "smallest lengths, masses and stiffnesses, and at how much is asked for at once"

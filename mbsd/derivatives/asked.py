@@ -23,13 +23,24 @@ Wanted = Mapping[str, Callable[[Solution], np.ndarray]]
 
 def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], np.ndarray]]:
     """By label, a function that gives a number or numbers of a solution. Raises ModelError for what cannot be."""
+    return {label: _function(m, label, each, sol) for label, each in labelled(m, of).items()}
+
+
+def labelled(m: Model, of: Any) -> dict[str, Any]:
+    """What is asked for by label: quantities by name, measures, functions. Raises ModelError for anything else."""
     given, of = of, _labelled(of)
     if not isinstance(of, Mapping) or not of:
         raise ModelError(
             f"{m.name}: of is {shown(given)}; give names of quantities, a measure, or labels and quantities: "
             "{'x': 'P.x'}"
         )
-    return {str(label): _function(m, str(label), each, sol) for label, each in of.items()}
+    for label, each in of.items():
+        if not isinstance(each, str | Measure) and not callable(each):
+            raise ModelError(
+                f"{m.name}: '{label}' is {shown(each)}; give the name of a quantity, a measure such as "
+                "largest('motor.effort') of mbsd.measures, or a function of a solution"
+            )
+    return {str(label): each for label, each in of.items()}
 
 
 def _labelled(of: Any) -> Any:
@@ -63,7 +74,7 @@ def of_bodies(m: Model, of: Any) -> OfBodies | None:
     out, every = dict[str, OfMotions](), set[str]()
     for label, each in of.items():
         names = each.quantities if isinstance(each, Measure) else (each,)
-        parts = {name: _of_bodies(m, name) for name in names if isinstance(name, str)}
+        parts = {name: reads_bodies(m, name) for name in names if isinstance(name, str)}
         known = {name: part for name, part in parts.items() if part is not None}
         if len(known) < len(names):
             return None
@@ -76,7 +87,7 @@ def _measured(measure: Measure, label: str, quantities: Mapping[str, OfMotions],
     return measure.of(label, motions.t, {name: of(motions) for name, of in quantities.items()})[label]
 
 
-def _of_bodies(m: Model, name: str) -> OfMotions | None:
+def reads_bodies(m: Model, name: str) -> OfMotions | None:
     """(K, T) of a quantity of bodies or traced points; None of any other."""
     if name == "kinetic":
         return Motions.kinetic
@@ -132,12 +143,7 @@ def _function(m: Model, label: str, given: Any, sol: Solution) -> Callable[[Solu
             return given.of(label, sol.t, along)[label][0]
 
         return measured
-    if callable(given):
-        return lambda sol: _numbers(m, label, given, sol)
-    raise ModelError(
-        f"{m.name}: '{label}' is {shown(given)}; give the name of a quantity, a measure such as "
-        "largest('motor.effort') of mbsd.measures, or a function of a solution"
-    )
+    return lambda sol: _numbers(m, label, given, sol)
 
 
 def _quantity(m: Model, name: str, sol: Solution) -> Callable[[Solution], np.ndarray]:
@@ -170,12 +176,12 @@ def _numbers(m: Model, label: str, given: Callable[[Solution], Any], sol: Soluti
     except Exception as error:
         raise ModelError(f"{m.name}: the function '{label}' fails: {described(error)}") from error
     try:
-        out = np.asarray(value, float)
-    except (TypeError, ValueError):
-        out = np.asarray(np.nan)
-    if isinstance(value, str) or value is None or not np.isfinite(out).all():
+        out = np.asarray(value)
+    except (TypeError, ValueError):  # rows of several lengths
+        out = np.asarray(None)
+    if out.dtype.kind not in "fiu" or not out.size or not np.isfinite(out).all():
         raise ModelError(f"{m.name}: '{label}' gives {shown(value)}; it must give a number, or an array of them")
-    return out
+    return out.astype(float)
 
 
 def taken(sol: Solution, rows: np.ndarray) -> Solution:

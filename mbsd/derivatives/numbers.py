@@ -28,7 +28,10 @@ from mbsd.model.mechanism import Model, connections
 
 AXES = {"x": 0, "y": 1}
 PLACE = ("x", "y", "angle")
+LISTED = 12
+"""Numbers of a thing that a message lists."""
 START = {"start": ("angle", "x", "y"), "moving": ("omega", "vx", "vy")}
+START_METHOD = {"start": "near", "moving": "moving"}
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,7 @@ def numbers_named(m: Model, names: Sequence[str]) -> list[Number]:
 
 def number_named(m: Model, name: str) -> Number:
     """The number of this name. Raises ModelError for one that there is not, and for what is no number."""
-    known = [*(key for table in connections(m) for key in table), *m.bodies, *m.traces]
+    known = [*(key for table in connections(m) for key in table), *m.bodies, *m.traces, "gravity"]
     if not isinstance(name, str):
         raise ModelError(f"{m.name}: derivatives: {shown(name)} is no name of a number; write 'crank.length'")
     for whole, rest in _splits(name):
@@ -64,8 +67,16 @@ def number_named(m: Model, name: str) -> Number:
     whole = next((whole for whole, _ in _splits(name) if whole in known), None)
     if whole is None:
         raise ModelError(f"{m.name}: derivatives: {no_such('thing with numbers', name.partition('.')[0], known)}")
-    rest = name[len(whole) + 1 :]
-    raise ModelError(f"{m.name}: derivatives: '{whole}': {no_such('number', rest, _known_of(m, whole))}")
+    rest, own = name[len(whole) + 1 :], _known_of(m, whole)
+    if not rest:
+        more = f"it has some: {', '.join(f'{whole}.{key}' for key in own[:LISTED])}" if own else "it has none"
+        raise ModelError(f"{m.name}: derivatives: '{name}' is no number; {more}")
+    first = rest.partition(".")[0]
+    if whole in m.bodies and first in START and not any(key.startswith(f"{first}.") for key in own):
+        raise ModelError(
+            f"{m.name}: derivatives: '{name}': '{whole}' has no such number before start_{START_METHOD[first]} gives it"
+        )
+    raise ModelError(f"{m.name}: derivatives: '{whole}': {no_such('number', rest, own)}")
 
 
 @contextmanager
@@ -224,7 +235,12 @@ def _known_of(m: Model, whole: str) -> list[str]:
             law = entry.motion if isinstance(entry, Joint) else next(iter(entry.laws.values()), None)
             if law is not None and is_dataclass(law):
                 out += [part.name for part in fields(law) if _is_number(getattr(law, part.name))]
+            if isinstance(entry, Joint):
+                out += PLACE
             out += [f"{side}.{axis}" for side in ("i", "j") for axis in PLACE]
     if whole in m.bodies and whole != "ground":
         out += ["mass", "inertia", "com.x", "com.y", *(["length"] if m.bodies[whole].length is not None else [])]
-    return out + (list(PLACE) if whole in m.traces else [])
+    for what, table in (("start", m.starts), ("moving", m.velocities)):
+        if whole in table:
+            out += [f"{what}.{part}" for part in START[what][: 1 if table[whole].place is None else 3]]
+    return out + (list(PLACE) if whole in m.traces else [*AXES] if whole == "gravity" else [])

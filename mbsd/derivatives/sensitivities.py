@@ -11,14 +11,15 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import names_in, no_such
-from mbsd.derivatives.asked import Wanted, needed, needs_models, needs_reactions, of_bodies, wanted
+from mbsd.derivatives.asked import Wanted, labelled, needed, needs_models, needs_reactions, of_bodies, wanted
 from mbsd.derivatives.numbers import Number, numbers_named
+from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.sweeps import SweepTangents
 from mbsd.dynamics.mobility import mobility
 from mbsd.dynamics.repeated import Repeated
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
-from mbsd.kinematics.sweep import sweep
+from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
 
@@ -132,8 +133,13 @@ def sensitivities(
     """See :meth:`mbsd.mechanism.Mechanism.sensitivities`."""
     numbers: list[Number] = numbers_named(m, names_in(f"{m.name}: sensitivities: to", to))
     tangents: Tangents
-    if moves_freely(m) if simulated is None else simulated:
-        tangents = simulation_tangents(m, output_times(m, duration, steps, times), numbers, tolerance, of)
+    free = moves_freely(m) if simulated is None else simulated
+    grid = output_times(m, duration, steps, times) if free else sweep_times(m, duration, steps, times)
+    refuse_bad_steps(m, grid, tolerance, None)
+    asked = labelled(m, of)
+    refuse_unfit(m, [(f"{m.name}: '{label}'", each) for label, each in asked.items()], grid, free)
+    if free:
+        tangents = simulation_tangents(m, grid, numbers, tolerance, of)
         functions = wanted(m, of, tangents.sol)
     else:
         sol = sweep(m, duration, steps, times)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.packing import Packed
 from mbsd.derivatives.forces_beside import ForcesBeside
 from mbsd.derivatives.near_numbers import Near, NearNumbers
@@ -165,6 +166,8 @@ class BothSides:
         own = {"inertia": terms.inertia, "weight": terms.weight, "numbers": system.numbers, "gravity": system.gravity}
         if terms.loads is not None and terms.laws is not None:
             own |= {"loads": terms.loads, "laws": terms.laws}
+        elif any(a is not b for a, b in zip(terms.packed.motions, self.ready.packed.motions, strict=True)):
+            own["laws"] = compiled_laws(terms.packed, self.ready.start, self.ready.end)  # of drivers alone
         if not variant.same_places:
             own["number"] = self._rows(terms.packed)
             own["number"][:, AVOID] = arrays.number[:, AVOID]

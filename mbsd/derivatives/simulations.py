@@ -22,7 +22,7 @@ from mbsd.derivatives.jumps import Jump, jumps_of
 from mbsd.derivatives.linear_motion import NODES
 from mbsd.derivatives.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of, refined
 from mbsd.derivatives.numbers import Number
-from mbsd.derivatives.refused import refuse
+from mbsd.derivatives.refused_motions import refuse
 from mbsd.derivatives.sides import BothSides, Sides
 from mbsd.derivatives.smooth_motion import CLOSE, Motion, NotSmooth, between, looked_at_closely, motion_of
 from mbsd.derivatives.stretch import Stretch, Tangents, joined

@@ -18,7 +18,7 @@ from mbsd.arrays.reactions import generalised, times_compact, wrenches
 from mbsd.arrays.states import states_of, without_states
 from mbsd.base.errors import InitialConditionWarning, ModelError
 from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.progress import users_progress
 from mbsd.base.warn import warn
 from mbsd.dynamics.between import Between
 from mbsd.dynamics.follow import follow, resumed
@@ -63,10 +63,8 @@ def simulate(
     integrator.numbers(m.name, options)
     grid = output_times(m, duration, steps, times)
     refuse_bad_steps(m, grid, tolerance, step)
-    if progress is not None and not callable(progress):
-        raise ModelError(f"{m.name}: progress is {shown(progress)}; it must be a function of the part done, 0 .. 1")
-    if formulation not in FORMULATIONS:
-        raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
+    progress = users_progress(f"{m.name}: progress", progress, "the part done, 0 .. 1")
+    refuse_formulation(m, formulation, integrator)
     ready = ready or prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
     warn_of_start(ready)
     longest = step or float(np.diff(grid).max())
@@ -119,6 +117,17 @@ def refuse_bad_steps(m: Model, grid: np.ndarray, tolerance: float, step: float |
         raise ModelError(
             f"{m.name}: step is {step:g} s; it must be positive, and {grid[-1] - grid[0]:g} s may take {MOST_STEPS:g} "
             "steps at most"
+        )
+
+
+def refuse_formulation(m: Model, formulation: str, integrator: Integrator) -> None:
+    """Raise ModelError for a formulation that there is not, or that this integrator does not have."""
+    if formulation not in FORMULATIONS:
+        raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
+    if formulation == INDEPENDENT and not integrator.independent:
+        raise ModelError(
+            f"{m.name}: formulation='independent' is not possible here: method '{integrator.name}' works in reference "
+            "coordinates"
         )
 
 

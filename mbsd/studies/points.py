@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 import itertools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 
 MOST = 10_000_000
@@ -29,6 +31,20 @@ def points_of(grid: Any) -> list[Point]:
             "[{name: value}, ...] or a DataFrame"
         )
     return [_point(number, row) for number, row in enumerate(rows)]
+
+
+def refuse_names(build: Callable[..., Any], points: Iterable[Point]) -> None:
+    """Raise ModelError for names that ``build`` does not take, as far as its signature says."""
+    try:
+        parameters = inspect.signature(build).parameters
+    except (TypeError, ValueError):
+        return
+    if any(p.kind is p.VAR_KEYWORD for p in parameters.values()):
+        return
+    known = [name for name, p in parameters.items() if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
+    for name in dict.fromkeys(name for point in points for name in point):
+        if name not in known:
+            raise ModelError(f"study: build: {no_such('argument', name, known)}")
 
 
 def _product(grid: Mapping[str, Any]) -> list[Point]:

@@ -25,7 +25,7 @@ from mbsd.model.mechanism import Model
 from mbsd.studies.dealt import Deals, by_cluster, by_here, by_processes, manner_of
 from mbsd.studies.identity.content import Content, own_sources
 from mbsd.studies.identity.depends import StudyPlaces, loaded_inputs, root_of
-from mbsd.studies.points import Point, points_of
+from mbsd.studies.points import Point, points_of, refuse_names
 from mbsd.studies.progress import progress as reported
 from mbsd.studies.sent import bytes_of
 from mbsd.studies.simulated import Simulated
@@ -76,8 +76,9 @@ def study(
     on, and a larger grid costs what is new. None keeps nothing. Points at which the machine failed, not the mechanism,
     are computed again.
 
-    Needs the extra ``study``. Raises ModelError for a grid that is none, a ``measure`` that uses a name of the points,
-    a scheduler that does not answer and workers none of which has the same versions.
+    Needs the extra ``study``. Raises ModelError for a grid that is none, names that ``build`` does not take, a
+    ``measure`` that uses a name of the points, a scheduler that does not answer and workers none of which has the same
+    versions.
     """
     for name, function in (("build", build), ("measure", measure)):
         if not callable(function):
@@ -86,6 +87,7 @@ def study(
     if save is not None:
         refuse_format(save)
     points = points_of(grid)
+    refuse_names(build, points)
     places = StudyPlaces(root_of(build))
     content = Content(folder is not None, places.root).add(build).add(measure)
     store = None if folder is None else _store(folder, content, places)
@@ -143,8 +145,10 @@ def _refuse_measure(build: Callable[..., Mechanism], measure: Simulated, points:
 
 def _way(build: Callable[..., Mechanism], measure: Simulated, points: Sequence[Point]) -> str:
     """How points like some of these are simulated."""
+    if not points:
+        return "there are no points"
     some = []
-    for number in sorted({*np.linspace(0, len(points) - 1, LOOKED_AT, dtype=int).tolist()} if points else ()):
+    for number in sorted({*np.linspace(0, len(points) - 1, LOOKED_AT, dtype=int).tolist()}):
         try:
             some.append(build(**points[number]))
         except Exception:

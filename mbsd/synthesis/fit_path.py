@@ -11,6 +11,7 @@ import numpy as np
 from mbsd.base.arguments import checked, finite_number, number_array, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
+from mbsd.base.progress import users_progress
 from mbsd.base.shown import shown
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model, Start
@@ -248,11 +249,8 @@ def _returns(m: Model, grid: np.ndarray) -> bool:
 
 
 def _told(owner: str, name: str, function: Callable[[Any, float], object] | None) -> Callable[[Any, float], None]:
-    if function is None:
-        return lambda what, error: None
-    if not callable(function):
-        raise ModelError(f"{owner}: fit_path: {name} is {shown(function)}; it must be a function of two arguments")
-    return lambda what, error: (function(what, error), None)[1]
+    own = users_progress(f"{owner}: fit_path: {name}", function, "two arguments", 2)
+    return own or (lambda what, error: None)
 
 
 def _nothing(m: Model, search: Search, limit: float, grashof: bool) -> str:

@@ -15,14 +15,13 @@ from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.derivatives.asked import needs_models, needs_reactions, wanted
 from mbsd.derivatives.numbers import Number, number_named, with_values
+from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, slopes_of
 from mbsd.derivatives.sweeps import SweepTangents
 from mbsd.dynamics.many.measures import Measure
-from mbsd.dynamics.many.quantities import quantity_named
-from mbsd.dynamics.simulate import output_times, refuse_bad_steps, simulate
+from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model
-from mbsd.results.columns import columns
 from mbsd.synthesis.built import built, refuse_build
 from mbsd.synthesis.ends import refuse_ends
 from mbsd.synthesis.wishes import Bounds, Condition, function_of_values
@@ -74,7 +73,7 @@ class Moves:
         duration, steps, times = span
         self.grid = output_times(m, duration, steps, times) if self.free else sweep_times(m, duration, steps, times)
         refuse_bad_steps(m, self.grid, tolerance, None)
-        self._refuse_unknown_quantities()
+        self._refuse_unfit()
 
     def __call__(self, x: np.ndarray) -> Tried:
         """Solve the motion with numbers x. Raises MechanismError where there is none."""
@@ -143,22 +142,15 @@ class Moves:
                 out[k] = default
         return out
 
-    def _refuse_unknown_quantities(self) -> None:
-        """Raise ModelError for measures of quantities that there are not: from the motion at its start."""
-        measures = {label: what for label, what in self.wishes.items() if isinstance(what, Measure)}
-        if not measures:
-            return
-        model, begin = self.model(np.clip(self.given, self.bounds.low, self.bounds.high)), float(self.grid[0])
-        if self.free:
-            times = begin + 1e-9 * np.arange(2.0)
-            first = simulate(model, None, 1, times, "dop853", 1e-6, None, None, {})
-        else:
-            first = sweep(model, None, 1, self.grid[:1])
-        known = list(columns(first))
-        for label, measure in measures.items():
-            measure.check(f"{self.m.name}: optimise: {label}", self.grid)
-            for name in measure.quantities:
-                quantity_named(model, name, known)
+    def _refuse_unfit(self) -> None:
+        """Raise ModelError for quantities that there are not, and for functions of other arguments."""
+        model = self.model(np.clip(self.given, self.bounds.low, self.bounds.high))
+        wishes = [
+            (f"{self.m.name}: optimise: {label}", what)
+            for label, what in self.wishes.items()
+            if not isinstance(what, str)
+        ]
+        refuse_unfit(model, wishes, self.grid, self.free)
 
     def _refuse(self, label: str, what: Any) -> None:
         """Raise ModelError for what can give no number."""

@@ -16,6 +16,7 @@ import numpy as np
 from mbsd.base.arguments import checked, finite_number, positive_number, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
+from mbsd.base.progress import users_progress
 from mbsd.base.shown import shown
 from mbsd.model.mechanism import Model
 from mbsd.synthesis.moves import Moves, Tried
@@ -105,8 +106,7 @@ def optimise(
     bounds, conditions = bounds_of(m, vary), conditions_of(m, constraints)
     if method not in METHODS:
         raise ModelError(f"{m.name}: optimise: {no_such('method', method, METHODS)}")
-    if progress is not None and not callable(progress):
-        raise ModelError(f"{m.name}: optimise: progress is {shown(progress)}; it must be a function of two arguments")
+    progress = users_progress(f"{m.name}: optimise: progress", progress, "the number of motions and the objective", 2)
     most = whole_number(f"{m.name}: optimise: most", most)
     precision = positive_number(f"{m.name}: optimise: precision", precision)
     sign = -1.0 if switch(f"{m.name}: optimise: maximise", maximise) else 1.0

@@ -19,7 +19,7 @@ import numpy as np
 
 from mbsd.base.arguments import checked, finite_number, whole_number
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.progress import users_progress
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
 from mbsd.tolerancing.dimensions.dimension import Dimension
@@ -123,8 +123,7 @@ def asked(
     within_limits = limits_given(owner, limits)
     if not 0.0 < finite_number(f"{owner}: tolerances: confidence", confidence) < 1.0:
         raise ModelError(f"{owner}: tolerances: confidence is {confidence:g}; it must be between 0 and 1, such as 0.95")
-    if progress is not None and not callable(progress):
-        raise ModelError(f"{owner}: tolerances: progress is {shown(progress)}; it must be a function of the part done")
+    progress = users_progress(f"{owner}: tolerances: progress", progress, "the part done")
     if task is None:
         task = task_of(machine, sizes, result, duration, steps, way, threads)
     _refuse_corners(owner, corners, len(task.dimensions))

@@ -74,6 +74,17 @@ def driven() -> mbsd.Mechanism:
     return m
 
 
+def swung() -> mbsd.Mechanism:
+    """A link hangs on a crank that swings to and fro; no force acts but gravity."""
+    m = mbsd.Mechanism("swung", gravity=(0.0, -9.81))
+    a, b = m.bar("a", 0.1, mass=0.2), m.bar("b", 0.2, mass=0.3)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.drive_angle("motor", a, mbsd.harmonic(0.4, 9.0, phase=0.3))
+    m.start_near(b=-80)
+    return m
+
+
 def noted_ways(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The ways to tangents that come to an end, as they are gone."""
     ways: list[str] = []
@@ -95,6 +106,7 @@ def noted_ways(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         (links, ["a.length", "b.mass", "c.inertia", "s.stiffness", "gravity.y", "a.moving.omega", "c.start.angle"]),
         (slider_crank, ["a.length", "b.length", "guide.y", "slider.mass", "s.damping", "gravity.y", "a.start.angle"]),
         (driven, ["a.length", "b.length", "motor.rate", "b.mass", "s.stiffness", "A.x"]),
+        (swung, ["motor.amplitude", "motor.rate", "motor.phase", "a.length", "b.mass", "gravity.y"]),
     ],
 )
 def test_they_are_those_in_reference_coordinates(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import mbsd.derivatives.sensitivities
 from mbsd import Mechanism, ModelError, constant_rate
 from mbsd.derivatives.numbers import number_named, with_value
 from mbsd.measures import integral, largest, samples
@@ -152,11 +153,43 @@ def test_a_number_is_put_back_and_derived_ones_stay_derived() -> None:
         ({"a": lambda sol: "fast"}, "crank.length", "'a' gives 'fast'"),
         ({"a": lambda sol: 1 / 0}, "crank.length", "the function 'a' fails"),
         ([], "crank.length", "of is \\[\\]"),
+        ({"a": lambda sol: []}, "crank.length", "'a' gives \\[\\]; it must give a number"),
+        ({"a": lambda sol: ["1", "2"]}, "crank.length", "'a' gives \\['1', '2'\\]"),
+        ({"a": lambda sol: True}, "crank.length", "'a' gives True"),
+        ("slider.ax", "A", "'A' is no number; it has some: A.x, A.y, A.angle, A.i.x"),
+        ("slider.ax", "gravty.y", "no thing with numbers 'gravty', did you mean 'gravity'"),
+        ("slider.ax", "gravity", "'gravity' is no number; it has some: gravity.x, gravity.y"),
+        ("slider.ax", "crank.moving.omega", "'crank' has no such number before start_moving gives it"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(of: object, to: object, says: str) -> None:
     with pytest.raises(ModelError, match=says):
         slider_crank().sensitivities(of, to)  # pyright: ignore[reportArgumentType]
+
+
+@pytest.mark.parametrize("duration", [None, 10.0])
+@pytest.mark.parametrize(
+    ("asked", "says"),
+    [
+        ({"of": "slider.xx"}, "there is no quantity 'slider.xx', did you mean 'slider.x'"),
+        ({"of": {"a": largest("motor.efort")}}, "there is no quantity 'motor.efort', did you mean 'motor.effort'"),
+        ({"of": samples("slider.x", [0.123])}, "0.123 s is no output"),
+        ({"of": lambda sol, more: 1.0}, "must be a function of a solution, a single argument"),
+        ({"of": 3}, "of is 3"),
+        ({"tolerance": 0.0}, "tolerance is 0; it must be positive"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused_before_a_motion_is_solved(
+    asked: dict[str, object], says: str, duration: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def ran(*given: object) -> None:
+        raise AssertionError("it ran")
+
+    monkeypatch.setattr(mbsd.derivatives.sensitivities, "sweep", ran)
+    monkeypatch.setattr(mbsd.derivatives.sensitivities, "simulation_tangents", ran)
+    simulated = {"simulate": duration is not None, "duration": duration}
+    with pytest.raises(ModelError, match=says):
+        slider_crank().sensitivities(**{"of": "slider.x", "to": "crank", "steps": 20, **simulated, **asked})  # pyright: ignore[reportArgumentType]
 
 
 def test_a_number_at_its_end_is_differentiated_to_one_side() -> None:

@@ -153,6 +153,7 @@ def test_rows_that_fail_carry_a_reason_and_do_not_stop_the_others() -> None:
     [
         ({"vary": {"closr": {"stiffness": [1.0]}}}, "did you mean 'closer'"),
         ({"vary": {"closer": {"stifness": [1.0]}}}, "did you mean 'stiffness'"),
+        ({"vary": {"hinge": {"x": [1.0]}}}, r"there is no argument .x.; .* vary in a study: study.build"),
         ({"vary": {"closer": {"stiffness": [1.0, 2.0], "damping": [1.0, 2.0, 3.0]}}}, "equally long"),
         ({"vary": {"closer": {"stiffness": []}}}, "no values"),
         ({"vary": {"closer": {"stiffness": ["stiff"]}}}, "must be a number"),
@@ -184,6 +185,12 @@ def test_rows_that_fail_carry_a_reason_and_do_not_stop_the_others() -> None:
         ({"threads": 0}, "above zero"),
         ({"tolerance": 5.0}, "tolerance is 5"),
         ({"method": "dop835"}, "did you mean"),
+        ({"method": "rk4", "formulation": "independent"}, "method 'rk4' works in reference coordinates"),
+        (
+            {"vary": {"closer": {"name": [1.0, 2.0]}}},
+            "vary: 'closer': there is no argument 'name'; there is: stiffness",
+        ),
+        ({"progress": lambda: None}, "progress must be a function of the part done, 0 .. 1: too many"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(asked: dict, words: str) -> None:
@@ -204,6 +211,8 @@ def test_progress_is_the_part_done_and_what_it_raises_ends_all() -> None:
 
     with pytest.raises(KeyboardInterrupt):
         door().simulate_many(1.0, vary=vary, measure={"x": final("door.theta")}, steps=400, progress=stop)
+    with pytest.raises(ZeroDivisionError):  # it is no error of a simulation
+        door().simulate_many(1.0, vary=vary, measure={"x": final("door.theta")}, steps=400, progress=lambda part: 1 / 0)
 
 
 def test_a_long_simulation_by_itself_ends_when_all_are_to_end() -> None:

@@ -75,6 +75,8 @@ def _called(name: str) -> Mechanism:
         (lambda p: 3.0, None, r"build\(\) returned a float"),
         (lambda p: _called("crank"), None, r"arm/mechanism\.py: build\(\) calls its mechanism 'crank', but the folder"),
         (lambda p: _mechanism(), lambda m, p: None, r"motion\(\) returned None; it must return a Solution"),
+        (lambda: _mechanism(), None, r"mechanism\.py: .*\(\) is called with 1 argument: too many"),
+        (lambda p: _mechanism(), lambda m: None, r"mechanism\.py: .*\(m\) is called with 2 arguments: too many"),
         (
             lambda p: _mechanism(),
             lambda m, p: _called("leg").sweep(steps=4),

@@ -200,6 +200,8 @@ def test_progress_is_told_in_lines_where_no_terminal_listens(capsys: pytest.Capt
         ({"grid": {"crank": [object()]}}, "a value of 'crank'"),
         ({"grid": {"reason": [1]}}, "'reason' is the column"),
         ({"grid": {"a b": [1]}}, "not a name"),
+        ({"grid": {"crnk": [1.0]}}, "build: there is no argument 'crnk', did you mean 'crank'"),
+        ({"grid": [{"crank": 0.03, "rocker": 0.09}, {"rokcer": 0.09}]}, "build: there is no argument 'rokcer'"),
         ({"grid": {"a": range(10_000), "b": range(10_000)}}, "100000000 points"),
         ({"measure": lambda m: {"crank": 1.0}}, "measure gives 'crank'"),
         ({"save": "table.xlsx"}, ".parquet or .csv"),

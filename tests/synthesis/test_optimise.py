@@ -120,6 +120,9 @@ def test_maximise_and_a_search_that_meets_motions_that_are_none() -> None:
         ({"start": {"closer.damping": 3}}, "no number that varies 'closer.damping'"),
         ({"tolerance": 0.0}, "tolerance is 0"),
         ({"progress": 3}, "progress is 3"),
+        ({"progress": lambda motions: None}, "progress must be a function of the number of motions and the objective"),
+        ({"objective": lambda sol, more: 1.0}, "objective must be a function of a solution, a single argument"),
+        ({"constraints": [(final("rod.thet"), 0, 1)]}, "there is no quantity 'rod.thet', did you mean 'rod.theta'"),
         ({"build": lambda stiff=3.0: door()}, "build has no argument 'closer.stiffness'"),
     ],
 )

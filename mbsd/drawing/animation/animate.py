@@ -11,6 +11,7 @@ import numpy as np
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
+from mbsd.base.progress import users_progress
 from mbsd.base.shown import shown
 from mbsd.drawing.animation.clip import HOLD, clip_of
 from mbsd.drawing.animation.encoders import ffmpeg, held, write_gif, write_mp4
@@ -52,10 +53,7 @@ def animate(
         raise ModelError(f"{name}: fps is {fps:g}; a film has 1 .. 120 pictures a second")
     if not isinstance(names, bool) and not (isinstance(names, str) and names == "all"):
         raise ModelError(f"{name}: names is {shown(names)}; it must be True (three that matter), False or 'all'")
-    if progress is not None and not callable(progress):
-        raise ModelError(
-            f"{name}: progress is {shown(progress)}; it must be a function of the pictures drawn, and of all"
-        )
+    progress = users_progress(f"{name}: progress", progress, "the pictures drawn, and of all", 2)
     try:
         import matplotlib.figure  # noqa: F401
     except ImportError as error:

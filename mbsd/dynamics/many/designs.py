@@ -17,11 +17,16 @@ import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.model.body import Body
 from mbsd.model.change import values_of
-from mbsd.model.mechanism import Model, Start, StartVelocity
+from mbsd.model.mechanism import Model, Start, StartVelocity, connections
 
+NAME = "name"
+ELSEWHERE = (
+    ". Places and numbers of laws, which change() does not take, vary in a study: study(build, grid, simulated(...))"
+)
 MOST = 100_000_000
 """Simulations of one call."""
 
@@ -144,17 +149,25 @@ def _refuse_unknown(designs: Designs) -> None:
     """Raise ModelError for names and arguments that the mechanism does not have, as its own methods do."""
     work = designs.copied()
     for name, values in designs.changes.items():
+        if NAME in values:  # the word by which change() takes the name itself
+            known = [key for key in values_of(work, name) or () if key != NAME]
+            raise ModelError(f"{work.name}: vary: '{name}': {no_such('argument', NAME, known)}")
         try:
             work.change(name, **{key: _plain(column[0]) for key, column in values.items()})
         except ModelError as error:
             if "there is no" in str(error):
-                raise ModelError(str(error).replace(f"{work.name}: ", f"{work.name}: vary: ", 1)) from None
+                said = str(error).replace(f"{work.name}: ", f"{work.name}: vary: ", 1)
+                raise ModelError(f"{said}{ELSEWHERE if name in _known(work) else ''}") from None
         _refuse_wide(work, name, values)
     for what, name in [
         *(("start", name) for name in designs.starts),
         *(("moving", name) for name in designs.velocities),
     ]:
         _refuse_held(work, what, work.known_body(name))
+
+
+def _known(m: Model) -> set[str]:
+    return {*(name for table in connections(m) for name in table), *m.bodies}
 
 
 def _refuse_wide(m: Model, name: str, values: Mapping[str, np.ndarray]) -> None:

@@ -16,6 +16,7 @@ from mbsd.base.arguments import whole_number
 from mbsd.base.cores import cores
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import no_such
+from mbsd.base.progress import users_progress
 from mbsd.base.quiet import quiet
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described, refuse_other_arguments
@@ -27,8 +28,7 @@ from mbsd.dynamics.many.methods import PAUSED_ANYWHERE
 from mbsd.dynamics.many.quantities import Quantity, quantity_named
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, single_run
 from mbsd.dynamics.many.worker import TRIED, Measures, Work, Worker, simulated
-from mbsd.dynamics.runs.run import FORMULATIONS
-from mbsd.dynamics.simulate import integrator_named, output_times, refuse_bad_steps, simulate
+from mbsd.dynamics.simulate import integrator_named, output_times, refuse_bad_steps, refuse_formulation, simulate
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
 from mbsd.results.columns import columns
@@ -132,8 +132,7 @@ def simulate_many(
     asked = asked_for(m, duration, steps, times, method, tolerance, step, formulation, options)
     if threads is not None and whole_number(f"{m.name}: threads", threads) > MOST_THREADS:
         raise ModelError(f"{m.name}: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
-    if progress is not None and not callable(progress):
-        raise ModelError(f"{m.name}: progress is {shown(progress)}; it must be a function of the part done, 0 .. 1")
+    progress = users_progress(f"{m.name}: progress", progress, "the part done, 0 .. 1")
     return simulations(designs_of(m, vary, start, moving), measure, asked, threads, progress)
 
 
@@ -151,8 +150,7 @@ def asked_for(
     """How each is simulated. Raises ModelError for what ``simulate`` refuses."""
     integrator = integrator_named(m.name, method)
     integrator.numbers(m.name, options)
-    if formulation not in FORMULATIONS:
-        raise ModelError(f"{m.name}: {no_such('formulation', formulation, FORMULATIONS)}")
+    refuse_formulation(m, formulation, integrator)
     grid = output_times(m, duration, steps, times)
     refuse_bad_steps(m, grid, tolerance, step)
     return Asked(grid, integrator, tolerance, step, formulation, options)

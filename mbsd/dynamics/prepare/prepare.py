@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from mbsd.arrays.chambers import check_pistons
 from mbsd.arrays.driver_laws import refuse_bad_laws
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
@@ -120,6 +121,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     )
     refuse_singular_start(ready, list(kept), always)
     if light[3:].any():
+        check_pistons(packed, np.array([start]), initial.q[None], tell=False)
         _refuse_unheld(ready)
     if packed.states:
         take_start_states(ready)
@@ -199,6 +201,13 @@ def _refuse_unheld(ready: PreparedDynamics) -> None:
     scratch = scratch_for(dynamics, packed.ws, len(packed.motions), 1)
     derivative(dynamics, scratch, ready.start, state, out, lam)
     packed.specials.check()
+    finite = np.isfinite(scratch.force[3:])
+    if not finite.all():
+        name = packed.body_names[1 + int(np.argmin(finite)) // 3]
+        raise ModelError(
+            f"{packed.name}: at t = {ready.start:.6g} s the load on body '{name}' is no finite number: look at the "
+            "forces on it, and at where it starts"
+        )
     left = np.abs(scratch.force - dynamics.inertia * out[1])[3:]
     faint = SLIGHT * (float(packed.system.mass.max()) or 1.0) * packed.size
     largest = max(float(np.abs(dynamics.weight[3:]).max()), float(np.abs(dynamics.inertia * out[1]).max()), faint)

@@ -44,10 +44,13 @@ class Answers:
 class Machines(Protocol):
     """What evaluates rows of deviations (n, columns) of a mechanism, or of a function."""
 
-    way: str
-    """In words."""
     at_once: int
     """Rows that it takes at most."""
+
+    @property
+    def way(self) -> str:
+        """In words."""
+        ...
 
     def __call__(self, x: np.ndarray) -> Answers:
         """The result of each row."""
@@ -124,14 +127,14 @@ def with_numbers(m: Model, columns: Sequence[Column], row: np.ndarray) -> Any:
 class Simulated:
     """Machines simulated in one compiled loop."""
 
-    way = "simulated"
-
     def __init__(
         self, m: Any, columns: Sequence[Column], result: Measure | Callable[[Any], Any], options: Mapping[str, Any]
     ) -> None:
         self._m, self._columns, self._options = m, columns, dict(options)
         self._result: Any = {NAME: result} if isinstance(result, Measure) else self._of_solution(result)
         self.at_once = 2000  # of more, progress would say nothing for long
+        self._alone: Counter[str] = Counter()
+        self._looped, self._note = False, ""
         for column in columns:
             if column.kind not in ("length", "argument"):
                 what = "play" if column.kind in ("bore", "reaction") else "place"
@@ -139,6 +142,14 @@ class Simulated:
                     f"{m.name}: tolerances: the {what} of '{column.name}' cannot stray in a simulation; drivers "
                     "that give the motion are swept, and a function that builds the mechanism takes anything"
                 )
+
+    @property
+    def way(self) -> str:
+        """How all so far were simulated, in words."""
+        alone = [f"{number} one by one ({why})" for why, number in self._alone.most_common()]
+        return ", ".join(
+            ["simulated in one compiled loop" + self._note, *alone] if self._looped else ["simulated", *alone]
+        )
 
     def _of_solution(self, result: Callable[[Any], Any]) -> Callable[[Any], dict[str, float]]:
         of_solution = OfSolution(self._m, result)
@@ -150,7 +161,9 @@ class Simulated:
         for k, column in enumerate(self._columns):
             vary.setdefault(column.name, {})[column.key] = column.nominal + x[:, k]
         many = self._m.simulate_many(vary=vary, measure=self._result, **self._options)
-        self.way = f"simulated: {many.way}"
+        self._alone += Counter(why for why in many.alone if why is not None)
+        self._looped |= None in many.alone
+        self._note = f" ({many.note})" if many.note else self._note
         failures: Counter[str] = Counter(" ".join(reason.split())[:120] for reason in many.reason if reason)
         wrong = next((reason for reason in failures if reason.startswith(f"{NoNumber.__name__}: ")), None)
         if wrong:

@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from mechanisms.stages.loading import loading, variants
+from mechanisms.stages.loading.author_functions import refuse_arguments
 from shared.stage import console
 from shared.stage.errors import UserError
 from shared.stage.paths import owner_of, shown_file
@@ -36,6 +37,7 @@ def build(name: str, module: Any, p: Any) -> Mechanism:
     """
     from mbsd import Mechanism
 
+    refuse_arguments(_file(name), module.build, p)
     with loading.author_code(name):
         m = module.build(p)
     if not isinstance(m, Mechanism):
@@ -56,6 +58,8 @@ def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
     from mbsd.results.solution import Solution
 
     motion: Any = getattr(module, "motion", None)
+    if motion:
+        refuse_arguments(_file(name), motion, m, p)
     try:
         with loading.author_code(name), model_warnings_said():
             solution = motion(m, p) if motion else _natural(name, module, m)

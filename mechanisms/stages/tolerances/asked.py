@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from mechanisms.stages.loading import loading, variants
+from mechanisms.stages.loading.author_functions import refuse_arguments
 from mechanisms.stages.solve import solving
 from shared.stage import console
 from shared.stage.errors import UserError
@@ -32,6 +33,7 @@ def asked(name: str, m: Mechanism, p: Any) -> dict[str, Callable[..., Tolerances
     """By result, what finds it when it is called. Raises UserError for whatever cannot be, before anything is found."""
     module = loading.load(name, "tolerances")
     file = shown_file(name, "tolerances")
+    refuse_arguments(file, module.tolerances, p)
     with loading.author_code(name):
         given = module.tolerances(p)
     if not isinstance(given, Mapping) or not given:

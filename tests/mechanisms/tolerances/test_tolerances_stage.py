@@ -142,6 +142,12 @@ def test_bad_input_is_refused_before_any_result_is_found(
         asked("slider_crank", m, Params())
 
 
+def test_a_function_of_other_arguments_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(author, "tolerances", lambda p, more: {"far": GOOD})
+    with pytest.raises(UserError, match=r"tolerances\.py: .*\(p, more\) is called with 1 argument: missing a required"):
+        asked("slider_crank", build(Params()), Params())
+
+
 def test_a_mechanism_without_one_says_what_to_write() -> None:
     with pytest.raises(UserError, match=r"four_bar/tolerances\.py is missing; write def tolerances"):
         stage.run("four_bar")

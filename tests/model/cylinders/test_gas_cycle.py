@@ -252,6 +252,26 @@ def test_a_piston_that_meets_its_head_is_refused_by_name_and_time() -> None:
         m.sweep()
 
 
+@pytest.mark.parametrize("inertia", [0.0, 0.1])
+def test_a_piston_that_starts_beyond_its_head_is_refused_for_that_and_not_for_its_inertia(inertia: float) -> None:
+    m = Mechanism("air", gravity=None)
+    piston = m.body("piston", 1.0, inertia=inertia)
+    m.prismatic("rail", m.ground.origin, piston.origin)
+    m.gas("gas", m.ground.origin, piston.origin, area=1e-3, pressure=2e5, at=0.1, clearance=0.01)
+    m.start_near(piston=(-0.02, 0, 0))
+    with pytest.raises(ModelError, match=r"air: force 'gas': at t = 0 s the piston lies -0.02 m .* no room left"):
+        m.simulate(0.1)
+
+
+def test_a_load_that_is_no_number_at_the_start_is_named() -> None:
+    m = Mechanism("stars", gravity=None)
+    star = m.body("star", 1.0)
+    m.prismatic("rail", m.ground.origin, star.origin)
+    m.gravitation("pull", m.ground.origin, star.origin, 1.0)
+    with pytest.raises(ModelError, match=r"stars: at t = 0 s the load on body 'star' is no finite number"):
+        m.simulate(0.1)
+
+
 def test_polytropic_gas_has_pressure_and_volume_and_no_room_beyond_its_head() -> None:
     def air(swing: float) -> Mechanism:
         m = Mechanism("air", gravity=None)

@@ -19,6 +19,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.compiling.jit import Often
 from mbsd.dynamics.embedding.equations import write_alone
+from mbsd.dynamics.runs.bounds import MOST, MOST_UNSEEN, NEAR, ROUNDING, SHORT, SIDE
 from mbsd.dynamics.state import (
     ACCEPTED,
     ERROR,
@@ -34,17 +35,10 @@ from mbsd.dynamics.state import (
     output_for,
 )
 
-SHORT = 1e-3
-"""Part of the way to the jump that is left, so that Newton's steps do not go beyond it."""
-MOST = 60
-SIDE = 1e-300
-"""A gap (m) that has a sign, and no size."""
-NEAR = 3.0
-"""Steps from which on a jump is gone for."""
-MOST_UNSEEN = 10
-"""Steps that are taken before it is asked again how far the next jump is."""
-ROUNDING = 8
-"""Rounding of the time, in neighbouring numbers: a jump is not found closer than this."""
+
+def memory(arrays: Any, scratch: Any) -> tuple[np.ndarray, ...]:
+    """What the next poses of a run in independent coordinates are predicted from."""
+    return arrays.number, scratch.base, scratch.coordinate, scratch.block_work, scratch.body, scratch.watch
 
 
 class Genevas:
@@ -52,7 +46,7 @@ class Genevas:
 
     def __init__(self, packed: Packed) -> None:
         specials, system = packed.specials, packed.system
-        self._rows = [
+        self.rows = [
             (
                 *(int(system.marker_body[marker]) for marker in place[:2]),
                 *system.marker_arm[place[0]].tolist(),
@@ -63,11 +57,12 @@ class Genevas:
             for name, joint, place in zip(specials.names, specials.joints, specials.places, strict=True)
             if name == "geneva"
         ]
+        """Bodies of crank and wheel, the crank's marker and its x axis, the wheel's marker, radius of the pin (m)."""
         self._write = Often(write_alone)
         self._here = output_for(np.zeros(1), len(packed.body_names) * 3, 0)
 
     def __bool__(self) -> bool:
-        return bool(self._rows)
+        return bool(self.rows)
 
     def through(self, advance: Callable[..., int], arrays: Any, scratch: Any, state: State, *rest: Any) -> int:
         """``advance`` of an Integrator in independent coordinates (arrays: Embedding), from jump to jump."""
@@ -115,7 +110,7 @@ class Genevas:
         here, gaps, wait = self._here, [], math.inf
         self._write(arrays, scratch, float(state.clock[TIME]), state.y.copy(), np.zeros_like(state.y), here, 0)
         q, v = here.y[0]
-        for i, j, arm_x, arm_y, axis_x, axis_y, to_x, to_y, radius in self._rows:
+        for i, j, arm_x, arm_y, axis_x, axis_y, to_x, to_y, radius in self.rows:
             c, s = math.cos(q[3 * i + 2]), math.sin(q[3 * i + 2])
             d, e = math.cos(q[3 * j + 2]), math.sin(q[3 * j + 2])
             ux, uy = c * axis_x - s * axis_y, s * axis_x + c * axis_y
@@ -204,16 +199,12 @@ class _Point:
 
     def __init__(self, arrays: Any, scratch: Any, state: State) -> None:
         self._state = copied(state)
-        self._kept = [part.copy() for part in self._memory(arrays, scratch)]
+        self._kept = [part.copy() for part in memory(arrays, scratch)]
         self.accepted = int(state.count[ACCEPTED])
-
-    @staticmethod
-    def _memory(arrays: Any, scratch: Any) -> tuple[np.ndarray, ...]:
-        return arrays.number, scratch.base, scratch.coordinate, scratch.block_work, scratch.body, scratch.watch
 
     def restore(self, arrays: Any, scratch: Any, state: State) -> None:
         """Stand there again."""
         for part, kept in zip(state, self._state, strict=True):
             part[...] = kept
-        for part, kept in zip(self._memory(arrays, scratch), self._kept, strict=True):
+        for part, kept in zip(memory(arrays, scratch), self._kept, strict=True):
             part[...] = kept

@@ -33,6 +33,7 @@ from mbsd.dynamics.many.contacts.sticking.jumps import resolve_friction
 from mbsd.dynamics.many.contacts.sticking.ways import share_outputs
 from mbsd.dynamics.many.contacts.wheels import advance_to
 from mbsd.dynamics.many.contacts.within import fit
+from mbsd.dynamics.many.events.releases import hold_joints
 from mbsd.dynamics.many.events.sides import begin_sides, find_sides
 from mbsd.dynamics.many.repeated.exchange import hold_independent, look
 from mbsd.dynamics.many.rows_at import measure
@@ -186,6 +187,8 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
     hold_rows(dyn, contacts)
     repeated = contacts.repeated
     hold_independent(dyn, repeated)
+    if contacts.events.release.shape[0] > 0:
+        hold_joints(dyn, contacts)
     if contacts.clock[BEGUN] == 0.0 and not _close_at_start(dyn, scratch, contacts, state):
         return NOT_SOLVED
     for _ in range(steps):

@@ -205,7 +205,9 @@ class Building(Model):
         broke, after the action. Raises ModelError for what is none of these.
         """
         new_name(self, name, "event", self.events)
-        event = self.events[name] = checked_event(self, name, value, direction, terminal, action, shortest, frames, releases)
+        event = self.events[name] = checked_event(
+            self, name, value, direction, terminal, action, shortest, frames, releases
+        )
         return event
 
     def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:

@@ -126,7 +126,9 @@ def test_a_row_that_cannot_start_has_its_reason_beside_others() -> None:
 
 @settings(max_examples=6, suppress_health_check=[HealthCheck.too_slow], deadline=None)
 @given(between(-179.0, 179.0), between(-15.0, 15.0), between(0.0, 0.05), between(0.0, 0.02))
-def test_random_genevas_move_as_by_themselves(start: float, speed: float, stiffness: float, out_of_balance: float) -> None:
+def test_random_genevas_move_as_by_themselves(
+    start: float, speed: float, stiffness: float, out_of_balance: float
+) -> None:
     m = free(4 + int(abs(start)) % 5)
     m.change("spring", stiffness=stiffness)
     m.change("crank", com=(out_of_balance, 0.0))

@@ -38,7 +38,7 @@ def sling() -> Mechanism:
 
 
 def chain() -> Mechanism:
-    """Two pendulums: the lower one breaks off with a kick, then the upper one, and a motor that turns a disc lets go."""
+    """Two pendulums: the lower one breaks off with a kick, then the upper one, and a motor lets go."""
     m = Mechanism("chain")
     a, b, disc = m.bar("a", 1.0, mass=1.0), m.bar("arm", 0.7, mass=0.5), m.body("disc", mass=1.0, inertia=5e-3)
     m.revolute("A", m.ground.at(0, 0), a.start)

@@ -46,8 +46,8 @@ def take_up(state, block, kept, counts):
 
 @threaded
 def run_rows(
-    dyn, scratch, state, settings, contacts, genevas, method, block, fresh, place, value, t, before, after, at_once, most, near,
-    stop, upto, kept, counts, y, a, lam, work, margin, status, steps, over,
+    dyn, scratch, state, settings, contacts, genevas, method, block, fresh, place, value, t, before, after, at_once,
+    most, near, stop, upto, kept, counts, y, a, lam, work, margin, status, steps, over,
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 

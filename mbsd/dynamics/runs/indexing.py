@@ -70,8 +70,8 @@ class Genevas:
         gaps, wait = self._look(arrays, scratch, state)
         while True:
             step = float(state.clock[STEP]) or settings.longest
-            before = _Point(arrays, scratch, state)
-            if wait < min(NEAR * step, end - float(state.clock[TIME])):
+            now, before = float(state.clock[TIME]), _Point(arrays, scratch, state)
+            if wait < min(NEAR * step, end - now):
                 status = self._meet(advance, arrays, scratch, state, out, settings, gaps, wait, math.inf)
                 gaps, wait = self._look(arrays, scratch, state)
             else:
@@ -85,6 +85,9 @@ class Genevas:
                     before.restore(arrays, scratch, state)
                     status = self._meet(advance, arrays, scratch, state, out, settings, gaps, wait, late)
                     gaps, wait = self._look(arrays, scratch, state)
+            if status == PAUSED and state.clock[TIME] == now:  # it cannot be met: a step goes over it
+                status = advance(arrays, scratch, state, out, settings, end, 1)
+                gaps, wait = self._look(arrays, scratch, state)
             if state.count[STARTED] == 0:
                 state.clock[STEP], state.clock[ERROR] = step, 0.0
             steps -= int(state.count[ACCEPTED]) - before.accepted
@@ -150,6 +153,7 @@ class Genevas:
 
         ``gaps`` and ``wait`` are what ``_look`` says of the state.
         """
+        nears = wait < math.inf
         for _ in range(MOST):
             now = float(state.clock[TIME])
             least = ROUNDING * math.ulp(now)
@@ -169,14 +173,14 @@ class Genevas:
                 late = float(state.clock[TIME])
                 before.restore(arrays, scratch, state)
                 share = 0.5  # it may have left one jump and come to the next
-                if wait < math.inf:
+                if nears:
                     share = min(a / (a - b) for a, b in zip(gaps, there, strict=True) if a * b < 0.0)  # secant
                 wait = share * (late - float(state.clock[TIME]))
             elif 0.0 in there:
                 wait = 0.0
                 break
             else:
-                gaps, wait = there, after
+                gaps, wait, nears = there, after, after < math.inf
         else:
             return PAUSED
         hop = min(wait, late - float(state.clock[TIME])) + ROUNDING * math.ulp(float(state.clock[TIME]))

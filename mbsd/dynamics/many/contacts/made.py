@@ -60,13 +60,13 @@ def why_not(ready: PreparedDynamics, events: Sequence[Event]) -> str | None:
         return f"'{[*contacts, *sticks, *events][0].name}' is beside a contact that remembers how fast it began"
     if len(contacts) + len(sticks) > MOST:
         return f"it has {len(contacts) + len(sticks)} contacts and joints that stick; {MOST} at most"
-    rubbing = {force.params["joint"]: force.name for force in ready.packed.forces if force.name in _names(sticks)}
+    dry = {force.params["joint"]: force.name for force in ready.packed.forces if force.name in _names(sticks)}
     for event in events:
         if event.releases and (ready.switches.spare or ready.dropped):
             return f"event '{event.name}' releases a joint where joints repeat others"
         for joint in event.releases:
-            if joint in rubbing:
-                return f"event '{event.name}' releases joint '{joint}', whose friction '{rubbing[joint]}' may stick"
+            if joint in dry:
+                return f"event '{event.name}' releases joint '{joint}', whose friction '{dry[joint]}' may stick"
     return None
 
 

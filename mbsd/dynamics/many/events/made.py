@@ -12,7 +12,7 @@ from mbsd.compiling.callback import Callback
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics.events.bounds import MOST_VALUES, NEAR, PER_SHORTEST, ROUNDINGS
 from mbsd.dynamics.many.events import ready_made
-from mbsd.dynamics.many.events.arrays import ACTION_FRAMES, GONE, RUBS, Events
+from mbsd.dynamics.many.events.arrays import ACTION_FRAMES, GONE, ITS_FRICTION, Events
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.schur import Schur
 from mbsd.equations.joint_friction import FIRST
@@ -86,11 +86,13 @@ def _release(ready: PreparedDynamics, events: Sequence[Event], bare: Schur) -> n
     for e, event in enumerate(events):
         for joint in map(names.index, event.releases):
             first = int(packed.first_row[joint])
-            rubs = np.flatnonzero(friction[:, FIRST] == first).tolist()
+            frictions = np.flatnonzero(friction[:, FIRST] == first).tolist()
             for row in range(first, int(packed.first_row[joint + 1])):
                 places = ready.switches.place.get(row, (-1, -1)), _place(bare, row)
-                out += [(e, row, *places[0], *places[1], at) for at in (rubs if row == first and rubs else [-1])]
-    return np.array(out, np.int64).reshape(-1, RUBS + 1)
+                out += [
+                    (e, row, *places[0], *places[1], at) for at in (frictions if row == first and frictions else [-1])
+                ]
+    return np.array(out, np.int64).reshape(-1, ITS_FRICTION + 1)
 
 
 def _place(schur: Schur, row: int) -> tuple[int, int]:

@@ -10,7 +10,7 @@ from mbsd.dynamics.many.events.arrays import (
     OPEN_BLOCK,
     OPEN_SIDE,
     ROW,
-    RUBS,
+    ITS_FRICTION,
     SIDE_OF_BLOCK,
 )
 from mbsd.equations.joint_friction import NONE, SENSE
@@ -36,5 +36,5 @@ def hold_joints(dyn, contacts):
     for k in range(release.shape[0]):  # afterwards, as several events may release one joint
         if events.number[release[k, EVENT], GONE] > 0.0:
             _put(dyn, contacts, k, -1)
-            if release[k, RUBS] >= 0:
-                dyn.loads.friction_number[release[k, RUBS], SENSE] = NONE
+            if release[k, ITS_FRICTION] >= 0:
+                dyn.loads.friction_number[release[k, ITS_FRICTION], SENSE] = NONE

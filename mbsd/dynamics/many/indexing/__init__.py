@@ -1,1 +1,1 @@
-"""Genevas in the compiled loop over simulations: steps in independent coordinates that end where pins enter or leave."""
+"""Genevas in the compiled loop over simulations: steps that end where their pins enter or leave."""

@@ -1,4 +1,4 @@
-"""Steps that end where the pin of a Geneva enters or leaves its slot: runs/indexing.py, compiled; reasons stand there."""
+"""Steps that end where the pin of a Geneva enters or leaves its slot: runs/indexing.py, compiled, for its reasons."""
 
 from __future__ import annotations
 
@@ -149,6 +149,7 @@ def _meet(dyn, scratch, state, out, settings, genevas, wait, late, before, after
     here = genevas.gap[0]
     there = genevas.gap[1]
     near = False
+    nears = wait < math.inf
     for _ in range(MOST):
         now = state.clock[TIME]
         least = ROUNDING * _ulp(now)
@@ -172,7 +173,7 @@ def _meet(dyn, scratch, state, out, settings, genevas, wait, late, before, after
             late = state.clock[TIME]
             _return(dyn, scratch, state, genevas)
             share = 0.5  # it may have left one jump and come to the next
-            if wait < math.inf:
+            if nears:
                 share = math.inf
                 for k in range(here.shape[0]):
                     if here[k] * there[k] < 0.0:
@@ -186,6 +187,7 @@ def _meet(dyn, scratch, state, out, settings, genevas, wait, late, before, after
             for k in range(here.shape[0]):
                 here[k] = there[k]
             wait = later
+            nears = wait < math.inf
     if not near:
         return PAUSED
     hop = min(wait, late - state.clock[TIME]) + ROUNDING * _ulp(state.clock[TIME])
@@ -214,7 +216,8 @@ def _index(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
         step = state.clock[STEP] if state.clock[STEP] != 0.0 else settings.longest
         accepted = state.count[ACCEPTED]
         late = math.inf
-        meets = wait < min(NEAR * step, end - state.clock[TIME])
+        now = state.clock[TIME]
+        meets = wait < min(NEAR * step, end - now)
         status = PAUSED
         if not meets:
             _keep(dyn, scratch, state, genevas)
@@ -230,6 +233,9 @@ def _index(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
                 wait = later
         if meets:
             status = _meet(dyn, scratch, state, out, settings, genevas, wait, late, before, after)
+            wait = _look(dyn, scratch, genevas, state, here)
+        if status == PAUSED and state.clock[TIME] == now:  # it cannot be met: a step goes over it
+            status = through(dyn, scratch, state, out, settings, end, 1, before, after, USUAL)
             wait = _look(dyn, scratch, genevas, state, here)
         if state.count[STARTED] == 0:
             state.clock[STEP] = step

@@ -112,7 +112,7 @@ class Genevas:
         """x - r of each (m), and the time until the first is zero if they go on as they go (s)."""
         here, gaps, wait = self._here, [], math.inf
         self._write(arrays, scratch, float(state.clock[TIME]), state.y.copy(), np.zeros_like(state.y), here, 0)
-        q, v = here.y[0]
+        q, v = here.y[0].tolist()
         for i, j, arm_x, arm_y, axis_x, axis_y, to_x, to_y, radius in self.rows:
             c, s = math.cos(q[3 * i + 2]), math.sin(q[3 * i + 2])
             d, e = math.cos(q[3 * j + 2]), math.sin(q[3 * j + 2])

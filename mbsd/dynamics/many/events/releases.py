@@ -7,10 +7,10 @@ from mbsd.dynamics.many.events.arrays import (
     BLOCK,
     EVENT,
     GONE,
+    ITS_FRICTION,
     OPEN_BLOCK,
     OPEN_SIDE,
     ROW,
-    ITS_FRICTION,
     SIDE_OF_BLOCK,
 )
 from mbsd.equations.joint_friction import NONE, SENSE

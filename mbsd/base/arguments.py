@@ -26,13 +26,16 @@ from mbsd.base.users_function import described
 F = TypeVar("F", bound=Callable[..., Any])
 C = TypeVar("C", bound=type)
 
+NUMBERS = (int, float, np.floating, np.integer)
 LARGEST = 1e100
 """Largest size of any number: squares and products of a few such numbers can still be represented."""
 
 
 def finite_number(what: str, value: object) -> float:
     """``value`` as a float; raises ModelError if it is no finite number, or beyond 1e100."""
-    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+    if type(value) is float and -LARGEST <= value <= LARGEST:
+        return value
+    if isinstance(value, bool) or not isinstance(value, NUMBERS):
         raise ModelError(f"{what} is {shown(value)}; it must be a number")
     if value != value or value in (math.inf, -math.inf):
         raise ModelError(f"{what} is {value}; it must be finite")
@@ -116,7 +119,7 @@ def _entries(value: Any, at: str = "", level: int = 0) -> Iterator[tuple[str, An
 
 
 def _number(what: str, value: object) -> None:
-    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+    if isinstance(value, bool) or not isinstance(value, NUMBERS):
         raise ModelError(f"{what} is {shown(value)}; it must be a number")
 
 

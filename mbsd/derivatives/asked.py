@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
 from mbsd.dynamics.many.measures import Measure
-from mbsd.dynamics.many.quantities import quantity_named
+from mbsd.dynamics.many.quantities import ACCELERATIONS, Motions, quantity_named
 from mbsd.model.mechanism import Model
 from mbsd.results.columns import FRAME, JOINT, columns
 from mbsd.results.solution import Solution
@@ -22,9 +23,7 @@ Wanted = Mapping[str, Callable[[Solution], np.ndarray]]
 
 def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], np.ndarray]]:
     """By label, a function that gives a number or numbers of a solution. Raises ModelError for what cannot be."""
-    given, of = of, _several(of)
-    if isinstance(of, list | tuple):
-        of = {each if isinstance(each, str) else str(k): each for k, each in enumerate(of)}
+    given, of = of, _labelled(of)
     if not isinstance(of, Mapping) or not of:
         raise ModelError(
             f"{m.name}: of is {shown(given)}; give names of quantities, a measure, or labels and quantities: "
@@ -33,11 +32,67 @@ def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], n
     return {str(label): _function(m, str(label), each, sol) for label, each in of.items()}
 
 
-def _several(of: Any) -> Any:
-    """What is asked for alone, as several; a measure has the name of its quantity."""
+def _labelled(of: Any) -> Any:
+    """What is asked for, by labels: names are their own, a measure alone has that of its quantity."""
     if isinstance(of, Measure):
         return {of.quantity: of}
-    return [of] if isinstance(of, str) or callable(of) else of
+    of = [of] if isinstance(of, str) or callable(of) else of
+    if isinstance(of, list | tuple):
+        return {each if isinstance(each, str) else str(k): each for k, each in enumerate(of)}
+    return of
+
+
+OfMotions = Callable[[Motions], np.ndarray]
+"""Gives (K, ...) numbers of K motions."""
+
+
+@dataclass
+class OfBodies:
+    """What is asked for, where that is how bodies and traced points move."""
+
+    by_label: dict[str, OfMotions]
+    accelerations: bool
+    """Whether any of it reads accelerations."""
+
+
+def of_bodies(m: Model, of: Any) -> OfBodies | None:
+    """What is asked for; None where anything asks for more than how bodies move."""
+    of = _labelled(of)
+    if not isinstance(of, Mapping) or not of:
+        return None
+    out, every = dict[str, OfMotions](), set[str]()
+    for label, each in of.items():
+        names = each.quantities if isinstance(each, Measure) else (each,)
+        parts = {name: _of_bodies(m, name) for name in names if isinstance(name, str)}
+        known = {name: part for name, part in parts.items() if part is not None}
+        if len(known) < len(names):
+            return None
+        out[str(label)] = known[each] if isinstance(each, str) else partial(_measured, each, str(label), known)
+        every.update(name.rpartition(".")[2] for name in names)
+    return OfBodies(out, bool(every & {*ACCELERATIONS}))
+
+
+def _measured(measure: Measure, label: str, quantities: Mapping[str, OfMotions], motions: Motions) -> np.ndarray:
+    return measure.of(label, motions.t, {name: of(motions) for name, of in quantities.items()})[label]
+
+
+def _of_bodies(m: Model, name: str) -> OfMotions | None:
+    """(K, T) of a quantity of bodies or traced points; None of any other."""
+    if name == "kinetic":
+        return Motions.kinetic
+    whole, _, component = name.rpartition(".")
+    if component not in FRAME:
+        return None
+    if whole in m.bodies and whole != "ground":
+        return lambda motions: motions.of_frame(whole, "body", component)
+    bare = whole.removeprefix("trace ")
+    if (
+        whole not in m.bodies
+        and bare in m.traces
+        and (bare != whole or whole not in {*m.joints, *m.drivers, *m.forces})
+    ):
+        return lambda motions: motions.of_frame(bare, "trace", component)
+    return None
 
 
 def needed(of: Any, t: np.ndarray) -> np.ndarray:

@@ -43,10 +43,9 @@ WORST = 30.0
 """Condition of [J; Z] beyond which another Z is taken."""
 
 
-def slight_changes(f: int, fastest: float, every: list[Variants]) -> np.ndarray:
-    """(2 f, P) changes of s and s' that are rounding where the number changes by all of itself."""
-    numbers = np.array([variants.size for variants in every])
-    return SLIGHT * np.repeat([1.0, fastest], f)[:, None] / numbers
+def slight_changes(f: int, fastest: float, sizes: np.ndarray) -> np.ndarray:
+    """(2 f, P) changes of s and s' that are rounding where numbers change by all of their ``sizes`` (P,)."""
+    return SLIGHT * np.repeat([1.0, fastest], f)[:, None] / sizes
 
 
 def at_rows(terms: Terms, stretch: Stretch, every: list[Variants], basis: np.ndarray, y: np.ndarray) -> Tangents:
@@ -189,7 +188,7 @@ class _Piece:
             made.matrix[nodes],
             made.right[nodes],
             begun,
-            slight_changes(self.f, fastest, self.every),
+            slight_changes(self.f, fastest, np.array([variants.size for variants in self.every])),
         )
         y, parts = line.at(self.along.t[at]), [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
         for out, part in zip(parts, made[2:], strict=True):

@@ -8,22 +8,29 @@ mechanisms whose bodies closed forms place, by angles. Source: Wehage, Haug 1982
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from mbsd.derivatives.between_looks import between_looks
+from mbsd.derivatives.forces_beside import slopes_of_forces
 from mbsd.derivatives.free_tangents import REACH, at_rows, slight_changes
 from mbsd.derivatives.linear_motion import Carried, carried
-from mbsd.derivatives.rates_beside import FIRST, rates_beside
+from mbsd.derivatives.rates_beside import FIRST, Held, motions_beside, rates_beside
+from mbsd.derivatives.sides import Sides, forces_beside
 from mbsd.derivatives.smooth_motion import CLOSE, NotSmooth
 from mbsd.derivatives.stretch import Stretch, Tangents
 from mbsd.derivatives.terms import Along, Terms
-from mbsd.derivatives.variants import Variant, Variants
+from mbsd.derivatives.variants import Variants
 from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.embedding.coordinates import choices
+from mbsd.dynamics.many.quantities import Motions
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.repeated import Course
 from mbsd.dynamics.runs.embed import POOR, Embedded, begin_at, embedded_at_start, embedding_scratch
 from mbsd.kinematics.groups.blocks import BLOCK
-from mbsd.kinematics.groups.carrying.columns import AVOID, INERTIA, MASS, THETA
+from mbsd.kinematics.groups.carrying.columns import INERTIA, MASS, THETA
 from mbsd.kinematics.groups.groups import KIND
+from mbsd.model.body import Marker
 
 
 def suits(ready: PreparedDynamics | None) -> Embedded | None:
@@ -41,12 +48,11 @@ def suits(ready: PreparedDynamics | None) -> Embedded | None:
 
 
 class IndependentTangents:
-    """Tangents of one smooth motion by numbers."""
+    """Tangents of one smooth motion by numbers, whose sides ``every`` holds."""
 
-    def __init__(self, ready: PreparedDynamics, made: Embedded, tolerance: float, every: list[Variants]) -> None:
-        self.ready, self.made, self.every = ready, made, every
+    def __init__(self, ready: PreparedDynamics, made: Embedded, arrays: Embedding, every: list[Sides]) -> None:
+        self.ready, self.made, self.arrays, self.every = ready, made, arrays, every
         self.f = len(made.coordinates)
-        self.arrays = made.copied(tolerance)
         self.scratch = embedding_scratch(ready, made, 1, ready.initial.q)
         width = len(ready.initial.q)
         self.basis = np.zeros((self.f, width))
@@ -55,9 +61,11 @@ class IndependentTangents:
             row[3 * coordinate.body + 2] = 1.0
             row[3 * coordinate.other + 2] -= 1.0 if coordinate.other else 0.0
 
-    def carry(self, along: Along, begun: tuple[np.ndarray, np.ndarray]) -> Carried:
-        """z' at nodes (T,) of a motion from q', v' (P, 3 nb) ``begun``. Raises NotSmooth."""
-        z, speed = along.q @ self.basis.T, along.v @ self.basis.T
+    def carry(self, course: Course, t: np.ndarray) -> Carried:
+        """z' at nodes t (T,) (s) of a smooth course. Raises NotSmooth."""
+        assert course.q is not None
+        q, v, a = (part @ self.basis.T for part in (course.q, course.v, course.a))
+        z, speed, bend = between_looks(course.t, q, v, a, t)
         count, f = z.shape
         far = REACH * self.made.arrays.size
         fast = far * max(float(np.abs(speed / self.made.arrays.size).max(initial=0.0)), 1e-300)
@@ -70,56 +78,117 @@ class IndependentTangents:
                 at = 1 + 2 * (part * f + i)
                 states[:, at, part, FIRST + i] += step[i]
                 states[:, at + 1, part, FIRST + i] -= step[i]
-        rates = self._rates(self.arrays, None, along.t, states)
-        bend = along.a @ self.basis.T
+        system = self.ready.packed.system
+        scratch = self.scratch
+        shapes = scratch.rate.shape, scratch.cos_sin.shape, scratch.q.shape, scratch.v.shape
+        held = Held(*(np.zeros((count, *shape)) for shape in shapes))
+        rates = self._rates(self.arrays, system.mass, system.inertia, t, states, held)
         if np.abs(rates[:, 0] - bend).max(initial=0.0) > CLOSE * np.abs(bend).max(initial=0.0):
             raise NotSmooth
         pairs = rates[:, 1:].reshape(count, 2 * f, 2, f)
         matrix = (pairs[:, :, 0] - pairs[:, :, 1]) / (2 * np.concatenate([far, fast]))[:, None]
-        itself, right = np.ascontiguousarray(states[:, :1]), np.zeros((count, f, len(self.every)))
-        for p, variants in enumerate(self.every):
-            for weight, variant in zip(variants.weights / variants.step, variants.variants, strict=True):
-                if variant.offset:
-                    right[:, :, p] += (
-                        weight * self._rates(self._arrays_of(variant), variant.terms, along.t, itself)[:, 0]
-                    )
+        right = np.zeros((count, f, len(self.every)))
+        light = [p for p, sides in enumerate(self.every) if sides.near is not None]
+        if light:
+            right[:, :, light] = self._slopes_of_forces(light, t, held, rates).transpose(1, 2, 0)
+        none, itself = Held(*(part[:0] for part in held)), np.ascontiguousarray(states[:, :1])
+        for p, sides in enumerate(self.every):
+            for k, weight in enumerate(sides.weights.tolist() if sides.near is None else ()):
+                if sides.away[k]:
+                    own = self._rates(sides.arrays[k], sides.mass[k], sides.moment[k], t, itself, none)
+                    right[:, :, p] += weight * own[:, 0]
                 else:
                     right[:, :, p] += weight * rates[:, 0]
-        y = np.concatenate([self.basis @ part.T for part in begun])
+        y = np.concatenate([self.basis @ np.array([sides.begun[part] for sides in self.every]).T for part in range(2)])
         fastest = float(np.abs(speed).max(initial=0.0)) or 1.0
-        return carried(along.t, matrix.transpose(0, 2, 1).copy(), right, y, slight_changes(f, fastest, self.every))
+        sizes = np.array([sides.size for sides in self.every])
+        return carried(t, matrix.transpose(0, 2, 1).copy(), right, y, slight_changes(f, fastest, sizes))
 
-    def at(self, terms: Terms, along: Along, compact: np.ndarray, rows: np.ndarray, line: Carried) -> Tangents:
+    def motions(
+        self, along: Along, traces: Mapping[str, Marker], line: Carried, accelerations: bool
+    ) -> tuple[Motions, np.ndarray]:
+        """The motion along its tangents at times (R,), on all K sides of all numbers, and weights (P, K) of these.
+
+        With ``traces``, and with ``accelerations`` if these are asked for. Raises NotSmooth.
+        """
+        packed, y = self.ready.packed, line.at(along.t)
+        count, width = along.q.shape
+        of = [p for p, sides in enumerate(self.every) for _ in sides.away]
+        away = np.concatenate([sides.away for sides in self.every])
+        weights = np.zeros((len(self.every), len(of)))
+        weights[of, np.arange(len(of))] = np.concatenate([sides.weights for sides in self.every])
+        mass, moment, com = (
+            np.concatenate([getattr(sides, name) for sides in self.every]) for name in ("mass", "moment", "com")
+        )
+        z = np.zeros((count, FIRST + self.f))
+        z[:, FIRST:] = along.q @ self.basis.T
+        states = np.zeros((len(of), count, 2, FIRST + self.f))
+        moved = away[:, None, None, None] * y[:, :, of].transpose(2, 0, 1).reshape(len(of), count, 2, self.f)
+        states[:, :, 0, FIRST:] = z[:, FIRST:] + moved[:, :, 0]
+        states[:, :, 1, FIRST:] = along.v @ self.basis.T + moved[:, :, 1]
+        poses, a = np.zeros((len(of), count, 2, width)), np.zeros((len(of), count, width))
+        own = [accelerations or self.every[p].near is None for p in of]
+        light = np.flatnonzero(~np.array(own))
+        if len(light):
+            many = np.tile(along.t, len(light)), np.tile(along.q, (len(light), 1)), np.tile(z, (len(light), 1))
+            there, rest = poses[light].reshape(-1, 2, width), a[light].reshape(-1, width)
+            self._begin(self.arrays, packed.system.mass, packed.system.inertia, states[0, 0], float(along.t[0]))
+            given = states[light].reshape(-1, 2, FIRST + self.f)
+            if motions_beside(self.arrays, self.scratch, *many, given, False, there, rest) < len(given):
+                raise NotSmooth
+            poses[light] = there.reshape(len(light), count, 2, width)
+        for s in np.flatnonzero(own).tolist():
+            sides = self.every[of[s]]
+            arrays = sides.arrays[s - of.index(of[s])]
+            self._begin(arrays, mass[s], moment[s], states[s, 0], float(along.t[0]))
+            here = along.t, along.q, z, states[s], accelerations
+            if motions_beside(arrays, self.scratch, *here, poses[s], a[s]) < count:
+                raise NotSmooth
+        self.ready.packed.specials.check()
+        places: dict[str, tuple[int, np.ndarray, float]] = {}
+        for name, marker in traces.items():
+            place = np.array([[marker.x, marker.y]])
+            if any(name in sides.traces for sides in self.every):
+                still = [np.zeros((len(sides.away), 2)) for sides in self.every]
+                place = place + np.concatenate(
+                    [sides.traces.get(name, rest) for sides, rest in zip(self.every, still, strict=True)]
+                )
+            places[name] = packed.body_names.index(marker.body.name), place, marker.angle
+        q, v, a = (part.reshape(len(of), count, -1, 3) for part in (poses[:, :, 0], poses[:, :, 1], a))
+        work = np.zeros(q.shape[:2])
+        return Motions(packed.body_names, q, v, a, work, com, mass, moment, places, along.t), weights
+
+    def at(
+        self, terms: Terms, along: Along, compact: np.ndarray, rows: np.ndarray, line: Carried, variants: list[Variants]
+    ) -> Tangents:
         """Tangents in reference coordinates at outputs (R,), whose compact J is (R, m, 6)."""
         everywhere = np.ones(len(along.t), bool)
         stretch = Stretch(along, compact, rows, [], everywhere, everywhere)
-        return at_rows(terms, stretch, self.every, self.basis[:, 3:], line.at(along.t))
+        return at_rows(terms, stretch, variants, self.basis[:, 3:], line.at(along.t))
 
-    def _rates(self, arrays: Embedding, terms: Terms | None, t: np.ndarray, states: np.ndarray) -> np.ndarray:
-        scratch, ready = self.scratch, self.ready
-        system = ready.packed.system if terms is None else terms.packed.system
-        scratch.body[:, MASS], scratch.body[:, INERTIA] = system.mass, system.inertia
-        scratch.base[:, THETA] = ready.initial.q[2::3]
-        begin_at(arrays, scratch, states[0, 0], float(t[0]), np.inf)
+    def _rates(
+        self, arrays: Embedding, mass: np.ndarray, moment: np.ndarray, t: np.ndarray, states: np.ndarray, held: Held
+    ) -> np.ndarray:
+        self._begin(arrays, mass, moment, states[0, 0], float(t[0]))
         out, sensitivity = np.zeros((*states.shape[:2], self.f)), np.zeros(1)
-        clear = rates_beside(arrays, scratch, t, states, sensitivity, out)
-        ready.packed.specials.check()
+        clear = rates_beside(arrays, self.scratch, t, states, held, sensitivity, out)
+        self.ready.packed.specials.check()
         if clear < len(t) or sensitivity[0] > POOR:
             raise NotSmooth
         return out
 
-    def _arrays_of(self, variant: Variant) -> Embedding:
-        """Those of a mechanism with another number."""
-        terms, arrays = variant.terms, self.arrays
-        system = terms.packed.system
-        own = {"inertia": terms.inertia, "weight": terms.weight, "numbers": system.numbers, "gravity": system.gravity}
-        if terms.loads is not None and terms.laws is not None:
-            own |= {"loads": terms.loads, "laws": terms.laws}
-        if not variant.same_places:
-            choice = next(choices(terms.packed, self.ready.initial.q, self.f), None)
-            groups = None if choice is None else choice.plan.groups()
-            if groups is None or groups.group.tobytes() != arrays.group.tobytes():
-                raise NotSmooth
-            own["number"] = groups.row
-            own["number"][:, AVOID] = arrays.number[:, AVOID]
-        return arrays._replace(**own)
+    def _slopes_of_forces(self, light: list[int], t: np.ndarray, held: Held, rates: np.ndarray) -> np.ndarray:
+        """(L, T, f) how z'' changes with the numbers ``light`` at a held motion."""
+        system, arrays = self.ready.packed.system, self.arrays
+        near = [own for own in (self.every[p].near for p in light) if own is not None]
+        beside, width = forces_beside(arrays, system.gravity, system.mass, near), len(arrays.inertia)
+        out, work = np.zeros((len(light), *rates[:, 0].shape)), (*np.zeros((3, width)), self.scratch.mass)
+        if slopes_of_forces(arrays.loads, arrays.laws, arrays.inertia, beside, t, held, rates, *work, out) < len(t):
+            raise NotSmooth
+        return out
+
+    def _begin(self, arrays: Embedding, mass: np.ndarray, moment: np.ndarray, state: np.ndarray, time: float) -> None:
+        scratch = self.scratch
+        scratch.body[:, MASS], scratch.body[:, INERTIA] = mass, moment
+        scratch.base[:, THETA] = self.ready.initial.q[2::3]
+        begin_at(arrays, scratch, state, time, np.inf)

@@ -38,9 +38,13 @@ class Whole(Protocol):
     """The simulation that the events are of; see simulations.py."""
 
     terms: Terms
-    variants: list[Variants]
     variation: Variation
     span: tuple[float, float]
+
+    @property
+    def variants(self) -> list[Variants]:
+        """The mechanism with other values of each number."""
+        ...
 
     def ready(self) -> PreparedDynamics:
         """The mechanism as a simulation begins with it."""

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.special import roots_jacobi
 
-from mbsd.compiling.jit import kernel
+from mbsd.compiling.jit import internal, kernel
+from mbsd.equations.gauss import eliminate
 
 NODES = 8
 """Nodes of a step, without its end."""
@@ -33,8 +34,6 @@ def weights_at(places: np.ndarray) -> np.ndarray:
 
 WEIGHTS = weights_at(PLACES[1:])
 """(8, 9) those to each other node."""
-TWICE = (WEIGHTS[:, None, 1:] * WEIGHTS.T[None]).reshape(-1, NODES)
-"""(8 * 9, 8) weights (i n, j) in double integrals: to node i, of what is the integral to node j of a rate at node n."""
 HALFWAY, LAST = _COEFFICIENTS[[NODES // 2, NODES]]
 """(9,) what makes Legendre's fourth and eighth coefficients of values at the nodes."""
 
@@ -66,16 +65,15 @@ def carried(t: np.ndarray, a: np.ndarray, b: np.ndarray, begun: np.ndarray, slig
     a (8 d + 1, f, 2 f), b (8 d + 1, f, c). Errors are parts of the largest y, or of ``slight`` (2 f, c)
     if that is more.
     """
-    out = np.zeros((len(t), *begun.shape))
+    f, c = b.shape[1:]
+    out, rates = np.zeros((2, len(t), 2 * f, c))
     out[0] = begun
-    chain(_steps(t, a, b), out)
-    rates = np.concatenate([out[:, b.shape[1] :], a @ out + b], axis=1)
-    parts = rates / np.maximum(np.abs(out).max(axis=0), slight)
-    at = _nodes_of(np.arange((len(t) - 1) // NODES))
-    halfway, last = (np.einsum("n,dnkc->dkc", weights, parts[at]) for weights in (HALFWAY, LAST))
-    halfway, last = (np.abs(part).max(axis=(1, 2), initial=0.0) for part in (halfway, last))
-    fall = np.minimum(last / np.maximum(halfway, 1e-300), 1.0)
-    return Carried(t, out, rates, (t[NODES::NODES] - t[:-1:NODES]) * last * fall**1.5)
+    matrix, side = np.zeros((NODES * f, NODES * f)), np.zeros((NODES * f, c))
+    march(t, np.ascontiguousarray(a), np.ascontiguousarray(b), WEIGHTS, matrix, side, out, rates)
+    per = 1.0 / np.maximum(np.abs(out).max(axis=0), slight)
+    errors = np.zeros((len(t) - 1) // NODES)
+    estimate(t, rates, per, HALFWAY, LAST, errors)
+    return Carried(t, out, rates, errors)
 
 
 def _nodes_of(steps: np.ndarray) -> np.ndarray:
@@ -83,41 +81,99 @@ def _nodes_of(steps: np.ndarray) -> np.ndarray:
     return NODES * steps[:, None] + np.arange(NODES + 1)
 
 
-def _steps(t: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """What makes the other nodes of every step of its start: (d, 8, 2 f, 2 f + c), a matrix and what is added.
+@internal
+def rate_at(a, b, s, out):
+    """Fill the lower half of out (2 f, c) with s'' of s (2 f, c) at one node, the upper with s'."""
+    f = b.shape[0]
+    for k in range(f):
+        for i in range(b.shape[1]):
+            out[k, i] = s[f + k, i]
+            out[f + k, i] = b[k, i]
+        for j in range(2 * f):
+            factor = a[k, j]
+            for i in range(b.shape[1]):
+                out[f + k, i] += factor * s[j, i]
 
-    Solved for s' at the nodes, of which s is the integral.
-    """
-    f, c = b.shape[1:]
-    h = (t[NODES::NODES] - t[:-1:NODES])[:, None, None, None]
-    at = _nodes_of(np.arange(len(h)))
-    of_s, of_rate, given = a[at][..., :f], a[at][..., f:], b[at]
-    inner = (TWICE @ of_s[:, 1:].reshape(len(h), NODES, f * f)).reshape(len(h), NODES, NODES + 1, f, f)
-    matrix = np.eye(NODES * f) - (
-        (h[..., None] ** 2 * inner[:, :, 1:] + h[..., None] * WEIGHTS[:, 1:, None, None] * of_rate[:, None, 1:])
-        .transpose(0, 1, 3, 2, 4)
-        .reshape(len(h), NODES * f, NODES * f)
-    )
-    side = np.empty((len(h), NODES, f, 2 * f + c))
-    side[..., :f] = h * np.einsum("in,dnkl->dikl", WEIGHTS, of_s)
-    side[..., f : 2 * f] = np.eye(f) + h * WEIGHTS[:, 0, None, None] * of_rate[:, None, 0] + h**2 * inner[:, :, 0]
-    side[..., 2 * f :] = h * np.einsum("in,dnkc->dikc", WEIGHTS, given)
-    rates = np.linalg.solve(matrix, side.reshape(len(h), NODES * f, 2 * f + c)).reshape(side.shape)
-    places = h * np.einsum("ij,djkc->dikc", WEIGHTS[:, 1:], rates)
-    places[..., :f] += np.eye(f)
-    places[..., f : 2 * f] += h * WEIGHTS[:, 0, None, None] * np.eye(f)
-    return np.concatenate([places, rates], axis=2)
+
+@internal
+def fill_matrix(h, a, weights, matrix):
+    """Fill matrix (8 f, 8 f) of s' at nodes 1 .. 8 of a step h; a (9, f, 2 f)."""
+    f = a.shape[1]
+    for i in range(NODES):
+        for j in range(NODES):
+            for k in range(f):
+                row = matrix[i * f + k]
+                for g in range(f):
+                    value = h * weights[i, 1 + j] * a[1 + j, k, f + g]
+                    for n in range(NODES):
+                        value += h * h * weights[i, 1 + n] * weights[n, 1 + j] * a[1 + n, k, g]
+                    row[j * f + g] = -value
+    for r in range(NODES * f):
+        matrix[r, r] += 1.0
+
+
+@internal
+def fill_side(h, a, b, weights, s, first, side):
+    """Fill side (8 f, c) from s (2 f, c) and its rate ``first`` at node 0; a (9, f, 2 f), b (9, f, c)."""
+    f = b.shape[1]
+    count = b.shape[2]
+    for i in range(NODES):
+        for k in range(f):
+            row = side[i * f + k]
+            for c in range(count):
+                row[c] = s[f + k, c] + h * weights[i, 0] * first[f + k, c]
+            for n in range(NODES):
+                weight = h * weights[i, 1 + n]
+                for c in range(count):
+                    row[c] += weight * b[1 + n, k, c]
+                for g in range(f):
+                    factor = weight * a[1 + n, k, g]
+                    for c in range(count):
+                        row[c] += factor * (s[g, c] + h * weights[n, 0] * s[f + g, c])
 
 
 @kernel
-def chain(maps, out):
-    """Fill out (s d + 1, k, c) from its first entry by maps (d, s, k, k + c) of every step's start."""
-    k, nodes = out.shape[1], maps.shape[1]
-    for step in range(maps.shape[0]):
-        for node in range(nodes):
-            for i in range(k):
-                for c in range(out.shape[2]):
-                    value = maps[step, node, i, k + c]
-                    for j in range(k):
-                        value += maps[step, node, i, j] * out[nodes * step, j, c]
-                    out[nodes * step + 1 + node, i, c] = value
+def march(t, a, b, weights, matrix, side, out, rates):
+    """Fill out and rates (8 d + 1, 2 f, c) from out[0], by ``weights`` (8, 9); matrix and side are scratch.
+
+    a (8 d + 1, f, 2 f), b (8 d + 1, f, c). Each step is solved for s' at its nodes, of which s is the integral.
+    """
+    f = b.shape[1]
+    for first in range(0, t.shape[0] - 1, NODES):
+        h = t[first + NODES] - t[first]
+        own = slice(first, first + NODES + 1)
+        rate_at(a[first], b[first], out[first], rates[first])
+        fill_matrix(h, a[own], weights, matrix)
+        fill_side(h, a[own], b[own], weights, out[first], rates[first], side)
+        eliminate(matrix, side)
+        for i in range(NODES):
+            node = out[first + 1 + i]
+            for k in range(f):
+                for c in range(side.shape[1]):
+                    node[f + k, c] = side[i * f + k, c]
+                    node[k, c] = out[first, k, c] + h * weights[i, 0] * out[first, f + k, c]
+                for n in range(NODES):
+                    weight = h * weights[i, 1 + n]
+                    for c in range(side.shape[1]):
+                        node[k, c] += weight * side[n * f + k, c]
+            rate_at(a[first + 1 + i], b[first + 1 + i], node, rates[first + 1 + i])
+
+
+@kernel
+def estimate(t, rates, per, halfway, last, errors):
+    """Fill errors (d,) of steps from rates (8 d + 1, k, c), ``per`` (k, c) the largest values."""
+    for step in range(errors.shape[0]):
+        first = NODES * step
+        middle = 0.0
+        high = 0.0
+        for k in range(rates.shape[1]):
+            for c in range(rates.shape[2]):
+                fourth = 0.0
+                eighth = 0.0
+                for n in range(NODES + 1):
+                    fourth += halfway[n] * rates[first + n, k, c]
+                    eighth += last[n] * rates[first + n, k, c]
+                middle = max(middle, abs(fourth) * per[k, c])
+                high = max(high, abs(eighth) * per[k, c])
+        fall = min(high / max(middle, 1e-300), 1.0)
+        errors[step] = (t[first + NODES] - t[first]) * high * fall**1.5

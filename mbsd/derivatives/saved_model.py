@@ -19,6 +19,7 @@ class SavedModel:
         self.bodies = [(body, dict(body.__dict__)) for body in m.bodies.values()]
         """Each body and its values."""
         self.gravity = m.gravity
+        self.traces = dict(m.traces)
 
     def before(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """What one of the tables of the model held; nothing of another model."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.names import names_in, no_such
-from mbsd.derivatives.asked import Wanted, needed, needs_models, needs_reactions, wanted
+from mbsd.derivatives.asked import Wanted, needed, needs_models, needs_reactions, of_bodies, wanted
 from mbsd.derivatives.numbers import Number, numbers_named
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.sweeps import SweepTangents
@@ -30,6 +30,8 @@ class Tangents(Protocol):
     """A motion, and others along its tangents."""
 
     sol: Solution
+    slopes: dict[str, np.ndarray]
+    """Derivatives (..., P) that are known already, by what was asked for."""
 
     def moved(self, k: int, reactions: bool = True) -> list[Solution]:
         """The motion at other values of number k, where its tangents are asked for; without ``reactions`` of joints."""
@@ -97,14 +99,17 @@ def slopes_of(
     With ``models`` the solutions have mechanisms with the other numbers, for functions that ask them; without
     ``reactions`` those of joints are left out.
     """
-    columns: dict[str, list[np.ndarray]] = {label: [] for label in functions}
-    for k, number in enumerate(numbers):
+    columns: dict[str, list[np.ndarray]] = {label: [] for label in functions if label not in tangents.slopes}
+    for k, number in enumerate(numbers if columns else ()):
         moved, weights = tangents.moved(k, reactions), tangents.weights(k)
         if models:
             moved = [replace(sol, mechanism=m) for sol, m in zip(moved, tangents.models(k, number), strict=True)]
-        for label, function in functions.items():
+        for label in columns:
+            function = functions[label]
             columns[label].append(np.sum([w * function(sol) for w, sol in zip(weights, moved, strict=True)], axis=0))
-    out = {label: np.stack(parts, axis=-1) for label, parts in columns.items()}
+    out = {
+        label: np.stack(columns[label], axis=-1) if label in columns else tangents.slopes[label] for label in functions
+    }
     for label, slopes in out.items():
         if not np.isfinite(slopes).all() and np.isfinite(functions[label](tangents.sol)).all():
             raise ModelError(
@@ -153,4 +158,4 @@ def simulation_tangents(
 ) -> SimulationTangents:
     """Simulate at output times (T,) (s), with tangents by numbers where what is asked ``of`` the motion reads them."""
     refuse_bad_steps(m, grid, tolerance, None)
-    return SimulationTangents(m, Repeated(m, grid, tolerance), grid, numbers, partial(needed, of))
+    return SimulationTangents(m, Repeated(m, grid, tolerance), grid, numbers, partial(needed, of), of_bodies(m, of))

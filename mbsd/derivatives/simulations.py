@@ -13,24 +13,26 @@ from itertools import pairwise
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.base.errors import ModelError, ModelWarning, SimulationError
+from mbsd.base.errors import ModelWarning, SimulationError
 from mbsd.base.warn import warn
-from mbsd.derivatives.asked import taken
+from mbsd.derivatives.asked import OfBodies, taken
 from mbsd.derivatives.free_tangents import FreeTangents
 from mbsd.derivatives.independent_tangents import IndependentTangents, suits
 from mbsd.derivatives.jumps import Jump, jumps_of
 from mbsd.derivatives.linear_motion import NODES
 from mbsd.derivatives.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of, refined
 from mbsd.derivatives.numbers import Number
+from mbsd.derivatives.refused import refuse
+from mbsd.derivatives.sides import BothSides, Sides
 from mbsd.derivatives.smooth_motion import CLOSE, Motion, NotSmooth, between, looked_at_closely, motion_of
 from mbsd.derivatives.stretch import Stretch, Tangents, joined
 from mbsd.derivatives.sweeps import along_of, displaced
 from mbsd.derivatives.tangents import Tangent, has_kinks
 from mbsd.derivatives.terms import Along, terms_of
-from mbsd.derivatives.variants import KINKED, SECOND, TINY, Variation, models_of
+from mbsd.derivatives.variants import KINKED, SECOND, TINY, Variants, Variation, models_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics, started
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.repeated import Course, Repeated
+from mbsd.dynamics.repeated import Repeated
 from mbsd.kinematics.pose.initial import Initial
 from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import take_decided
@@ -51,8 +53,8 @@ DOUBTFUL = 1e-3
 MOST_STEPS = 20_000
 """Steps at most."""
 
-Finish = Callable[[], Tangents]
-"""Evaluates tangents at the outputs of which they are asked."""
+Finish = Callable[[], Tangents | None]
+"""Evaluates tangents at the outputs of which they are asked; None where that gave the slopes themselves."""
 Way = Callable[[np.ndarray], tuple[np.ndarray, Finish]]
 """Gives the errors of steps between edges, and what finishes them."""
 
@@ -60,28 +62,30 @@ Way = Callable[[np.ndarray], tuple[np.ndarray, Finish]]
 class SimulationTangents:
     """A simulation at output times ``grid`` (T,), and its tangents by numbers at some of them.
 
-    ``needed`` gives the rows of output times of which they are asked.
+    ``needed`` gives the rows of output times of which they are asked; ``of_bodies`` is what is
+    asked for, where that is how bodies move.
     """
 
     def __init__(
         self, m: Model, runs: Repeated, grid: np.ndarray, numbers: Sequence[Number],
-        needed: Callable[[np.ndarray], np.ndarray],
+        needed: Callable[[np.ndarray], np.ndarray], of_bodies: OfBodies | None,
     ) -> None:  # fmt: skip
-        self.m, self._runs, self._grid, self._needed = m, runs, grid, needed
+        self.m, self._runs, self._grid, self._needed, self._of_bodies = m, runs, grid, needed, of_bodies
+        self._numbers = numbers
+        self.slopes: dict[str, np.ndarray] = {}
         self._ready: PreparedDynamics | None = None
         self.redundant, self.ends = False, None
         first = runs.course(looked_at(grid))
-        _refuse(first)
+        refuse(first)
         span = float(grid[0]), float(grid[-1])
         self.span = span
         self.terms = terms_of(first.packed, span)
         packed = first.packed
         contacts = packed.joints[len(packed.joints) - packed.contacts :] if packed.contacts else []
-        variation = Variation(m, self.terms, span, self._closed, contacts, starts=True)
-        step = TINY * (KINKED if has_kinks(self.terms) else 1.0)
-        self.variants = [variation.of(number, SECOND, step) for number in numbers]
-        self.variation = variation
+        self.variation = Variation(m, self.terms, span, self._closed, contacts, starts=True)
         reached = grid[grid <= first.t[-1]]
+        self._variants: list[Variants] | None = None
+        self._sides: list[Sides] | None = None
         self._met = np.append(
             first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]]
         )
@@ -95,11 +99,20 @@ class SimulationTangents:
                 continue
         self.error = error
         """Estimate of the largest error of the tangents, as part of the largest."""
-        self.tangents = [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
+        self.tangents = [] if made is None else [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
+        """By number; none where ``slopes`` say all that was asked for."""
+
+    @property
+    def variants(self) -> list[Variants]:
+        """The mechanism with other values of each number."""
+        if self._variants is None:
+            step = TINY * (KINKED if has_kinks(self.terms) else 1.0)
+            self._variants = [self.variation.of(number, SECOND, step) for number in self._numbers]
+        return self._variants
 
     # -- ways to the tangents --------------------------------------------------------------------------------------
 
-    def _refined(self, way: Way, edges: np.ndarray) -> tuple[Tangents, float]:
+    def _refined(self, way: Way, edges: np.ndarray) -> tuple[Tangents | None, float]:
         """Tangents by one of the ways below, with steps as short as errors ask for, and their error."""
         before = error = 0.0
         part = OF_KINKS if has_kinks(self.terms) else 1.0
@@ -129,14 +142,27 @@ class SimulationTangents:
         coordinates = suits(ready)
         if self._first.q is None or ready is None or coordinates is None or has_kinks(self.terms):
             raise NotSmooth
-        independent = IndependentTangents(ready, coordinates, self._runs.tolerance, self.variants)
-        line = independent.carry(between(self._first, nodes_of(edges, self._met)).along, self._begun())
+        asked, arrays = self._of_bodies, coordinates.copied(self._runs.tolerance)
+        if self._sides is None:
+            both = BothSides(ready, coordinates, arrays)
+            if asked is None:
+                self._sides = [both.packed(variants, self.m.traces) for variants in self.variants]
+            else:
+                self._sides = both.of(self.m, self.variation, self._numbers)
+        independent = IndependentTangents(ready, coordinates, arrays, self._sides)
+        line = independent.carry(self._first, nodes_of(edges, self._met))
 
-        def finish() -> Tangents:
+        def finish() -> Tangents | None:
             grid = self._grid
             self._take(self._runs.recorded(np.searchsorted(self._first.t, grid)), self._needed(grid))
             along = replace(self.along, held=np.ones(self.along.lam.shape, bool))
-            return independent.at(self.terms, along, self.terms.rows(along)[2], self.stretch_rows(along, 0), line)
+            if asked is None:
+                rows, compact = self.stretch_rows(along, 0), self.terms.rows(along)[2]
+                return independent.at(self.terms, along, compact, rows, line, self.variants)
+            motions, weights = independent.motions(along, self.m.traces, line, asked.accelerations)
+            for label, of in asked.by_label.items():
+                self.slopes[label] = np.moveaxis(np.tensordot(weights, of(motions), axes=1), 0, -1)
+            return None
 
         return line.errors, finish
 
@@ -298,9 +324,7 @@ class SimulationTangents:
         count, width = len(self.variants), len(self.terms.inertia)
         q, v = np.zeros((2, count, width))
         for k, variants in enumerate(self.variants):
-            if all(variant.start is not None for variant in variants.variants):
-                q[k] = variants.slope(lambda variant: variant.start[0])
-                v[k] = variants.slope(lambda variant: variant.start[1])
+            q[k], v[k] = variants.begun(q[k])
         return q, v
 
     @staticmethod
@@ -315,28 +339,3 @@ class SimulationTangents:
 
 def _state_of(initial: Initial) -> tuple[np.ndarray, np.ndarray]:
     return initial.q, initial.v
-
-
-def _refuse(first: Course) -> None:
-    """Raise ModelError for what a simulation holds that has no derivatives here."""
-    packed = first.packed
-    names = [force.name for force in packed.forces if force.kind.states is not None]
-    if names:
-        raise ModelError(
-            f"{packed.name}: derivatives of simulations with states of forces ('{names[0]}') are not known"
-        )
-    if first.remembers:
-        raise ModelError(
-            f"{packed.name}: derivatives where the damping of a contact remembers how fast it approached are not "
-            "known; give damping= instead of restitution="
-        )
-    for force in packed.forces:
-        if "cycle" in {*force.params, *force.laws}:
-            raise ModelError(
-                f"{packed.name}: derivatives of simulations with the cycle of a gas ('{force.name}'), whose pressure "
-                "jumps on the way, are not known; those of a sweep are"
-            )
-        if force.params.get("sticks"):
-            raise ModelError(
-                f"{packed.name}: derivatives where joints stick ('{force.name}') are not known; give a slip_speed"
-            )

@@ -42,6 +42,7 @@ class SweepTangents:
             raise ModelError(f"{m.name}: derivatives of a sweep need a driver for every freedom")
         inverse = Inverse(self.terms, self.along, bool(sol.mobility.redundant_rows))
         usual = STEP * (KINKED if has_kinks(self.terms) else 1.0)
+        self.slopes: dict[str, np.ndarray] = {}
         self.variants: list[Variants] = []
         self.tangents: list[Tangent] = []
         for number in numbers:

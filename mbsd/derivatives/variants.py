@@ -69,6 +69,17 @@ class Variants:
         """The derivative by the number of what ``of`` gives of a variant."""
         return np.sum([w * of(v) for w, v in zip(self.weights, self.variants, strict=True)], axis=0) / self.step
 
+    def begun(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """q' and v' at the start q (3 nb,)."""
+        if any(variant.start is None for variant in self.variants):
+            return np.zeros_like(q), np.zeros_like(q)
+        return self.slope(lambda variant: variant.start[0]), self.slope(lambda variant: variant.start[1])
+
+
+def size_of(number: Number, size: float) -> float:
+    """What steps of a number are parts of: itself, or the ``size`` (m) of its mechanism, or 1 in SI units."""
+    return abs(number.value) or (size if number.name.rpartition(".")[2] in LENGTHS else 1.0)
+
 
 def models_of(m: Model, number: Number, variants: Variants) -> list[Model]:
     """Mechanisms with the values of a number that variants have."""
@@ -101,18 +112,18 @@ class Variation:
         self.given = repr((self.work.starts, self.work.velocities))
         self.saved = SavedModel(self.work)
         self.first = pack(self.work, self._contacts(self.work))
-        self.motions, self.laws = list(self.first.motions), _laws_of_forces(self.first)
+        self.motions, self.laws = list(self.first.motions), self.laws_of(self.first)
         self.moving = bool(self.work.velocities) or bool(self.motions)
 
     def of(self, number: Number, order: tuple[np.ndarray, np.ndarray] = FOURTH, step: float = STEP) -> Variants:
         """The variants of a number. Raises ModelError where it cannot change."""
-        size = number.value or (self.base.packed.size if number.name.rpartition(".")[2] in LENGTHS else 1.0)
-        h = step * abs(size)
+        size = size_of(number, self.base.packed.size)
+        h = step * size
         first: ModelError | None = None
         for (offsets, weights), sign in ((order, 1.0), (AHEAD, 1.0), (AHEAD, -1.0)):
             try:
                 made = [self._variant(number, offset * sign, h) for offset in offsets]
-                return Variants(number, sign * h, weights, made, abs(size))
+                return Variants(number, sign * h, weights, made, size)
             except (ModelError, AssemblyError) as error:
                 first = first or (error if isinstance(error, ModelError) else ModelError(str(error)))
         raise ModelError(f"{self.base.packed.name}: no derivative by '{number.name}': {first}") from first
@@ -123,9 +134,9 @@ class Variation:
             first = self.first
             if packed.first_row is not first.first_row and packed.first_row.tolist() != first.first_row.tolist():
                 raise ModelError(f"{m.name}: '{number.name}' changes which joints there are")
-            places = _alike(packed, first, PLACES) and packed.com.tobytes() == first.com.tobytes()
-            places = places and _same(packed.motions, self.base.packed.motions)
-            masses = _alike(packed, first, ("mass", "inertia"))
+            places = alike(packed, first, PLACES) and packed.com.tobytes() == first.com.tobytes()
+            places = places and same_laws(packed.motions, self.base.packed.motions)
+            masses = alike(packed, first, ("mass", "inertia"))
             begins = self.starts and not (places and (masses or not self.moving) and self._starts_alike(m))
             start = self._decide(m, packed, begins)
             known = self.base.loads if lawful and self._pushes_alike(m, packed) else None
@@ -146,14 +157,19 @@ class Variation:
     def _packed(self, m: Model) -> tuple[Packed, bool]:
         """The mechanism packed, and whether its laws are those of the motion."""
         packed = repacked(m, self.first, self.saved)
-        if packed is None or (self.moving and not _alike(packed, self.first, ("mass", "inertia"))):
+        if packed is None or (self.moving and not alike(packed, self.first, ("mass", "inertia"))):
             packed = pack(m, self._contacts(m))
-        same = _same(packed.motions, self.motions)
+        same = same_laws(packed.motions, self.motions)
         if same:
             packed.motions[:] = self.base.packed.motions
         else:
             packed.settle_laws(*self.span)
-        return packed, same and _same(_laws_of_forces(packed), self.laws)
+        return packed, same and same_laws(self.laws_of(packed), self.laws)
+
+    @staticmethod
+    def laws_of(packed: Packed) -> list[Any]:
+        """Laws of forces."""
+        return [law for force in packed.forces for law in force.laws.values()]
 
     def _contacts(self, m: Model) -> list[Joint]:
         return [m.contacts.get(joint.name) or self._limit(m, joint) for joint in self.contacts]
@@ -175,15 +191,12 @@ class Variation:
         return start
 
 
-def _laws_of_forces(packed: Packed) -> list[Any]:
-    return [law for force in packed.forces for law in force.laws.values()]
-
-
-def _same(laws: list[Any], others: list[Any]) -> bool:
+def same_laws(laws: list[Any], others: list[Any]) -> bool:
+    """Whether laws are the very same."""
     return len(laws) == len(others) and all(a is b for a, b in zip(laws, others, strict=True))
 
 
-def _alike(packed: Packed, other: Packed, names: Sequence[str]) -> bool:
+def alike(packed: Packed, other: Packed, names: Sequence[str]) -> bool:
     """Whether arrays of two mechanisms have the same numbers."""
     pairs = [(getattr(packed.system, name), getattr(other.system, name)) for name in names]
     return all(a is b or a.tobytes() == b.tobytes() for a, b in pairs)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from mbsd.derivatives.linear_motion import NODES, PLACES, carried
 from mbsd.derivatives.mesh import first_edges, longest_steps, looked_at, nodes_of, refined
@@ -31,6 +32,27 @@ def test_collocation_is_of_order_16_at_ends_of_10_inside_and_knows_its_error() -
     assert 14.0 < np.log2(coarse / fine) < 18.0
     assert 9.0 < np.log2(inside / finer) < 11.0
     assert coarse < estimate < 50.0 * inside
+
+
+def test_coupled_equations_are_those_of_an_integrator() -> None:
+    random = np.random.default_rng(3)
+    constant, turning_part = random.normal(0.0, 8.0, (2, 3, 6))
+    push, begun = random.normal(0.0, 1.0, (3, 2)), random.normal(0.0, 1.0, (6, 2))
+
+    def matrix(t: float) -> np.ndarray:
+        return constant + np.sin(3.0 * t) * turning_part
+
+    def rates(t: float, y: np.ndarray) -> np.ndarray:
+        s = y.reshape(6, 2)
+        return np.concatenate([s[3:], matrix(t) @ s + np.cos(t) * push]).ravel()
+
+    edges = np.linspace(0.0, 1.0, 7)
+    t = np.append((edges[:-1, None] + np.diff(edges)[:, None] * PLACES[:NODES]).ravel(), 1.0)
+    line = carried(t, np.array([matrix(at) for at in t]), np.cos(t)[:, None, None] * push, begun, np.full((6, 2), 1e-9))
+    truth = solve_ivp(rates, (0.0, 1.0), begun.ravel(), "DOP853", t, rtol=1e-13, atol=1e-13)
+    known = truth.y.T.reshape(len(t), 6, 2)
+    assert np.allclose(line.y[::NODES], known[::NODES], rtol=0.0, atol=1e-9 * np.abs(known).max())
+    assert np.allclose(line.rates[0], rates(0.0, begun.ravel()).reshape(6, 2), rtol=1e-12, atol=1e-12)
 
 
 def test_steps_are_longer_where_the_motion_is_smooth_wherever_outputs_are() -> None:

@@ -19,8 +19,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.compiling.jit import internal, lazy
+from mbsd.compiling.jit import lazy
 from mbsd.dynamics.reference.schur import solve_schur, subtract_forces, times_jacobian
+from mbsd.equations.gauss import eliminate
 
 
 class Sliding(NamedTuple):
@@ -107,7 +108,7 @@ def slide(dyn, scratch, v, a, lam):
             if table[k, 0] != 0.0:
                 matrix[j, k] += table[k, at_lam + gap]
                 matrix[j, count] += table[k, at_lam + gap] * table[k, applied]
-    _solve(matrix)
+    eliminate(matrix[:, :count], matrix[:, count:])
     power = 0.0
     for k in range(count):
         if table[k, 0] == 0.0:
@@ -131,26 +132,3 @@ def slide(dyn, scratch, v, a, lam):
         if table[k, 0] != 0.0:
             lam[rows[k, 1]] = table[k, 0] * matrix[k, count]
     return power
-
-
-@internal
-def _solve(matrix):
-    """Gaussian elimination with row pivoting of (c, c + 1), the solution in the last column."""
-    count = matrix.shape[0]
-    for k in range(count):
-        best = k
-        for i in range(k + 1, count):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
-        for c in range(k, count + 1):
-            kept = matrix[k, c]
-            matrix[k, c] = matrix[best, c]
-            matrix[best, c] = kept
-        for i in range(k + 1, count):
-            part = matrix[i, k] / matrix[k, k]
-            for c in range(k, count + 1):
-                matrix[i, c] -= part * matrix[k, c]
-    for k in range(count - 1, -1, -1):
-        for c in range(k + 1, count):
-            matrix[k, count] -= matrix[k, c] * matrix[c, count]
-        matrix[k, count] /= matrix[k, k]

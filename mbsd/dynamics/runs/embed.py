@@ -20,6 +20,7 @@ from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
 from mbsd.dynamics.state import Settings
 from mbsd.kinematics.groups.carrying.branch import FLOOR
 from mbsd.kinematics.groups.carrying.columns import AVOID, BASE, COS, INERTIA, MASS, NEAR, SPEED, THETA, TURNS
+from mbsd.kinematics.groups.plan import Plan
 
 GOOD = 3.0
 """A choice under which no body moves faster than this for one unit of a coordinate is taken at once."""
@@ -45,6 +46,8 @@ class Embedded:
 
     arrays: Embedding
     coordinates: list[Coordinate]
+    plan: Plan
+    """The groups that place all bodies."""
     drivers: int
     sensitivity: float
     """The largest rate of a body for one unit of a coordinate, dimensionless, at the pose of the choice."""
@@ -215,7 +218,9 @@ def _made(ready: PreparedDynamics, choice: Choice, count: int) -> Embedded:
         loaded=loaded[loaded > 0],
         angles=functions or any(reading),
     )
-    return Embedded(arrays, coordinates, len(packed.motions), math.inf, _pays(choice, len(packed.body_names) - 1))
+    return Embedded(
+        arrays, coordinates, choice.plan, len(packed.motions), math.inf, _pays(choice, len(packed.body_names) - 1)
+    )
 
 
 def _pays(choice: Choice, bodies: int) -> bool:

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import copy
 import heapq
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.base.kept import Kept
 from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, TRAIN, TREE_AT, Blocks
-from mbsd.kinematics.groups.groups import Groups
+from mbsd.kinematics.groups.groups import NUMBERS, Groups
 from mbsd.kinematics.groups.kind import Made
 from mbsd.kinematics.groups.links import Link, Places
 from mbsd.kinematics.groups.registry import KINDS, NAMES
@@ -115,6 +116,20 @@ def links_of_joints(packed: Packed, numbers: Iterable[int]) -> list[list[Link]]:
     return links
 
 
+class Recipe(NamedTuple):
+    """What a group was made by."""
+
+    make: Callable[..., Made | None]
+    bodies: tuple[int, ...]
+    links: tuple[Link, ...]
+    by_letter: bool
+    """Whether ``make`` takes its links by their letters."""
+
+    def made(self, at: Places, links: Sequence[Link]) -> Made | None:
+        """The group, from links that stand for its own."""
+        return self.make(at, *self.bodies, *([{link.kind: link for link in links}] if self.by_letter else links))
+
+
 class Plan:
     """The plan as it grows: ``known`` bodies have their place in ``taken`` groups, ``used`` joints hold them.
 
@@ -125,6 +140,7 @@ class Plan:
         self.packed, self.links, self.places = packed, links, Places(packed.system, pose)
         self.known, self.used = {0}, set[int]()
         self.taken: list[Made] = []
+        self.recipes: list[Recipe | None] = []
         self.singles = list(range(1, len(links)))
         self.pairs = list(self.singles)
 
@@ -133,6 +149,7 @@ class Plan:
         out = copy.copy(self)
         out.links = list(self.links)
         out.known, out.used, out.taken = set(self.known), set(self.used), list(self.taken)
+        out.recipes = list(self.recipes)
         out.singles, out.pairs = list(self.singles), list(self.pairs)
         return out
 
@@ -164,13 +181,12 @@ class Plan:
             links = [link for link in self.links[body] if link.other in self.known]
             kinds = "".join(sorted(link.kind for link in links))
             by_kind = {link.kind: link for link in links}
-            made = None
             for kind in KINDS:
-                if kinds in kind.one and kind.of_one and made is None:
-                    made = kind.of_one(self.places, body, by_kind)
-            if made is not None:
-                self._take(made, (body,), links)
-                return True
+                made = kind.of_one(self.places, body, by_kind) if kinds in kind.one and kind.of_one else None
+                if made is not None:
+                    assert kind.of_one is not None
+                    self._take(made, Recipe(kind.of_one, (body,), tuple(links), by_letter=True))
+                    return True
         return False
 
     def add_pair(self) -> bool:
@@ -190,23 +206,49 @@ class Plan:
                 between = [link for link in self.links[a] if link.other == b]
                 if len(outer_b) != 1 or len(between) != 1:
                     continue
-                made = None
-                kinds = outer_a[0].kind + inner.kind + outer_b[0].kind
+                links = (outer_a[0], inner, outer_b[0])
+                kinds = "".join(link.kind for link in links)
                 for kind in KINDS:
-                    if kinds in kind.two and kind.of_two and made is None:
-                        made = kind.of_two(self.places, a, b, outer_a[0], inner, outer_b[0])
-                if made is not None:
-                    self._take(made, (a, b), [*outer_a, inner, *outer_b])
-                    return True
+                    made = kind.of_two(self.places, a, b, *links) if kinds in kind.two and kind.of_two else None
+                    if made is not None:
+                        assert kind.of_two is not None
+                        self._take(made, Recipe(kind.of_two, (a, b), links, by_letter=False))
+                        return True
         return False
 
-    def _take(self, made: Made, bodies: tuple[int, ...], links: list[Link]) -> None:
-        self.used.update(link.joint for link in links)
-        self.take(made, bodies)
+    def numbers(self) -> np.ndarray:
+        """(g, 14) numbers of the groups."""
+        out = np.zeros((len(self.taken), NUMBERS))
+        for row, (_, _, _, numbers) in zip(out, self.taken, strict=True):
+            row[: len(numbers)] = numbers
+        return out
 
-    def take(self, made: Made, bodies: Sequence[int]) -> None:
+    def remade(self, packed: Packed) -> np.ndarray | None:
+        """(g, 14) numbers of these groups in a mechanism with other numbers; None where a group was not made of links.
+
+        Signs of roots are those of the pose of this plan.
+        """
+        at, joints = Places(packed.system, self.places.pose), len(packed.joints)
+        links = {(link.joint, link.first): link for own in links_of_joints(packed, range(joints)) for link in own}
+        out = np.zeros((len(self.taken), NUMBERS))
+        for row, recipe, (code, bodies, _, _) in zip(out, self.recipes, self.taken, strict=True):
+            if recipe is None:
+                return None
+            own = [link if link.joint >= joints else links[link.joint, link.first] for link in recipe.links]
+            made = recipe.made(at, own)
+            if made is None or made[:2] != (code, bodies):
+                return None
+            row[: len(made[3])] = made[3]
+        return out
+
+    def _take(self, made: Made, recipe: Recipe) -> None:
+        self.used.update(link.joint for link in recipe.links)
+        self.take(made, recipe.bodies, recipe)
+
+    def take(self, made: Made, bodies: Sequence[int], recipe: Recipe | None = None) -> None:
         """Add a group, whose bodies are then known."""
         self.taken.append(made)
+        self.recipes.append(recipe)
         self.known.update(bodies)
         near = {link.other for body in bodies for link in self.links[body]} - self.known
         for body in near:

@@ -1,0 +1,145 @@
+"""How arrays of a mechanism change with a number, by one mechanism whose number is a little larger.
+
+    A(p + h) = A(p) + h A',   A' = (A(p + d) - A(p)) / d
+
+Arrays are linear in most numbers; of others, as an inertia in a length, d leaves a ten-millionth of A'. So a number is
+changed and packed once, and both sides of a difference, farther from the motion, go on straight.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.packing import Packed, pack
+from mbsd.base.errors import AssemblyError, ModelError
+from mbsd.derivatives.numbers import Number, with_value
+from mbsd.derivatives.repacked import repacked, unchanged
+from mbsd.derivatives.start_tangents import StartTangents
+from mbsd.derivatives.variants import PLACES, Variation, alike, same_laws, size_of
+from mbsd.equations.loads import Loads
+from mbsd.model.body import Marker
+from mbsd.model.mechanism import Model
+
+NEAR = 1e-7
+"""Part of a number, or of what stands for one that is zero, by which it is larger."""
+PLACES_OF_LOADS = ("place", "number", "given", "user_com", "friction_number")
+"""Numbers of loads; the other tables must stay."""
+TABLES_OF_LOADS = ("element", "term", "interaction", "user", "user_body", "friction")
+
+
+@dataclass
+class Near:
+    """Arrays by a number: their slopes, in SI units by that of the number."""
+
+    number: Number
+    size: float
+    """What steps of the number are parts of."""
+    mass: np.ndarray
+    """(nb,)"""
+    moment: np.ndarray
+    gravity: np.ndarray
+    com: np.ndarray
+    """(nb, 2)"""
+    loads: dict[str, np.ndarray]
+    """Arrays of the loads that change."""
+    traces: dict[str, np.ndarray]
+    """(2,) places of traced points that change."""
+    packed: Packed | None
+    """The mechanism with the larger number, if it changes places."""
+    away: float
+    """By how much it is larger."""
+    begun: tuple[np.ndarray, np.ndarray]
+    """(3 nb,) q' and v' at the start."""
+
+    @property
+    def inertia(self) -> np.ndarray:
+        """(3 nb,) diagonal of M."""
+        out = np.repeat(self.mass, 3)
+        out[2::3] = self.moment
+        return out
+
+    def weight(self, gravity: np.ndarray, mass: np.ndarray) -> np.ndarray:
+        """(3 nb,) M g, with gravity (2,) and masses (nb,)."""
+        out = np.zeros((len(mass), 3))
+        out[:, :2] = self.mass[:, None] * gravity + mass[:, None] * self.gravity
+        return out.ravel()
+
+
+class NearNumbers:
+    """Numbers of the mechanism of a ``variation``, whose start moves as ``starts`` says."""
+
+    def __init__(self, variation: Variation, starts: StartTangents, loads: Loads) -> None:
+        self.variation, self.starts, self.loads = variation, starts, loads
+        self._first = variation.first.system
+        own, known = self._first.angle_offset, variation.base.packed.system.angle_offset
+        self._turns = np.round((known - own) / math.tau) * math.tau
+
+    def of(self, number: Number) -> Near | None:
+        """The slopes by a number; None where arrays do not go on straight, or what is given leaves the start open."""
+        size = size_of(number, self.variation.first.size)
+        for away in (NEAR * size, -NEAR * size):
+            try:
+                return self._at(number, size, away)
+            except (ModelError, AssemblyError):
+                continue
+        return None
+
+    def _at(self, number: Number, size: float, away: float) -> Near | None:
+        own, first = self.variation, self.variation.first
+        with with_value(own.work, number, number.value + away, own.saved) as m:
+            packed = repacked(m, first, own.saved) or pack(m)
+            if packed.first_row.tolist() != first.first_row.tolist() or packed.body_names != first.body_names:
+                return None
+            if not (same_laws(packed.motions, own.motions) and same_laws(own.laws_of(packed), own.laws)):
+                return None
+            com = _slope(packed.com, first.com, away)
+            moved = packed.system is not first.system and not alike(packed, first, PLACES)
+            masses = packed.system is first.system or alike(packed, first, ("mass", "inertia"))
+            if self._turns.any():
+                offset = packed.system.angle_offset + self._turns
+                packed = replace(packed, system=packed.system.changed(angle_offset=offset))
+            begun = self.starts.of(m, packed, away, moved or bool(com.any()), not masses)
+            traces = _slopes_of_traces(m, own, away)
+            if begun is None or traces is None:
+                return None
+            loads = self._loads(m, packed, away, not com.any())
+            if loads is None:
+                return None
+            system, base = packed.system, self._first
+            mass, moment, gravity = (
+                _slope(getattr(system, name), getattr(base, name), away) for name in ("mass", "inertia", "gravity")
+            )
+            return Near(number, size, mass, moment, gravity, com, loads, traces, packed if moved else None, away, begun)
+
+    def _loads(self, m: Model, packed: Packed, away: float, same_com: bool) -> dict[str, np.ndarray] | None:
+        """Slopes of numbers of forces; None where forces are made otherwise."""
+        own, base = self.variation, self.loads
+        plain = not (len(base.interaction) or len(base.user) or len(base.friction))
+        if not packed.forces or (plain and same_com and unchanged(m.forces, own.saved)):
+            return {}
+        loads = pack_loads(packed)
+        if any(getattr(loads, name).tobytes() != getattr(base, name).tobytes() for name in TABLES_OF_LOADS):
+            return None
+        slopes = {name: _slope(getattr(loads, name), getattr(base, name), away) for name in PLACES_OF_LOADS}
+        return {name: slope for name, slope in slopes.items() if slope.any()}
+
+
+def _slope(array: np.ndarray, base: np.ndarray, away: float) -> np.ndarray:
+    return np.zeros_like(base) if array is base else (array - base) / away
+
+
+def _slopes_of_traces(m: Model, own: Variation, away: float) -> dict[str, np.ndarray] | None:
+    """(2,) of those that change; None where one turns."""
+    out: dict[str, np.ndarray] = {}
+    for name, before in own.saved.traces.items():
+        marker: Marker = m.traces[name]
+        if marker is before:
+            continue
+        if marker.angle != before.angle or marker.body.name != before.body.name:
+            return None
+        out[name] = np.array([marker.x - before.x, marker.y - before.y]) / away
+    return out

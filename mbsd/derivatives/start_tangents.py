@@ -1,0 +1,103 @@
+"""How a start changes with a number, where what is given and the joints decide all of it.
+
+    J q' = -Phi',   q'_held = given'             held: the given coordinates that the joints leave free
+    J v' = -(J v - nu)',   P v' = (given - P v)'
+
+(...)' is the change with the number, and along q'. Source: Haug 1989, ch. 3.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.equations.assembly import residual_and_jacobian
+from mbsd.kinematics.pose.initial import drive_at, given_coordinates, given_velocities, nearest_turn
+from mbsd.kinematics.pose.mobility import independent_rows
+from mbsd.model.mechanism import Model
+
+CLOSE = 1e-9
+"""Sizes and rad by which a held coordinate may differ from what is given."""
+
+
+class StartTangents:
+    """Those of a mechanism ``m`` made ``ready``."""
+
+    def __init__(self, m: Model, ready: PreparedDynamics) -> None:
+        packed = ready.packed
+        self.q, self.v, self.drive = ready.initial.q, ready.initial.v, drive_at(packed, ready.start)
+        self.nu = np.zeros(len(packed.ws.phi))
+        self.nu[packed.driver_rows :] = self.drive[1:, 1]
+        self.starts, self.velocities = dict(m.starts), dict(m.velocities)
+        self.still = not m.velocities and not self.nu.any()
+        """Whether nothing moves at the start, whatever the numbers are."""
+        self.phi, self.rate, jac = self._evaluated(packed, self.q)
+        self.values = np.array([value for _, value in given_coordinates(m, packed)])
+        self.wanted = np.array([c for c, _ in given_coordinates(m, packed)], np.int64)
+        scale, size = packed.row_scale()[:, None], packed.column_scale()
+        units = np.zeros((len(self.wanted), packed.coordinates))
+        units[np.arange(len(self.wanted)), self.wanted - 3] = 1.0
+        kept = independent_rows(np.vstack([jac * scale * size, units]))
+        self.held = np.array([k - len(jac) for k in kept if k >= len(jac)], np.int64)
+        self.places = self._inverse(np.vstack([jac, units[self.held]]), kept, len(jac))
+        at = self.wanted[self.held]
+        target = np.array(
+            [nearest_turn(self.q, int(c), float(self.values[k])) for c, k in zip(at, self.held, strict=True)]
+        )
+        if (np.abs(self.q[at] - target) > CLOSE * size[at - 3]).any():
+            self.places = None
+        self.speeds = None
+        if not self.still:
+            rows, self.given = self._given(m, packed, self.q)
+            kept = independent_rows(np.vstack([jac * scale * size, rows * size]))
+            self.kept = np.array([k - len(jac) for k in kept if k >= len(jac)], np.int64)
+            self.speeds = self._inverse(np.vstack([jac, rows[self.kept]]), kept, len(jac))
+
+    def of(
+        self, m: Model, packed: Packed, away: float, moved: bool, heavier: bool
+    ) -> tuple[np.ndarray, np.ndarray] | None:
+        """(3 nb,) q' and v' by a number by which ``m`` is ``away``; None where they are not decided.
+
+        ``moved``: whether places of markers or of centres of mass change with it; ``heavier``: masses.
+        """
+        q, v = np.zeros_like(self.q), np.zeros_like(self.v)
+        turned = moved or m.starts != self.starts
+        if turned:
+            if self.places is None:
+                return None
+            phi = self._evaluated(packed, self.q)[0]
+            values = np.array([value for _, value in given_coordinates(m, packed)])
+            q[3:] = self.places @ np.concatenate([(self.phi - phi) / away, (values - self.values)[self.held] / away])
+        faster = turned or m.velocities != self.velocities
+        if not faster and (self.still or not heavier or self.speeds is not None):
+            return q, v
+        if self.still and not m.velocities:
+            return q, v
+        if self.speeds is None:  # the least kinetic energy decides as well
+            return None
+        there = self.q + away * q
+        rate, given = self._evaluated(packed, there)[1], self._given(m, packed, there)[1]
+        v[3:] = self.speeds @ np.concatenate([(self.rate - rate) / away, (given - self.given)[self.kept] / away])
+        return q, v
+
+    def _evaluated(self, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Phi, J v - nu (m,) and J (m, n) at q (3 nb,) and the speeds of the start."""
+        residual_and_jacobian(packed.system, q, self.drive, packed.ws)
+        jac = packed.jacobian()
+        return packed.ws.phi.copy(), jac @ self.v[3:] - self.nu, jac
+
+    def _given(self, m: Model, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """P (k, n) of what start_moving gives, and given - P v (k,)."""
+        entries, values, _ = given_velocities(m, packed, q)
+        rows = np.zeros((len(entries), packed.coordinates))
+        for row, factors in zip(rows, entries, strict=True):
+            for c, factor in factors.items():
+                row[c - 3] = factor
+        return rows, values - rows @ self.v[3:]
+
+    @staticmethod
+    def _inverse(matrix: np.ndarray, kept: list[int], rows: int) -> np.ndarray | None:
+        """That of J and what is held; None where they leave something open, or joints repeat others."""
+        whole = len(kept) == matrix.shape[1] == len(matrix) and kept[:rows] == list(range(rows))
+        return np.linalg.inv(matrix) if whole else None

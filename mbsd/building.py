@@ -51,6 +51,7 @@ from mbsd.model.forces.torsion_spring import torsion_spring
 from mbsd.model.forces.torsion_spring_law import torsion_spring_law
 from mbsd.model.forces.tyre import tyre
 from mbsd.model.forces.user_force import user_force
+from mbsd.model.joint import Joint
 from mbsd.model.joints.angle_lock import angle_lock
 from mbsd.model.joints.belt import belt
 from mbsd.model.joints.cam_flat import cam_flat
@@ -188,6 +189,7 @@ class Building(Model):
         action: Callable[..., object] | None = None,
         shortest: float | None = None,
         frames: Body | Marker | Sequence[Body | Marker] = (),
+        releases: str | Joint | Sequence[str | Joint] = (),
     ) -> Event:
         """Monitor a scalar: ``value(t, moment)`` passes zero, rising (direction 1), falling (-1) or either (0).
 
@@ -199,10 +201,13 @@ class Building(Model):
         With ``frames``, bodies and markers, the functions get numbers and may be compiled with numba.njit:
         ``value(t, q, v)``, with x, y, theta and their rates of each frame in turn (m, rad, m/s, rad/s; world axes).
         ``action(t, q, v)`` then gives the velocities vx, vy, omega of each frame from there on, 3 numbers a frame;
-        what the joints forbid of them is taken away. Raises ModelError for what is none of these.
+        what the joints forbid of them is taken away. ``releases`` names joints and drivers that go for good, as if they
+        broke, after the action. Raises ModelError for what is none of these.
         """
         new_name(self, name, "event", self.events)
-        event = self.events[name] = checked_event(self, name, value, direction, terminal, action, shortest, frames)
+        event = self.events[name] = checked_event(
+            self, name, value, direction, terminal, action, shortest, frames, releases
+        )
         return event
 
     def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:

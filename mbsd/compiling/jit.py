@@ -47,6 +47,12 @@ class _Kernel(CPUDispatcher):
         """Keep what is compiled."""
         self._cache = KernelCache(self.py_func)
 
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """A number that a caller writes out is one like any other: else each has a copy of the kernel made for it."""
+        return super().get_call_template(
+            tuple(map(types.unliteral, args)), {name: types.unliteral(kind) for name, kind in kws.items()}
+        )
+
     def add_overload(self, cres: Any) -> None:
         """Add what was compiled or loaded."""
         if self.apart and "<" not in self.py_func.__qualname__:

@@ -98,7 +98,7 @@ def by_cell(dispatcher: Any, returns: Any) -> Any:
     """What kernels call instead of ``dispatcher``, which returns values of numba's type ``returns``."""
 
     def called(typing: Any, *arguments: Any) -> Any:  # pyright: ignore[reportUnusedParameter]
-        return returns(*arguments), _through_cell(dispatcher)
+        return returns(*map(types.unliteral, arguments)), _through_cell(dispatcher)
 
     typing = inspect.Parameter("typing", inspect.Parameter.POSITIONAL_OR_KEYWORD)
     parameters = inspect.signature(dispatcher.py_func).parameters.values()

@@ -262,9 +262,9 @@ def _jump(whole: Whole, sol: Solution, along: Along, row: int, gaps: Any, users:
             guard = ("rate", gaps[event.name] + 1)
         if event.what in ("event", "end") and event.name in users:
             guard = ("user", users[event.name])
-            if users[event.name].action is not None:
+            if users[event.name].acts:
                 raise ModelError(
-                    f"{sol.packed.name}: derivatives beyond the action of event '{event.name}' are not known"
+                    f"{sol.packed.name}: derivatives beyond what event '{event.name}' changes are not known"
                 )
     if guard[0] == "rate" and struck:
         guard = ("gap", gaps[struck[0]])

@@ -28,6 +28,13 @@ class Event(WithFunctions):
     """How long the shortest thing in the function lasts (s)."""
     frames: tuple[Marker, ...] = ()
     """Frames whose places and velocities the functions get as numbers; where there are none they get the moment."""
+    releases: tuple[str, ...] = ()
+    """Joints and drivers that it releases for good."""
+
+    @property
+    def acts(self) -> bool:
+        """Whether it changes the motion."""
+        return self.action is not None or bool(self.releases)
 
     def value_at(self, moment: Any) -> Any:
         """What the function gives at a moment of a simulation."""

@@ -9,6 +9,7 @@ import pytest
 
 from mbsd import Mechanism
 from mbsd.results.solution import Solution
+from tests.dynamics.test_geneva_energy import free_geneva
 
 CENTRES = 0.2
 
@@ -68,3 +69,15 @@ def test_a_run_that_ends_on_a_jump_has_its_last_row() -> None:
         sol = _geneva(slots, start, omega).simulate(end, steps=3, formulation="independent")
         assert sol.body("crank").theta[-1] == pytest.approx(-leaves, abs=1e-9)
         assert sol.body("wheel").x[-1] == CENTRES
+
+
+def test_a_step_that_begins_right_after_a_jump_and_ends_beyond_the_next() -> None:
+    """Its gap is rounding there and moves away: the next jump is looked for in time, not by how the gap falls."""
+    m = free_geneva(6, (0.0, -9.81))
+    m.torsion_spring("spring", m.ground, m.bodies["crank"], 0.013244147157190635)
+    sol = m.simulate(2.0, steps=20, tolerance=1e-9, formulation="independent")
+    assert np.ptp(sol.audit) < 1e-8
+    fine = free_geneva(6, (0.0, -9.81))
+    fine.torsion_spring("spring", fine.ground, fine.bodies["crank"], 0.013244147157190635)
+    other = fine.simulate(2.0, steps=20, formulation="independent")
+    np.testing.assert_allclose(other.body("crank").theta, sol.body("crank").theta, atol=1e-4)

@@ -8,10 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
 from mbsd.dynamics.runs import reference_steps
 from mbsd.measures import final, largest, samples
+from tests.dynamics.beside_single_runs import assert_as_single_ones, between
 
 STEPS = 40
 
@@ -36,6 +39,28 @@ def cranks(turning: float = 0.0, stops: bool = False, motor: bool = False) -> Me
     return m
 
 
+def dry(sticks: bool) -> Mechanism:
+    """The same with friction, which depends on the rows that hold."""
+    m = cranks(stops=sticks)
+    m.friction("friction", "A2", 0.03, radius=0.02, sticks=sticks)
+    m.friction("other", "B0", 0.05, radius=0.03, sticks=sticks)
+    return m
+
+
+def row_of_cranks(count: int = 18) -> Mechanism:
+    """Equal cranks beside each other, with four rows each."""
+    m = Mechanism("row", gravity=(0, -9.81))
+    coupler = m.bar("coupler", 0.1 * count, mass=1.0)
+    for k in range(count):
+        x, y, crank = 0.1 * k, 0.01 * (k % 3), m.bar(f"crank{k}", 0.3, mass=0.4)
+        m.revolute(f"A{k}", m.ground.at(x, y), crank.start)
+        m.revolute(f"B{k}", crank.end, coupler.at(x, y))
+    m.torsion_spring("spring", m.ground, m.bodies["crank0"], 1.0, 0.05)
+    m.start_near(**{f"crank{k}": -60 for k in range(count)})
+    m.start_moving(crank0=6.0)
+    return m
+
+
 def doors() -> Mechanism:
     """A leaf on two hinges of one axis, beside a slider on two rails."""
     m = Mechanism("doors", gravity=(0, -9.81))
@@ -55,6 +80,9 @@ CASES: dict[str, tuple[Build, float, dict[str, tuple[str, float, float]], str, s
     "turning": (lambda: cranks(12.0), 1.5, {"coupler": ("mass", 0.5, 2.0)}, "crank2", "B1.fy"),
     "stops": (lambda: cranks(stops=True), 1.5, {"spring": ("stiffness", 2.0, 9.0)}, "crank0", "A1.fy"),
     "motor": (lambda: cranks(motor=True), 1.0, {"crank2": ("mass", 0.2, 2.0)}, "crank2", "motor.effort"),
+    "friction": (lambda: dry(False), 1.5, {"spring": ("stiffness", 0.5, 4.0)}, "crank0", "A2.fx"),
+    "sticks": (lambda: dry(True), 1.5, {"spring": ("stiffness", 0.5, 4.0)}, "crank0", "A1.fy"),
+    "row": (row_of_cranks, 0.5, {"spring": ("stiffness", 0.5, 4.0)}, "crank0", "A2.fx"),
     "doors": (doors, 2.0, {"tie": ("stiffness", 10.0, 60.0)}, "leaf", "other.fy"),
 }
 
@@ -62,7 +90,7 @@ CASES: dict[str, tuple[Build, float, dict[str, tuple[str, float, float]], str, s
 @pytest.mark.parametrize("case", CASES)
 def test_rows_that_repeat_others_hold_as_in_single_simulations(case: str, monkeypatch: pytest.MonkeyPatch) -> None:
     build, duration, varied, body, own = CASES[case]
-    random, count = np.random.default_rng(7), 10
+    random, count = np.random.default_rng(7), 4 if case == "row" else 10
     vary = {name: {key: random.uniform(low, high, count)} for name, (key, low, high) in varied.items()}
     measures: dict[str, Any] = {
         "theta": samples(f"{body}.theta", [0.5 * duration, duration]),
@@ -100,10 +128,21 @@ def test_rows_that_repeat_others_hold_as_in_single_simulations(case: str, monkey
     assert (case == "stops") <= (struck >= count)
 
 
-def test_friction_of_joints_that_repeat_others_is_left_to_single_simulations() -> None:
-    m = cranks()
-    m.friction("rub", "A2", 0.1, radius=0.02)
-    many = m.simulate_many(
-        0.3, vary={"spring": {"stiffness": [1.0, 2.0]}}, measure={"w": final("crank0.omega")}, steps=4
-    )
-    assert many.way.startswith("2 one by one (joints repeat others, and their friction")
+@pytest.mark.slow
+@settings(max_examples=12, suppress_health_check=[HealthCheck.too_slow], deadline=None)
+@given(st.data())
+def test_random_cranks_with_friction_move_as_by_themselves(data: st.DataObject) -> None:
+    m = Mechanism("cranks", gravity=(0, -9.81))
+    coupler = m.bar("coupler", 0.6, mass=data.draw(between(0.3, 2.0)))
+    start = data.draw(between(-85.0, -30.0))
+    for k in range(data.draw(st.integers(3, 5))):
+        x, y = data.draw(between(0.0, 0.6)), data.draw(between(-0.2, 0.2))
+        crank = m.bar(f"crank{k}", 0.3, mass=data.draw(between(0.1, 1.0)))
+        m.revolute(f"A{k}", m.ground.at(x, y), crank.start)
+        m.revolute(f"B{k}", crank.end, coupler.at(x, y))
+        if data.draw(st.booleans()):
+            sticks = data.draw(st.booleans())
+            m.friction(f"friction{k}", f"A{k}", data.draw(between(0.0, 0.1)), radius=0.02, sticks=sticks)
+    m.torsion_spring("spring", m.ground, m.bodies["crank0"], data.draw(between(0.0, 4.0)), 0.05)
+    m.start_near(**dict.fromkeys([name for name in m.bodies if name.startswith("crank")], start))
+    assert_as_single_ones(m, "coupler", 0.8, 8, 1e-9)

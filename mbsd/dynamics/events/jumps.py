@@ -7,6 +7,7 @@ decide   which contacts are open, slide or stick from now on, and which joints s
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,20 +51,12 @@ class Jumps:
         return Compliance(self.packed, self.dynamics, self.switches, float(time), q.copy())
 
     def act(self, event: Event) -> None:
-        """Let the action of an event of the user change velocities and release joints."""
+        """Let an event of the user change velocities by its action, and release joints."""
         moment = Moment(self.packed, float(self.state.clock[TIME]), self.state.y[0].copy(), self.state.y[1].copy())
-        assert event.action is not None
-        try:
-            if event.frames:
-                given = event.action(moment.t, *moment.numbers(event.frames))
-                moment.set_numbers(event.frames, as_numbers(given, 3 * len(event.frames)))
-            else:
-                event.action(moment)
-        except Exception as error:
-            raise ModelError(
-                f"{self.packed.name}: event '{event.name}': its action fails at t = {moment.t:.6g} s: "
-                f"{described(error)}"
-            ) from error
+        if event.action is not None:
+            self._call(event, event.action, moment)
+        for name in event.releases:
+            moment.release(name)
         for joint in moment.released:
             self.switches.release(joint)
             release(self.switches.now, self.dynamics.loads, self.sticks, int(self.packed.first_row[joint]))
@@ -75,6 +68,19 @@ class Jumps:
         self.state.y[1] = moment.v
         self.state.y[1, :3] = 0.0
         project(self.dynamics, self.scratch, moment.t, self.state.y, 2)
+
+    def _call(self, event: Event, action: Callable[..., object], moment: Moment) -> None:
+        try:
+            if event.frames:
+                given = action(moment.t, *moment.numbers(event.frames))
+                moment.set_numbers(event.frames, as_numbers(given, 3 * len(event.frames)))
+            else:
+                action(moment)
+        except Exception as error:
+            raise ModelError(
+                f"{self.packed.name}: event '{event.name}': its action fails at t = {moment.t:.6g} s: "
+                f"{described(error)}"
+            ) from error
 
     def resolve(self, monitor: Monitor | None) -> None:
         """Impacts, and what every contact and joint does from now on; ``monitor``: what fell through zero."""

@@ -297,7 +297,7 @@ class EventSteps:
             if monitor.event.terminal:
                 self.ended = True
                 return
-            if monitor.event.action is not None:
+            if monitor.event.acts:
                 self.jumps.act(monitor.event)
                 self.now.events[monitor.name] = 0.0  # it may go back to where it came from
         self.jumps.resolve(monitor)

@@ -23,8 +23,8 @@ def contact_columns(
         columns["static_friction"] = columns["friction"]
     if not _accepted(designs, name, columns):
         return None
-    own, contacts = base.run.ready.switches.contacts, base.arguments[-1]
-    if not isinstance(contacts, Contacts):  # arguments of a loop that meets none
+    own, contacts = base.run.ready.switches.contacts, next((a for a in base.arguments if isinstance(a, Contacts)), None)
+    if contacts is None:  # arguments of a loop that meets none
         return []
     k = [contact.name for contact in own].index(name)
     out, friction = [], own[k].sliding

@@ -8,13 +8,19 @@ from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import rows_of_joints
 from mbsd.dynamics.many.outputs import Reacting
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.start.large import MANY_COORDINATES
 
 NEGLIGIBLE = 1e-9
 """Singular values of J below this part of the largest are zero."""
 
 
 def shares(ready: PreparedDynamics) -> bool:
-    """Whether joints share loads in many ways."""
+    """Whether joints share loads in many ways, and those of least norm are meant.
+
+    Friction came from those of the rows that held.
+    """
+    if len(ready.dynamics.loads.friction) or ready.packed.coordinates > MANY_COORDINATES:
+        return False
     return bool(ready.mobility.redundant_rows)
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.integrators.formulation import derivative
 from mbsd.dynamics.many.contacts.steps import NOT_SOLVED, OVER, go_on
+from mbsd.dynamics.many.indexing.steps import index
 from mbsd.dynamics.many.repeated.exchange import again, opens
 from mbsd.dynamics.many.through import through
 from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, TIME, Output
@@ -45,8 +46,8 @@ def take_up(state, block, kept, counts):
 
 @threaded
 def run_rows(
-    dyn, scratch, state, settings, contacts, method, block, fresh, place, value, t, before, after, at_once, most, near,
-    stop, upto, kept, counts, y, a, lam, work, margin, status, steps, over,
+    dyn, scratch, state, settings, contacts, genevas, method, block, fresh, place, value, t, before, after, at_once,
+    most, near, stop, upto, kept, counts, y, a, lam, work, margin, status, steps, over,
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 
@@ -107,6 +108,8 @@ def run_rows(
                 ended = again(
                     dyn, scratch, state, out, settings, contacts.repeated, end, at_once, before, after, method
                 )
+            elif genevas.body.shape[0] > 0:
+                ended = index(dyn, scratch, state, out, settings, genevas, end, at_once, before, after)
             else:
                 ended = through(dyn, scratch, state, out, settings, end, at_once, before, after, method)
             if repeating and opens(dyn, scratch, contacts.repeated, out, written, state.count[NEXT]):

@@ -15,6 +15,8 @@ from mbsd.dynamics.many.arguments import kind_of
 from mbsd.dynamics.many.contacts.arrays import Contacts
 from mbsd.dynamics.many.contacts.made import contacts_of, why_not
 from mbsd.dynamics.many.events import made as events_made
+from mbsd.dynamics.many.indexing.arrays import Genevas
+from mbsd.dynamics.many.indexing.made import genevas_of
 from mbsd.dynamics.many.methods import USUAL, number_of
 from mbsd.dynamics.many.repeated import made as repeated_made
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
@@ -107,17 +109,23 @@ class SingleRun:
 
     @property
     def arguments(self) -> tuple[Any, ...]:
-        """dyn, scratch, state and settings of the integrator's loop, and contacts."""
+        """dyn, scratch, state and settings of the integrator's loop, contacts, and Genevas."""
         if self.independent is not None:
             own = self.independent
-            return own.arrays, own.scratch, own.own, own.settings, self.contacts
-        return self.ready.dynamics, self.run.scratch, self.state, self.run.settings, self.contacts
+            return own.arrays, own.scratch, own.own, own.settings, self.contacts, self.genevas
+        return self.ready.dynamics, self.run.scratch, self.state, self.run.settings, self.contacts, self.genevas
 
     @cached_property
     def contacts(self) -> Contacts:
         """Contacts and joints that stick, which the loop meets, and wheels that it looks at step by step."""
         state = self.state if self.independent is None else self.independent.own
         return contacts_of(self.ready, state, self.events, self.run.settings.longest)
+
+    @cached_property
+    def genevas(self) -> Genevas:
+        """Genevas at whose jumps steps end."""
+        state = self.state if self.independent is None else self.independent.own
+        return genevas_of(self.ready, state, self.independent)
 
 
 def single_run(m: Model, asked: Asked) -> SingleRun:
@@ -144,8 +152,6 @@ def single_run(m: Model, asked: Asked) -> SingleRun:
     state, _ = ready.begun(times)
     ready.approaches.forget()
     independent = None if events else independent_steps(run, state)
-    if independent is not None and independent.genevas:
-        raise NotCompiled("steps end where the pin of a Geneva enters its slot")
     made = None if independent is None else embedded_at_start(ready)
     return SingleRun(ready, run, state, independent, [] if made is None else made.coordinates, {**m.traces}, events)
 

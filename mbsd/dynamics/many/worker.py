@@ -237,6 +237,8 @@ class Worker:
         out.over[:] = np.inf
         run.forget()
         stops, windows, method = ready.stops, self.work.windows, number_of(self.work.asked.integrator)
+        # where a jump is passed decides how far a run goes back: steps are counted as those of a single simulation
+        few = run.steps_at_once if len(run.genevas.body) else min(run.steps_at_once, STEPS)
         early, written = len(windows) > 1, np.full(count, whole)
         kept = np.zeros((count if early else 0, len(self.base.block) + 1))
         counts = np.zeros((len(kept), len(run.state.count)), np.int64)
@@ -246,7 +248,7 @@ class Worker:
         for begin, upto in zip([0, *windows], windows, strict=False):
             run_rows(
                 *self.base.arguments, method, self.base.block, fresh, place, value, times, stops.before, stops.after,
-                min(run.steps_at_once, STEPS) if upto < whole else run.steps_at_once, MOST_STEPS, run.near,
+                few if upto < whole else run.steps_at_once, MOST_STEPS, run.near,
                 self.work.stop, upto, kept, counts, *out.arrays,
             )  # fmt: skip
             underway = np.flatnonzero(out.status == UNDERWAY)

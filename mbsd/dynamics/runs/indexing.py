@@ -19,6 +19,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.compiling.jit import Often
 from mbsd.dynamics.embedding.equations import write_alone
+from mbsd.dynamics.runs.bounds import MOST, MOST_UNSEEN, NEAR, ROUNDING, SHORT, SIDE
 from mbsd.dynamics.state import (
     ACCEPTED,
     ERROR,
@@ -34,17 +35,10 @@ from mbsd.dynamics.state import (
     output_for,
 )
 
-SHORT = 1e-3
-"""Part of the way to the jump that is left, so that Newton's steps do not go beyond it."""
-MOST = 60
-SIDE = 1e-300
-"""A gap (m) that has a sign, and no size."""
-NEAR = 3.0
-"""Steps from which on a jump is gone for."""
-MOST_UNSEEN = 10
-"""Steps that are taken before it is asked again how far the next jump is."""
-ROUNDING = 8
-"""Rounding of the time, in neighbouring numbers: a jump is not found closer than this."""
+
+def memory(arrays: Any, scratch: Any) -> tuple[np.ndarray, ...]:
+    """What the next poses of a run in independent coordinates are predicted from."""
+    return arrays.number, scratch.base, scratch.coordinate, scratch.block_work, scratch.body, scratch.watch
 
 
 class Genevas:
@@ -52,7 +46,7 @@ class Genevas:
 
     def __init__(self, packed: Packed) -> None:
         specials, system = packed.specials, packed.system
-        self._rows = [
+        self.rows = [
             (
                 *(int(system.marker_body[marker]) for marker in place[:2]),
                 *system.marker_arm[place[0]].tolist(),
@@ -63,11 +57,12 @@ class Genevas:
             for name, joint, place in zip(specials.names, specials.joints, specials.places, strict=True)
             if name == "geneva"
         ]
+        """Bodies of crank and wheel, the crank's marker and its x axis, the wheel's marker, radius of the pin (m)."""
         self._write = Often(write_alone)
         self._here = output_for(np.zeros(1), len(packed.body_names) * 3, 0)
 
     def __bool__(self) -> bool:
-        return bool(self._rows)
+        return bool(self.rows)
 
     def through(self, advance: Callable[..., int], arrays: Any, scratch: Any, state: State, *rest: Any) -> int:
         """``advance`` of an Integrator in independent coordinates (arrays: Embedding), from jump to jump."""
@@ -75,8 +70,8 @@ class Genevas:
         gaps, wait = self._look(arrays, scratch, state)
         while True:
             step = float(state.clock[STEP]) or settings.longest
-            before = _Point(arrays, scratch, state)
-            if wait < min(NEAR * step, end - float(state.clock[TIME])):
+            now, before = float(state.clock[TIME]), _Point(arrays, scratch, state)
+            if wait < min(NEAR * step, end - now):
                 status = self._meet(advance, arrays, scratch, state, out, settings, gaps, wait, math.inf)
                 gaps, wait = self._look(arrays, scratch, state)
             else:
@@ -90,6 +85,9 @@ class Genevas:
                     before.restore(arrays, scratch, state)
                     status = self._meet(advance, arrays, scratch, state, out, settings, gaps, wait, late)
                     gaps, wait = self._look(arrays, scratch, state)
+            if status == PAUSED and state.clock[TIME] == now:  # it cannot be met: a step goes over it
+                status = advance(arrays, scratch, state, out, settings, end, 1)
+                gaps, wait = self._look(arrays, scratch, state)
             if state.count[STARTED] == 0:
                 state.clock[STEP], state.clock[ERROR] = step, 0.0
             steps -= int(state.count[ACCEPTED]) - before.accepted
@@ -114,8 +112,8 @@ class Genevas:
         """x - r of each (m), and the time until the first is zero if they go on as they go (s)."""
         here, gaps, wait = self._here, [], math.inf
         self._write(arrays, scratch, float(state.clock[TIME]), state.y.copy(), np.zeros_like(state.y), here, 0)
-        q, v = here.y[0]
-        for i, j, arm_x, arm_y, axis_x, axis_y, to_x, to_y, radius in self._rows:
+        q, v = here.y[0].tolist()
+        for i, j, arm_x, arm_y, axis_x, axis_y, to_x, to_y, radius in self.rows:
             c, s = math.cos(q[3 * i + 2]), math.sin(q[3 * i + 2])
             d, e = math.cos(q[3 * j + 2]), math.sin(q[3 * j + 2])
             ux, uy = c * axis_x - s * axis_y, s * axis_x + c * axis_y
@@ -155,6 +153,7 @@ class Genevas:
 
         ``gaps`` and ``wait`` are what ``_look`` says of the state.
         """
+        nears = wait < math.inf
         for _ in range(MOST):
             now = float(state.clock[TIME])
             least = ROUNDING * math.ulp(now)
@@ -174,14 +173,14 @@ class Genevas:
                 late = float(state.clock[TIME])
                 before.restore(arrays, scratch, state)
                 share = 0.5  # it may have left one jump and come to the next
-                if wait < math.inf:
+                if nears:
                     share = min(a / (a - b) for a, b in zip(gaps, there, strict=True) if a * b < 0.0)  # secant
                 wait = share * (late - float(state.clock[TIME]))
             elif 0.0 in there:
                 wait = 0.0
                 break
             else:
-                gaps, wait = there, after
+                gaps, wait, nears = there, after, after < math.inf
         else:
             return PAUSED
         hop = min(wait, late - float(state.clock[TIME])) + ROUNDING * math.ulp(float(state.clock[TIME]))
@@ -204,16 +203,12 @@ class _Point:
 
     def __init__(self, arrays: Any, scratch: Any, state: State) -> None:
         self._state = copied(state)
-        self._kept = [part.copy() for part in self._memory(arrays, scratch)]
+        self._kept = [part.copy() for part in memory(arrays, scratch)]
         self.accepted = int(state.count[ACCEPTED])
-
-    @staticmethod
-    def _memory(arrays: Any, scratch: Any) -> tuple[np.ndarray, ...]:
-        return arrays.number, scratch.base, scratch.coordinate, scratch.block_work, scratch.body, scratch.watch
 
     def restore(self, arrays: Any, scratch: Any, state: State) -> None:
         """Stand there again."""
         for part, kept in zip(state, self._state, strict=True):
             part[...] = kept
-        for part, kept in zip(self._memory(arrays, scratch), self._kept, strict=True):
+        for part, kept in zip(memory(arrays, scratch), self._kept, strict=True):
             part[...] = kept

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from mbsd.base.errors import ModelError
+from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.model.body import Body, Marker
 from mbsd.model.event import Event
+from mbsd.model.joint import Joint
 from mbsd.model.laws.function import checked_pulses
 from mbsd.model.mechanism import Model, own_body
 
@@ -22,6 +24,7 @@ def checked_event(
     action: Any,
     shortest: float | None,
     frames: Body | Marker | Sequence[Body | Marker],
+    releases: str | Joint | Sequence[str | Joint],
 ) -> Event:
     """The event that these arguments of :meth:`mbsd.mechanism.Mechanism.event` say. Raises ModelError."""
     event = f"{m.name}: event '{name}'"
@@ -41,7 +44,21 @@ def checked_event(
     names = [marker.body.name for marker in seen]
     if action is not None and ("ground" in names or len(set(names)) < len(names)):
         raise ModelError(f"{event}: its action gives velocities to frames; take each moving body once, not ground")
-    return Event(name, value, direction, bool(terminal), action, checked_pulses(event, (), shortest)[1], seen)
+    released = _released(m, event, releases)
+    if released and terminal:
+        raise ModelError(f"{event}: it ends the simulation, so nothing is released after it; leave one of them out")
+    return Event(name, value, direction, bool(terminal), action, checked_pulses(event, (), shortest)[1], seen, released)
+
+
+def _released(m: Model, event: str, releases: Any) -> tuple[str, ...]:
+    given, known = (releases,) if isinstance(releases, str | Joint) else releases, {**m.joints, **m.drivers}
+    if not isinstance(given, Sequence):
+        raise ModelError(f"{event}: releases is {shown(releases)}; give names of joints: releases=('hinge', 'motor')")
+    names = [joint.name if isinstance(joint, Joint) else joint for joint in given]
+    for name in names:
+        if not isinstance(name, str) or name not in known:
+            raise ModelError(f"{event}: {no_such('joint to release', name, known)}")
+    return tuple(dict.fromkeys(names))
 
 
 def _frames(m: Model, event: str, frames: Any) -> tuple[Marker, ...]:

@@ -41,6 +41,7 @@ from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.schur import Schur
 from mbsd.dynamics.reference.sequence import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
+from mbsd.dynamics.rows.joint_sticks import JointStick
 from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import State
 from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
@@ -60,7 +61,18 @@ def why_not(ready: PreparedDynamics, events: Sequence[Event]) -> str | None:
         return f"'{[*contacts, *sticks, *events][0].name}' is beside a contact that remembers how fast it began"
     if len(contacts) + len(sticks) > MOST:
         return f"it has {len(contacts) + len(sticks)} contacts and joints that stick; {MOST} at most"
+    dry = {force.params["joint"]: force.name for force in ready.packed.forces if force.name in _names(sticks)}
+    for event in events:
+        if event.releases and (ready.switches.spare or ready.dropped):
+            return f"event '{event.name}' releases a joint where joints repeat others"
+        for joint in event.releases:
+            if joint in dry:
+                return f"event '{event.name}' releases joint '{joint}', whose friction '{dry[joint]}' may stick"
     return None
+
+
+def _names(sticks: Sequence[JointStick]) -> set[str]:
+    return {stick.name for stick in sticks}
 
 
 def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], longest: float) -> Contacts:
@@ -71,6 +83,8 @@ def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], 
     own = _places(ready)
     c, n3, rows = len(own), state.y.shape[1], len(state.lam)
     pushing = c + 2 * len(_rough(ready)) + 2 * len(ready.sticks)
+
+    bare = _without(ready)
 
     def another() -> State:
         return State(*(np.zeros_like(part) for part in state))
@@ -95,13 +109,13 @@ def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], 
         np.zeros((SHIFT + 1, c)),
         np.zeros((MOST_LOOKS + 2, 6)),
         np.zeros((RESTING + 1, c), np.int64),
-        *_without(ready),
+        *bare,
         np.zeros((2, pushing), np.int64),
         _sticks_of(ready, c, n3, rows),
         _friction_of(ready, c, n3, rows),
         _wheels_of(ready, another()),
         _curves_of(ready),
-        events_of(ready, events, longest),
+        events_of(ready, events, longest, bare[0]),
         repeated_of(ready),
     )
 

@@ -59,7 +59,7 @@ def root_between(dyn, scratch, contacts, k, left, right, at_left, at_right, stil
 
 @apart
 def dips_before(
-    dyn, own, scratch, settings, contacts, out, before, after, k, x, values, count, still, where, negative
+    dyn, scratch, settings, contacts, out, before, after, k, x, values, count, still, where, negative
 ):  # fmt: skip
     """Where it first falls through zero, and a part where it is negative: in a dip, or else as given; -1, -1: never.
 
@@ -70,7 +70,7 @@ def dips_before(
         while known < count and x[known] <= where:
             known += 1
         count = known
-    above, below = first_dip(dyn, own, scratch, settings, contacts, out, before, after, k, x, values, count, still)
+    above, below = first_dip(dyn, scratch, settings, contacts, out, before, after, k, x, values, count, still)
     if below >= 0.0:
         high = on_quintic(dyn, scratch, contacts, k, above)
         low = on_quintic(dyn, scratch, contacts, k, below)

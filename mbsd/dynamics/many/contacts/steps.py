@@ -25,6 +25,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     SHARING,
     WHEN,
 )
+from mbsd.dynamics.many.contacts.bare import any_held, without_contacts
 from mbsd.dynamics.many.contacts.crossing import event_time, first_met
 from mbsd.dynamics.many.contacts.events.happening import ENDED, HAPPENED, happen
 from mbsd.dynamics.many.contacts.jumps import resolve
@@ -33,13 +34,13 @@ from mbsd.dynamics.many.contacts.sticking.jumps import resolve_friction
 from mbsd.dynamics.many.contacts.sticking.ways import share_outputs
 from mbsd.dynamics.many.contacts.wheels import advance_to
 from mbsd.dynamics.many.contacts.within import fit
+from mbsd.dynamics.many.events.releases import hold_joints
 from mbsd.dynamics.many.events.sides import begin_sides, find_sides
 from mbsd.dynamics.many.repeated.exchange import hold_independent, look
 from mbsd.dynamics.many.rows_at import measure
 from mbsd.dynamics.many.through import NO_LIMIT, copy_state, cross
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, begin, record_here
-from mbsd.equations.system import System
 
 NOT_SOLVED = -7
 """Status of rows with an event that is left to single simulations."""
@@ -118,56 +119,6 @@ def _go_to(own, scratch, state, settings, contacts, out, t, before, after):
         contacts.clock[FAILURE] = advance_to(own, scratch, state, out, settings, contacts, t, NO_LIMIT, before, after)
 
 
-@inlined
-def _open(dyn, contacts):
-    """The mechanism without its contacts: a fifth less to do in steps in which all are open."""
-    system = dyn.system
-    bare = System(
-        system.mass,
-        system.inertia,
-        system.gravity,
-        system.marker_body,
-        system.marker_arm,
-        system.marker_axis,
-        system.moving,
-        system.directed,
-        system.point,
-        system.angle,
-        system.slot,
-        system.along,
-        system.distance,
-        contacts.special,
-        system.address,
-        system.numbers,
-        system.driven,
-        system.row_body,
-        system.angle_offset,
-        system.distance_length,
-    )
-    return Dynamics(
-        bare,
-        dyn.laws,
-        dyn.loads,
-        contacts.schur,
-        contacts.friction.none,
-        dyn.inertia,
-        dyn.inverse,
-        dyn.metric,
-        dyn.weight,
-        dyn.passes,
-        dyn.baumgarte,
-        dyn.per_size,
-    )
-
-
-@internal
-def _any_held(contacts):
-    held = False
-    for k in range(contacts.place.shape[0]):
-        held = held or contacts.number[k, CLOSED] > 0.0
-    return held
-
-
 @internal
 def _jump(dyn, scratch, contacts, state, met):
     """What changes at an event; whether that is decided here, and there are not too many."""
@@ -186,12 +137,14 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
     hold_rows(dyn, contacts)
     repeated = contacts.repeated
     hold_independent(dyn, repeated)
+    if contacts.events.release.shape[0] > 0:
+        hold_joints(dyn, contacts)
     if contacts.clock[BEGUN] == 0.0 and not _close_at_start(dyn, scratch, contacts, state):
         return NOT_SOLVED
     for _ in range(steps):
         if repeated.place.shape[0] > 0:
             look(dyn, scratch, repeated, state, 1)
-        own = dyn if _any_held(contacts) else _open(dyn, contacts)
+        own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
         cross(state, before, after)
         begin(own, scratch, state)
         copy_state(contacts.before, state)
@@ -203,9 +156,9 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
         if state.clock[TIME] > contacts.before.clock[TIME]:
             fit(contacts, state)
             contacts.trial.clock[TIME] = -math.inf
-            met = first_met(dyn, own, scratch, state, settings, contacts, out, before, after)
+            met = first_met(dyn, scratch, state, settings, contacts, out, before, after)
         if met >= 0:
-            t = event_time(dyn, own, scratch, settings, contacts, out, before, after, met)
+            t = event_time(dyn, scratch, settings, contacts, out, before, after, met)
             _go_to(own, scratch, state, settings, contacts, out, t, before, after)
         if contacts.clock[SHARING] > 0.0:
             share_outputs(dyn, scratch, contacts, out, contacts.before.count[NEXT], state.count[NEXT])

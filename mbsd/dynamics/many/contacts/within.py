@@ -27,6 +27,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     STATIC,
     VALUE,
 )
+from mbsd.dynamics.many.contacts.bare import any_held, without_contacts
 from mbsd.dynamics.many.contacts.rows import along, gaps, gaps_of, measure_gaps
 from mbsd.dynamics.many.contacts.sticking.ways import read_ways
 from mbsd.dynamics.many.contacts.wheels import advance_to
@@ -145,12 +146,13 @@ def at_state(dyn, scratch, contacts, state, k):
 
 
 @apart
-def of_motion(dyn, own, scratch, settings, contacts, out, before, after, k, t):
+def of_motion(dyn, scratch, settings, contacts, out, before, after, k, t):
     """The same at a time (s) within the step, by the motion itself; not a number where it gets nowhere."""
     trial = contacts.trial
     copy_state(trial, contacts.before)
     if t > trial.clock[TIME]:
         trial.count[NEXT] = out.t.shape[0]
+        own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
         status = advance_to(own, scratch, trial, out, settings, contacts, t, NO_LIMIT, before, after)
         if status != REACHED:
             contacts.clock[FAILURE] = status

@@ -7,9 +7,12 @@ from typing import Any, NamedTuple
 VALUE, FIRST, FRAMES, DIRECTION, ENDS, ACTION, ACTION_FIRST, ACTION_FRAMES = range(8)
 """Columns of Events.table: address of the function; its first frame, and how many it has; rising 1, falling -1, both 0;
 whether the simulation ends there; address of the action, 0 where there is none; its frames."""
-SIDE, LEVEL, SHORTEST = range(3)
+SIDE, LEVEL, SHORTEST, GONE = range(4)
 """Columns of Events.number: sign of the value, 0 where that is zero; what is taken off the function's number; how long
-the shortest thing in it lasts (s), 0 where nothing is said."""
+the shortest thing in it lasts (s), 0 where nothing is said; whether the joints that it releases are gone."""
+EVENT, ROW, BLOCK, SIDE_OF_BLOCK, OPEN_BLOCK, OPEN_SIDE, ITS_FRICTION = range(7)
+"""Columns of Events.release: the event; a row of J that it releases; its block and its place there in Schur.rows, and
+the same without contacts; the row of a friction of its joint in Loads.friction. -1: there is none."""
 
 
 class Events(NamedTuple):
@@ -18,7 +21,9 @@ class Events(NamedTuple):
     table: Any
     """(e, 8) int"""
     number: Any
-    """(e, 3)"""
+    """(e, 4)"""
+    release: Any
+    """(r, 7) int"""
     body: Any
     """(f,) int"""
     arm: Any

@@ -12,8 +12,10 @@ from mbsd.compiling.callback import Callback
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics.events.bounds import MOST_VALUES, NEAR, PER_SHORTEST, ROUNDINGS
 from mbsd.dynamics.many.events import ready_made
-from mbsd.dynamics.many.events.arrays import ACTION_FRAMES, SHORTEST, Events
+from mbsd.dynamics.many.events.arrays import ACTION_FRAMES, GONE, ITS_FRICTION, Events
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.reference.schur import Schur
+from mbsd.equations.joint_friction import FIRST
 from mbsd.model.body import Marker
 from mbsd.model.event import Event, Reaching
 
@@ -37,8 +39,8 @@ def why_not(events: Sequence[Event], longest: float) -> str | None:
     return None
 
 
-def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float) -> Events:
-    """Those of a run, whose steps are ``longest`` (s) at most, at its start."""
+def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float, bare: Schur) -> Events:
+    """Those of a run, whose steps are ``longest`` (s) at most, at its start; ``bare``: without rows of contacts."""
     packed, frames = ready.packed, list[Marker]()
     table, number = [], []
     for event in events:
@@ -52,12 +54,14 @@ def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float) 
         ends, kinds = int(event.terminal), (acting, len(frames) - acting)
         value = _value(ready, event.value, seen, what)
         table.append((value, first, len(seen), event.direction, ends, action, *kinds))
-        number.append((0.0, event.value.level if isinstance(event.value, Reaching) else 0.0, event.shortest or 0.0))
+        level = event.value.level if isinstance(event.value, Reaching) else 0.0
+        number.append((0.0, level, event.shortest or 0.0, 0.0))
     most = max((len(frames) for frames in [[], *(event.frames for event in events), *_ready(events)]), default=0)
     n3, looks = len(ready.initial.q), max((_looks(event, longest) for event in events), default=0)
     return Events(
         np.array(table, np.int64).reshape(-1, ACTION_FRAMES + 1),
-        np.array(number).reshape(-1, SHORTEST + 1),
+        np.array(number).reshape(-1, GONE + 1),
+        _release(ready, events, bare),
         np.array([packed.body_names.index(marker.body.name) for marker in frames], np.int64),
         np.array([_arm(ready, marker) for marker in frames]).reshape(-1, 3),
         np.zeros(6 * most),
@@ -73,6 +77,27 @@ def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float) 
         np.zeros((2, looks), np.int64),
         np.zeros(len(events), np.int64),
     )
+
+
+def _release(ready: PreparedDynamics, events: Sequence[Event], bare: Schur) -> np.ndarray:
+    """Rows of all joints that events release."""
+    packed, friction, out = ready.packed, ready.dynamics.loads.friction, []
+    names = [joint.name for joint in packed.joints]
+    for e, event in enumerate(events):
+        for joint in map(names.index, event.releases):
+            first = int(packed.first_row[joint])
+            frictions = np.flatnonzero(friction[:, FIRST] == first).tolist()
+            for row in range(first, int(packed.first_row[joint + 1])):
+                places = ready.switches.place.get(row, (-1, -1)), _place(bare, row)
+                out += [
+                    (e, row, *places[0], *places[1], at) for at in (frictions if row == first and frictions else [-1])
+                ]
+    return np.array(out, np.int64).reshape(-1, ITS_FRICTION + 1)
+
+
+def _place(schur: Schur, row: int) -> tuple[int, int]:
+    at = np.argwhere(schur.rows == row).tolist()
+    return (at[0][0], at[0][1]) if at else (-1, -1)
 
 
 def _ready(events: Sequence[Event]) -> list[tuple[Marker, ...]]:

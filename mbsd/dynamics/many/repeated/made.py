@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.dynamics.many.repeated.arrays import BETTER, HELD, OPENED, SCALE, Repeated
+from mbsd.dynamics.prepare.exchange import WORN
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.kinematics.pose.mobility import BETTER as FACTOR
 
-MOST = 60
+MOST = 200
 """Rows of joints of which some repeat others."""
 
 
@@ -16,8 +17,6 @@ def why_not(ready: PreparedDynamics) -> str | None:
     """Why a mechanism whose joints repeat others is left to single simulations, or None."""
     if not ready.switches.spare and not ready.dropped:
         return None
-    if len(ready.dynamics.loads.friction):
-        return "joints repeat others, and their friction depends on which of them carries"
     rows = ready.packed.contact_rows
     return f"joints repeat others, and have {rows} rows; {MOST} at most" if rows > MOST else None
 
@@ -33,7 +32,7 @@ def repeated_of(ready: PreparedDynamics) -> Repeated:
     number[:, OPENED] = [row in spare for row in rows]
     number[:, SCALE] = [scale[row] for row in rows]
     clock = np.zeros(BETTER + 1)
-    clock[BETTER] = FACTOR
+    clock[BETTER] = WORN if len(ready.dynamics.loads.friction) else FACTOR
     return Repeated(
         np.array([(row, *switches.place[row]) for row in rows], np.int64).reshape(-1, 3),
         number,

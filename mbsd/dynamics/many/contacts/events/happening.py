@@ -1,4 +1,4 @@
-"""What an event of the user does: it is noted, ends the simulation, or changes velocities."""
+"""What an event of the user does: it is noted, ends the simulation, changes velocities, or releases joints."""
 
 from __future__ import annotations
 
@@ -11,8 +11,11 @@ from mbsd.dynamics.many.events.arrays import (
     ACTION_FRAMES,
     DIRECTION,
     ENDS,
+    EVENT,
+    GONE,
     SIDE,
 )
+from mbsd.dynamics.many.events.releases import hold_joints
 from mbsd.dynamics.many.events.values import read_frames
 from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.state import TIME
@@ -32,8 +35,11 @@ def happen(dyn, scratch, contacts, state, e):
         return PASSED
     if table[e, ENDS] != 0:
         return ENDED
+    releases = False
+    for k in range(events.release.shape[0]):
+        releases = releases or events.release[k, EVENT] == e
+    v = state.y[1]
     if table[e, ACTION] != 0:
-        v = state.y[1]
         first = table[e, ACTION_FIRST]
         count = table[e, ACTION_FRAMES]
         read_frames(events, first, count, state.y[0], v)
@@ -46,6 +52,10 @@ def happen(dyn, scratch, contacts, state, e):
             v[b] = events.outputs[3 * i] + omega * y
             v[b + 1] = events.outputs[3 * i + 1] - omega * x
             v[b + 2] = omega
+    if releases:
+        events.number[e, GONE] = 1.0
+        hold_joints(dyn, contacts)
+    if releases or table[e, ACTION] != 0:
         release_rows(dyn, contacts)
         project(dyn, scratch, state.clock[TIME], state.y, 2)
         events.number[e, SIDE] = 0.0  # it may go back to where it came from

@@ -1,0 +1,146 @@
+"""Genevas in the compiled loop over simulations: the digits of single simulations, which end steps at their jumps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from mbsd import Mechanism
+from mbsd.dynamics.runs.indexing import Genevas
+from mbsd.measures import final, first, samples
+from tests.dynamics.beside_single_runs import between
+
+STEPS = 40
+
+
+def free(slots: int, gravity: tuple[float, float] | None = (0.0, -9.81), speed: float = 10.0) -> Mechanism:
+    """A crank with a flywheel's inertia that turns a wheel and its own unbalance."""
+    m = Mechanism("geneva", gravity=gravity)
+    crank, wheel = m.body("crank", 0.5, (0.01, 0.0), 1e-3), m.body("wheel", 1.0, (0.0, 0.0), 2e-3)
+    m.revolute("O", m.ground.origin, crank.origin)
+    m.revolute("W", m.ground.at(0.1, 0), wheel.origin)
+    m.geneva("index", crank.origin, wheel.origin, slots, 0.1 * math.sin(math.pi / slots))
+    m.torsion_spring("spring", m.ground, crank, 0.0, 0.0)
+    m.start_near(wheel=5)
+    m.start_moving(crank=speed)
+    return m
+
+
+def swinging() -> Mechanism:
+    """It swings back at its slot, again and again."""
+    m = free(4, speed=1.0)
+    m.change("spring", stiffness=0.02)
+    return m
+
+
+def two() -> Mechanism:
+    """Two wheels of one crank, which starts where a pin leaves."""
+    m = Mechanism("two", gravity=None)
+    crank = m.body("crank", 0.5, (0.0, 0.0), 1e-3)
+    m.revolute("O", m.ground.origin, crank.origin)
+    m.torsion_spring("spring", m.ground, crank, 0.0, 1e-4)
+    for name, slots, x in (("wheel", 4, 0.1), ("other", 5, -0.12)):
+        wheel = m.body(name, 1.0, (0.0, 0.0), 1e-3)
+        m.revolute(f"W{name}", m.ground.at(x, 0), wheel.origin)
+        turned = 0.0 if x > 0 else math.pi / 3
+        m.geneva(f"index {name}", crank.at(0, 0, turned), wheel.origin, slots, abs(x) * math.sin(math.pi / slots))
+    m.start_near(crank=-45.0)
+    m.start_moving(crank=6.0)
+    return m
+
+
+CASES: dict[str, Callable[[], Mechanism]] = {"turning": lambda: free(6), "swinging": swinging, "two": two}
+VARY = {"spring": {"stiffness": np.linspace(0.0, 0.03, 6), "damping": np.linspace(0.0, 2e-4, 6)}}
+MEASURES = {
+    "theta": samples("wheel.theta", np.linspace(0.0, 2.0, STEPS + 1).tolist()),
+    "omega": samples("crank.omega", [1.0, 2.0]),
+    "W": final("Wwheel.fx"),
+    "work": final("work"),
+}
+
+
+def meets_jumps(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """Times at which single simulations have passed a jump."""
+    met: list[float] = []
+    meet = Genevas._meet
+
+    def noted(self: Genevas, *arguments: Any) -> int:
+        met.append(float(arguments[3].clock[0]))
+        return meet(self, *arguments)
+
+    monkeypatch.setattr(Genevas, "_meet", noted)
+    return met
+
+
+@pytest.mark.parametrize("formulation", ["independent", "reference"])
+@pytest.mark.parametrize("case", CASES)
+def test_genevas_have_the_digits_of_single_simulations(
+    case: str, formulation: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    build = CASES[case]
+    measure = {**MEASURES, "W": final("Wwheel.fx" if case == "two" else "W.fx")}
+    many = build().simulate_many(2.0, vary=VARY, measure=measure, steps=STEPS, formulation=formulation)
+    assert many.alone == [None] * 6, many.way
+    assert "anew" not in many.way
+    met = meets_jumps(monkeypatch)
+    for k in range(6):
+        m = build()
+        for name, values in VARY.items():
+            m.change(name, **{key: float(column[k]) for key, column in values.items()})
+        sol = m.simulate(2.0, steps=STEPS, formulation=formulation)
+        assert np.array_equal(many["theta"][k], sol.body("wheel").theta)
+        assert np.array_equal(many["omega"][k], sol.body("crank").omega[[STEPS // 2, STEPS]])
+        assert many["work"][k] == (0.0 if sol.work is None else sol.work[-1])
+    assert (formulation == "independent") == (len(met) > 10)
+
+
+def test_starts_vary_and_rows_end_early_by_the_steps_of_whole_ones() -> None:
+    degrees = np.linspace(-170.0, 170.0, 12)
+    m = free(5)
+    early = {"far": first("wheel.theta", above=1.5), "late": first("crank.theta", below=-9.0, give="wheel.omega")}
+    short, whole = (
+        m.simulate_many(
+            3.0, start={"crank": degrees}, moving={"crank": -9.0}, measure=measure, steps=300, formulation="independent"
+        )
+        for measure in (early, {**early, "end": final("crank.theta")})
+    )
+    assert short.alone == [None] * 12, short.way
+    for name in early:
+        assert np.array_equal(short[name], whole[name], equal_nan=True)
+    assert np.isfinite(short["far"]).any()
+
+
+def test_a_row_that_cannot_start_has_its_reason_beside_others() -> None:
+    many = free(5).simulate_many(
+        1.0, vary={"index": {"radius": [0.1 * math.sin(math.pi / 5), 0.07]}}, measure={"end": final("wheel.theta")},
+        steps=4, formulation="independent",
+    )  # fmt: skip
+    assert many.good.tolist() == [True, False]
+    assert "its radius must be" in str(many.reason[1])
+
+
+@settings(max_examples=6, suppress_health_check=[HealthCheck.too_slow], deadline=None)
+@given(between(-179.0, 179.0), between(-15.0, 15.0), between(0.0, 0.05), between(0.0, 0.02))
+def test_random_genevas_move_as_by_themselves(
+    start: float, speed: float, stiffness: float, out_of_balance: float
+) -> None:
+    m = free(4 + int(abs(start)) % 5)
+    m.change("spring", stiffness=stiffness)
+    m.change("crank", com=(out_of_balance, 0.0))
+    m.start_near(crank=start, wheel=180 / (4 + int(abs(start)) % 5))
+    m.start_moving(crank=speed)
+    damping = [0.0, 3e-4]
+    many = m.simulate_many(
+        1.0, vary={"spring": {"damping": damping}}, measure={"end": final("wheel.theta")}, steps=5,
+        formulation="independent",
+    )  # fmt: skip
+    for k, value in enumerate(damping):
+        m.change("spring", damping=value)
+        sol = m.simulate(1.0, steps=5, formulation="independent")
+        assert many.alone[k] is None or "other coordinates" in str(many.alone[k]), many.way
+        assert many["end"][k] == sol.body("wheel").theta[-1]

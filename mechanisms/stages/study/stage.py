@@ -29,7 +29,10 @@ WORST = 3
 
 
 def run(name: str, words: str) -> None:
-    """Solve the mechanism at every point; the same call goes on where it was stopped. Raises UserError."""
+    """Solve the mechanism at every point; the same call goes on where it was stopped.
+
+    Raises UserError, also where every point failed; the table with their reasons is written before.
+    """
     from mbsd import MechanismError, study
 
     name = known_name(name)
@@ -53,6 +56,8 @@ def run(name: str, words: str) -> None:
     for line in _summary(name, table, list(grid)):
         console.say("study", line)
     console.say("study", f"{name}: {save}: {len(table)} points")
+    if len(table) and all(isinstance(reason, str) for reason in table["reason"]):
+        raise UserError(f"{name}: all {len(table)} points failed, the first for: {table['reason'].iloc[0]}")
 
 
 def _client() -> AbstractContextManager[Any]:

@@ -71,3 +71,17 @@ def test_the_table_agrees_with_the_motion_and_names_what_failed(
     said = capsys.readouterr().out
     assert "not at crank 0.03, rocker 0.02" in said
     assert "do not close" in said
+
+
+def test_a_study_without_a_good_point_fails_and_keeps_its_table(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("MBSD_OUT", str(tmp_path))
+    monkeypatch.delenv("CLUSTER", raising=False)
+    with (
+        pytest.warns(match="all 2 points failed"),
+        pytest.raises(UserError, match=r"all 2 points failed.*do not close"),
+    ):
+        stage.run("four_bar", "rocker=0.02,0.01")
+    assert len(pd.read_csv(tmp_path / "four_bar" / "study" / "study.csv")["reason"].dropna()) == 2
+    assert "not at rocker 0.02" in capsys.readouterr().out

@@ -38,7 +38,7 @@ class _WithoutCallees:
     """A library as ours link it: kernels that it calls and that stand apart are left out."""
 
     def __init__(self, library: Any) -> None:
-        self._reload_init = library._reload_init
+        self._reload_init = getattr(library, "_reload_init", [])  # numba 0.61 has none
         self._library = library
 
     def _get_module_for_linking(self) -> Any:

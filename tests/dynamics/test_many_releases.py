@@ -154,3 +154,20 @@ def test_random_chains_break_as_by_themselves(data: st.DataObject) -> None:
     m.rigid_contact("floor", m.ground.at(0, floor - 1.0), end, radius=0.02, restitution=0.4, friction=0.2)
     m.start_near(**places)
     assert_as_single_ones(m, f"bar{count - 1}", 0.8, 8, 1e-9)
+
+
+@pytest.mark.parametrize("duration", [1e-9, 1e-6, 1e-3, 0.3])
+def test_a_bar_that_starts_where_it_breaks_and_leaves_breaks_when_it_comes_back(duration: float) -> None:
+    m = Mechanism("bars")
+    end = m.ground.at(0, 0)
+    for k in range(2):
+        bar = m.bar(f"bar{k}", 0.2, mass=0.5 / (k + 1))
+        m.revolute(f"pin{k}", end, bar.start)
+        m.event(f"breaks{k}", angle_reaches(bar, 0.0), releases=f"pin{k}")
+        end = bar.end
+    m.start_near(bar0=0, bar1=0)
+    alone = m.simulate(duration, steps=4)
+    assert not [event for event in alone.events if event.time < 1e-3]
+    many = m.simulate_many(duration, vary={"bar0": {"mass": [0.5, 0.4]}}, measure={"x": final("bar1.x")}, steps=4)
+    assert many.good.all()
+    assert many["x"][0] == pytest.approx(alone.body("bar1").x[-1], rel=1e-12)

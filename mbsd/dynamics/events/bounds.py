@@ -52,3 +52,5 @@ ROUNDINGS = ((1.0, 1.0, -1.0, -1.0), (-1.0, 1.0, 1.0, -1.0), (1.0, -1.0, 1.0), (
 """Signs, repeated, of small changes of a state."""
 AHEAD = (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
 """Parts of the duration after which the side is looked for to which an event that is zero goes."""
+BEYOND = (1e-6, 1e-5, 1e-4, 1e-3)
+"""Times (s) after which it is looked for where a duration is too short to tell."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.dynamics.events.bounds import AHEAD, NEAR, ROUNDINGS
+from mbsd.dynamics.events.bounds import AHEAD, BEYOND, NEAR, ROUNDINGS
 from mbsd.dynamics.events.moment import Moment
 from mbsd.dynamics.events.monitors import checked
 from mbsd.dynamics.state import TIME, State
@@ -35,8 +35,8 @@ def side_ahead(packed: Packed, event: Event, state: State, span: float) -> float
     rounding = rounding_of(packed, event, value, state)
     if abs(value) > rounding:
         return float(np.sign(value))
-    for part in AHEAD:
-        s = part * (span)
+    known = AHEAD[-1] * span
+    for s in (*(part * span for part in AHEAD), *(after for after in BEYOND if after > known)):
         ahead = checked(packed, event, Moment(packed, time + s, q + s * v + s * s / 2 * a, v + s * a))
         if abs(ahead) > 10.0 * rounding:
             return float(np.sign(ahead))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, lazy
-from mbsd.dynamics.events.bounds import AHEAD
+from mbsd.dynamics.events.bounds import AHEAD, BEYOND
 from mbsd.dynamics.many.events.arrays import SIDE
 from mbsd.dynamics.many.events.values import value_of
 from mbsd.dynamics.state import TIME
@@ -39,8 +39,11 @@ def _side_ahead(events, e, t, y, a):
         return side
     rounding = rounding_of(events, e, t, y)
     pose = events.pose
-    for part in AHEAD:
-        s = part * events.span[0]
+    last = AHEAD[-1] * events.span[0]
+    for k in range(len(AHEAD) + len(BEYOND)):
+        s = AHEAD[k] * events.span[0] if k < len(AHEAD) else BEYOND[k - len(AHEAD)]
+        if k >= len(AHEAD) and s <= last:
+            continue
         for c in range(pose.shape[1]):
             pose[0, c] = y[0, c] + s * y[1, c] + s * s / 2 * a[c]
             pose[1, c] = y[1, c] + s * a[c]

@@ -66,6 +66,15 @@ def refuse_other_arguments(what: str, function: Callable[..., Any], given: str) 
         raise ModelError(f"{what} must be a function of {given}, a single argument: {error}") from None
 
 
+def named_parameters(function: Callable[..., Any]) -> dict[str, inspect.Parameter] | None:
+    """Parameters by name; None where its signature does not say them, or it takes any name."""
+    try:
+        parameters = dict(inspect.signature(function).parameters)
+    except (TypeError, ValueError):
+        return None
+    return None if any(p.kind is p.VAR_KEYWORD for p in parameters.values()) else parameters
+
+
 def described(error: BaseException) -> str:
     """Type and text of what a function raised, on one line."""
     said = " ".join(str(error).split())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import itertools
 import math
 from collections.abc import Callable, Iterable, Mapping
@@ -11,6 +10,7 @@ from typing import Any
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
+from mbsd.base.users_function import named_parameters
 
 MOST = 10_000_000
 """Points of one study."""
@@ -35,11 +35,8 @@ def points_of(grid: Any) -> list[Point]:
 
 def refuse_names(build: Callable[..., Any], points: Iterable[Point]) -> None:
     """Raise ModelError for names that ``build`` does not take, as far as its signature says."""
-    try:
-        parameters = inspect.signature(build).parameters
-    except (TypeError, ValueError):
-        return
-    if any(p.kind is p.VAR_KEYWORD for p in parameters.values()):
+    parameters = named_parameters(build)
+    if parameters is None:
         return
     known = [name for name, p in parameters.items() if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
     for name in dict.fromkeys(name for point in points for name in point):

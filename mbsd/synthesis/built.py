@@ -8,7 +8,7 @@ from typing import Any
 
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.shown import shown
-from mbsd.base.users_function import described
+from mbsd.base.users_function import described, named_parameters
 from mbsd.model.mechanism import Model
 
 
@@ -16,11 +16,8 @@ def refuse_build(what: str, build: Any, names: Sequence[str]) -> None:
     """Raise ModelError for what is no function of arguments ``names``, as far as its signature says."""
     if not callable(build):
         raise ModelError(f"{what}: build is {shown(build)}; give a function that returns the mechanism")
-    try:
-        parameters = inspect.signature(build).parameters
-    except (TypeError, ValueError):
-        return
-    if any(p.kind is p.VAR_KEYWORD for p in parameters.values()):
+    parameters = named_parameters(build)
+    if parameters is None:
         return
     for name in names:
         if name not in parameters or parameters[name].kind is inspect.Parameter.POSITIONAL_ONLY:

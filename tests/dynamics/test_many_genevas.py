@@ -14,6 +14,7 @@ from mbsd import Mechanism
 from mbsd.dynamics.runs.indexing import Genevas
 from mbsd.measures import final, first, samples
 from tests.dynamics.beside_single_runs import between
+from tests.dynamics.test_geneva_energy import two_genevas
 
 STEPS = 40
 
@@ -39,18 +40,9 @@ def swinging() -> Mechanism:
 
 
 def two() -> Mechanism:
-    """Two wheels of one crank, which starts where a pin leaves."""
-    m = Mechanism("two", gravity=None)
-    crank = m.body("crank", 0.5, (0.0, 0.0), 1e-3)
-    m.revolute("O", m.ground.origin, crank.origin)
-    m.torsion_spring("spring", m.ground, crank, 0.0, 1e-4)
-    for name, slots, x in (("wheel", 4, 0.1), ("other", 5, -0.12)):
-        wheel = m.body(name, 1.0, (0.0, 0.0), 1e-3)
-        m.revolute(f"W{name}", m.ground.at(x, 0), wheel.origin)
-        turned = 0.0 if x > 0 else math.pi / 3
-        m.geneva(f"index {name}", crank.at(0, 0, turned), wheel.origin, slots, abs(x) * math.sin(math.pi / slots))
-    m.start_near(crank=-45.0)
-    m.start_moving(crank=6.0)
+    """Two wheels of one crank, whose spring and damper vary."""
+    m = two_genevas()
+    m.torsion_spring("spring", m.ground, m.bodies["crank"], 0.0, 1e-4)
     return m
 
 

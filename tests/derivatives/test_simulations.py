@@ -204,7 +204,7 @@ def test_the_end_of_a_simulation_moves_with_its_event() -> None:
     [
         (
             lambda m: m.event("hit", lambda t, o: o.body("rod").theta + 0.5, action=lambda o: None),
-            "the action of event",
+            "what event 'hit' changes",
         ),
         (lambda m: m.friction("rub", m.joints["A"], 0.2, radius=0.01, sticks=True), "joints stick \\('rub'\\)"),
     ],

@@ -134,15 +134,17 @@ def test_rows_that_repeat_others_hold_as_in_single_simulations(case: str, monkey
 def test_random_cranks_with_friction_move_as_by_themselves(data: st.DataObject) -> None:
     m = Mechanism("cranks", gravity=(0, -9.81))
     coupler = m.bar("coupler", 0.6, mass=data.draw(between(0.3, 2.0)))
-    start = data.draw(between(-85.0, -30.0))
+    start = data.draw(between(-85.0, -55.0))  # they hang and never lie flat, where joints that repeat others jam
     for k in range(data.draw(st.integers(3, 5))):
-        x, y = data.draw(between(0.0, 0.6)), data.draw(between(-0.2, 0.2))
+        x, y = 0.14 * k + data.draw(between(0.0, 0.1)), data.draw(between(-0.2, 0.2))
         crank = m.bar(f"crank{k}", 0.3, mass=data.draw(between(0.1, 1.0)))
         m.revolute(f"A{k}", m.ground.at(x, y), crank.start)
         m.revolute(f"B{k}", crank.end, coupler.at(x, y))
         if data.draw(st.booleans()):
             sticks = data.draw(st.booleans())
             m.friction(f"friction{k}", f"A{k}", data.draw(between(0.0, 0.1)), radius=0.02, sticks=sticks)
-    m.torsion_spring("spring", m.ground, m.bodies["crank0"], data.draw(between(0.0, 4.0)), 0.05)
+    m.torsion_spring(
+        "spring", m.ground, m.bodies["crank0"], data.draw(between(0.0, 4.0)), 0.05, free_angle=-math.pi / 2
+    )
     m.start_near(**dict.fromkeys([name for name in m.bodies if name.startswith("crank")], start))
     assert_as_single_ones(m, "coupler", 0.8, 8, 1e-9)

@@ -45,6 +45,13 @@ class Jumps:
         self.switches, self.sticks = ready.switches, ready.sticks
         self.scratch, self.state, self.near, self.still = scratch, state, near, still
         self.happenings: list[Happening] = []
+        self.without_end = False
+        """Whether contacts come to their limits again and again at this time, one by the other."""
+
+    @property
+    def by_turns(self) -> bool:
+        """Whether contacts come to their limits one by one."""
+        return one_by_one(self.switches.contacts, self.sticks) and not self.without_end
 
     def compliance(self, time: float, q: np.ndarray) -> Compliance:
         """Compliance of a pose q (3 nb,) with the joints that hold now."""
@@ -109,8 +116,7 @@ class Jumps:
             self._set(at, self._settled(at, self._case(monitor, staying, forced)), before)
 
     def _case(self, monitor: Monitor | None, staying: list[RunContact], forced: dict[str, float]) -> Case:
-        by_turns = one_by_one(self.switches.contacts, self.sticks)
-        case = Case(staying, self.sticks, self.state.y[1], self.still, forced, one_by_one=by_turns)
+        case = Case(staying, self.sticks, self.state.y[1], self.still, forced, one_by_one=self.by_turns)
         if monitor is not None:
             case.slipping = monitor.what == SLIPS and monitor.contact is None
             case.touched = monitor.name if monitor.what == CLOSES else None

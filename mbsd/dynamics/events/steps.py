@@ -63,6 +63,8 @@ if TYPE_CHECKING:
 STILL = 1e-9
 EVENT_STEPS = 20
 """Steps that an event is worth where the pace of a run is looked at."""
+IN_TURN = 5
+"""Events at one time, for each contact, after which contacts are no longer taken one by one."""
 AT_ONE_TIME = 500
 """Events that may happen without time going on."""
 
@@ -171,7 +173,7 @@ class EventSteps:
     def _find_shares(self) -> None:
         """Find what divides the forces of joints and contacts at rest, if one set of rows does not say them."""
         held = self.switches.held() if self.switches.place else np.zeros(0, bool)
-        self._together = shares_contacts(self.switches, self.sticks, held)
+        self._together = shares_contacts(self.switches, self.sticks, held, self.jumps.by_turns)
         sharing = any(stick.state == STICKS and not held[stick.way] for stick in self.sticks)
         self._shares = self._held_together if self._together else self._carried if sharing else None
 
@@ -286,6 +288,7 @@ class EventSteps:
     def _happen(self, monitor: Monitor) -> None:
         time = float(self.state.clock[TIME])
         self._times = [earlier for earlier in self._times if earlier == time] + [time]
+        self.jumps.without_end = len(self._times) > IN_TURN * len(self.switches.contacts)
         if len(self._times) > AT_ONE_TIME:
             raise SimulationError(
                 f"{self.packed.name}: more than {AT_ONE_TIME} events at t = {time:.6g} s, the last of '{monitor.name}' "

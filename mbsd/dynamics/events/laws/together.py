@@ -30,10 +30,13 @@ def one_by_one(contacts: Sequence[RunContact], sticks: Sequence[JointStick]) -> 
     return not sticks and all(contact.static_friction <= contact.friction for contact in contacts)
 
 
-def shares_contacts(switches: Switches, sticks: Sequence[JointStick], held: np.ndarray) -> bool:
-    """Whether contacts that stick hold with others, so that rows ``held`` (m,) do not say what each carries."""
+def shares_contacts(switches: Switches, sticks: Sequence[JointStick], held: np.ndarray, by_turns: bool) -> bool:
+    """Whether contacts that stick hold with others, so that rows ``held`` (m,) do not say what each carries.
+
+    Not where they come to their limits ``by_turns``.
+    """
     sticking = [contact for contact in switches.contacts if contact.state == STICKS]
-    if not sticking or one_by_one(switches.contacts, sticks):
+    if not sticking or by_turns:
         return False
     ways = [contact.way or 0 for contact in sticking] + [stick.way for stick in sticks if stick.state == STICKS]
     return not held[ways].all()

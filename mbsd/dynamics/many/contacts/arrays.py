@@ -96,7 +96,8 @@ NOW, LAST, FOUND = range(3)
 
 
 class Sticks(NamedTuple):
-    """What joints with friction add, for c rows and f joints with friction."""
+    """What joints with friction add, for c rows and f joints with friction; contacts that lose friction once they slide
+    share with others, too. No rows where there is none of them."""
 
     joint: Any
     """(k,) int, rows of Contacts that are ways of joints that stick: the last k."""

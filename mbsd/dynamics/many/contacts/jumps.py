@@ -35,7 +35,6 @@ from mbsd.dynamics.many.contacts.friction.decisions import (
     begin_touched,
     find_friction,
     note_met,
-    one_by_one,
     slide_or_stick,
 )
 from mbsd.dynamics.many.contacts.friction.pushes import solve_with_friction
@@ -208,8 +207,7 @@ def _decide(dyn, scratch, contacts, t, y, touched):
 def resolve(dyn, scratch, contacts, state, met):
     """Impacts, and what contacts do from now on, after the scalar of row ``met`` fell through zero; -1: at the start.
 
-    Returns False where that is impossible, which a single simulation says, and where contacts that stick hold together
-    and lose friction once they slide, which one shares.
+    Returns False where that is impossible, which a single simulation says.
     """
     count = contacts.place.shape[0]
     gaps = gaps_of(contacts)
@@ -249,12 +247,10 @@ def resolve(dyn, scratch, contacts, state, met):
     if gaps < count:
         slide_or_stick(scratch, contacts)
     keep_independent(contacts, chosen[TAKING])
-    alone = False
     for k in range(count):
         number[k, HELD] = 1.0 * chosen[KEPT, k]
-        alone = alone or (k >= gaps and chosen[TAKING, k] != 0 and chosen[KEPT, k] == 0)
     hold_rows(dyn, contacts)
-    return not alone or one_by_one(contacts)
+    return True
 
 
 @internal

@@ -152,7 +152,8 @@ def _numbers(ready: PreparedDynamics) -> list[tuple[float, ...]]:
 
 def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Sticks:
     frictions = len(ready.dynamics.loads.friction) if c else 0
-    own = c if frictions else 0
+    losing = any(contact.static_friction > contact.friction for _, contact in _rough(ready))
+    own = c if frictions or losing else 0
     return Sticks(
         np.arange(c - len(ready.sticks), c),
         np.zeros((LEFT + 1, own)),

@@ -72,7 +72,7 @@ def _restart(dyn, scratch, contacts, state):
 def _resolve(dyn, scratch, contacts, state, met):
     if contacts.place.shape[0] == 0:
         return True
-    if dyn.loads.friction.shape[0] > 0:
+    if contacts.sticks.vector.shape[1] > 0:  # friction of joints, or contacts that lose some once they slide
         return resolve_friction(dyn, scratch, contacts, state, met)
     return resolve(dyn, scratch, contacts, state, met)
 

@@ -92,7 +92,7 @@ def _values(dyn, scratch, contacts, y, forces):
             contacts.vector[VALUE, count + w] = friction.number[w, STATIC] * normal - abs(contacts.lam[row])
         else:
             contacts.vector[VALUE, count + w] = contacts.number[count + w, SIGN] * along(dyn, scratch, row, y[1])
-    if contacts.sticks.normal.shape[1] > 0:
+    if contacts.sticks.vector.shape[1] > 0:
         read_ways(dyn, scratch, contacts, y, forces)
 
 

@@ -142,7 +142,7 @@ def test_random_cranks_with_friction_move_as_by_themselves(data: st.DataObject) 
         m.revolute(f"B{k}", crank.end, coupler.at(x, y))
         if data.draw(st.booleans()):
             sticks = data.draw(st.booleans())
-            m.friction(f"friction{k}", f"A{k}", data.draw(between(0.0, 0.1)), radius=0.02, sticks=sticks)
+            m.friction(f"friction{k}", f"A{k}", data.draw(between(0.01, 0.1)), radius=0.02, sticks=sticks)
     m.torsion_spring(
         "spring", m.ground, m.bodies["crank0"], data.draw(between(0.0, 4.0)), 0.05, free_angle=-math.pi / 2
     )

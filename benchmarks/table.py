@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from benchmarks.rows import Bar, Row
@@ -41,7 +42,8 @@ def text(rows: Sequence[Row], bars: Sequence[Bar]) -> str:
         if row.problem.startswith("film"):
             continue
         ratio = f"{row.seconds / own[row.problem]:.3g}" if row.problem in own else ""
-        errors = ", ".join(f"{name} {value:.1e}" for name, value in row.errors.items()) or f"{row.error:.1e}"
+        known = "" if math.isnan(row.error) else f"{row.error:.1e}"
+        errors = ", ".join(f"{name} {value:.1e}" for name, value in row.errors.items()) or known
         errors += "" if row.within_limits else "; **beyond the limits**"
         time = f"{row.seconds * 1000:.3g} ms"
         lines.append(f"| {row.problem} | {row.code} | {row.version} | {time} | {ratio} | {errors} | {row.settings} |")

@@ -2,8 +2,9 @@
 
     A = df/d(z, z'),   B = df/dp        by central differences; then s'' = A (s, s') + B, as free_tangents.py has it
 
-A node costs about a third of what it costs in reference coordinates, which are used at outputs alone. It is for
-mechanisms whose bodies closed forms place, by angles. Source: Wehage, Haug 1982 (partitioning).
+A node costs a fifth of what it costs in reference coordinates, which are used at outputs alone, where more is asked for
+than how bodies move. It is for mechanisms whose bodies closed forms place, by angles. Source: Wehage, Haug 1982
+(partitioning).
 """
 
 from __future__ import annotations
@@ -145,18 +146,18 @@ class IndependentTangents:
             if motions_beside(arrays, self.scratch, *here, poses[s], a[s]) < count:
                 raise NotSmooth
         self.ready.packed.specials.check()
-        places: dict[str, tuple[int, np.ndarray, float]] = {}
-        for name, marker in traces.items():
-            place = np.array([[marker.x, marker.y]])
-            if any(name in sides.traces for sides in self.every):
-                still = [np.zeros((len(sides.away), 2)) for sides in self.every]
-                place = place + np.concatenate(
-                    [sides.traces.get(name, rest) for sides, rest in zip(self.every, still, strict=True)]
-                )
-            places[name] = packed.body_names.index(marker.body.name), place, marker.angle
         q, v, a = (part.reshape(len(of), count, -1, 3) for part in (poses[:, :, 0], poses[:, :, 1], a))
         work = np.zeros(q.shape[:2])
-        return Motions(packed.body_names, q, v, a, work, com, mass, moment, places, along.t), weights
+        return Motions(packed.body_names, q, v, a, work, com, mass, moment, self._places(traces), along.t), weights
+
+    def _places(self, traces: Mapping[str, Marker]) -> dict[str, tuple[int, np.ndarray, float]]:
+        """Body, places (K, 2) on all sides, and angle of each traced point."""
+        out: dict[str, tuple[int, np.ndarray, float]] = {}
+        for name, marker in traces.items():
+            moved = [sides.traces.get(name, np.zeros((len(sides.away), 2))) for sides in self.every]
+            place = np.array([marker.x, marker.y]) + np.concatenate(moved)
+            out[name] = self.ready.packed.body_names.index(marker.body.name), place, marker.angle
+        return out
 
     def at(
         self, terms: Terms, along: Along, compact: np.ndarray, rows: np.ndarray, line: Carried, variants: list[Variants]

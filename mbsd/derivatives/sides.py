@@ -117,7 +117,7 @@ class BothSides:
         plan, arrays = self.made.plan, self.arrays
         numbers = plan.remade(packed)
         if numbers is None:
-            slope = (self._rows(packed) - arrays.number) / near
+            slope = (self._rows_found(packed) - arrays.number) / near
             slope[:, SIGN:] = 0.0
             return [arrays.number + h * slope for h in away]
         own = plan.numbers()
@@ -150,13 +150,14 @@ class BothSides:
 
     def _rows(self, packed: Packed) -> np.ndarray:
         """(g, 21) those of the same groups in a mechanism with another number."""
-        group, plan = self.arrays.group, self.made.plan
-        numbers = plan.remade(packed)
-        if numbers is not None:
-            return rows_of(group[:, KIND], numbers)
+        numbers = self.made.plan.remade(packed)
+        return self._rows_found(packed) if numbers is None else rows_of(self.arrays.group[:, KIND], numbers)
+
+    def _rows_found(self, packed: Packed) -> np.ndarray:
+        """The same, where a group was not made of links: by a plan of its own. Raises NotSmooth where it is another."""
         choice = next(choices(packed, self.ready.initial.q, len(self.made.coordinates)), None)
         groups = None if choice is None else choice.plan.groups()
-        if groups is None or groups.group.tobytes() != group.tobytes():
+        if groups is None or groups.group.tobytes() != self.arrays.group.tobytes():
             raise NotSmooth
         return groups.row
 

@@ -26,7 +26,7 @@ from mbsd.derivatives.variants import Variants
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.many.quantities import Motions
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.repeated import Course
+from mbsd.dynamics.repeated import Course, Outputs
 from mbsd.dynamics.runs.embed import POOR, Embedded, begin_at, embedded_at_start, embedding_scratch
 from mbsd.kinematics.groups.blocks import BLOCK
 from mbsd.kinematics.groups.carrying.columns import INERTIA, MASS, THETA
@@ -105,10 +105,19 @@ class IndependentTangents:
         sizes = np.array([sides.size for sides in self.every])
         return carried(t, matrix.transpose(0, 2, 1).copy(), right, y, slight_changes(f, fastest, sizes))
 
+    def motion(self, along: Outputs, traces: Mapping[str, Marker]) -> Motions:
+        """The motion itself."""
+        packed, system = self.ready.packed, self.ready.packed.system
+        q, v, a = (part.reshape(1, len(along.t), -1, 3) for part in (along.q, along.v, along.a))
+        places = {name: (packed.body_names.index(marker.body.name), np.array([[marker.x, marker.y]]), marker.angle)
+                  for name, marker in traces.items()}  # fmt: skip
+        own = packed.com[None], system.mass[None], system.inertia[None], places
+        return Motions(packed.body_names, q, v, a, np.zeros(q.shape[:2]), *own, along.t)
+
     def motions(
-        self, along: Along, traces: Mapping[str, Marker], line: Carried, accelerations: bool
+        self, along: Outputs, traces: Mapping[str, Marker], line: Carried, accelerations: bool
     ) -> tuple[Motions, np.ndarray]:
-        """The motion along its tangents at times (R,), on all K sides of all numbers, and weights (P, K) of these.
+        """The motion along its tangents at R times, on all K sides of all numbers, and weights (P, K) of these.
 
         With ``traces``, and with ``accelerations`` if these are asked for. Raises NotSmooth.
         """

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +24,7 @@ from mbsd.derivatives.start_tangents import StartTangents
 from mbsd.derivatives.variants import PLACES, Variation, alike, same_laws, size_of
 from mbsd.equations.loads import Loads
 from mbsd.model.body import Marker
+from mbsd.model.force import Element
 from mbsd.model.mechanism import Model
 
 NEAR = 1e-7
@@ -91,6 +94,8 @@ class NearNumbers:
     def _at(self, number: Number, size: float, away: float) -> Near | None:
         own, first = self.variation, self.variation.first
         with with_value(own.work, number, number.value + away, own.saved) as m:
+            if self._in_place(m):
+                return self._light(m, number, size, away)
             packed = repacked(m, first, own.saved) or pack(m)
             if packed.first_row.tolist() != first.first_row.tolist() or packed.body_names != first.body_names:
                 return None
@@ -115,6 +120,63 @@ class NearNumbers:
             )
             return Near(number, size, mass, moment, gravity, com, loads, traces, packed if moved else None, away, begun)
 
+    def _in_place(self, m: Model) -> bool:
+        """Whether joints, drivers and centres of mass are what they were, and forces are elements at the same places."""
+        first, saved, base = self.variation.first, self.variation.saved, self.loads
+        if m is not saved.m or first.specials.names:
+            return False
+        if len(base.interaction) or len(base.user) or len(base.friction):
+            return False
+        tables = m.joints, m.drivers, m.contacts
+        return all(unchanged(table, saved) for table in tables) and all(b.com == was["com"] for b, was in saved.bodies)
+
+    def _light(self, m: Model, number: Number, size: float, away: float) -> Near | None:
+        """The slopes, where masses, elements of forces, gravity and the start alone may change."""
+        own, saved = self.variation, self.variation.saved
+        mass, moment = (
+            np.array([getattr(body, name) - was[name] for body, was in saved.bodies]) / away
+            for name in ("mass", "inertia")
+        )
+        gravity = (np.array(m.gravity or (0.0, 0.0)) - self._first.gravity) / away
+        loads = self._elements(m, away)
+        begun = self.starts.of(m, None, away, moved=False, heavier=bool(mass.any() or moment.any()))
+        traces = _slopes_of_traces(m, own, away)
+        if begun is None or traces is None or loads is None:
+            return None
+        com = np.zeros_like(own.first.com)
+        return Near(number, size, mass, moment, gravity, com, loads, traces, None, away, begun)
+
+    @cached_property
+    def _numbers(self) -> dict[str, tuple[int, tuple[Element, ...]]]:
+        """Elements of each force, and where their numbers begin."""
+        out, first = dict[str, tuple[int, tuple[Element, ...]]](), 0
+        for name, force in self.variation.saved.before(self.variation.work.forces).items():
+            own = tuple(force.kind.elements(force))
+            out[name] = first, own
+            first += sum(len(part.terms) for part in own)
+        return out
+
+    def _elements(self, m: Model, away: float) -> dict[str, np.ndarray] | None:
+        """Slopes of numbers of elements; None where these are others, elsewhere, or have other laws."""
+        slope, before = None, self.variation.saved.before(m.forces)
+        if m.forces.keys() != before.keys():
+            return None
+        for name, force in m.forces.items():
+            old = before[name]
+            if force is old:
+                continue
+            first, known = self._numbers[name]
+            own = tuple(force.kind.elements(force))
+            moved = force.kind is not old.kind or force.i != old.i or force.j != old.j
+            if moved or _structure(own) != _structure(known):
+                return None
+            if not same_laws([*force.laws.values()], [*old.laws.values()]):
+                return None
+            slope = np.zeros_like(self.loads.number) if slope is None else slope
+            numbers = [[term.a, term.b, term.c] for part in own for term in part.terms]
+            slope[first : first + len(numbers)] = (numbers - self.loads.number[first : first + len(numbers)]) / away
+        return {"number": slope} if slope is not None and slope.any() else {}
+
     def _loads(self, m: Model, packed: Packed, away: float, same_com: bool) -> dict[str, np.ndarray] | None:
         """Slopes of numbers of forces; None where forces are made otherwise."""
         own, base = self.variation, self.loads
@@ -126,6 +188,11 @@ class NearNumbers:
             return None
         slopes = {name: _slope(getattr(loads, name), getattr(base, name), away) for name in PLACES_OF_LOADS}
         return {name: slope for name, slope in slopes.items() if slope.any()}
+
+
+def _structure(elements: tuple[Element, ...]) -> list[Any]:
+    """What they are, without their numbers."""
+    return [(part.kind, part.turned, [(term.kind, term.law) for term in part.terms]) for part in elements]
 
 
 def _slope(array: np.ndarray, base: np.ndarray, away: float) -> np.ndarray:

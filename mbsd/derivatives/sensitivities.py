@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -30,9 +30,16 @@ if TYPE_CHECKING:
 class Tangents(Protocol):
     """A motion, and others along its tangents."""
 
-    sol: Solution
+    t: np.ndarray
+    """(T,) s of its outputs."""
+    values: dict[str, np.ndarray]
+    """What was asked for, where it is known already."""
     slopes: dict[str, np.ndarray]
-    """Derivatives (..., P) that are known already, by what was asked for."""
+    """Derivatives (..., P) of the same."""
+
+    def solve(self) -> Solution:
+        """The motion as a solution."""
+        ...
 
     def moved(self, k: int, reactions: bool = True) -> list[Solution]:
         """The motion at other values of number k, where its tangents are asked for; without ``reactions`` of joints."""
@@ -59,8 +66,17 @@ class Sensitivities:
     """(T,) of each quantity, or one number of each measure."""
     slopes: dict[str, np.ndarray]
     """(T, P), or (P,) of a measure: SI units of the quantity by those of the number."""
-    solution: Any
-    """The Solution."""
+    solve: Callable[[], Solution] = field(repr=False)
+    """Gives ``solution``."""
+
+    @cached_property
+    def solution(self) -> Solution:
+        """The motion, with its reactions."""
+        return self.solve()
+
+    def __getstate__(self) -> dict[str, Any]:
+        solution = self.solution
+        return {**self.__dict__, "solve": partial(_itself, solution)}
 
     def __getitem__(self, label: str) -> np.ndarray:
         """Derivatives of one quantity. Raises ModelError for one that there is not."""
@@ -92,32 +108,45 @@ class Sensitivities:
         return f"<Sensitivities of {', '.join(self.slopes)} by {', '.join(self.numbers)}>"
 
 
-def slopes_of(
-    tangents: Tangents, numbers: Sequence[Number], functions: Wanted, models: bool = False, reactions: bool = True
+def values_and_slopes(
+    m: Model, of: Any, tangents: Tangents, numbers: Sequence[Number]
+) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """By label, what is asked ``of`` a motion, and its derivatives (..., P) by all numbers. Raises ModelError."""
+    values, slopes = tangents.values, tangents.slopes
+    if not values and of:
+        sol = tangents.solve()
+        functions = wanted(m, of, sol)
+        values = {label: np.asarray(function(sol)) for label, function in functions.items()}
+        slopes = _slopes_along(tangents, numbers, functions, needs_models(of), needs_reactions(m, of))
+    for label, slope in slopes.items():
+        if not np.isfinite(slope).all() and np.isfinite(values[label]).all():
+            raise ModelError(
+                f"{m.name}: '{label}' has no derivative: reactions of joints that repeat others are not known along a "
+                "simulation. Free a joint, m.mobility() says which, or ask for the motion alone"
+            )
+    return values, slopes
+
+
+def _slopes_along(
+    tangents: Tangents, numbers: Sequence[Number], functions: Wanted, models: bool, reactions: bool
 ) -> dict[str, np.ndarray]:
     """By label, derivatives (..., P) by all numbers of what functions of a solution give.
 
     With ``models`` the solutions have mechanisms with the other numbers, for functions that ask them; without
     ``reactions`` those of joints are left out.
     """
-    columns: dict[str, list[np.ndarray]] = {label: [] for label in functions if label not in tangents.slopes}
-    for k, number in enumerate(numbers if columns else ()):
+    columns: dict[str, list[np.ndarray]] = {label: [] for label in functions}
+    for k, number in enumerate(numbers):
         moved, weights = tangents.moved(k, reactions), tangents.weights(k)
         if models:
             moved = [replace(sol, mechanism=m) for sol, m in zip(moved, tangents.models(k, number), strict=True)]
-        for label in columns:
-            function = functions[label]
+        for label, function in functions.items():
             columns[label].append(np.sum([w * function(sol) for w, sol in zip(weights, moved, strict=True)], axis=0))
-    out = {
-        label: np.stack(columns[label], axis=-1) if label in columns else tangents.slopes[label] for label in functions
-    }
-    for label, slopes in out.items():
-        if not np.isfinite(slopes).all() and np.isfinite(functions[label](tangents.sol)).all():
-            raise ModelError(
-                f"{tangents.sol.mechanism.name}: '{label}' has no derivative: reactions of joints that repeat others "
-                "are not known along a simulation. Free a joint, m.mobility() says which, or ask for the motion alone"
-            )
-    return out
+    return {label: np.stack(column, axis=-1) for label, column in columns.items()}
+
+
+def _itself(solution: Solution) -> Solution:
+    return solution
 
 
 def sensitivities(
@@ -140,22 +169,17 @@ def sensitivities(
     refuse_unfit(m, [(f"{m.name}: '{label}'", each) for label, each in asked.items()], grid, free)
     if free:
         tangents = simulation_tangents(m, grid, numbers, tolerance, of)
-        functions = wanted(m, of, tangents.sol)
     else:
-        sol = sweep(m, duration, steps, times)
-        functions = wanted(m, of, sol)
-        tangents = SweepTangents(m, sol, numbers)
-    return Sensitivities(
-        tangents.sol.t,
-        tuple(number.name for number in numbers),
-        {label: np.asarray(function(tangents.sol)) for label, function in functions.items()},
-        slopes_of(tangents, numbers, functions, needs_models(of), needs_reactions(m, of)),
-        tangents.sol,
-    )
+        tangents = SweepTangents(m, sweep(m, duration, steps, times), numbers)
+    values, slopes = values_and_slopes(m, of, tangents, numbers)
+    return Sensitivities(tangents.t, tuple(number.name for number in numbers), values, slopes, tangents.solve)
 
 
 def moves_freely(m: Model) -> bool:
     """Whether drivers leave a freedom, so that forces decide the motion."""
+    rows = sum(joint.kind.rows for joint in m.joints.values())
+    if 3 * (len(m.bodies) - 1) - rows > len(m.drivers):  # joints that repeat others leave more freedoms, never fewer
+        return True
     return mobility(m).dof > len(m.drivers)
 
 

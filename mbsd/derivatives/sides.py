@@ -67,32 +67,38 @@ class BothSides:
     def of(self, m: Model, variation: Variation, numbers: Sequence[Number]) -> list[Sides]:
         """Those of all numbers of ``m``, which ``variation`` varies. Raises NotSmooth where the groups are others."""
         near = NearNumbers(variation, StartTangents(m, self.ready), self.arrays.loads)
-        out: list[Sides] = []
-        for number in numbers:
-            own = near.of(number)
-            if own is None:
-                out.append(self.packed(variation.of(number, SECOND, TINY), m.traces))
-            else:
-                out.append(self.straight(own))
-        return out
+        known = [near.of(number) for number in numbers]
+        straight = iter(self.straight([own for own in known if own is not None]))
+        return [
+            next(straight) if own is not None else self.packed(variation.of(number, SECOND, TINY), m.traces)
+            for number, own in zip(numbers, known, strict=True)
+        ]
 
-    def straight(self, near: Near) -> Sides:
-        """Two, on which all arrays go on straight."""
-        system = self.ready.packed.system
-        away = np.array([-1.0, 1.0]) * TINY * near.size
-        far = away[:, None]
-        return Sides(
-            near.size,
-            away,
-            0.5 / away,
-            system.mass + far * near.mass,
-            system.inertia + far * near.moment,
-            self.ready.packed.com + far[:, None] * near.com,
-            {name: far * slope for name, slope in near.traces.items()},
-            near.begun,
-            partial(self._straight, near, away.tolist()),
-            near if near.packed is None else None,
-        )
+    def straight(self, every: Sequence[Near]) -> list[Sides]:
+        """Those of numbers on both of whose sides all arrays go on straight."""
+        if not every:
+            return []
+        system, com = self.ready.packed.system, self.ready.packed.com
+        away = np.array([near.size for near in every])[:, None] * (TINY * np.array([-1.0, 1.0]))
+        far, weights = away[:, :, None], 0.5 / away
+        mass = system.mass + far * np.array([near.mass for near in every])[:, None]
+        moment = system.inertia + far * np.array([near.moment for near in every])[:, None]
+        coms = com + far[..., None] * np.array([near.com for near in every])[:, None]
+        return [
+            Sides(
+                near.size,
+                away[p],
+                weights[p],
+                mass[p],
+                moment[p],
+                coms[p],
+                {name: far[p] * slope for name, slope in near.traces.items()},
+                near.begun,
+                partial(self._straight, near, away[p].tolist()),
+                near if near.packed is None else None,
+            )
+            for p, near in enumerate(every)
+        ]
 
     def _straight(self, near: Near, away: list[float]) -> list[Embedding]:
         system, arrays = self.ready.packed.system, self.arrays

@@ -32,7 +32,7 @@ from mbsd.derivatives.terms import Along, terms_of
 from mbsd.derivatives.variants import KINKED, SECOND, TINY, Variants, Variation, models_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics, started
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.repeated import Repeated
+from mbsd.dynamics.repeated import Outputs, Repeated
 from mbsd.kinematics.pose.initial import Initial
 from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import take_decided
@@ -72,6 +72,7 @@ class SimulationTangents:
     ) -> None:  # fmt: skip
         self.m, self._runs, self._grid, self._needed, self._of_bodies = m, runs, grid, needed, of_bodies
         self._numbers = numbers
+        self.values: dict[str, np.ndarray] = {}
         self.slopes: dict[str, np.ndarray] = {}
         self._ready: PreparedDynamics | None = None
         self.redundant, self.ends = False, None
@@ -153,14 +154,18 @@ class SimulationTangents:
         line = independent.carry(self._first, nodes_of(edges, self._met))
 
         def finish() -> Tangents | None:
-            grid = self._grid
-            self._take(self._runs.recorded(np.searchsorted(self._first.t, grid)), self._needed(grid))
-            along = replace(self.along, held=np.ones(self.along.lam.shape, bool))
+            out, needed = self._recorded(), self._needed(self._grid)
             if asked is None:
+                self._take(out.solve(), needed)
+                along = replace(self.along, held=np.ones(self.along.lam.shape, bool))
                 rows, compact = self.stretch_rows(along, 0), self.terms.rows(along)[2]
                 return independent.at(self.terms, along, compact, rows, line, self.variants)
-            motions, weights = independent.motions(along, self.m.traces, line, asked.accelerations)
+            self.t, self.solve = out.t, out.solve
+            there = out if len(needed) == len(out.t) else out.take(needed)
+            motions, weights = independent.motions(there, self.m.traces, line, asked.accelerations)
+            itself = independent.motion(out, self.m.traces)
             for label, of in asked.by_label.items():
+                self.values[label] = of(itself)[0]
                 self.slopes[label] = np.moveaxis(np.tensordot(weights, of(motions), axes=1), 0, -1)
             return None
 
@@ -179,7 +184,7 @@ class SimulationTangents:
             raise NotSmooth
 
         def finish() -> Tangents:
-            self._take(self._runs.recorded(np.searchsorted(self._first.t, self._grid)), needed)
+            self._take(self._recorded().solve(), needed)
             return made
 
         return errors, finish
@@ -206,9 +211,13 @@ class SimulationTangents:
 
         return errors, finish
 
+    def _recorded(self) -> Outputs:
+        """The motion that was looked at, at all outputs."""
+        return self._runs.recorded(np.searchsorted(self._first.t, self._grid))
+
     def _take(self, sol: Solution, needed: np.ndarray) -> None:
         """Keep the simulation at all outputs, and at those of which tangents are asked."""
-        self.sol = sol
+        self.t, self.solve = sol.t, lambda: sol
         self.known = sol if len(needed) == len(sol.t) else taken(sol, needed)
         """The outputs of which tangents are known."""
         self.along = along_of(self.known)

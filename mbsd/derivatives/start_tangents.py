@@ -26,6 +26,7 @@ class StartTangents:
 
     def __init__(self, m: Model, ready: PreparedDynamics) -> None:
         packed = ready.packed
+        self.packed = packed
         self.q, self.v, self.drive = ready.initial.q, ready.initial.v, drive_at(packed, ready.start)
         self.nu = np.zeros(len(packed.ws.phi))
         self.nu[packed.driver_rows :] = self.drive[1:, 1]
@@ -55,18 +56,20 @@ class StartTangents:
             self.speeds = self._inverse(np.vstack([jac, rows[self.kept]]), kept, len(jac))
 
     def of(
-        self, m: Model, packed: Packed, away: float, moved: bool, heavier: bool
+        self, m: Model, packed: Packed | None, away: float, moved: bool, heavier: bool
     ) -> tuple[np.ndarray, np.ndarray] | None:
         """(3 nb,) q' and v' by a number by which ``m`` is ``away``; None where they are not decided.
 
-        ``moved``: whether places of markers or of centres of mass change with it; ``heavier``: masses.
+        ``packed``: arrays of ``m``, where they are others; ``moved``: whether places of markers or of centres of mass
+        change with the number; ``heavier``: masses.
         """
-        q, v = np.zeros_like(self.q), np.zeros_like(self.v)
+        q, v, packed = np.zeros_like(self.q), np.zeros_like(self.v), packed or self.packed
         turned = moved or m.starts != self.starts
         if turned:
             if self.places is None:
                 return None
-            phi = self._evaluated(packed, self.q)[0]
+            residual_and_jacobian(packed.system, self.q, self.drive, packed.ws)
+            phi = packed.ws.phi
             values = np.array([value for _, value in given_coordinates(m, packed)])
             q[3:] = self.places @ np.concatenate([(self.phi - phi) / away, (values - self.values)[self.held] / away])
         faster = turned or m.velocities != self.velocities

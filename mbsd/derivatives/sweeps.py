@@ -33,7 +33,7 @@ class SweepTangents:
     """A sweep, and its tangents by numbers."""
 
     def __init__(self, m: Model, sol: Solution, numbers: Sequence[Number]) -> None:
-        self.m, self.sol, self.along = m, sol, along_of(sol)
+        self.m, self.sol, self.t, self.along = m, sol, sol.t, along_of(sol)
         span = float(sol.t[0]), float(sol.t[-1])
         self.terms: Terms = terms_of(sol.packed, span)
         variation = Variation(m, self.terms, span, lambda m, packed: assemble(m, packed, span[0]))
@@ -42,6 +42,7 @@ class SweepTangents:
             raise ModelError(f"{m.name}: derivatives of a sweep need a driver for every freedom")
         inverse = Inverse(self.terms, self.along, bool(sol.mobility.redundant_rows))
         usual = STEP * (KINKED if has_kinks(self.terms) else 1.0)
+        self.values: dict[str, np.ndarray] = {}
         self.slopes: dict[str, np.ndarray] = {}
         self.variants: list[Variants] = []
         self.tangents: list[Tangent] = []
@@ -55,6 +56,10 @@ class SweepTangents:
                 tangent_of.states = self._states(variants, tangent_of)
             self.variants.append(variants)
             self.tangents.append(tangent_of)
+
+    def solve(self) -> Solution:
+        """The sweep itself."""
+        return self.sol
 
     def moved(self, k: int, reactions: bool = True) -> list[Solution]:
         """The sweep at other values of number k, along its tangent: one for each variant."""

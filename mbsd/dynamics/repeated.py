@@ -6,6 +6,7 @@ next one has the digits of one that is prepared anew, and what the first one rec
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -23,6 +24,7 @@ from mbsd.dynamics.simulate import integrator_named, refuse_impossible, simulate
 from mbsd.dynamics.state import Output
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
+from mbsd.results.vibration.shaking import planes_of
 
 
 @dataclass
@@ -41,6 +43,24 @@ class Course:
     """Whether contacts remember how fast they were approached."""
     q: np.ndarray | None = None
     """(T, 3 nb), where it moves smoothly."""
+
+
+@dataclass
+class Outputs:
+    """A smooth motion at some R times, whose reactions are found when they are asked for."""
+
+    t: np.ndarray
+    """(R,) s."""
+    q: np.ndarray
+    """(R, 3 nb), as v and a."""
+    v: np.ndarray
+    a: np.ndarray
+    solve: Callable[[], Solution]
+    """Gives the solution at these times, whatever has become of the mechanism since."""
+
+    def take(self, rows: np.ndarray) -> Outputs:
+        """Some of the times; the solution stays that of all."""
+        return Outputs(self.t[rows], self.q[rows], self.v[rows], self.a[rows], self.solve)
 
 
 class Repeated:
@@ -79,8 +99,8 @@ class Repeated:
             self.ready, self.run, self.recording = ready, run, recording
         return Course(shown, out.t, v, a, recording.steps, remembers=False, q=q if recording.independent else None)
 
-    def recorded(self, rows: np.ndarray) -> Solution:
-        """The solution at some rows of the course that was looked at last, of a motion that is smooth."""
+    def recorded(self, rows: np.ndarray) -> Outputs:
+        """Some rows of the course that was looked at last, of a motion that is smooth."""
         ready, run, recording = self.ready, self.run, self.recording
         assert ready is not None
         assert run is not None
@@ -93,7 +113,15 @@ class Repeated:
             return solution(self.m, ready, resumed(ready, run, own, times, []))
 
         anew = partial(simulate, self.m, None, 1, self.grid, "dop853", self.tolerance, None, None, {})
-        return solution(self.m, ready, own, Between(at, anew, own.out.y[-1, 0]))
+        traces, planes = dict(self.m.traces), planes_of(self.m.bodies.values())
+
+        def solve() -> Solution:
+            made = solution(self.m, ready, own, Between(at, anew, own.out.y[-1, 0]))
+            return replace(made, traces=traces, planes=planes)
+
+        end = 3 * len(without_states(ready.packed).body_names)
+        q, v, a = (np.ascontiguousarray(part[:, :end]) for part in (own.out.y[:, 0], own.out.y[:, 1], own.out.a))
+        return Outputs(own.out.t, q, v, a, solve)
 
     def __call__(self, times: np.ndarray) -> Solution:
         """The simulation at times (T,) (s)."""

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 from mbsd.base.arguments import CHECKS, finite_number, number_pair
 from mbsd.base.errors import ModelError
+from mbsd.base.pickled import with_copied_fields
 from mbsd.base.shown import shown
 
 __all__ = ["Body", "Marker", "finite_number", "number_pair"]
@@ -42,6 +43,9 @@ class Marker:
     angle: float = 0.0
     z: float | None = None
     """Place along the normal of the plane (m); None: that of its body."""
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Marker:
+        return with_copied_fields(self, memo)
 
     @property
     def plane(self) -> float | None:
@@ -89,6 +93,9 @@ class Body:
     products: tuple[float, float] = (0.0, 0.0)
     """Products of inertia, integrals of x z dm and y z dm about the centre of mass in the body frame (kg m^2). They are
     those of a body that reaches along the normal, such as a crankshaft; 0 of one that is alike on both sides of z."""
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Body:
+        return with_copied_fields(self, memo)
 
     def __setattr__(self, name: str, value: object) -> None:
         super().__setattr__(name, self._checked(name, value))

@@ -17,7 +17,7 @@ from mbsd.base.names import no_such
 from mbsd.model.body import Body, Marker, at_end
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
-from mbsd.model.mechanism import Model, connections
+from mbsd.model.mechanism import Model, connections, new_bar, new_body
 from mbsd.model.roles import Role, arguments
 
 BODY = ("mass", "com", "inertia", "z", "products")
@@ -126,8 +126,7 @@ def given_body(body: Body) -> dict[str, Any]:
 def _change_body(m: Model, body: Body, values: Mapping[str, Any]) -> None:
     bar = body.length is not None
     _refuse_others(m, f"body '{body.name}'", values, BAR if bar else BODY)
-    apart = Model(m.name)
-    new = (apart.bar if bar else apart.body)(body.name, **(given_body(body) | dict(values)))
+    new = (new_bar if bar else new_body)(m, body.name, **(given_body(body) | dict(values)))
     if body.length is not None and new.length is not None and new.length != body.length:
         _move_ends(m, body, body.length, new.length)
     body.take(new)
@@ -142,8 +141,11 @@ def _move_ends(m: Model, bar: Body, old: float, new: float) -> None:
     for table in connections(m):
         for name, entry in table.items():
             assert isinstance(entry, Joint | Force)
-            params = {key: moved(value) if isinstance(value, Marker) else value for key, value in entry.params.items()}
-            table[name] = replace(entry, i=moved(entry.i), j=moved(entry.j), params=params)  # pyright: ignore[reportIndexIssue]
+            follows = {key: marker for key, value in entry.params.items()
+                       if isinstance(value, Marker) and (marker := moved(value)) is not value}  # fmt: skip
+            i, j = moved(entry.i), moved(entry.j)
+            if i is not entry.i or j is not entry.j or follows:
+                table[name] = replace(entry, i=i, j=j, params={**entry.params, **follows})  # pyright: ignore[reportIndexIssue]
     for name, marker in m.traces.items():
         m.traces[name] = moved(marker)
     for name, event in m.events.items():

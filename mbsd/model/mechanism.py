@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -92,13 +92,7 @@ class Model:
         about the centre of mass, in the body frame (kg m^2), of a body that reaches along the normal. Raises ModelError
         on a name already used or an impossible mass.
         """
-        new_name(self, name, "body", self.bodies)
-        known = 0.0 if mass is None else mass
-        checked: Any = com, products  # a body turns any two numbers into a pair
-        body = self.bodies[name] = Body(name, self.name, known, checked[0], inertia, z=z, products=checked[1])
-        body.mass_given = mass is not None
-        body.belong(self)
-        return body
+        return self._with(name, new_body, mass, com, inertia, z=z, products=products)
 
     def bar(
         self,
@@ -116,13 +110,13 @@ class Model:
         With a mass and nothing else it is a uniform slender rod: com at the middle, inertia m l^2 / 12, also after its
         mass or length changes. ``z`` and ``products`` are those of :meth:`body`.
         """
-        length = length_given(self, f"bar '{name}' has length", length)
-        derived = frozenset(key for key, value in (("com", com), ("inertia", inertia)) if value is None)
-        com = (length / 2, 0.0) if com is None else com
-        mass = None if mass is None else number_given(self, f"mass of body '{name}'", mass)
-        inertia = rod_inertia(mass or 0.0, length) if inertia is None else inertia
-        body = self.body(name, mass, com, inertia, z=z, products=products)
-        body.length, body.derived = length, derived
+        return self._with(name, new_bar, length, mass, com, inertia, z=z, products=products)
+
+    def _with(self, name: str, make: Callable[..., Body], *given: Any, **named: Any) -> Body:
+        """A body that is made, once its name is known to be new."""
+        new_name(self, name, "body", self.bodies)
+        body = self.bodies[name] = make(self, name, *given, **named)
+        body.belong(self)
         return body
 
     def set_mass(
@@ -154,6 +148,32 @@ class Model:
     def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:
         """See :meth:`mbsd.model.body.Body.at_world`; it takes the equations, which a Mechanism knows."""
         raise ModelError(f"{self.name}: {body.name}.at_world needs a Mechanism")
+
+
+def new_body(
+    m: Model, name: str, mass: float | None = None, com: Sequence[float] = (0.0, 0.0), inertia: float = 0.0, *,
+    z: float | None = None, products: Sequence[float] = (0.0, 0.0),
+) -> Body:  # fmt: skip
+    """A body as :meth:`Model.body` adds it, which belongs to no mechanism yet; ``m`` is named in errors."""
+    checked: Any = com, products  # a body turns any two numbers into a pair
+    body = Body(name, m.name, 0.0 if mass is None else mass, checked[0], inertia, z=z, products=checked[1])
+    body.mass_given = mass is not None
+    return body
+
+
+def new_bar(
+    m: Model, name: str, length: float, mass: float | None = None, com: Sequence[float] | None = None,
+    inertia: float | None = None, *, z: float | None = None, products: Sequence[float] = (0.0, 0.0),
+) -> Body:  # fmt: skip
+    """A bar as :meth:`Model.bar` adds it, likewise."""
+    length = length_given(m, f"bar '{name}' has length", length)
+    derived = frozenset(key for key, value in (("com", com), ("inertia", inertia)) if value is None)
+    com = (length / 2, 0.0) if com is None else com
+    mass = None if mass is None else number_given(m, f"mass of body '{name}'", mass)
+    inertia = rod_inertia(mass or 0.0, length) if inertia is None else inertia
+    body = new_body(m, name, mass, com, inertia, z=z, products=products)
+    body.length, body.derived = length, derived
+    return body
 
 
 SHORTEST = 1e-12

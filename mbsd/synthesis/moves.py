@@ -13,15 +13,15 @@ import numpy as np
 from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
-from mbsd.derivatives.asked import needs_models, needs_reactions, wanted
 from mbsd.derivatives.numbers import Number, number_named, with_values
 from mbsd.derivatives.refused import refuse_unfit
-from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, slopes_of
+from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, values_and_slopes
 from mbsd.derivatives.sweeps import SweepTangents
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model
+from mbsd.results.solution import Solution
 from mbsd.synthesis.built import built, refuse_build
 from mbsd.synthesis.ends import refuse_ends
 from mbsd.synthesis.wishes import Bounds, Condition, function_of_values
@@ -39,8 +39,8 @@ class Tried:
     """(k,) by the numbers."""
     conditions: list[float]
     condition_slopes: list[np.ndarray]
-    solution: Any
-    """None where there is no motion."""
+    solve: Callable[[], Solution] | None
+    """Gives the motion; None where there is none."""
     model: Any
 
 
@@ -82,16 +82,13 @@ class Moves:
         own = {label: function_of_values(self.bounds.names, what) for label, what in self.wishes.items()}
         asked = {label: what for label, what in self.wishes.items() if own[label] is None}
         tangents = self._tangents(model, numbers, asked)
-        functions = wanted(model, asked, tangents.sol) if asked else {}
-        values = {label: np.asarray(function(tangents.sol)) for label, function in functions.items()}
+        values, slopes = values_and_slopes(model, asked, tangents, numbers)
         for label, value in values.items():
             if value.size != 1:
                 raise ModelError(
                     f"{self.m.name}: optimise: {label} gives {value.size} numbers; it must give one: take a measure, "
                     "such as largest(...), of it"
                 )
-        more = needs_models(asked), needs_reactions(model, asked)
-        slopes = slopes_of(tangents, numbers, functions, *more) if functions else {}
         out = []
         for label, known in own.items():
             if known is not None:
@@ -102,7 +99,7 @@ class Moves:
                 raise ModelError(f"{self.m.name}: optimise: {label} is no number in this motion, or has no derivative")
             out.append((float(values[label].reshape(())), slope))
         (value, slope), *rest = out
-        return Tried(value, slope, [v for v, _ in rest], [s for _, s in rest], tangents.sol, model)
+        return Tried(value, slope, [v for v, _ in rest], [s for _, s in rest], tangents.solve, model)
 
     def model(self, x: np.ndarray) -> Any:
         """The mechanism with numbers x. Raises what the author's function raises."""

@@ -169,7 +169,7 @@ class _Search:
             self.good = u.copy(), tried
             if self.best is None or self._rank(tried) < self._rank(self.best[1]):
                 self.best = u.copy(), tried
-        self.history.append(tried.value if tried.solution is not None else np.nan)
+        self.history.append(tried.value if tried.solve is not None else np.nan)
         if self.progress is not None:
             self.progress(len(self.history), tried.value)
         self.kept[key] = tried
@@ -260,6 +260,7 @@ def _size(condition: Condition, value: float) -> float:
 def _optimum(search: _Search, message: str, ended: bool) -> Optimum:
     assert search.best is not None
     u, tried = search.best
+    assert tried.solve is not None
     x = search.bounds.low + search.bounds.size * u
     names = search.bounds.names
     return Optimum(
@@ -272,5 +273,5 @@ def _optimum(search: _Search, message: str, ended: bool) -> Optimum:
         message,
         len(search.history),
         np.array(search.history),
-        tried.solution,
+        tried.solve(),
     )

@@ -140,7 +140,7 @@ class IndependentTangents:
         own = [accelerations or self.every[p].near is None for p in of]
         light = np.flatnonzero(~np.array(own))
         if len(light):
-            many = np.tile(along.t, len(light)), np.tile(along.q, (len(light), 1)), np.tile(z, (len(light), 1))
+            many = (np.concatenate([part] * len(light)) for part in (along.t, along.q, z))
             there, rest = poses[light].reshape(-1, 2, width), a[light].reshape(-1, width)
             self._begin(self.arrays, packed.system.mass, packed.system.inertia, states[0, 0], float(along.t[0]))
             given = states[light].reshape(-1, 2, FIRST + self.f)

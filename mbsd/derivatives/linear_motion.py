@@ -56,7 +56,9 @@ class Carried:
         step = np.clip(np.searchsorted(edges, times, side="right") - 1, 0, len(edges) - 2)
         length = edges[step + 1] - edges[step]
         weights = length[:, None] * weights_at((times - edges[step]) / length)
-        return self.y[NODES * step] + np.einsum("rn,rnkc->rkc", weights, self.rates[_nodes_of(step)])
+        rates = self.rates[_nodes_of(step)]
+        grown = weights[:, None] @ rates.reshape(*weights.shape, -1)
+        return self.y[NODES * step] + grown.reshape(len(times), *self.y.shape[1:])
 
 
 def carried(t: np.ndarray, a: np.ndarray, b: np.ndarray, begun: np.ndarray, slight: np.ndarray) -> Carried:

@@ -7,11 +7,10 @@ from itertools import pairwise
 import numpy as np
 
 from mbsd.derivatives.linear_motion import NODES, PLACES
+from mbsd.derivatives.step_lengths import EVEN, fill_lengths
 
 SAME = 1e-9
 """Part of a step that is none."""
-EVEN = 4
-"""Gaps of five even times."""
 EVENLY = np.linalg.inv(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, EVEN + 1), EVEN))[[2, EVEN]]
 """(2, 5) what makes Legendre's second and fourth coefficients of values at even times."""
 SMOOTH = 1e-4
@@ -44,26 +43,18 @@ def looked_at_closer(t: np.ndarray, longest: np.ndarray) -> np.ndarray:
     return np.append(t[at] + gaps[at] * (inside / parts[at]), t[-1])
 
 
-def longest_steps(t: np.ndarray, motion: np.ndarray, usual: float) -> np.ndarray:
+def longest_steps(t: np.ndarray, motion: np.ndarray, per: np.ndarray, usual: float) -> np.ndarray:
     """(L - 1,) how long steps may be between the times t (L,) of a motion (L, k), around the ``usual`` length (s).
 
-    ``motion`` has parts of its largest values. Five times with equal gaps tell how fast Legendre's coefficients fall.
+    ``per`` (k,) is what makes parts of their largest values of its columns, 0 for one that counts for nothing.
     """
-    gaps, windows = np.diff(t), len(t) - EVEN
-    if windows < 1:
-        return np.full(len(gaps), usual)
-    second, fourth = (
-        np.abs(sum(weight * motion[n : n + windows] for n, weight in enumerate(row))).max(axis=1) for row in EVENLY
-    )
-    fall = np.minimum(fourth / np.maximum(second, 1e-300), 1.0)
+    if len(t) <= EVEN:
+        return np.full(len(t) - 1, usual)
     smooth = SMOOTH * min(1.0, USUAL * usual / (t[-1] - t[0]))
-    step = (t[EVEN:] - t[:windows]) * (smooth / np.maximum(fourth * fall**2, 1e-300)) ** (1 / 9)
-    around = [gaps[n : n + windows] for n in range(EVEN)]
-    widest, narrowest = np.max(around, axis=0), np.min(around, axis=0)
-    even = (widest - narrowest <= 1e-6 * widest) & (narrowest > 0.0)
-    known = np.pad(np.where(even, step, usual), EVEN - 1, mode="edge")
-    least = np.min([known[k : k + len(gaps)] for k in range(EVEN)], axis=0)
-    return np.clip(least, SHORTER * usual, LONGER * usual)
+    bounds = np.array([SHORTER * usual, usual, LONGER * usual])
+    out = np.zeros(len(t) - 1)
+    fill_lengths(t, motion, per, EVENLY, smooth, bounds, np.zeros(len(t) - EVEN), out)
+    return out
 
 
 def first_edges(ends: tuple[float, float], met: np.ndarray, t: np.ndarray, longest: np.ndarray) -> np.ndarray:
@@ -71,8 +62,10 @@ def first_edges(ends: tuple[float, float], met: np.ndarray, t: np.ndarray, longe
 
     They are as long as ``longest`` (L - 1,) (s) between times t (L,) allows.
     """
-    times = np.unique(np.append(met, ends))
-    times = times[np.concatenate([[True], np.diff(times) > ROUNDING * (times[-1] - times[0])])]
+    times = np.array(ends)
+    if len(met):
+        times = np.unique(np.append(met, ends))
+        times = times[np.concatenate([[True], np.diff(times) > ROUNDING * (times[-1] - times[0])])]
     passed = np.concatenate([[0.0], np.cumsum(np.diff(t) / longest)])  # steps up to each time
     steps = np.interp(times, t, passed)
     parts = np.maximum(1, np.ceil(np.diff(steps) - SAME)).astype(int)

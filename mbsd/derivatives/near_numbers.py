@@ -79,6 +79,8 @@ class NearNumbers:
         self.variation, self.starts, self.loads = variation, starts, loads
         self._first = variation.first.system
         own, known = self._first.angle_offset, variation.base.packed.system.angle_offset
+        self._no_masses, self._no_gravity = np.zeros_like(self._first.mass), np.zeros_like(self._first.gravity)
+        self._no_com = np.zeros_like(variation.first.com)
         self._turns = np.round((known - own) / math.tau) * math.tau
 
     def of(self, number: Number) -> Near | None:
@@ -121,7 +123,7 @@ class NearNumbers:
             return Near(number, size, mass, moment, gravity, com, loads, traces, packed if moved else None, away, begun)
 
     def _in_place(self, m: Model) -> bool:
-        """Whether joints, drivers and centres of mass are what they were, and forces are elements at the same places."""
+        """Whether joints, drivers and centres of mass are what they were, and all forces are elements."""
         first, saved, base = self.variation.first, self.variation.saved, self.loads
         if m is not saved.m or first.specials.names:
             return False
@@ -133,18 +135,21 @@ class NearNumbers:
     def _light(self, m: Model, number: Number, size: float, away: float) -> Near | None:
         """The slopes, where masses, elements of forces, gravity and the start alone may change."""
         own, saved = self.variation, self.variation.saved
-        mass, moment = (
-            np.array([getattr(body, name) - was[name] for body, was in saved.bodies]) / away
-            for name in ("mass", "inertia")
-        )
-        gravity = (np.array(m.gravity or (0.0, 0.0)) - self._first.gravity) / away
+        mass, moment, gravity = self._no_masses, self._no_masses, self._no_gravity
+        heavier = any(body.mass != was["mass"] or body.inertia != was["inertia"] for body, was in saved.bodies)
+        if heavier:
+            mass, moment = (
+                np.array([getattr(body, name) - was[name] for body, was in saved.bodies]) / away
+                for name in ("mass", "inertia")
+            )
+        if m.gravity != saved.gravity:
+            gravity = (np.array(m.gravity or (0.0, 0.0)) - self._first.gravity) / away
         loads = self._elements(m, away)
-        begun = self.starts.of(m, None, away, moved=False, heavier=bool(mass.any() or moment.any()))
+        begun = self.starts.of(m, None, away, moved=False, heavier=heavier)
         traces = _slopes_of_traces(m, own, away)
         if begun is None or traces is None or loads is None:
             return None
-        com = np.zeros_like(own.first.com)
-        return Near(number, size, mass, moment, gravity, com, loads, traces, None, away, begun)
+        return Near(number, size, mass, moment, gravity, self._no_com, loads, traces, None, away, begun)
 
     @cached_property
     def _numbers(self) -> dict[str, tuple[int, tuple[Element, ...]]]:

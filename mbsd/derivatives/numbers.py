@@ -55,7 +55,6 @@ def numbers_named(m: Model, names: Sequence[str]) -> list[Number]:
 
 def number_named(m: Model, name: str) -> Number:
     """The number of this name. Raises ModelError for one that there is not, and for what is no number."""
-    known = [*(key for table in connections(m) for key in table), *m.bodies, *m.traces, "gravity"]
     if not isinstance(name, str):
         raise ModelError(f"{m.name}: derivatives: {shown(name)} is no name of a number; write 'crank.length'")
     for whole, rest in _splits(name):
@@ -64,6 +63,7 @@ def number_named(m: Model, name: str) -> Number:
         number = _of_entry(m, name, whole, rest) or _of_body(m, name, whole, rest) or _of_trace(m, name, whole, rest)
         if number is not None:
             return number
+    known = [*(key for table in connections(m) for key in table), *m.bodies, *m.traces, "gravity"]
     whole = next((whole for whole, _ in _splits(name) if whole in known), None)
     if whole is None:
         raise ModelError(f"{m.name}: derivatives: {no_such('thing with numbers', name.partition('.')[0], known)}")

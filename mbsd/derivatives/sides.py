@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -84,6 +84,8 @@ class BothSides:
         mass = system.mass + far * np.array([near.mass for near in every])[:, None]
         moment = system.inertia + far * np.array([near.moment for near in every])[:, None]
         coms = com + far[..., None] * np.array([near.com for near in every])[:, None]
+        moved = [p for p, near in enumerate(every) if near.packed is not None]
+        rows = cache(lambda: dict(zip(moved, self._rows_beside([every[p] for p in moved], away[moved]), strict=True)))
         return [
             Sides(
                 near.size,
@@ -94,43 +96,49 @@ class BothSides:
                 coms[p],
                 {name: far[p] * slope for name, slope in near.traces.items()},
                 near.begun,
-                partial(self._straight, near, away[p].tolist()),
+                partial(self._straight, near, away[p].tolist(), None if near.packed is None else partial(_at, rows, p)),
                 near if near.packed is None else None,
             )
             for p, near in enumerate(every)
         ]
 
-    def _straight(self, near: Near, away: list[float]) -> list[Embedding]:
+    def _straight(self, near: Near, away: list[float], rows: Callable[[], np.ndarray] | None) -> list[Embedding]:
+        """Arrays for changes ``away`` of a number, with (2, g, 21) ``rows`` of the groups, if these change."""
         system, arrays = self.ready.packed.system, self.arrays
         slopes = {"inertia": near.inertia, "weight": near.weight(system.gravity, system.mass), "gravity": near.gravity}
-        rows: Sequence[np.ndarray | None] = [None for _ in away]
-        if near.packed is not None:
-            rows = self._rows_beside(near.packed, near.away, away)
+        number = None if rows is None else rows()
         out: list[Embedding] = []
-        for h, row in zip(away, rows, strict=True):
+        for side, h in enumerate(away):
             own: dict[str, Any] = {name: getattr(arrays, name) + h * slope for name, slope in slopes.items()}
-            if row is not None:
-                own["number"] = row
+            if number is not None:
+                own["number"] = number[side]
             parts = {name: getattr(arrays.loads, name) + h * slope for name, slope in near.loads.items()}
             out.append(arrays._replace(**own, loads=arrays.loads._replace(**parts)))
         return out
 
-    def _rows_beside(self, packed: Packed, near: float, away: list[float]) -> list[np.ndarray]:
-        """(g, 21) those of the groups for changes ``away``, from a mechanism whose number is larger by ``near``.
+    def _rows_beside(self, every: Sequence[Near], away: np.ndarray) -> np.ndarray:
+        """(n, 2, g, 21) those of the groups for changes ``away`` (n, 2) of numbers that change places.
 
         Numbers of groups are linear in places, rows that are made of them are not.
         """
         plan, arrays = self.made.plan, self.arrays
-        numbers = plan.remade(packed)
-        if numbers is None:
-            slope = (self._rows_found(packed) - arrays.number) / near
-            slope[:, SIGN:] = 0.0
-            return [arrays.number + h * slope for h in away]
         own = plan.numbers()
-        slope = (numbers - own) / near
-        rows = rows_of(arrays.group[:, KIND], own + np.array(away)[:, None, None] * slope)
+        numbers = np.repeat(own[None], 2 * len(every), axis=0).reshape(len(every), 2, *own.shape)
+        found: dict[int, np.ndarray] = {}
+        for k, near in enumerate(every):
+            assert near.packed is not None
+            remade = plan.remade(near.packed)
+            if remade is None:
+                slope = (self._rows_found(near.packed) - arrays.number) / near.away
+                slope[:, SIGN:] = 0.0
+                found[k] = arrays.number + away[k, :, None, None] * slope
+            else:
+                numbers[k] += away[k, :, None, None] * ((remade - own) / near.away)
+        rows = rows_of(arrays.group[:, KIND], numbers)
         rows[..., SIGN:] = arrays.number[:, SIGN:]
-        return list(rows)
+        for k, row in found.items():
+            rows[k] = row
+        return rows
 
     def packed(self, variants: Variants, traces: Mapping[str, Marker]) -> Sides:
         """Those that were packed each by itself, of a mechanism with ``traces``. Raises NotSmooth likewise."""
@@ -181,14 +189,18 @@ class BothSides:
         return arrays._replace(**own)
 
 
+def _at(rows: Callable[[], Mapping[int, np.ndarray]], p: int) -> np.ndarray:
+    return rows()[p]
+
+
 def forces_beside(arrays: Embedding, gravity: np.ndarray, mass: np.ndarray, every: Sequence[Near]) -> ForcesBeside:
     """Numbers near those of ``arrays``, with gravity (2,) and masses (nb,)."""
-    inertia, weight = np.zeros((2, len(every), 3 * len(mass)))
-    which: list[int] = []
-    for k, near in enumerate(every):
-        inertia[k], weight[k] = near.inertia, near.weight(gravity, mass)
-        if near.loads:
-            which.append(k)
+    by, moment, field = (np.array([getattr(near, name) for near in every]) for name in ("mass", "moment", "gravity"))
+    inertia = np.stack([by, by, moment], axis=-1).reshape(len(every), -1)
+    weight = np.zeros((len(every), len(mass), 3))
+    weight[..., :2] = by[..., None] * gravity + mass[:, None] * field[:, None]
+    weight = weight.reshape(len(every), -1)
+    which = [k for k, near in enumerate(every) if near.loads]
     loads, shape = arrays.loads, (len(which), 2)
     place, number = (np.broadcast_to(part, (*shape, *part.shape)).copy() for part in (loads.place, loads.number))
     per = np.zeros(len(which))

@@ -63,17 +63,17 @@ def between(course: Course, times: np.ndarray) -> Motion:
 def looked_at_closely(runs: Repeated, first: Course) -> tuple[Course, np.ndarray]:
     """A course, at closer times where it is smooth and was looked at too seldom, and how long steps may be there."""
     usual = (first.t[-1] - first.t[0]) / max(1.0, STEPS_OF_METHOD * first.steps)
-    longest = longest_steps(first.t, _parts(first), usual)
+    longest = longest_steps(first.t, *_parts(first), usual)
     for _ in range(AGAIN if first.q is not None else 0):
         if first.steps < len(first.t) and not (longest < FEW * np.diff(first.t)).any():
             break
         first = runs.closer(looked_at_closer(first.t, longest))
-        longest = longest_steps(first.t, _parts(first), usual)
+        longest = longest_steps(first.t, *_parts(first), usual)
     return first, longest
 
 
-def _parts(first: Course) -> np.ndarray:
-    """(T, 2 n) speeds and accelerations, as parts of their largest."""
+def _parts(first: Course) -> tuple[np.ndarray, np.ndarray]:
+    """(T, 2 n) speeds and accelerations, and (2 n,) what makes parts of their largest of them."""
     motion = np.concatenate([first.v[:, 3:], first.a[:, 3:]], axis=1)
     largest = np.abs(motion).max(axis=0)
-    return motion / np.where(largest > 1e-9 * largest.max(initial=1e-300), largest, np.inf)
+    return motion, 1.0 / np.where(largest > 1e-9 * largest.max(initial=1e-300), largest, np.inf)

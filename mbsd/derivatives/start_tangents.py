@@ -27,13 +27,18 @@ class StartTangents:
     def __init__(self, m: Model, ready: PreparedDynamics) -> None:
         packed = ready.packed
         self.packed = packed
+        self.none = np.zeros_like(ready.initial.q), np.zeros_like(ready.initial.q)
+        """What changes nothing."""
         self.q, self.v, self.drive = ready.initial.q, ready.initial.v, drive_at(packed, ready.start)
         self.nu = np.zeros(len(packed.ws.phi))
         self.nu[packed.driver_rows :] = self.drive[1:, 1]
         self.starts, self.velocities = dict(m.starts), dict(m.velocities)
         self.still = not m.velocities and not self.nu.any()
         """Whether nothing moves at the start, whatever the numbers are."""
-        self.phi, self.rate, jac = self._evaluated(packed, self.q)
+        self.speed = self.v.reshape(-1, 3)[packed.system.row_body].reshape(-1, 6)
+        """(m, 6) velocities of both bodies of each row."""
+        self.phi, self.rate = self._evaluated(packed, self.q)
+        jac = packed.jacobian()
         self.values = np.array([value for _, value in given_coordinates(m, packed)])
         self.wanted = np.array([c for c, _ in given_coordinates(m, packed)], np.int64)
         scale, size = packed.row_scale()[:, None], packed.column_scale()
@@ -50,7 +55,7 @@ class StartTangents:
             self.places = None
         self.speeds = None
         if not self.still:
-            rows, self.given = self._given(m, packed, self.q)
+            rows, self.given = self._given(m, packed, self.q), self._left(m, packed, self.q)
             kept = independent_rows(np.vstack([jac * scale * size, rows * size]))
             self.kept = np.array([k - len(jac) for k in kept if k >= len(jac)], np.int64)
             self.speeds = self._inverse(np.vstack([jac, rows[self.kept]]), kept, len(jac))
@@ -63,8 +68,10 @@ class StartTangents:
         ``packed``: arrays of ``m``, where they are others; ``moved``: whether places of markers or of centres of mass
         change with the number; ``heavier``: masses.
         """
-        q, v, packed = np.zeros_like(self.q), np.zeros_like(self.v), packed or self.packed
-        turned = moved or m.starts != self.starts
+        packed, turned = packed or self.packed, moved or m.starts != self.starts
+        if not turned and m.velocities == self.velocities and (self.still or not heavier or self.speeds is not None):
+            return self.none
+        q, v = np.zeros((2, len(self.q)))
         if turned:
             if self.places is None:
                 return None
@@ -72,32 +79,34 @@ class StartTangents:
             phi = packed.ws.phi
             values = np.array([value for _, value in given_coordinates(m, packed)])
             q[3:] = self.places @ np.concatenate([(self.phi - phi) / away, (values - self.values)[self.held] / away])
-        faster = turned or m.velocities != self.velocities
-        if not faster and (self.still or not heavier or self.speeds is not None):
-            return q, v
         if self.still and not m.velocities:
             return q, v
         if self.speeds is None:  # the least kinetic energy decides as well
             return None
         there = self.q + away * q
-        rate, given = self._evaluated(packed, there)[1], self._given(m, packed, there)[1]
+        rate, given = self._evaluated(packed, there)[1], self._left(m, packed, there)
         v[3:] = self.speeds @ np.concatenate([(self.rate - rate) / away, (given - self.given)[self.kept] / away])
         return q, v
 
-    def _evaluated(self, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Phi, J v - nu (m,) and J (m, n) at q (3 nb,) and the speeds of the start."""
+    def _evaluated(self, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Phi and J v - nu (m,) at q (3 nb,) and the speeds of the start."""
         residual_and_jacobian(packed.system, q, self.drive, packed.ws)
-        jac = packed.jacobian()
-        return packed.ws.phi.copy(), jac @ self.v[3:] - self.nu, jac
+        return packed.ws.phi.copy(), (packed.ws.jac * self.speed).sum(axis=1) - self.nu
 
-    def _given(self, m: Model, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """P (k, n) of what start_moving gives, and given - P v (k,)."""
-        entries, values, _ = given_velocities(m, packed, q)
+    @staticmethod
+    def _given(m: Model, packed: Packed, q: np.ndarray) -> np.ndarray:
+        """P (k, n) of what start_moving gives."""
+        entries = given_velocities(m, packed, q)[0]
         rows = np.zeros((len(entries), packed.coordinates))
         for row, factors in zip(rows, entries, strict=True):
             for c, factor in factors.items():
                 row[c - 3] = factor
-        return rows, values - rows @ self.v[3:]
+        return rows
+
+    def _left(self, m: Model, packed: Packed, q: np.ndarray) -> np.ndarray:
+        """(k,) given - P v."""
+        entries, values, _ = given_velocities(m, packed, q)
+        return values - [sum(factor * self.v[c] for c, factor in factors.items()) for factors in entries]
 
     @staticmethod
     def _inverse(matrix: np.ndarray, kept: list[int], rows: int) -> np.ndarray | None:

@@ -9,6 +9,7 @@ from typing import Any
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
+from mbsd.base.pickled import with_copied_fields
 from mbsd.base.shown import shown
 from mbsd.model.body import Body, Marker, rod_inertia
 from mbsd.model.event import Event
@@ -60,6 +61,9 @@ class Model:
         self.ground.belong(self)
         self.world_markers: tuple[tuple[Marker, tuple[float, float, float]], ...] = ()
         """Markers that at_world placed, and where in the world (m, m, rad)."""
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Any:
+        return with_copied_fields(self, memo)
 
     def __setattr__(self, name: str, value: object) -> None:
         if name == "name" and not isinstance(value, str):

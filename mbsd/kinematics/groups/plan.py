@@ -228,18 +228,27 @@ class Plan:
 
         Signs of roots are those of the pose of this plan.
         """
-        at, joints = Places(packed.system, self.places.pose), len(packed.joints)
-        links = {(link.joint, link.first): link for own in links_of_joints(packed, range(joints)) for link in own}
+        at, joints, links = Places(packed.system, self.places.pose), len(packed.joints), None
+        if not self._same_offsets(packed):
+            links = {(link.joint, link.first): link for own in links_of_joints(packed, range(joints)) for link in own}
         out = np.zeros((len(self.taken), NUMBERS))
         for row, recipe, (code, bodies, _, _) in zip(out, self.recipes, self.taken, strict=True):
             if recipe is None:
                 return None
-            own = [link if link.joint >= joints else links[link.joint, link.first] for link in recipe.links]
+            own = recipe.links
+            if links is not None:
+                own = [link if link.joint >= joints else links[link.joint, link.first] for link in own]
             made = recipe.made(at, own)
             if made is None or made[:2] != (code, bodies):
                 return None
             row[: len(made[3])] = made[3]
         return out
+
+    def _same_offsets(self, packed: Packed) -> bool:
+        """Whether angles between bodies and lengths of rods are those of this plan, so that its links are."""
+        pairs = [(getattr(part.system, name) for part in (packed, self.packed))
+                 for name in ("angle_offset", "distance_length")]  # fmt: skip
+        return all(a.tobytes() == b.tobytes() for a, b in pairs)
 
     def _take(self, made: Made, recipe: Recipe) -> None:
         self.used.update(link.joint for link in recipe.links)

@@ -15,7 +15,7 @@ from mbsd.base.users_function import described
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.quantities import ACCELERATIONS, Motions, quantity_named
 from mbsd.model.mechanism import Model
-from mbsd.results.columns import FRAME, JOINT, columns
+from mbsd.results.columns import DRIVER, FRAME, JOINT, columns
 from mbsd.results.solution import Solution
 
 Wanted = Mapping[str, Callable[[Solution], np.ndarray]]
@@ -106,6 +106,20 @@ def reads_bodies(m: Model, name: str) -> OfMotions | None:
     return None
 
 
+def reads_forces(m: Model, name: str) -> Callable[[Solution], np.ndarray] | None:
+    """(T,) of a quantity that is clearly one of a joint, a driver or the potential energy; None of any other."""
+    whole, _, component = name.rpartition(".")
+    if name == "potential":
+        return lambda sol: sol.energy.potential
+    if whole in m.bodies or whole in m.traces:
+        return None
+    if whole in m.joints and component in JOINT:
+        return lambda sol: getattr(sol.joint(whole), component)
+    if whole in m.drivers and component in DRIVER:
+        return lambda sol: getattr(sol.driver(whole), component)
+    return None
+
+
 def needed(of: Any, t: np.ndarray) -> np.ndarray:
     """Rows of output times (T,) of which tangents are asked: where measures alone are, those that they read."""
     given = _each(of)
@@ -153,13 +167,14 @@ def _quantity(m: Model, name: str, sol: Solution) -> Callable[[Solution], np.nda
     whole, _, component = name.rpartition(".")
     if whole in m.bodies and whole != "ground" and component in FRAME:
         return lambda sol: getattr(sol.body(whole), component)
+    of_force = reads_forces(m, name)
+    if of_force is not None:
+        return of_force
     known = list(columns(taken(sol, np.arange(1))))
     quantity = quantity_named(m, name, known)
     title = whole.split(" ", 1)[-1] if whole.split(" ", 1)[0] in ("joint", "driver", "force") else whole
     if whole in m.bodies or name == "kinetic" or whole.startswith("trace "):
         return quantity.of_solution
-    if name == "potential":
-        return lambda sol: sol.energy.potential
     if title in m.joints and component in JOINT:
         return lambda sol: getattr(sol.joint(title), component)
     if title in m.drivers:

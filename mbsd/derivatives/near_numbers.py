@@ -8,7 +8,6 @@ changed and packed once, and both sides of a difference, farther from the motion
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -57,6 +56,8 @@ class Near:
     """By how much it is larger."""
     begun: tuple[np.ndarray, np.ndarray]
     """(3 nb,) q' and v' at the start."""
+    replaced: bool
+    """Whether joints, forces or traced points are made anew for another value."""
 
     @property
     def inertia(self) -> np.ndarray:
@@ -78,10 +79,8 @@ class NearNumbers:
     def __init__(self, variation: Variation, starts: StartTangents, loads: Loads) -> None:
         self.variation, self.starts, self.loads = variation, starts, loads
         self._first = variation.first.system
-        own, known = self._first.angle_offset, variation.base.packed.system.angle_offset
         self._no_masses, self._no_gravity = np.zeros_like(self._first.mass), np.zeros_like(self._first.gravity)
         self._no_com = np.zeros_like(variation.first.com)
-        self._turns = np.round((known - own) / math.tau) * math.tau
 
     def of(self, number: Number) -> Near | None:
         """The slopes by a number; None where arrays do not go on straight, or what is given leaves the start open."""
@@ -96,8 +95,9 @@ class NearNumbers:
     def _at(self, number: Number, size: float, away: float) -> Near | None:
         own, first = self.variation, self.variation.first
         with with_value(own.work, number, number.value + away, own.saved) as m:
-            if self._in_place(m):
-                return self._light(m, number, size, away)
+            light = self._light(m, number, size, away) if self._in_place(m) else None
+            if light is not None:
+                return light
             packed = repacked(m, first, own.saved) or pack(m)
             if packed.first_row.tolist() != first.first_row.tolist() or packed.body_names != first.body_names:
                 return None
@@ -106,8 +106,8 @@ class NearNumbers:
             com = _slope(packed.com, first.com, away)
             moved = packed.system is not first.system and not alike(packed, first, PLACES)
             masses = packed.system is first.system or alike(packed, first, ("mass", "inertia"))
-            if self._turns.any():
-                offset = packed.system.angle_offset + self._turns
+            if own.turns.any():
+                offset = packed.system.angle_offset + own.turns
                 packed = replace(packed, system=packed.system.changed(angle_offset=offset))
             begun = self.starts.of(m, packed, away, moved or bool(com.any()), not masses)
             traces = _slopes_of_traces(m, own, away)
@@ -120,7 +120,8 @@ class NearNumbers:
             mass, moment, gravity = (
                 _slope(getattr(system, name), getattr(base, name), away) for name in ("mass", "inertia", "gravity")
             )
-            return Near(number, size, mass, moment, gravity, com, loads, traces, packed if moved else None, away, begun)
+            there, anew = packed if moved else None, not self._tables_kept(m)
+            return Near(number, size, mass, moment, gravity, com, loads, traces, there, away, begun, anew)
 
     def _in_place(self, m: Model) -> bool:
         """Whether joints, drivers and centres of mass are what they were, and all forces are elements."""
@@ -133,7 +134,7 @@ class NearNumbers:
         return all(unchanged(table, saved) for table in tables) and all(b.com == was["com"] for b, was in saved.bodies)
 
     def _light(self, m: Model, number: Number, size: float, away: float) -> Near | None:
-        """The slopes, where masses, elements of forces, gravity and the start alone may change."""
+        """The slopes, where masses, numbers of elements, gravity and the start alone change; else None."""
         own, saved = self.variation, self.variation.saved
         mass, moment, gravity = self._no_masses, self._no_masses, self._no_gravity
         heavier = any(body.mass != was["mass"] or body.inertia != was["inertia"] for body, was in saved.bodies)
@@ -149,7 +150,12 @@ class NearNumbers:
         traces = _slopes_of_traces(m, own, away)
         if begun is None or traces is None or loads is None:
             return None
-        return Near(number, size, mass, moment, gravity, self._no_com, loads, traces, None, away, begun)
+        anew = not self._tables_kept(m)
+        return Near(number, size, mass, moment, gravity, self._no_com, loads, traces, None, away, begun, anew)
+
+    def _tables_kept(self, m: Model) -> bool:
+        saved = self.variation.saved
+        return m is saved.m and all(unchanged(table, saved) for table in (m.joints, m.drivers, m.forces, m.traces))
 
     @cached_property
     def _numbers(self) -> dict[str, tuple[int, tuple[Element, ...]]]:

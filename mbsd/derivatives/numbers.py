@@ -22,7 +22,7 @@ from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.derivatives.saved_model import SavedModel
 from mbsd.model.body import Marker
-from mbsd.model.change import BAR, BODY, change, given, given_body
+from mbsd.model.change import BAR, BODY, change, change_body, given, given_body
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, connections
 
@@ -180,7 +180,7 @@ def _of_body(m: Model, name: str, whole: str, rest: str) -> Number | None:
             key: value for key, value in given_body(body).items() if value is not None
         }
         at = _within(inner, values.get(key))
-        return at and Number(name, at[0], lambda m, new: change(m, whole, {key: at[1](new)}))
+        return at and Number(name, at[0], lambda m, new: change_body(m, m.bodies[whole], {key: at[1](new)}))
     entry, _, axis = rest.rpartition(".")
     for table in connections(m):
         if entry in table and axis in PLACE:

@@ -9,7 +9,7 @@ import numpy as np
 
 from mbsd.base.quiet import quiet
 from mbsd.base.users_function import refuse_other_arguments
-from mbsd.derivatives.asked import reads_bodies
+from mbsd.derivatives.asked import reads_bodies, reads_forces
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.quantities import quantity_named
 from mbsd.dynamics.simulate import simulate
@@ -36,7 +36,7 @@ def refuse_unfit(m: Model, wishes: Sequence[tuple[str, Any]], grid: np.ndarray, 
             names.append(wish)
         elif callable(wish):
             refuse_other_arguments(what, wish, "a solution")
-    doubtful = [name for name in names if reads_bodies(m, name) is None]
+    doubtful = [name for name in names if reads_bodies(m, name) is None and reads_forces(m, name) is None]
     if not doubtful:
         return
     with quiet():  # the motion itself says it again

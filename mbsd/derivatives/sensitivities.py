@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -16,6 +16,7 @@ from mbsd.derivatives.numbers import Number, numbers_named
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.sweeps import SweepTangents
+from mbsd.derivatives.with_model import with_model
 from mbsd.dynamics.mobility import mobility
 from mbsd.dynamics.repeated import Repeated
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
@@ -49,8 +50,8 @@ class Tangents(Protocol):
         """What these count in a derivative by number k."""
         ...
 
-    def models(self, k: int, number: Number) -> list[Model]:
-        """The mechanisms of these."""
+    def models(self, k: int, number: Number) -> list[Callable[[], Model]]:
+        """What makes the mechanisms of these."""
         ...
 
 
@@ -139,7 +140,7 @@ def _slopes_along(
     for k, number in enumerate(numbers):
         moved, weights = tangents.moved(k, reactions), tangents.weights(k)
         if models:
-            moved = [replace(sol, mechanism=m) for sol, m in zip(moved, tangents.models(k, number), strict=True)]
+            moved = [with_model(sol, make) for sol, make in zip(moved, tangents.models(k, number), strict=True)]
         for label, function in functions.items():
             columns[label].append(np.sum([w * function(sol) for w, sol in zip(weights, moved, strict=True)], axis=0))
     return {label: np.stack(column, axis=-1) for label, column in columns.items()}

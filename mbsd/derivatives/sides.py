@@ -63,15 +63,17 @@ class BothSides:
 
     def __init__(self, ready: PreparedDynamics, made: Embedded, arrays: Embedding) -> None:
         self.ready, self.made, self.arrays = ready, made, arrays
+        self.near: list[Near | None] = []
+        """By number, how arrays change with it; None where they do not go on straight."""
 
     def of(self, m: Model, variation: Variation, numbers: Sequence[Number]) -> list[Sides]:
         """Those of all numbers of ``m``, which ``variation`` varies. Raises NotSmooth where the groups are others."""
         near = NearNumbers(variation, StartTangents(m, self.ready), self.arrays.loads)
-        known = [near.of(number) for number in numbers]
-        straight = iter(self.straight([own for own in known if own is not None]))
+        self.near = [near.of(number) for number in numbers]
+        straight = iter(self.straight([own for own in self.near if own is not None]))
         return [
             next(straight) if own is not None else self.packed(variation.of(number, SECOND, TINY), m.traces)
-            for number, own in zip(numbers, known, strict=True)
+            for number, own in zip(numbers, self.near, strict=True)
         ]
 
     def straight(self, every: Sequence[Near]) -> list[Sides]:
@@ -124,19 +126,19 @@ class BothSides:
         plan, arrays = self.made.plan, self.arrays
         own = plan.numbers()
         numbers = np.repeat(own[None], 2 * len(every), axis=0).reshape(len(every), 2, *own.shape)
-        found: dict[int, np.ndarray] = {}
+        apart: dict[int, np.ndarray] = {}
         for k, near in enumerate(every):
             assert near.packed is not None
             remade = plan.remade(near.packed)
             if remade is None:
                 slope = (self._rows_found(near.packed) - arrays.number) / near.away
                 slope[:, SIGN:] = 0.0
-                found[k] = arrays.number + away[k, :, None, None] * slope
+                apart[k] = arrays.number + away[k, :, None, None] * slope
             else:
                 numbers[k] += away[k, :, None, None] * ((remade - own) / near.away)
         rows = rows_of(arrays.group[:, KIND], numbers)
         rows[..., SIGN:] = arrays.number[:, SIGN:]
-        for k, row in found.items():
+        for k, row in apart.items():
             rows[k] = row
         return rows
 

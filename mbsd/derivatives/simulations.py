@@ -21,10 +21,12 @@ from mbsd.derivatives.independent_tangents import IndependentTangents, suits
 from mbsd.derivatives.jumps import Jump, jumps_of
 from mbsd.derivatives.linear_motion import NODES
 from mbsd.derivatives.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of, refined
+from mbsd.derivatives.near_numbers import Near
 from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.refused_motions import refuse
 from mbsd.derivatives.sides import BothSides, Sides
 from mbsd.derivatives.smooth_motion import CLOSE, Motion, NotSmooth, between, looked_at_closely, motion_of
+from mbsd.derivatives.straight_variants import variants_beside
 from mbsd.derivatives.stretch import Stretch, Tangents, joined
 from mbsd.derivatives.sweeps import along_of, displaced
 from mbsd.derivatives.tangents import Tangent, has_kinks
@@ -62,8 +64,7 @@ Way = Callable[[np.ndarray], tuple[np.ndarray, Finish]]
 class SimulationTangents:
     """A simulation at output times ``grid`` (T,), and its tangents by numbers at some of them.
 
-    ``needed`` gives the rows of output times of which they are asked; ``of_bodies`` is what is
-    asked for, where that is how bodies move.
+    ``needed`` gives these rows; ``of_bodies`` is what is asked for, where that is how bodies move.
     """
 
     def __init__(
@@ -87,6 +88,7 @@ class SimulationTangents:
         reached = grid[grid <= first.t[-1]]
         self._variants: list[Variants] | None = None
         self._sides: list[Sides] | None = None
+        self._near: list[Near | None] = []
         self._met = np.append(
             first.t[:-1][np.diff(first.t) <= 0.0], first.t[len(first.t) - 1 :][first.t[-1] > reached[-1]]
         )
@@ -146,10 +148,7 @@ class SimulationTangents:
         asked, arrays = self._of_bodies, coordinates.copied(self._runs.tolerance)
         if self._sides is None:
             both = BothSides(ready, coordinates, arrays)
-            if asked is None:
-                self._sides = [both.packed(variants, self.m.traces) for variants in self.variants]
-            else:
-                self._sides = both.of(self.m, self.variation, self._numbers)
+            self._sides, self._near = both.of(self.m, self.variation, self._numbers), both.near
         independent = IndependentTangents(ready, coordinates, arrays, self._sides)
         line = independent.carry(self._first, nodes_of(edges, self._met))
 
@@ -159,7 +158,8 @@ class SimulationTangents:
                 self._take(out.solve(), needed)
                 along = replace(self.along, held=np.ones(self.along.lam.shape, bool))
                 rows, compact = self.stretch_rows(along, 0), self.terms.rows(along)[2]
-                return independent.at(self.terms, along, compact, rows, line, self.variants)
+                self._variants = variants_beside(self.variation, self._numbers, self._near)
+                return independent.at(self.terms, along, compact, rows, line, self._variants)
             self.t, self.solve = out.t, out.solve
             there = out if len(needed) == len(out.t) else out.take(needed)
             motions, weights = independent.motions(there, self.m.traces, line, asked.accelerations)
@@ -238,8 +238,8 @@ class SimulationTangents:
         """(v,) of what is found of :meth:`moved`, for a derivative by number k."""
         return self.variants[k].weights / self.variants[k].step
 
-    def models(self, k: int, number: Number) -> list[Model]:
-        """The mechanisms of :meth:`moved`."""
+    def models(self, k: int, number: Number) -> list[Callable[[], Model]]:
+        """What makes the mechanisms of :meth:`moved`."""
         return models_of(self.m, number, self.variants[k])
 
     # -- nodes -----------------------------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -73,8 +73,8 @@ class SweepTangents:
         """(v,) of what is found of :meth:`moved`, for a derivative by number k."""
         return self.variants[k].weights / self.variants[k].step
 
-    def models(self, k: int, number: Number) -> list[Model]:
-        """The mechanisms of :meth:`moved`."""
+    def models(self, k: int, number: Number) -> list[Callable[[], Model]]:
+        """What makes the mechanisms of :meth:`moved`."""
         return models_of(self.m, number, self.variants[k])
 
     def _states(self, variants: Variants, tangent_of: Tangent) -> np.ndarray:

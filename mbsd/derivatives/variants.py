@@ -10,6 +10,7 @@ import copy
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -81,12 +82,12 @@ def size_of(number: Number, size: float) -> float:
     return abs(number.value) or (size if number.name.rpartition(".")[2] in LENGTHS else 1.0)
 
 
-def models_of(m: Model, number: Number, variants: Variants) -> list[Model]:
-    """Mechanisms with the values of a number that variants have."""
+def models_of(m: Model, number: Number, variants: Variants) -> list[Callable[[], Model]]:
+    """What makes mechanisms with the values of a number that variants have."""
     values = [number.value + variant.offset * variants.step for variant in variants.variants]
     if number.built is not None:
-        return [number.built(value) for value in values]
-    return [with_values(m, [number], [value]) for value in values]
+        return [partial(number.built, value) for value in values]
+    return [partial(with_values, m, [number], [value]) for value in values]
 
 
 Close = Callable[[Model, Packed], Any]
@@ -114,21 +115,25 @@ class Variation:
         self.first = pack(self.work, self._contacts(self.work))
         self.motions, self.laws = list(self.first.motions), self.laws_of(self.first)
         self.moving = bool(self.work.velocities) or bool(self.motions)
+        self.turns = np.round((base.packed.system.angle_offset - self.first.system.angle_offset) / math.tau) * math.tau
+        """Whole turns (rad) of angles that the motion has beyond those of the packed model."""
 
-    def of(self, number: Number, order: tuple[np.ndarray, np.ndarray] = FOURTH, step: float = STEP) -> Variants:
-        """The variants of a number. Raises ModelError where it cannot change."""
+    def of(
+        self, number: Number, order: tuple[np.ndarray, np.ndarray] = FOURTH, step: float = STEP, starts: bool = True
+    ) -> Variants:
+        """The variants of a number, with their ``starts`` or without. Raises ModelError where it cannot change."""
         size = size_of(number, self.base.packed.size)
         h = step * size
         first: ModelError | None = None
         for (offsets, weights), sign in ((order, 1.0), (AHEAD, 1.0), (AHEAD, -1.0)):
             try:
-                made = [self._variant(number, offset * sign, h) for offset in offsets]
+                made = [self._variant(number, offset * sign, h, starts) for offset in offsets]
                 return Variants(number, sign * h, weights, made, size)
             except (ModelError, AssemblyError) as error:
                 first = first or (error if isinstance(error, ModelError) else ModelError(str(error)))
         raise ModelError(f"{self.base.packed.name}: no derivative by '{number.name}': {first}") from first
 
-    def _variant(self, number: Number, offset: float, h: float) -> Variant:
+    def _variant(self, number: Number, offset: float, h: float, starts: bool) -> Variant:
         with with_value(self.work, number, number.value + offset * h, self.saved) as m:
             packed, lawful = self._packed(m)
             first = self.first
@@ -137,7 +142,7 @@ class Variation:
             places = alike(packed, first, PLACES) and packed.com.tobytes() == first.com.tobytes()
             places = places and same_laws(packed.motions, self.base.packed.motions)
             masses = alike(packed, first, ("mass", "inertia"))
-            begins = self.starts and not (places and (masses or not self.moving) and self._starts_alike(m))
+            begins = starts and self.starts and not (places and (masses or not self.moving) and self._starts_alike(m))
             start = self._decide(m, packed, begins)
             known = self.base.loads if lawful and self._pushes_alike(m, packed) else None
             terms = terms_of(packed, self.span, self.base.laws if lawful else None, self.loads, known)
@@ -182,12 +187,10 @@ class Variation:
 
     def _decide(self, m: Model, packed: Packed, begins: bool) -> Any:
         """Turns of angles as in the motion; what rolls, as the start of the variant says. The start, if it is found."""
-        known, mine = self.base.packed.system.angle_offset, packed.system.angle_offset
-        own, start = self.first.system.angle_offset, None
-        turns = np.round((known - own) / math.tau) * math.tau
+        mine, start = packed.system.angle_offset, None
         if packed.specials.phased or begins:
             start = self.close(m, packed)
-        packed.system = packed.system.changed(angle_offset=mine + turns)
+        packed.system = packed.system.changed(angle_offset=mine + self.turns)
         return start
 
 

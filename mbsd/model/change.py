@@ -62,7 +62,7 @@ def change(m: Model, name: str, values: Mapping[str, Any]) -> None:
     if not isinstance(name, str) or name not in m.bodies or name == "ground":
         known = [*(key for table in connections(m) for key in table), *(body for body in m.bodies if body != "ground")]
         raise ModelError(f"{m.name}: {no_such('body, joint, driver, force or contact', name, known)}")
-    return _change_body(m, m.bodies[name], values)
+    return change_body(m, m.bodies[name], values)
 
 
 def given(entry: Joint | Force) -> dict[str, Any]:
@@ -123,7 +123,8 @@ def given_body(body: Body) -> dict[str, Any]:
     return out if body.length is None else {"length": body.length} | out
 
 
-def _change_body(m: Model, body: Body, values: Mapping[str, Any]) -> None:
+def change_body(m: Model, body: Body, values: Mapping[str, Any]) -> None:
+    """The same of a body, whatever else has its name."""
     bar = body.length is not None
     _refuse_others(m, f"body '{body.name}'", values, BAR if bar else BODY)
     new = (new_bar if bar else new_body)(m, body.name, **(given_body(body) | dict(values)))

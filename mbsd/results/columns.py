@@ -18,6 +18,7 @@ FRAME = {
     "alpha": "rad/s^2",
 }
 JOINT = {"x": "m", "y": "m", "fx": "N", "fy": "N", "torque": "N m"}
+DRIVER = ("value", "effort", "power")
 
 
 def columns(sol: Any) -> dict[str, np.ndarray]:

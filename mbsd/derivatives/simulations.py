@@ -25,12 +25,12 @@ from mbsd.derivatives.near_numbers import Near
 from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.refused_motions import refuse
 from mbsd.derivatives.sides import BothSides, Sides
-from mbsd.derivatives.smooth_motion import CLOSE, Motion, NotSmooth, between, looked_at_closely, motion_of
+from mbsd.derivatives.smooth_motion import CLOSE, Motion, NotSmooth, between, looked_at_closely, motion_of, terms_along
 from mbsd.derivatives.straight_variants import variants_beside
 from mbsd.derivatives.stretch import Stretch, Tangents, joined
 from mbsd.derivatives.sweeps import along_of, displaced
 from mbsd.derivatives.tangents import Tangent, has_kinks
-from mbsd.derivatives.terms import Along, terms_of
+from mbsd.derivatives.terms import Along
 from mbsd.derivatives.variants import KINKED, SECOND, TINY, Variants, Variation, models_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics, started
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -81,7 +81,7 @@ class SimulationTangents:
         refuse(first)
         span = float(grid[0]), float(grid[-1])
         self.span = span
-        self.terms = terms_of(first.packed, span)
+        self.terms = terms_along(runs, first)
         packed = first.packed
         contacts = packed.joints[len(packed.joints) - packed.contacts :] if packed.contacts else []
         self.variation = Variation(m, self.terms, span, self._closed, contacts, starts=True)

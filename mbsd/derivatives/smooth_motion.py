@@ -10,7 +10,7 @@ from mbsd.derivatives.asked import taken
 from mbsd.derivatives.between_looks import between_looks
 from mbsd.derivatives.mesh import longest_steps, looked_at_closer
 from mbsd.derivatives.sweeps import along_of
-from mbsd.derivatives.terms import Along
+from mbsd.derivatives.terms import Along, Terms, terms_of
 from mbsd.dynamics.repeated import Course, Repeated
 from mbsd.results.solution import Solution
 
@@ -70,6 +70,14 @@ def looked_at_closely(runs: Repeated, first: Course) -> tuple[Course, np.ndarray
         first = runs.closer(looked_at_closer(first.t, longest))
         longest = longest_steps(first.t, *_parts(first), usual)
     return first, longest
+
+
+def terms_along(runs: Repeated, first: Course) -> Terms:
+    """The equations of a course; where it is smooth, with the laws and loads that were prepared for it."""
+    known = runs.ready.dynamics if first.q is not None and runs.ready is not None else None
+    if known is None or len(known.loads.interaction):  # these remember how contacts were approached
+        return terms_of(first.packed, runs.span)
+    return terms_of(first.packed, runs.span, known.laws, known=known.loads)
 
 
 def _parts(first: Course) -> tuple[np.ndarray, np.ndarray]:

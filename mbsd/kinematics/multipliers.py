@@ -68,7 +68,8 @@ def inverse_dynamics(
     """
     packed, system = ready.packed, ready.packed.system
     count, rows = len(q), len(packed.ws.phi)
-    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
+    inertia = system.mass.repeat(3)
+    inertia[2::3] = system.inertia
     weight = np.zeros((len(system.mass), 3))
     weight[:, :2] = system.mass[:, None] * system.gravity
     loads, packed_loads, approached = weight.ravel() - inertia * a, None, None

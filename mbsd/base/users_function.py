@@ -35,7 +35,7 @@ def value_at(function: Callable[[float], Any], t: float, what: str) -> float:
     return value
 
 
-class law_of:  # noqa: N801
+class law_of:
     """What a law does wrong within ``with law_of(what)`` gets ``what`` before its text: mechanism, driver or force."""
 
     def __init__(self, what: str) -> None:

@@ -23,6 +23,7 @@ LARGEST_ANGLE = 1e12
 """Largest angle of a driver (rad): beyond it neighbouring numbers are more than 1e-4 rad apart."""
 LOOKS = 17
 """Times at which every law is evaluated before each analysis."""
+_SPREAD = np.linspace(0.0, 1.0, LOOKS)
 MOST_SPANS = 64
 """Spans of one law that are remembered as checked."""
 _CHECKED: dict[int, tuple[weakref.ref[Motion], set[bytes]]] = {}
@@ -34,7 +35,10 @@ def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
     are not those of its values.
     """
     drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
-    times = np.linspace(start, end, LOOKS) if drivers else np.zeros(0)
+    if not drivers:
+        return
+    times = start + (end - start) * _SPREAD
+    times[-1] = end
     for driver, law in zip(drivers, packed.motions, strict=True):
         with law_of(f"{packed.name}: driver '{driver.name}'"):
             values = number_array("what its law gives", law(times), finite=False)

@@ -5,6 +5,7 @@ Authors place a body's frame where it is convenient; here alone it is shifted to
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,6 +15,7 @@ import numpy as np
 from mbsd.arrays.relative import Specials
 from mbsd.arrays.system_arrays import Parts, arrays_of
 from mbsd.base.users_function import law_of, tell_missed
+from mbsd.equations.products import spread_rows
 from mbsd.equations.system import System, Workspace
 from mbsd.model.contact import ContactKind
 from mbsd.model.force import Force, Masses
@@ -143,11 +145,10 @@ class Packed:
 
     def spread(self, compact: np.ndarray) -> np.ndarray:
         """Compact Jacobians (..., m, 6) as matrices (..., m, n), ground's columns left out."""
-        rows, bodies = np.arange(compact.shape[-2])[:, None], self.system.row_body
         out = np.zeros((*compact.shape[:-1], self.coordinates + 3))
-        for side in (0, 1):
-            columns = 3 * bodies[:, side, None] + np.arange(3)
-            out[..., rows, columns] = compact[..., 3 * side : 3 * side + 3]
+        shape = math.prod(compact.shape[:-2]), compact.shape[-2]
+        whole = np.ascontiguousarray(compact, float).reshape(*shape, 6)
+        spread_rows(self.system.row_body, whole, out.reshape(*shape, self.coordinates + 3))
         return out[..., 3:]
 
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-
-MANY_ROWS = 200
-"""From here on rows are added all at once, which is slower for few."""
+from mbsd.equations.products import tabulate_wrenches, times_columns, times_rows
 
 
 def rows_of_joints(packed: Packed, joints: np.ndarray) -> np.ndarray:
@@ -24,46 +22,27 @@ def wrenches(
     compact (T, m, 6), q (T, 3 nb), lam (T, m); N and N m. Ground as second body takes the opposite of what the first
     body gets. With ``joints`` (k,) (T, k, 3) of these, whose rows compact and lam hold (:func:`rows_of_joints`).
     """
-    system, counts, markers = packed.system, np.diff(packed.first_row), packed.markers
-    if joints is not None:
-        counts, markers = counts[joints], markers[joints]
-    first_row = np.cumsum(counts) - counts
-    i, j = markers.T
-    carrier, (x, y) = system.marker_body[j], system.marker_arm[j].T[..., None]
-    second = carrier > 0
-    body = np.where(second, carrier, system.marker_body[i])
-    rows = _by_row(compact)
-    own = rows[:, 3:] if second.all() else np.where(np.repeat(second, counts)[:, None, None], rows[:, 3:], rows[:, :3])
-    parts = own * _by_time(lam)[:, None]
-    push = np.zeros((len(counts), 3, len(lam)))
-    for total, start, count in zip(push, first_row, counts, strict=True):
-        for row in range(start, start + count):
-            total += parts[row]
-    push *= np.where(second, -1.0, 1.0)[:, None, None]
-    poses, ground = q.reshape(len(q), -1, 3), 1
-    if joints is not None:
-        bodies, at = np.unique([carrier, body], return_inverse=True)
-        poses, (carrier, body), ground = poses[:, bodies], at.reshape(2, -1), int((bodies == 0).any())
-    pose = _by_row(poses)
-    turn = np.zeros((2, len(pose), len(lam)))
-    turn[0, :ground] = 1.0
-    np.cos(pose[ground:, 2], out=turn[0, ground:])
-    np.sin(pose[ground:, 2], out=turn[1, ground:])
-    c, s = turn[:, carrier]
-    arm_x = pose[carrier, 0] + (c * x - s * y) - pose[body, 0]
-    arm_y = pose[carrier, 1] + (s * x + c * y) - pose[body, 1]
-    push[:, 2] -= arm_x * push[:, 1] - arm_y * push[:, 0]
-    return np.ascontiguousarray(push.transpose(2, 0, 1))
+    system, bodies = packed.system, len(packed.body_names)
+    if joints is None:
+        joints, place, theta = np.arange(len(packed.joints)), np.arange(-1, bodies - 1), q[:, 5::3]
+    else:
+        carriers = np.unique(system.marker_body[packed.markers[joints, 1]])
+        place, theta = np.zeros(bodies, np.int64), q[:, 3 * carriers + 2]
+        place[carriers] = np.arange(len(carriers))
+    turn = np.empty((2, *theta.shape))  # by numpy, whose cosine is not that of kernels in the last digit
+    np.cos(theta, out=turn[0])
+    np.sin(theta, out=turn[1])
+    out = np.empty((len(q), len(joints), 3))
+    tabulate_wrenches(
+        joints, packed.first_row, packed.markers, system.marker_body, system.marker_arm, place, turn,
+        _whole(compact), _whole(q), _whole(lam), out,
+    )  # fmt: skip
+    return out
 
 
-def _by_row(array: np.ndarray) -> np.ndarray:
-    """(a, b, T) of an array (T, a, b): all times of one number side by side, as numpy computes fastest."""
-    return np.ascontiguousarray(array.transpose(1, 2, 0))
-
-
-def _by_time(array: np.ndarray) -> np.ndarray:
-    """(a, T) of an array (T, a), or the other way round."""
-    return np.ascontiguousarray(array.T)
+def _whole(array: np.ndarray) -> np.ndarray:
+    """As kernels take it."""
+    return np.ascontiguousarray(array, float)
 
 
 def marker_places(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
@@ -99,27 +78,13 @@ def _velocity(q: np.ndarray, v: np.ndarray, body: int, place: np.ndarray) -> np.
 
 def times_compact(packed: Packed, compact: np.ndarray, x: np.ndarray) -> np.ndarray:
     """(T, m) J x for compact J (T, m, 6) and x (T, 3 nb), whose entries of ground are zero."""
-    rows, bodies = _by_row(compact), _by_row(x.reshape(len(x), -1, 3))
-    first, second = packed.system.row_body.T
-    out = _products(rows[:, 3:], bodies[second])
-    return _by_time(_products(rows[:, :3], bodies[first]) + out if first.any() else out)
-
-
-def _products(rows: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """(m, T) of (m, 3, T) times (m, 3, T)."""
-    parts = rows * x
-    return parts[:, 0] + parts[:, 1] + parts[:, 2]
+    rows, out = packed.system.row_body, np.empty(compact.shape[:2])
+    times_rows(rows, not rows[:, 0].any(), _whole(compact), _whole(x), out)
+    return out
 
 
 def generalised(packed: Packed, compact: np.ndarray, lam: np.ndarray) -> np.ndarray:
     """(T, 3 nb) J^T lam for compact J (T, m, 6) and lam (T, m); ground's entries hold what ground takes."""
-    parts = _by_row(compact) * _by_time(lam)[:, None]
-    out = np.zeros((len(packed.body_names), 3, len(lam)))
-    for side in (0, 1):
-        bodies, own = packed.system.row_body[:, side], parts[:, 3 * side : 3 * side + 3]
-        if len(bodies) > MANY_ROWS:
-            np.add.at(out, bodies, own)
-            continue
-        for row, body in enumerate(bodies):
-            out[body] += own[row]
-    return _by_time(out.reshape(-1, len(lam)))
+    out = np.zeros((len(lam), 3 * len(packed.body_names)))
+    times_columns(packed.system.row_body, _whole(compact), _whole(lam), out)
+    return out

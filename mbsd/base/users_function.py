@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -36,17 +35,20 @@ def value_at(function: Callable[[float], Any], t: float, what: str) -> float:
     return value
 
 
-@contextmanager
-def law_of(what: str) -> Iterator[None]:
-    """What a law does wrong within gets ``what`` before its text: mechanism, and driver or force."""
-    try:
-        yield
-    except ModelError as error:
-        raise type(error)(f"{what}: {error}") from error.__cause__ or error
-    except MechanismError:
-        raise
-    except Exception as error:
-        raise ModelError(f"{what}: its law fails: {described(error)}") from error
+class law_of:
+    """What a law does wrong within ``with law_of(what)`` gets ``what`` before its text: mechanism, driver or force."""
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> None:
+        if isinstance(error, ModelError):
+            raise type(error)(f"{self.what}: {error}") from error.__cause__ or error
+        if isinstance(error, Exception) and not isinstance(error, MechanismError):
+            raise ModelError(f"{self.what}: its law fails: {described(error)}") from error
 
 
 def tell_missed(what: str, law: object) -> None:

@@ -11,7 +11,7 @@ from mbsd.compiling.interrupts import kept
 from mbsd.dynamics.events.steps import EventSteps
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import fill_multipliers
-from mbsd.dynamics.runs.recording import Recording
+from mbsd.dynamics.runs.recording import Recording, Snapshot
 from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.runs.to_end import to_end
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
@@ -106,12 +106,14 @@ def _followed(
 ) -> Recording:
     state, out = ready.begun(times)
     ready.approaches.forget()
-    met = EventSteps(ready, run, state, out, events)
     if not events and not ready.switches.contacts and not ready.sticks:
-        met.snapshots.append(met.snapshot())
+        now = ready.switches.now
+        now.events = {}
+        begun = Snapshot(state.y.copy(), float(state.clock[TIME]), float(state.clock[WORK]), now.copy())
         independent = to_end(run, state, out, progress)
-        steps, held = int(state.count[ACCEPTED]), met.held | ready.switches.held()
-        return Recording(out, held, steps, [], met.snapshots, ready.approaches.copy(), independent)
+        held = ready.switches.held()[None].repeat(len(times), axis=0)
+        return Recording(out, held, int(state.count[ACCEPTED]), [], [begun], ready.approaches.copy(), independent)
+    met = EventSteps(ready, run, state, out, events)
     met.begin()
     met.to(float(times[-1]), progress)
     return recording_of(met, event_rows)

@@ -14,7 +14,7 @@ from mbsd.arrays.chambers import check_pistons
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.friction_along import friction_along
 from mbsd.arrays.loads_along import loads_along
-from mbsd.arrays.reactions import generalised, times_compact, wrenches
+from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.states import states_of, without_states
 from mbsd.base.errors import InitialConditionWarning, ModelError
 from mbsd.base.names import no_such
@@ -32,6 +32,7 @@ from mbsd.dynamics.rows.joint_sticks import standing
 from mbsd.dynamics.runs.recording import Recording
 from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Run
 from mbsd.dynamics.start.large import MANY_COORDINATES
+from mbsd.equations.left_over import leave
 from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
 from mbsd.model.mechanism import Model
@@ -67,7 +68,7 @@ def simulate(
     refuse_formulation(m, formulation, integrator)
     ready = ready or prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
     warn_of_start(ready)
-    longest = step or float(np.diff(grid).max())
+    longest = step or float((grid[1:] - grid[:-1]).max())
     run = Run(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
     events = list(m.events.values())
     if formulation == INDEPENDENT and (events or ready.switches.contacts or ready.sticks):
@@ -165,34 +166,30 @@ def solution(
     chunk = max(1, JACOBIAN_NUMBERS // max(1, 6 * rows))
     for start in range(0, count, chunk):
         at = slice(start, min(start + chunk, count))
-        phi, gamma = np.zeros((2, at.stop - start, rows))
+        phi, bend, rate = np.zeros((3, at.stop - start, rows))
         compact = np.zeros((at.stop - start, rows, 6))
-        tabulate_along(packed, drives[at], q[at], v[at], phi, compact, gamma)
+        tabulate_along(packed, drives[at], q[at], v[at], phi, compact, bend)  # gamma; J a - gamma below
         held = recording.held[at]
         if recording.independent:
             motion = out.t[at], q[at], v[at]
             out.lam[at], out.margin[at] = multipliers_along(
-                packed, ready.dynamics, motion, compact, gamma, None if approached is None else approached[at]
+                packed, ready.dynamics, motion, compact, bend, None if approached is None else approached[at]
             )
         refuse_opened(ready, out.t[at], phi * held)
         lam[at] = _least_norm(ready, compact, out.lam[at], held)
         wrench[at] = wrenches(packed, compact, q[at], lam[at])
-        nu = np.zeros_like(phi)
-        nu[:, packed.driver_rows : packed.contact_rows] = drives[at, 1:, 1]
         loads = loads_along(
             packed, ready.dynamics.loads, ready.dynamics.laws, out.t[at], q[at], v[at],
             None if approached is None else approached[at],
         )  # fmt: skip
-        loads += _friction(ready, q[at], v[at], compact, out.lam[at], held)
-        loads += ready.dynamics.weight - ready.dynamics.inertia * out.a[at] - generalised(packed, compact, lam[at])
-        loads[:, :3] = 0.0
-        errors = (
-            phi * held,
-            (times_compact(packed, compact, v[at]) - nu) * held,
-            (times_compact(packed, compact, out.a[at]) - gamma) * held,
-            (loads * v[at]).sum(axis=1),
-        )
-        residuals = np.maximum(residuals, [np.abs(error).max(initial=0.0) for error in errors])
+        _add_friction(loads, ready, q[at], v[at], compact, out.lam[at], held)
+        leave(
+            packed.system.row_body, packed.driver_rows, ready.dynamics.inertia, ready.dynamics.weight, drives[at],
+            compact, v[at], out.a[at], lam[at], rate, bend, loads,
+        )  # fmt: skip
+        power = np.einsum("tc,tc->t", loads[:, 3:], v[at, 3:])
+        errors = [phi, rate, bend] if held.all() else [phi * held, rate * held, bend * held]
+        residuals = np.maximum(residuals, [np.abs(error).max(initial=0.0) for error in (*errors, power)])
     shown = without_states(packed)
     end = 3 * len(shown.body_names)
     q, v, a = (part[:, :end].reshape(count, -1, 3) for part in (q, v, out.a))
@@ -206,7 +203,7 @@ def solution(
         wrench=wrench,
         lam=lam,
         drives=drives,
-        margin=np.sqrt(np.clip(out.margin, 0.0, None)),
+        margin=np.sqrt(np.maximum(out.margin, 0.0)),
         stats=Stats(
             *(float(r) for r in residuals), steps=recording.steps, inserted_steps=0, independent=recording.independent
         ),
@@ -222,14 +219,18 @@ def solution(
     )
 
 
-def _friction(
-    ready: PreparedDynamics, q: np.ndarray, v: np.ndarray, compact: np.ndarray, lam: np.ndarray, held: np.ndarray
-) -> np.ndarray:
-    """(T, 3 nb) of the joints whose friction no multipliers hold, as long as they are not released."""
-    out = np.zeros_like(q)
+def _add_friction(
+    out: np.ndarray,
+    ready: PreparedDynamics,
+    q: np.ndarray,
+    v: np.ndarray,
+    compact: np.ndarray,
+    lam: np.ndarray,
+    held: np.ndarray,
+) -> None:
+    """Add to out (T, 3 nb) that of the joints whose friction no multipliers hold, as long as they are not released."""
     for loads, at in standing(ready.dynamics.loads, held):
-        out[at] = friction_along(ready.packed, loads, q[at], v[at], compact[at], lam[at])
-    return out
+        out[at] += friction_along(ready.packed, loads, q[at], v[at], compact[at], lam[at])
 
 
 def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray, held: np.ndarray) -> np.ndarray:

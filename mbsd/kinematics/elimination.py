@@ -25,8 +25,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mbsd.base.kept import Kept
 from mbsd.compiling.jit import inlined
 
+MOST_SAMPLED = 20_000
+"""Numbers of sampled Jacobians by which a sequence is kept; more take longer to hash than to compare."""
 INDEX = np.uint32
 """Unsigned, so that compiled indexing need not look for negative numbers."""
 
@@ -80,12 +83,19 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
 
     ``row_body`` (m, 2): the bodies of each row, to find an entry in the compact J (m, 6).
     """
-    matrices = samples[:, kept_rows, :]
-    own = np.any(matrices != 0.0, axis=0)
-    constant = own & np.all(matrices == matrices[0], axis=0)
-    value = np.where(constant, matrices[0], 0.0)
     rows, bodies = np.asarray(kept_rows, np.int64), np.asarray(row_body, np.int64)
-    kept, values = _planned(own.tobytes(), constant.tobytes(), value.tobytes(), rows.tobytes(), bodies.tobytes())
+
+    def found() -> tuple[Elimination, np.ndarray]:
+        matrices = samples[:, rows, :]
+        own = np.any(matrices != 0.0, axis=0)
+        constant = own & np.all(matrices == matrices[0], axis=0)
+        value = np.where(constant, matrices[0], 0.0)
+        return _planned(own.tobytes(), constant.tobytes(), value.tobytes(), rows.tobytes(), bodies.tobytes())
+
+    if samples.size > MOST_SAMPLED:
+        kept, values = found()
+    else:
+        kept, values = _PLANS.get((samples.tobytes(), rows.tobytes(), bodies.tobytes()), found)
     sequence = Elimination(*(array.copy() for array in kept))
     n, size = len(sequence.rows), len(sequence.block)
     return sequence, Factors(
@@ -96,6 +106,10 @@ def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tu
         np.zeros((n, 2)),
         np.zeros(len(sequence.ends)),
     )
+
+
+_PLANS: Kept[tuple[Elimination, np.ndarray]] = Kept()
+"""By the samples themselves, which is quicker to ask than to find what is constant in them."""
 
 
 @lru_cache(maxsize=64)

@@ -30,6 +30,8 @@ class March:
         every = slice(None) if steps.wanted.all() else steps.wanted
         self.q, self.v, self.a = q[every], v[every], a[every]
         """(T, 3 nb)"""
+        self.drives = steps.drives[every]
+        """(T, motions + 1, 3) what the laws gave."""
 
     def closely(self) -> tuple[np.ndarray, np.ndarray]:
         """Times (N,) and poses (N, 3 nb) of all steps and of seven times within each, by quintics through its ends."""

@@ -23,7 +23,7 @@ from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed
-from mbsd.arrays.reactions import wrenches
+from mbsd.arrays.reactions import times_compact, wrenches
 from mbsd.base.errors import SingularPoseError
 from mbsd.equations.assembly import tabulate
 from mbsd.kinematics.prepared import Prepared
@@ -68,7 +68,8 @@ def inverse_dynamics(
     """
     packed, system = ready.packed, ready.packed.system
     count, rows = len(q), len(packed.ws.phi)
-    inertia = np.stack([system.mass, system.mass, system.inertia], axis=1).ravel()
+    inertia = system.mass.repeat(3)
+    inertia[2::3] = system.inertia
     weight = np.zeros((len(system.mass), 3))
     weight[:, :2] = system.mass[:, None] * system.gravity
     loads, packed_loads, approached = weight.ravel() - inertia * a, None, None
@@ -77,8 +78,7 @@ def inverse_dynamics(
         packed_loads = pack_loads(packed)
         approached = approached_along(packed, packed_loads, laws, times, q, v)
         loads += loads_along(packed, packed_loads, laws, times, q, v, approached, states)
-    nu = np.zeros((count, rows))
-    nu[:, packed.driver_rows :] = drives[:, 1:, 1]
+    driven, nu = packed.driver_rows, drives[:, 1:, 1]
     out = Efforts(np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4), approached)
     for at in _chunks(packed, count):
         phi, compact, gamma = _tabulated(packed, drives[at], q[at], v[at])
@@ -96,10 +96,10 @@ def inverse_dynamics(
             lam[:] = efforts
             loads[at] += friction
         out.wrench[at] = wrenches(packed, compact, q[at], lam)
-        rate = np.einsum("trc,tc->tr", jac, v[at, 3:]) - nu[at]
-        bend = np.einsum("trc,tc->tr", jac, a[at, 3:]) - gamma
+        rate, bend = times_compact(packed, compact, v[at]), times_compact(packed, compact, a[at]) - gamma
+        rate[:, driven:] -= nu[at]
         _take_nearer_side(packed, drives[at], q[at], v[at], a[at], bend)
-        power = (loads[at] * v[at]).sum(axis=1) - (lam * nu[at]).sum(axis=1)
+        power = np.einsum("tc,tc->t", loads[at], v[at]) - np.einsum("tr,tr->t", lam[:, driven:], nu[at])
         worst = [np.abs(error).max(initial=0.0) for error in (phi, rate, bend, power)]
         out.residuals = np.maximum(out.residuals, worst)
     return out

@@ -82,7 +82,7 @@ class Steps:
         """Time (s) at which a group was found that cannot close."""
         self._divisions_left = max(MOST_DIVISIONS, len(self.times))
         self._shortest = np.full(len(self.times), SHORTEST)
-        self._shortest[1:] *= np.diff(self.times)
+        self._shortest[1:] *= self.times[1:] - self.times[:-1]
         knots = [law.knots(float(times[0]), float(times[-1])) for law in packed.motions]
         self.drives = packed.drives(self.times)
         if any(len(times_of) for times_of in knots):

@@ -59,7 +59,7 @@ def sweep(
         grid = asked.solved
         march = march_along(ready, grid)
     q, v, a, packed = march.q, march.v, march.a, ready.packed
-    drives = packed.drives(grid)
+    drives = march.drives
     if m.contacts or limits_of(packed):
         inner, poses = march.closely()
         refuse_passed(packed, inner, poses, smooth=True)

@@ -19,7 +19,7 @@ def returned(ends: Ends) -> bool:
     for order, (start, end) in enumerate(zip(first, last, strict=True)):
         gap = end - start
         if order == 0:
-            gap[:, 2] -= 2 * math.pi * np.round(gap[:, 2] / 2 / math.pi)
+            gap[:, 2] -= 2 * math.pi * (gap[:, 2] / 2 / math.pi).round()
         if np.abs(gap).max() > RETURNED * max(1.0, float(np.abs(start).max())):
             return False
     return True

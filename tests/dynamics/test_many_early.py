@@ -10,13 +10,13 @@ import pytest
 
 from mbsd import Mechanism
 from mbsd.compiling.jit import COMPILED
-from mbsd.dynamics.many import worker
-from mbsd.measures import Measure, final, first, samples
+from mbsd.dynamics.many import loop
+from mbsd.measures import Measure, first, integral, samples
 from tests.dynamics.many_models import barrier, door, pendulum
 
 DURATION, STEPS = 4.0, 300
-WHOLE = {"end": final("work")}
-"""A measure that needs the last output."""
+WHOLE = {"end": integral("work")}
+"""A measure that needs all outputs."""
 
 MACHINES = {
     "door": (
@@ -90,13 +90,13 @@ def _many(m: Mechanism, vary: dict, measures: dict[str, Measure], formulation: s
 def _steps(monkeypatch: pytest.MonkeyPatch):
     """What gives the steps of the rows of the last call."""
     taken: list[np.ndarray] = []
-    run_rows = worker.run_rows
+    run_rows = loop.run_rows
 
     def noted(*arguments):
         run_rows(*arguments)
         taken.append(arguments[-2].copy())
 
-    monkeypatch.setattr(worker, "run_rows", noted)
+    monkeypatch.setattr(loop, "run_rows", noted)
 
     def last() -> np.ndarray:
         steps = np.concatenate(_of_chunks(taken))

@@ -1,13 +1,15 @@
-"""Rows end where all their measures are known: outputs are looked at window by window.
+"""Which outputs are made: rows end where all their measures are known, and what nobody reads is left out.
 
-What a measure says of a window is what it says of all outputs up to its end, if it knew nothing of those before: each
-window begins with the last output of the one before, as straight lines between outputs do.
+Outputs are looked at window by window. What a measure says of a window is what it says of all outputs up to its end, if
+it knew nothing of those before: each window begins with the last output of the one before, as straight lines between
+outputs do. Behind the last that needs all outputs a row goes on to its end with the few that the others read.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,35 +19,62 @@ from mbsd.dynamics.many.quantities import Motions, Quantity
 
 MOST, LEAST = 10, 24
 """Windows, and outputs of a window: looking costs as much as some steps of a row."""
+MOSTLY = 4
+"""Where more than one part in so many of all rows is underway, all are looked at."""
 STEPS = 4
 """Steps between two looks at how far a row came."""
 
 
-def windows_of(times: int, measures: Mapping[str, Measure], quantities: Mapping[str, Quantity]) -> list[int]:
-    """Numbers of outputs at which rows are looked at, the last of them ``times``: that alone where none ends early."""
-    known_early = all(measure.ends for measure in measures.values())
-    if not known_early or any(quantity.reactive for quantity in quantities.values()):
-        return [times]
+@dataclass(frozen=True)
+class Plan:
+    """Which outputs of a row are made."""
+
+    windows: list[int]
+    """Numbers of outputs at which rows are looked at, the last of them that of all; none where few are made at once."""
+    few: np.ndarray | None = None
+    """Rows of the output times that are made behind the windows, the first and the last among them; None: rows end."""
+
+
+def all_outputs(times: int) -> Plan:
+    """That of rows whose outputs are all made."""
+    return Plan([times])
+
+
+def plan_of(t: np.ndarray, measures: Mapping[str, Measure], quantities: Mapping[str, Quantity]) -> Plan:
+    """That of output times t (T,) (s)."""
+    every, times = list(measures.values()), len(t)
+    if any(quantity.reactive for quantity in quantities.values()):
+        return all_outputs(times)
+    if not all(measure.ends or measure.reads_few for measure in every):
+        return all_outputs(times)
     size = max(LEAST, math.ceil(times / MOST))
-    return [*range(size, times, size), times]
+    windows = [*range(size, times, size), times]
+    if all(measure.ends for measure in every):
+        return Plan(windows)
+    few = np.unique(np.concatenate([[0, times - 1], *(m.needed(t) for m in every if m.reads_few)]))
+    return Plan([] if all(measure.reads_few for measure in every) else windows, few.astype(np.int64))
 
 
 class Known:
-    """Which measures of which rows are known, as windows pass."""
+    """Which measures of which rows are known as windows pass; with ``few`` those that read few outputs are left out."""
 
-    def __init__(self, measures: Mapping[str, Measure], quantities: Mapping[str, Quantity], rows: int) -> None:
-        self.measures, self.quantities = measures, quantities
-        self.known = np.zeros((len(measures), rows), bool)
+    def __init__(
+        self, measures: Mapping[str, Measure], quantities: Mapping[str, Quantity], rows: int, few: bool = False
+    ) -> None:
+        self.measures = [measure for measure in measures.values() if not (few and measure.reads_few)]
+        read = {measure.quantity for measure in self.measures}
+        self.finds = {name: quantities[name].of_motions for name in quantities if name in read}
+        self.known = np.zeros((len(self.measures), rows), bool)
 
-    def look(self, rows: np.ndarray, t: np.ndarray, motions: Motions) -> np.ndarray:
-        """Which of ``rows``, whose motions in a window (n, T) these are, have nothing left to measure."""
-        along = {
-            name: quantity.of_motions(motions)
-            for name, quantity in self.quantities.items()
-            if quantity.of_motions is not None
-        }
-        for known, measure in zip(self.known, self.measures.values(), strict=True):
-            known[rows] |= measure.known(t, along)
+    def look(self, rows: np.ndarray, t: np.ndarray, motions_of: Callable[[np.ndarray], Motions]) -> np.ndarray:
+        """Which of ``rows`` have nothing left to measure; ``motions_of`` gives those of some in a window (n, T)."""
+        all_rows = np.arange(self.known.shape[1])
+        seen = all_rows if MOSTLY * len(rows) > len(all_rows) else rows  # of all rows they are not copied
+        motions = motions_of(seen)
+        along = {name: find(motions) for name, find in self.finds.items() if find is not None}
+        for known, measure in zip(self.known, self.measures, strict=True):
+            there = measure.known(t, along)
+            known[rows] |= there[rows] if seen is all_rows else there
         return rows[self.known[:, rows].all(axis=0)]
 
 

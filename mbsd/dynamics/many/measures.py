@@ -50,6 +50,11 @@ class Measure:
         """Whether it may be known before the last output."""
         return False
 
+    @property
+    def reads_few(self) -> bool:
+        """Whether it reads the outputs that are ``needed`` alone, which are few, whatever the others are."""
+        return False
+
     def known(self, t: np.ndarray, along: Mapping[str, np.ndarray]) -> np.ndarray:
         """(n,) whether the outputs so far tell it, of which these are the last; see early.py."""
         return np.zeros(len(along[self.quantity]), bool)
@@ -68,6 +73,10 @@ class Measure:
 
 @dataclass(frozen=True)
 class _Final(Measure):
+    @property
+    def reads_few(self) -> bool:
+        return True
+
     def needed(self, t: np.ndarray) -> np.ndarray:
         return np.array([len(t) - 1])
 
@@ -117,15 +126,15 @@ class _First(Measure):
         return values < self.level if self.below else values > self.level
 
     def of(self, name: str, t: np.ndarray, along: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        values, there = along[self.quantity] - self.level, self._there(along)
+        values, there = along[self.quantity], self._there(along)
         k, rows = np.argmax(there, axis=1), np.arange(len(values))
         before = np.maximum(k - 1, 0)
-        here, last = values[rows, k], values[rows, before]
+        here, last = values[rows, k] - self.level, values[rows, before] - self.level
         rise = np.where(k > 0, here - last, 1.0)
         share = np.where(k > 0, -last / np.where(rise == 0.0, 1.0, rise), 0.0)
         given = np.broadcast_to(t, values.shape) if self.give is None else along[self.give]
         out = given[rows, before] + share * (given[rows, k] - given[rows, before])
-        return {name: np.where(there.any(axis=1), out, np.nan)}
+        return {name: np.where(there[rows, k], out, np.nan)}
 
 
 @dataclass(frozen=True)
@@ -138,6 +147,10 @@ class _Samples(Measure):
 
     @property
     def ends(self) -> bool:
+        return True
+
+    @property
+    def reads_few(self) -> bool:
         return True
 
     def known(self, t: np.ndarray, along: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -102,35 +102,39 @@ class Reacting:
         return Reactive(self.joints.tolist(), wrench, self.lam[some, :, packed.driver_rows :], drives)
 
 
-def motions_of(
-    runs: Sequence[SingleRun],
-    out: Outputs,
-    which: np.ndarray,
-    mass: np.ndarray | None,
-    inertia: np.ndarray | None,
-    reacting: Reacting | None = None,
-) -> Motions:
-    """Motions of the rows ``which`` of outputs, whose runs are these, or all like the only one but for their masses."""
-    packed, end = [run.ready.packed for run in runs], len(runs[0].ready.packed.body_names) - runs[0].ready.packed.states
-    names = packed[0].body_names[:end]
+class MotionsOf:
+    """Motions of rows of outputs, whose runs are these, or all like the only one but for their masses (R, nb)."""
 
-    def some(part: np.ndarray) -> np.ndarray:
-        return part[which] if len(part) > 1 else part
+    def __init__(self, runs: Sequence[SingleRun], mass: np.ndarray | None, inertia: np.ndarray | None) -> None:
+        packed = [run.ready.packed for run in runs]
+        end = len(packed[0].body_names) - packed[0].states
+        names = packed[0].body_names[:end]
+        self.names = names
+        self.com = np.array([part.com[:end] for part in packed])
+        self.mass = np.array([part.system.mass[:end] for part in packed]) if mass is None else mass
+        self.inertia = np.array([part.system.inertia[:end] for part in packed]) if inertia is None else inertia
+        self.traces = {
+            name: (
+                names.index(marker.body.name),
+                np.array([(run.traces[name].x, run.traces[name].y) for run in runs]),
+                marker.angle,
+            )
+            for name, marker in runs[0].traces.items()
+        }
 
-    traces = {
-        name: (
-            names.index(marker.body.name),
-            some(np.array([(run.traces[name].x, run.traces[name].y) for run in runs])),
-            marker.angle,
+    def __call__(self, out: Outputs, which: np.ndarray, reacting: Reacting | None = None) -> Motions:
+        """Those of the rows ``which``."""
+        own = slice(None) if len(which) == len(out.status) else which  # views, where all are meant
+        end, times = len(self.names), out.y.shape[1]
+        q, v, a = (
+            part[..., : 3 * end].reshape(-1, times, end, 3) for part in (out.y[own, :, 0], out.y[own, :, 1], out.a[own])
         )
-        for name, marker in runs[0].traces.items()
-    }
-    own = slice(None) if len(which) == len(out.status) else which  # a view, where all are meant
-    parts = out.y[own, :, 0], out.y[own, :, 1], out.a[own]
-    q, v, a = (part[..., : 3 * end].reshape(*part.shape[:2], end, 3) for part in parts)
-    return Motions(
-        names, q, v, a, out.work[own], some(np.array([part.com[:end] for part in packed])),
-        some(np.array([part.system.mass[:end] for part in packed]) if mass is None else mass),
-        some(np.array([part.system.inertia[:end] for part in packed]) if inertia is None else inertia),
-        traces, until(out.t, out.over[which]), None if reacting is None else reacting.of(which),
-    )  # fmt: skip
+
+        def some(part: np.ndarray) -> np.ndarray:
+            return part[own] if len(part) > 1 else part
+
+        traces = {name: (body, some(places), angle) for name, (body, places, angle) in self.traces.items()}
+        return Motions(
+            self.names, q, v, a, out.work[own], some(self.com), some(self.mass), some(self.inertia), traces,
+            until(out.t, out.over[own]), None if reacting is None else reacting.of(which),
+        )  # fmt: skip

@@ -22,12 +22,13 @@ from mbsd.base.shown import shown
 from mbsd.base.users_function import described, refuse_other_arguments
 from mbsd.dynamics.many.designs import Designs, designs_of
 from mbsd.dynamics.many.done import Done, joined, numbers_of
-from mbsd.dynamics.many.early import windows_of
+from mbsd.dynamics.many.early import all_outputs, plan_of
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.methods import PAUSED_ANYWHERE
 from mbsd.dynamics.many.quantities import Quantity, quantity_named
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, single_run
-from mbsd.dynamics.many.worker import TRIED, Measures, Work, Worker, simulated
+from mbsd.dynamics.many.work import Measures, Work
+from mbsd.dynamics.many.worker import TRIED, Worker, simulated
 from mbsd.dynamics.simulate import integrator_named, output_times, refuse_bad_steps, refuse_formulation, simulate
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
@@ -37,9 +38,10 @@ if TYPE_CHECKING:
     import pandas
 
 MOST_THREADS = 1024
-MOST_AT_ONCE = 64
-"""Simulations of a chunk."""
-NUMBERS_AT_ONCE = 400_000
+AT_ONCE, MOST_AT_ONCE = 64, 256
+"""Simulations of a chunk; as many as the latter where each thread has CHUNKS of them and more."""
+CHUNKS = 16
+NUMBERS_AT_ONCE = 1_600_000
 """Numbers of a chunk's outputs."""
 NUMBERS_OF_A_BODY = 12
 """Numbers of an output of a body and its joints."""
@@ -177,7 +179,7 @@ def simulations(
         quantities,
         why,
         np.zeros(1, np.int64),
-        [len(grid)] if callable(measures) or not pausing else windows_of(len(grid), measures, quantities),
+        all_outputs(len(grid)) if callable(measures) or not pausing else plan_of(grid, measures, quantities),
         any(quantity.reactive for quantity in quantities.values()),
     )
     with quiet():  # here, as threads share what is shown
@@ -283,7 +285,8 @@ def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mappi
 def _all(work: Work, bodies: int, threads: int, progress: Callable[[float], None] | None) -> Done:
     """All chunks, in order. This thread does none, so that it hears Ctrl-C at once."""
     count, numbers = work.designs.count, len(work.asked.times) * NUMBERS_OF_A_BODY * bodies
-    size = max(1, min(MOST_AT_ONCE, NUMBERS_AT_ONCE // numbers, -(-count // threads)))
+    most = min(max(AT_ONCE, count // (CHUNKS * threads)), MOST_AT_ONCE)
+    size = max(1, min(most, NUMBERS_AT_ONCE // numbers, -(-count // threads)))
     chunks = [range(1), *(range(first, min(first + size, count)) for first in range(1, count, size))]
     own = threading.local()
 

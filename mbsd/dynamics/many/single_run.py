@@ -9,11 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.dynamics.embedding.blocks.places import KEPT_SIZE
 from mbsd.dynamics.embedding.coordinates import Coordinate
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.many.arguments import kind_of
 from mbsd.dynamics.many.contacts.arrays import Contacts
 from mbsd.dynamics.many.contacts.made import contacts_of, why_not
+from mbsd.dynamics.many.cylinders import has_cylinders
 from mbsd.dynamics.many.events import made as events_made
 from mbsd.dynamics.many.indexing.arrays import Genevas
 from mbsd.dynamics.many.indexing.made import genevas_of
@@ -99,6 +101,18 @@ class SingleRun:
         loads, sliding = self.ready.dynamics.loads, self.ready.dynamics.sliding
         switches = bool(loads.switch[0, SWITCHING] > 0.0)
         return switches or len(loads.friction) + len(loads.user) + len(sliding.rows) > 0
+
+    @cached_property
+    def outputs_alone(self) -> bool:
+        """Whether nobody but measures reads outputs, and no evaluation goes on from that of an output.
+
+        That is so of closed forms: Newton-Raphson begins where the last evaluation ended, and moves last digits.
+        """
+        held, own = self.contacts, self.independent
+        if own is None or own.arrays.block[KEPT_SIZE] or self.outputs_count or has_cylinders(self.ready.packed):
+            return False
+        parts = held.place, held.wheels.markers, held.curves.place, held.events.table, held.repeated.place
+        return not any(len(part) for part in (*parts, self.genevas.body))
 
     @cached_property
     def near(self) -> float:

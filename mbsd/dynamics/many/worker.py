@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -15,24 +14,21 @@ from mbsd.dynamics.many.arguments import content
 from mbsd.dynamics.many.base import Base, based_on
 from mbsd.dynamics.many.contacts.steps import NOT_SOLVED
 from mbsd.dynamics.many.cylinders import can_be, has_cylinders
-from mbsd.dynamics.many.designs import Built, Designs
+from mbsd.dynamics.many.designs import Built
 from mbsd.dynamics.many.done import Done, columns_of, failed, joined, numbers_of
-from mbsd.dynamics.many.early import STEPS, Known, window
-from mbsd.dynamics.many.measures import Measure
-from mbsd.dynamics.many.methods import number_of
-from mbsd.dynamics.many.outputs import Outputs, Reacting, motions_of, room_for, until
+from mbsd.dynamics.many.loop import MOST_STEPS, Loop
+from mbsd.dynamics.many.outputs import MotionsOf, Outputs
 from mbsd.dynamics.many.patches import NotPatched, Patches, agrees
-from mbsd.dynamics.many.quantities import Motions, Quantity
+from mbsd.dynamics.many.quantities import Motions
 from mbsd.dynamics.many.reactions import Reactions
-from mbsd.dynamics.many.rows import NEARLY_SINGULAR, STOPPED, UNDERWAY, WAITING, run_rows
+from mbsd.dynamics.many.rows import NEARLY_SINGULAR, STOPPED
 from mbsd.dynamics.many.single_run import Asked, NotCompiled, SingleRun, single_run
+from mbsd.dynamics.many.work import Work
 from mbsd.dynamics.simulate import simulate
 from mbsd.dynamics.state import CHOOSE, NO_CONVERGENCE, NOT_FINITE, PAUSED, REACHED, UNCLEAR
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
 
-MOST_STEPS = 200_000
-"""Steps after which a simulation is left to ``simulate``, which knows what to say of it."""
 TRIED = 64
 """Rows of which the first that can be prepared is what others go by."""
 COMPARED = 6
@@ -58,39 +54,6 @@ LEFT = {
 STOP, SMALL = "stopped", "its steps became too small"
 
 
-Measures = Mapping[str, Measure] | Callable[[Any], Any]
-MotionsOf = Callable[[Outputs, np.ndarray], Motions]
-"""Motions of some rows of outputs."""
-
-
-@dataclass
-class Work:
-    """What all threads share."""
-
-    designs: Designs
-    asked: Asked
-    measures: Measures
-    quantities: Mapping[str, Quantity]
-    why: str | None
-    """Why none goes in the compiled loop, if so."""
-    stop: np.ndarray
-    """(1,) not zero where all is to stop."""
-    windows: list[int]
-    """Numbers of outputs at which it is looked whether rows may end; see early.py."""
-    reactive: bool = False
-    """Whether any measure reads reactions."""
-    looked: bool = False
-    """Whether it is known if rows must be prepared."""
-    patches: Patches | None = None
-    """Numbers of rows that need not be."""
-    note: str | None = None
-    """Why not, if so."""
-
-    def unwanted(self) -> bool:
-        """Whether all is to stop."""
-        return bool(self.stop[0])
-
-
 class Worker:
     """One thread's own mechanism and block."""
 
@@ -99,7 +62,7 @@ class Worker:
         self.model = work.designs.copied()
         self.base: Base | None = None
         self.patches: Patches | None = None
-        self.room: Outputs | None = None
+        self.loop: Loop | None = None
         self.reactions: Reactions | None = None
 
     def __call__(self, rows: range) -> Done:
@@ -168,10 +131,7 @@ class Worker:
         mass = None if self.patches.mass is None else self.patches.mass[rows.start : rows.stop]
         inertia = None if self.patches.inertia is None else self.patches.inertia[rows.start : rows.stop]
         runs, times = [self.base.run], self.work.asked.times
-
-        def motions(out: Outputs, which: np.ndarray, reacting: Reacting | None = None) -> Motions:
-            return motions_of(runs, out, which, mass, inertia, reacting)
-
+        motions = MotionsOf(runs, mass, inertia)
         out = self._run(self.base.fresh, self.patches.place, value, motions, runs)
         odd = np.array([reason is not None for reason in reasons])
         if q is not None:  # closed forms may stand on another branch than the start does
@@ -204,10 +164,7 @@ class Worker:
     def _of_one_kind(self, runs: Mapping[int, SingleRun]) -> dict[int, Done]:
         """Rows that share a block, by their numbers."""
         own, times = list(runs.values()), self.work.asked.times
-
-        def motions(out: Outputs, which: np.ndarray, reacting: Reacting | None = None) -> Motions:
-            return motions_of(own, out, which, None, None, reacting)
-
+        motions = MotionsOf(own, None, None)
         fresh = np.array([content(run.arguments) for run in own])
         out = self._run(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), motions, own)
         reacting = self._reactions(None).of_runs(own, out, times) if self.work.reactive else None
@@ -226,46 +183,18 @@ class Worker:
     ) -> Outputs:
         """Rows to their end, or as far as there is something to measure; they are those of ``runs``, or like it."""
         assert self.base is not None
-        run, ready, times = self.base.run, self.base.run.ready, self.work.asked.times
-        count, whole = max(len(fresh), len(value)), len(times)
-        forces = run.outputs_count or any(quantity.forces for quantity in self.work.quantities.values())
-        shape = len(ready.initial.q), len(ready.packed.ws.phi), forces
-        if self.room is None or len(self.room.status) < count or self.room.shape != shape:
-            self.room = room_for(count, times, *shape)
-        out = Outputs(times, *(array[:count] for array in self.room.arrays))
-        out.status[:] = WAITING
-        out.over[:] = np.inf
+        if self.loop is None or self.loop.base is not self.base:
+            self.loop = Loop(self.base, self.work, None if self.loop is None else self.loop.room)
+        run, packed = self.base.run, self.base.run.ready.packed
         run.forget()
-        stops, windows, method = ready.stops, self.work.windows, number_of(self.work.asked.integrator)
-        # where a jump is passed decides how far a run goes back: steps are counted as those of a single simulation
-        few = run.steps_at_once if len(run.genevas.body) else min(run.steps_at_once, STEPS)
-        early, written = len(windows) > 1, np.full(count, whole)
-        kept = np.zeros((count if early else 0, len(self.base.block) + 1))
-        counts = np.zeros((len(kept), len(run.state.count)), np.int64)
-        known = (
-            Known(self.work.measures, self.work.quantities, count) if isinstance(self.work.measures, Mapping) else None
-        )
-        for begin, upto in zip([0, *windows], windows, strict=False):
-            run_rows(
-                *self.base.arguments, method, self.base.block, fresh, place, value, times, stops.before, stops.after,
-                few if upto < whole else run.steps_at_once, MOST_STEPS, run.near,
-                self.work.stop, upto, kept, counts, *out.arrays,
-            )  # fmt: skip
-            underway = np.flatnonzero(out.status == UNDERWAY)
-            if not len(underway):
-                break
-            assert known is not None
-            seen = slice(max(begin - 1, 0), upto)
-            look = motions(window(out, seen.start, upto), underway)
-            done = known.look(underway, times[seen], look)
-            out.status[done], written[done] = REACHED, upto  # outputs behind are not read
+        out, written = self.loop(fresh, place, value, motions)
         if run.failed:  # in some row, or in a trial step that was not taken: single simulations can tell
             out.status[out.status == REACHED] = FAILED
             run.forget()
-        if has_cylinders(ready.packed):
+        if has_cylinders(packed):
             for k in np.flatnonzero(out.status == REACHED).tolist():
-                packed, end = runs[min(k, len(runs) - 1)].ready.packed, written[k]
-                if not can_be(packed, np.minimum(times[:end], out.over[k]), out.y[k, :end]):
+                own, end = runs[min(k, len(runs) - 1)].ready.packed, written[k]
+                if not can_be(own, np.minimum(out.t[:end], out.over[k]), out.y[k, :end]):
                     out.status[k] = NO_ROOM
         return out
 
@@ -283,7 +212,7 @@ class Worker:
                 columns[name][at] = values
 
         if len(good):
-            put(self._columns(motions(good), out.over[good]), good)
+            put(self._columns(motions(good)), good)
         for k in np.flatnonzero(out.status != REACHED).tolist():
             status = int(out.status[k])
             done = failed(STOP) if status == STOPPED else self._single(rows[k], LEFT.get(status, SMALL))
@@ -291,13 +220,13 @@ class Worker:
             reasons[k], alone[k] = done.reasons[0], done.alone[0]
         return Done(columns, reasons, alone)
 
-    def _columns(self, motions: Motions, over: np.ndarray) -> dict[str, np.ndarray]:
+    def _columns(self, motions: Motions) -> dict[str, np.ndarray]:
         assert isinstance(self.work.measures, Mapping)
         along = {}
         for name, quantity in self.work.quantities.items():
             assert quantity.of_motions is not None
             along[name] = quantity.of_motions(motions)
-        return columns_of(self.work.measures, until(self.work.asked.times, over), along)
+        return columns_of(self.work.measures, motions.t, along)
 
     # -- by simulate ---------------------------------------------------------------------------------------------
 

@@ -36,9 +36,11 @@ def as_heavy_as_ground(inertia: np.ndarray, still: np.ndarray, per_size: np.ndar
 
     It is ``inertia`` itself where masses are not far apart.
     """
+    if not still[3:].any():
+        return inertia
     scaled = np.divide(inertia, per_size**2, out=np.zeros_like(inertia), where=per_size > 0.0)
     moving = scaled[3:][~still[3:] & (inertia[3:] > 0.0)]
-    if not still[3:].any() or not len(moving) or moving.max() <= USUAL * scaled[3:][inertia[3:] > 0.0].min():
+    if not len(moving) or moving.max() <= USUAL * scaled[3:][inertia[3:] > 0.0].min():
         return inertia
     return np.where(still, np.maximum(inertia, moving.max() * per_size**2), inertia)
 

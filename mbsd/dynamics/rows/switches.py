@@ -86,12 +86,12 @@ class Switches:
         special = packed.system.special
         self._special_of = {int(special[k, ROW]): k for k in range(len(special))}
         first = len(packed.joints) - packed.contacts
-        slow = SETTLE * float(np.sqrt(np.hypot(*packed.system.gravity) / packed.size or 1.0))
         friction = 0
         for k, joint in enumerate(packed.joints[first:], first):
             if not isinstance(joint.kind, ContactKind):
                 continue  # the row of a joint that sticks
             row = int(packed.first_row[k])
+            slow = SETTLE * float(np.sqrt(np.hypot(*packed.system.gravity) / packed.size or 1.0))
             slippery = joint.params.get("friction", 0.0) == 0.0
             self.contacts.append(
                 RunContact(

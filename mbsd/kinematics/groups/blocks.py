@@ -9,6 +9,7 @@ eccentric bearing, a cam's follower and a Geneva's wheel are blocks of one unkno
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -75,8 +76,9 @@ class Blocks(NamedTuple):
     """Matrix, columns of unknowns, relative pose."""
 
 
+@cache
 def no_blocks() -> Blocks:
-    """Blocks of a plan of closed forms of one and two bodies alone."""
+    """Blocks of a plan of closed forms of one and two bodies alone; where there is none, nobody writes into scratch."""
     return with_scratch(0, [], [], [], [], [], [], np.zeros(0), [], [], [])
 
 

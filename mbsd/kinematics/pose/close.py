@@ -64,7 +64,8 @@ def _assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
     else:
         key = (*numbers, tuple(packed.body_names), repr(m.starts), drive[:, 0].tobytes())
         start = _NEAREST.get(key, lambda: _nearest(m, packed, drive))
-    packed.system = packed.system.changed(angle_offset=start.offsets)
+    if start.offsets is not packed.system.angle_offset:
+        packed.system = packed.system.changed(angle_offset=start.offsets)
     if not start.closes:
         raise AssemblyError(why_open(m, packed, start.q, drive, time))
     return start.q.copy()

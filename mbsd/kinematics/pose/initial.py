@@ -92,7 +92,8 @@ def _consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> In
         return started()[0]
     given = repr(m.starts), repr(m.velocities), drive.tobytes(), metric.tobytes()
     initial, offsets = _CONSISTENT.get((*numbers, tuple(packed.body_names), *given), started)
-    packed.system = packed.system.changed(angle_offset=offsets)
+    if offsets is not packed.system.angle_offset:
+        packed.system = packed.system.changed(angle_offset=offsets)
     return replace(initial, q=initial.q.copy(), v=initial.v.copy())
 
 

@@ -43,4 +43,8 @@ def angle_of(body, base, coordinate, b):
     """Angle of body b (rad), all its turns counted."""
     guess = predicted(base, coordinate, b)
     angle = math.atan2(body[b, SIN], body[b, COS])
-    return angle + 2.0 * math.pi * math.floor((guess - angle) / (2.0 * math.pi) + 0.5)
+    turns = (guess - angle) / (2.0 * math.pi) + 0.5
+    whole = int(turns)
+    if whole > turns:
+        whole -= 1  # a floor in place, which math.floor calls from afar
+    return angle + 2.0 * math.pi * whole

@@ -81,12 +81,7 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
     assert add is not None
     also = old.kind.also if isinstance(old, Force) else {}
     values = {also.get(key, key): value for key, value in values.items()}
-    own = [
-        parameter.name
-        for parameter in arguments(add)
-        if parameter.role not in (Role.MARKER, Role.BODY, Role.OPTIONAL_BODY)
-    ]
-    _refuse_others(m, f"{old.kind.name} '{name}'", values, own)
+    _refuse_others(m, f"{old.kind.name} '{name}'", values, _own(old))
     if not values:
         return
     before = dict(table)
@@ -101,6 +96,23 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
     new = table[name]
     table.clear()
     table.update({key: new if key == name else value for key, value in before.items()})
+
+
+def _own(entry: Joint | Force) -> list[str]:
+    """Arguments of the method that added it which are neither markers nor bodies."""
+    assert entry.kind.add is not None
+    others = (Role.MARKER, Role.BODY, Role.OPTIONAL_BODY)
+    return [parameter.name for parameter in arguments(entry.kind.add) if parameter.role not in others]
+
+
+def takes(m: Model, name: str, key: str) -> bool:
+    """Whether :func:`change` takes an argument ``key`` of what has this name."""
+    for table in connections(m):
+        if name in table:
+            entry: Any = table[name]
+            return key in _own(entry) or (isinstance(entry, Force) and key in entry.kind.also)
+    body = m.bodies.get(name)
+    return body is not None and name != "ground" and key in (BODY if body.length is None else BAR)
 
 
 def values_of(m: Model, name: str) -> dict[str, Any] | None:

@@ -50,6 +50,8 @@ class Patches:
         m = designs.m
         if self.ready.packed.states:
             raise NotPatched("states of forces are found with the start")
+        if designs.numbers:
+            raise NotPatched(f"{designs.numbers[0].key} of '{designs.numbers[0].whole}'")
         for name, values in designs.changes.items():
             if name in m.forces:
                 columns += self._of_force(name, values)

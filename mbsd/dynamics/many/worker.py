@@ -96,7 +96,7 @@ class Worker:
 
     def __init__(self, work: Work) -> None:
         self.work, self.designs = work, work.designs
-        self.model = work.designs.copied()
+        self.models = work.designs.row_by_row()
         self.base: Base | None = None
         self.patches: Patches | None = None
         self.room: Outputs | None = None
@@ -131,7 +131,7 @@ class Worker:
         return None
 
     def _run_of(self, row: int) -> SingleRun:
-        return single_run(self.designs.put(self.model, row), self.work.asked)
+        return single_run(self.models.of(row), self.work.asked)
 
     def _patches(self) -> Patches | None:
         """Numbers of rows that need not be prepared, if none need; some are prepared for comparison."""
@@ -313,7 +313,7 @@ class Worker:
 
     def _simulated(self, row: int) -> dict[str, np.ndarray]:
         measures = self.work.measures
-        sol = simulated(self.designs.put(self.model, row), self.work.asked)
+        sol = simulated(self.models.of(row), self.work.asked)
         if not isinstance(measures, Mapping):
             return {name: np.array([value]) for name, value in numbers_of(sol.mechanism.name, measures(sol)).items()}
         along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}

@@ -35,8 +35,8 @@ class Varied(NamedTuple):
     @property
     def of_start(self) -> str | None:
         """ "start" or "moving", of a number that start_near or start_moving gave."""
-        first = self.key.partition(".")[0]
-        return first if first in START else None
+        first, _, inner = self.key.partition(".")
+        return first if inner in START.get(first, ()) else None  # "start" alone is a number of laws
 
 
 def varied(m: Model, vary: Any) -> tuple[Changes, list[Varied]]:

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, cycloidal, harmonic
+from mbsd import Mechanism, ModelError, cycloidal, harmonic, polynomial
 from mbsd.measures import final, largest, samples
 from mbsd.model.body import Marker
+from mbsd.model.numbers import number_named, with_values
 from tests.dynamics.many_models import STEPS, barrier
 
 PLACES = np.array([[0.4, 0.02], [0.41, 0.0], [0.38, 0.05]])
@@ -82,6 +83,44 @@ def test_any_number_has_the_digits_of_a_mechanism_built_with_it(vary: Any, built
         np.testing.assert_allclose(many["w"][k], sol.body("hand").omega[[10, 20]], rtol=1e-13)
         np.testing.assert_allclose(many["f"][k], sol.joint("B").fy.max(), rtol=1e-12)
         np.testing.assert_allclose(many["e"][k], sol.driver("motor").effort[-1], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("law", "vary", "at_once"),
+    [
+        (harmonic(0.5, 9.0, 0.1), {"amplitude": [0.5, 0.2, 0.7], "phase": [0.1, 0.0, 3.0]}, True),
+        (polynomial(0.1, 0.5), {"coefficients.1": [0.5, -0.2, 0.0]}, True),
+        (cycloidal(0.4, 0.2, 0.05), {"rise": [0.4, -0.3, 0.1]}, True),
+        (cycloidal(0.4, 0.2, 0.05), {"duration": [0.2, 0.1, 0.05]}, False),
+    ],
+)
+@pytest.mark.parametrize("formulation", ["auto", "reference"])
+def test_numbers_of_a_force_s_law_are_put_in_place_where_steps_end_as_before(
+    law: Any, vary: dict[str, list[float]], at_once: bool, formulation: str
+) -> None:
+    def pushed() -> Mechanism:
+        m = barrier()
+        m.torque("push", m.bodies["rocker"], law)
+        return m
+
+    measure = {"x": final("rocker.theta"), "f": final("D.fx")}
+    many = pushed().simulate_many(0.3, vary={"push": vary}, measure=measure, steps=STEPS, formulation=formulation)
+    assert many.alone == [None] * 3
+    assert ("prepared" in many.way) != at_once
+    for k in range(3):
+        m = pushed()
+        numbers = [number_named(m, f"push.{key}") for key in vary]
+        sol = with_values(m, numbers, [values[k] for values in vary.values()]).simulate(
+            0.3, steps=STEPS, formulation=formulation
+        )
+        assert many["x"][k] == sol.body("rocker").theta[-1]
+        np.testing.assert_allclose(many["f"][k], sol.joint("D").fx[-1], rtol=1e-12)
+
+
+def test_two_numbers_of_one_law_change_together() -> None:
+    m = press()
+    numbers = [number_named(m, f"motor.{key}") for key in ("amplitude", "rate")]
+    assert with_values(m, numbers, [0.5, 8.0]).drivers["motor"].motion == harmonic(0.5, 8.0, 0.2)
 
 
 def test_places_beside_stops_and_lengths_are_those_of_a_mechanism_built_with_them() -> None:

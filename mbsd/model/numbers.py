@@ -172,7 +172,7 @@ def _with_inner(path: str, value: Any, new: float) -> Any:
 
 
 def _arguments(m: Model, whole: str) -> dict[str, Any]:
-    """What ``change`` takes, with all values that can be told, derived ones, too."""
+    """What ``change`` takes, with all values that are known, derived ones, too."""
     for table in connections(m):
         if whole in table:
             entry: Any = table[whole]

@@ -33,10 +33,10 @@ def law_columns(designs: Designs, base: Base, varied: Sequence[Varied]) -> list[
             return None
         by_force.setdefault(each.whole, []).append(each)
     for name, own in by_force.items():
-        found = _of_force(designs, base, name, own)
-        if found is None:
+        own_columns = _of_force(designs, base, name, own)
+        if own_columns is None:
             return None
-        columns += found
+        columns += own_columns
     return columns
 
 

@@ -12,6 +12,7 @@ gravity.y                            m/s^2
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, replace
@@ -23,7 +24,7 @@ from mbsd.base.shown import shown
 from mbsd.model.body import Marker
 from mbsd.model.change import BAR, BODY, change, given, given_body
 from mbsd.model.joint import Joint
-from mbsd.model.mechanism import Model, connections
+from mbsd.model.mechanism import Model, connections, start_given
 from mbsd.model.saved_model import SavedModel
 
 AXES = {"x": 0, "y": 1}
@@ -287,6 +288,8 @@ def _of_start(m: Model, name: str, body: str, what: str, at: int) -> Number | No
     first = "angle" if what == "start" else "omega"
 
     def put(m: Model, new: float) -> None:
+        if what == "start" and not at:
+            start_given(m, body, math.degrees(new))
         table: Any = m.starts if what == "start" else m.velocities
         old = table[body]
         own = {first: float(new)} if not at else {"place": tuple(float(new) if k + 1 == at else value

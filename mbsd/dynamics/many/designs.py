@@ -8,7 +8,6 @@ moving={"door": [...]}      as m.start_moving: rad/s (n,), or (vx, vy, omega) (n
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -19,7 +18,7 @@ from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
 from mbsd.dynamics.many.varied import Varied, named, refuse_law, refuse_wide, varied
 from mbsd.model.body import Body
-from mbsd.model.mechanism import Model, Start, StartVelocity
+from mbsd.model.mechanism import Model, StartVelocity, start_given
 from mbsd.model.numbers import put_together
 from mbsd.model.saved_model import SavedModel
 
@@ -62,10 +61,10 @@ class Designs:
         )
 
     def put_start(self, work: Any, row: int) -> None:
-        """Only the start of it, as start_near and start_moving set it."""
+        """Only the start of it, as start_near and start_moving set it. Raises ModelError as these do."""
         for name, values in self.starts.items():
             *place, degrees = values[row].tolist()
-            work.starts[name] = Start(math.radians(degrees), tuple(place) or None)
+            work.starts[name] = start_given(work, name, degrees, tuple(place) or None)
         for name, values in self.velocities.items():
             *place, omega = values[row].tolist()
             work.velocities[name] = StartVelocity(omega, tuple(place) or None)

@@ -5,7 +5,6 @@ Each method of a joint, driver, force or contact stands in the file of its kind;
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -68,7 +67,7 @@ from mbsd.model.joints.revolute import revolute
 from mbsd.model.joints.rolling_disc import rolling_disc
 from mbsd.model.joints.rolling_on_curve import rolling_on_curve
 from mbsd.model.joints.weld import weld
-from mbsd.model.mechanism import Model, Start, StartVelocity, new_name, number_given, own_body
+from mbsd.model.mechanism import Model, StartVelocity, new_name, number_given, own_body, start_given
 
 
 class Building(Model):
@@ -158,12 +157,12 @@ class Building(Model):
         for name, pose in poses.items():
             self.known_body(name)
             if isinstance(pose, int | float | np.number):
-                self.starts[name] = Start(math.radians(number_given(self, f"start of '{name}'", pose)))
+                self.starts[name] = start_given(self, name, number_given(self, f"start of '{name}'", pose))
                 continue
             x, y, degrees = several_numbers(
                 f"{self.name}: start of '{name}'", pose, 3, "give degrees, or (x, y, degrees)"
             )
-            self.starts[name] = Start(math.radians(degrees), (x, y))
+            self.starts[name] = start_given(self, name, degrees, (x, y))
 
     def start_moving(self, **velocities: float | Sequence[float]) -> None:
         """Velocities at the start of a simulation: rad/s, or (vx, vy, omega) of the body's frame in m/s and rad/s.

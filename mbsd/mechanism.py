@@ -176,11 +176,13 @@ class Mechanism(Building):
     ) -> Simulations:
         """Simulate n times with other numbers and starts, on all cores, and keep measures alone.
 
-        ``vary``: names to arguments of :meth:`change` and their (n,) values. ``start`` and ``moving``: names of bodies
-        to what :meth:`start_near` (degrees) and :meth:`start_moving` take, (n,) or (n, 3). A single value is that of
-        all. ``measure``: names to measures (mbsd.measures), or a function of a solution that gives numbers by name,
-        for which each simulation is made by itself. The other arguments are those of :meth:`simulate`; ``progress``
-        gets the part that is done, ``threads`` is one a core by default.
+        ``vary``: names to arguments of :meth:`change`, or to other numbers that :meth:`sensitivities` names
+        (``{"hinge": {"x": ...}, "motor": {"rate": ...}}``), and their (n,) values in SI units and rad; places are those
+        in the frame of their body. ``start`` and ``moving``: names of bodies to what :meth:`start_near` (degrees) and
+        :meth:`start_moving` take, (n,) or (n, 3). A single value is that of all. ``measure``: names to measures
+        (mbsd.measures), or a function of a solution that gives numbers by name, for which each simulation is made by
+        itself. The other arguments are those of :meth:`simulate`; ``progress`` gets the part that is done, ``threads``
+        is one a core by default.
 
         What can be simulated in one compiled loop is, the rest one by one: ``way`` of the result says which and why.
         Simulations that fail have a reason there. Raises ModelError for what cannot be asked.

@@ -11,8 +11,8 @@ import numpy as np
 import mbsd
 from benchmarks.derivatives import DOOR, LINKAGE, MOST, SWEEP
 from benchmarks.rows import Bar, Row
-from mbsd.derivatives.numbers import number_named, with_values
 from mbsd.measures import Measure, final, integral, largest
+from mbsd.model.numbers import number_named, with_values
 
 TURNS = 24
 STEPS = 100

@@ -16,7 +16,6 @@ from typing import Any, Protocol
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.numbers import with_value
 from mbsd.derivatives.tangents import along_direction
 from mbsd.derivatives.terms import Along, Terms
 from mbsd.derivatives.variants import SECOND, Variant, Variants, Variation
@@ -25,6 +24,7 @@ from mbsd.dynamics.events.laws.impact import impacts
 from mbsd.dynamics.events.moment import Moment
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.model.numbers import with_value
 from mbsd.results.solution import Solution
 
 REACH = 1e-6

@@ -17,7 +17,6 @@ import numpy as np
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
-from mbsd.derivatives.numbers import Number, with_value
 from mbsd.derivatives.repacked import repacked, unchanged
 from mbsd.derivatives.start_tangents import StartTangents
 from mbsd.derivatives.variants import PLACES, Variation, alike, same_laws, size_of
@@ -25,6 +24,7 @@ from mbsd.equations.loads import Loads
 from mbsd.model.body import Marker
 from mbsd.model.force import Element
 from mbsd.model.mechanism import Model
+from mbsd.model.numbers import Number, with_value
 
 NEAR = 1e-7
 """Part of a number, or of what stands for one that is zero, by which it is larger."""

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.derivatives.saved_model import SavedModel
 from mbsd.model.force import Force
 from mbsd.model.mechanism import Model
+from mbsd.model.saved_model import SavedModel
 
 
 def repacked(m: Model, packed: Packed, saved: SavedModel) -> Packed | None:

@@ -12,7 +12,6 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.base.names import names_in, no_such
 from mbsd.derivatives.asked import Wanted, labelled, needed, needs_models, needs_reactions, of_bodies, wanted
-from mbsd.derivatives.numbers import Number, numbers_named
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.sweeps import SweepTangents
@@ -22,6 +21,7 @@ from mbsd.dynamics.repeated import Repeated
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model
+from mbsd.model.numbers import Number, numbers_named
 from mbsd.results.solution import Solution
 
 if TYPE_CHECKING:

@@ -13,7 +13,6 @@ from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.packing import Packed
 from mbsd.derivatives.forces_beside import ForcesBeside
 from mbsd.derivatives.near_numbers import Near, NearNumbers
-from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.smooth_motion import NotSmooth
 from mbsd.derivatives.start_tangents import StartTangents
 from mbsd.derivatives.variants import SECOND, TINY, Variant, Variants, Variation
@@ -26,6 +25,7 @@ from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.tables import rows_of
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
+from mbsd.model.numbers import Number
 
 
 @dataclass

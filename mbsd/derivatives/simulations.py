@@ -22,7 +22,6 @@ from mbsd.derivatives.jumps import Jump, jumps_of
 from mbsd.derivatives.linear_motion import NODES
 from mbsd.derivatives.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of, refined
 from mbsd.derivatives.near_numbers import Near
-from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.refused_motions import refuse
 from mbsd.derivatives.sides import BothSides, Sides
 from mbsd.derivatives.smooth_motion import CLOSE, Motion, NotSmooth, between, looked_at_closely, motion_of, terms_along
@@ -40,6 +39,7 @@ from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.contact import ContactKind
 from mbsd.model.mechanism import Model
+from mbsd.model.numbers import Number
 from mbsd.results.solution import Solution
 
 ENOUGH = 5e-6

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from mbsd.derivatives.near_numbers import Near
-from mbsd.derivatives.numbers import Number, with_value
 from mbsd.derivatives.terms import Terms
 from mbsd.derivatives.variants import PLACES, SECOND, TINY, Variant, Variants, Variation
 from mbsd.equations.system import workspace
+from mbsd.model.numbers import Number, with_value
 
 
 def variants_beside(variation: Variation, numbers: Sequence[Number], known: Sequence[Near | None]) -> list[Variants]:

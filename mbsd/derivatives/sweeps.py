@@ -10,13 +10,13 @@ import numpy as np
 
 from mbsd.arrays.reactions import wrenches
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.tangents import Inverse, Tangent, has_kinks, tangent
 from mbsd.derivatives.terms import Along, Terms, terms_of
 from mbsd.derivatives.variants import KINKED, STEP, Variant, Variants, Variation, models_of
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
+from mbsd.model.numbers import Number
 from mbsd.results.solution import Solution
 
 FAR = 1e-3

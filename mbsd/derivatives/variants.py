@@ -17,13 +17,13 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
-from mbsd.derivatives.numbers import Number, with_value, with_values
 from mbsd.derivatives.repacked import repacked, unchanged
-from mbsd.derivatives.saved_model import SavedModel
 from mbsd.derivatives.terms import Terms, terms_of
 from mbsd.equations.loads import Loads
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
+from mbsd.model.numbers import Number, with_value, with_values
+from mbsd.model.saved_model import SavedModel
 
 STEP, TINY = 1e-4, 1e-5
 """Steps of a number, as parts of itself, or of the size of the mechanism, or of 1: of fourth and of second order."""

@@ -57,12 +57,12 @@ def law_name(add: Callable[..., Any]) -> str:
 def change(m: Model, name: str, values: Mapping[str, Any]) -> None:
     """See :meth:`mbsd.mechanism.Mechanism.change`."""
     for table in connections(m):
-        if isinstance(name, str) and name in table:
+        if isinstance(name, str) and name in table and not _of_body_alone(m, table[name], name, values):
             return _change(m, table, name, values)  # pyright: ignore[reportArgumentType]
     if not isinstance(name, str) or name not in m.bodies or name == "ground":
         known = [*(key for table in connections(m) for key in table), *(body for body in m.bodies if body != "ground")]
         raise ModelError(f"{m.name}: {no_such('body, joint, driver, force or contact', name, known)}")
-    return change_body(m, m.bodies[name], values)
+    return _change_body(m, m.bodies[name], values)
 
 
 def given(entry: Joint | Force) -> dict[str, Any]:
@@ -81,12 +81,7 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
     assert add is not None
     also = old.kind.also if isinstance(old, Force) else {}
     values = {also.get(key, key): value for key, value in values.items()}
-    own = [
-        parameter.name
-        for parameter in arguments(add)
-        if parameter.role not in (Role.MARKER, Role.BODY, Role.OPTIONAL_BODY)
-    ]
-    _refuse_others(m, f"{old.kind.name} '{name}'", values, own)
+    _refuse_others(m, f"{old.kind.name} '{name}'", values, _own(old))
     if not values:
         return
     before = dict(table)
@@ -101,6 +96,35 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
     new = table[name]
     table.clear()
     table.update({key: new if key == name else value for key, value in before.items()})
+
+
+def _of_body_alone(m: Model, entry: Any, name: str, values: Mapping[str, Any]) -> bool:
+    """Whether a body has the name of an entry, and takes values that the entry does not know."""
+    body = m.bodies.get(name)
+    return (
+        body is not None
+        and bool(values)
+        and set(values) <= set(BODY if body.length is None else BAR)
+        and not set(values) & set(_own(entry))
+    )
+
+
+def _own(entry: Joint | Force) -> list[str]:
+    """Arguments of the method that added it which are neither markers nor bodies."""
+    assert entry.kind.add is not None
+    others = (Role.MARKER, Role.BODY, Role.OPTIONAL_BODY)
+    return [parameter.name for parameter in arguments(entry.kind.add) if parameter.role not in others]
+
+
+def takes(m: Model, name: str, key: str) -> bool:
+    """Whether :func:`change` takes an argument ``key`` of what has this name."""
+    for table in connections(m):
+        if name in table:
+            entry: Any = table[name]
+            if key in _own(entry) or (isinstance(entry, Force) and key in entry.kind.also):
+                return True
+    body = m.bodies.get(name)
+    return body is not None and name != "ground" and key in (BODY if body.length is None else BAR)
 
 
 def values_of(m: Model, name: str) -> dict[str, Any] | None:
@@ -123,8 +147,7 @@ def given_body(body: Body) -> dict[str, Any]:
     return out if body.length is None else {"length": body.length} | out
 
 
-def change_body(m: Model, body: Body, values: Mapping[str, Any]) -> None:
-    """The same of a body, whatever else has its name."""
+def _change_body(m: Model, body: Body, values: Mapping[str, Any]) -> None:
     bar = body.length is not None
     _refuse_others(m, f"body '{body.name}'", values, BAR if bar else BODY)
     new = (new_bar if bar else new_body)(m, body.name, **(given_body(body) | dict(values)))

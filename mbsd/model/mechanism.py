@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -219,6 +220,20 @@ def length_given(m: Model, what: str, value: object) -> float:
 def number_given(m: Model, what: str, value: object) -> float:
     """A finite number; raises ModelError."""
     return finite_number(f"{m.name}: {what}", value)
+
+
+MOST_DEGREES = 1e9
+"""Beyond this an angle's last digit is more than a ten-millionth of a degree, and soon a turn."""
+
+
+def start_given(m: Model, name: str, degrees: float, place: tuple[float, float] | None = None) -> Start:
+    """A rough pose. Raises ModelError for an angle whose digits do not say where in its turn it is."""
+    if abs(degrees) > MOST_DEGREES:
+        raise ModelError(
+            f"{m.name}: start of '{name}' is {degrees:g} degrees, an angle of which rounding leaves nothing that says "
+            f"where in its turn '{name}' is; give {MOST_DEGREES:g} at most, such as what is left of whole turns"
+        )
+    return Start(math.radians(degrees), place)
 
 
 def two_bodies(m: Model, what: str, i: Marker, j: Marker, same_body: bool = False) -> None:

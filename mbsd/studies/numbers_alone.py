@@ -156,7 +156,7 @@ def _compare(first: Mechanism, changes: Changes, numbers: _Numbers, values: np.n
     for row in sorted({*np.linspace(0, len(values) - 1, COMPARED, dtype=int).tolist()}):
         work = designs.copied()
         try:
-            designs.put(work, row)
+            designs.put_numbers(work, row)
         except MechanismError:
             continue  # that is its reason
         if not np.array_equal(numbers.of_changed(work), values[row]):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.numbers import Number, number_named, with_values
 from mbsd.model.mechanism import Model
+from mbsd.model.numbers import Number, number_named, with_values
 from mbsd.synthesis.wishes import Bounds
 
 

@@ -13,7 +13,6 @@ import numpy as np
 from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
-from mbsd.derivatives.numbers import Number, number_named, with_values
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, values_and_slopes
 from mbsd.derivatives.sweeps import SweepTangents
@@ -21,6 +20,7 @@ from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model
+from mbsd.model.numbers import Number, number_named, with_values
 from mbsd.results.solution import Solution
 from mbsd.synthesis.built import built, refuse_build
 from mbsd.synthesis.ends import refuse_ends

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.derivatives.numbers import Number, numbers_named
 from mbsd.derivatives.tangents import Inverse
 from mbsd.derivatives.terms import Along, terms_of
 from mbsd.derivatives.variants import SECOND, TINY, Variation
@@ -19,6 +18,7 @@ from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.prepared import Prepared
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
+from mbsd.model.numbers import Number, numbers_named
 
 if TYPE_CHECKING:
     from mbsd.synthesis.varied import Value, Varied

@@ -67,7 +67,7 @@ def tolerances(
 
     ``sizes`` names what strays, by the words of :meth:`Mechanism.batch` and :meth:`Mechanism.change`: a bar or rod by
     its length, a joint or traced point by its place (m; ``{"D": {"x": 1e-5}}`` for one coordinate), any number by
-    ``{"spring": {"stiffness": 4.0}}``, a pin by :class:`Clearance`, or by
+    ``{"spring": {"stiffness": 4.0}}``, also of a law, ``{"motor": {"rate": 0.1}}``, a pin by :class:`Clearance`, or by
     ``{"B": {"x": 1e-5, "play": Clearance(2e-5)}}`` with its place. A tolerance is a number t (+-t, normal with 3
     standard deviations), a pair (lower, upper), a class of ISO 2768-1 ("m") or a grade of ISO 286-1 ("IT7") by size, or
     ``Normal``, ``Uniform``, ``Triangular`` of these. A class alone in place of names is that of all bars and rods.

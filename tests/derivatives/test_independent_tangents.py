@@ -11,9 +11,9 @@ import pytest
 
 import mbsd
 from mbsd.derivatives import near_numbers, simulations
-from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.sensitivities import simulation_tangents
 from mbsd.measures import final, integral, samples
+from mbsd.model.numbers import Number
 from mbsd.testing.derivatives import check_derivatives
 
 

@@ -12,9 +12,9 @@ import mbsd
 from mbsd.derivatives import simulations
 from mbsd.derivatives.between_looks import between_looks
 from mbsd.derivatives.mesh import looked_at_closer
-from mbsd.derivatives.numbers import number_named, with_values
 from mbsd.dynamics.repeated import Repeated
 from mbsd.measures import final
+from mbsd.model.numbers import number_named, with_values
 
 COEFFICIENT = st.floats(-1.0, 1.0)
 

@@ -10,10 +10,10 @@ import pytest
 import mbsd
 from benchmarks.derivatives.measure import linkage
 from mbsd.derivatives import simulations
-from mbsd.derivatives.numbers import Number
 from mbsd.derivatives.straight_variants import variants_beside
 from mbsd.derivatives.variants import PLACES, SECOND, TINY, Variants
 from mbsd.equations.loads import Loads
+from mbsd.model.numbers import Number
 
 ARRAYS = ("mass", "inertia", "gravity", *PLACES)
 LOADS = ("place", "number", "given", "user_com", "friction_number")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, Tolerances, Uniform, constant_rate, tolerances
+from mbsd import Mechanism, ModelError, Tolerances, Uniform, constant_rate, harmonic, tolerances
 from mbsd.measures import final, largest, samples
 from tests.tolerancing.linkages import SIZES, four_bar, rocker_angle, switch
 
@@ -74,6 +74,49 @@ def test_simulations_are_those_of_changed_mechanisms() -> None:
     m.change("lever", mass=0.2 + t.deviations[2, 1])
     assert t.values[2] == pytest.approx(m.simulate(0.2, steps=40).body("lever").omega.max(), rel=1e-9)
     assert t.columns == ("spring.stiffness", "lever.mass")
+
+
+def test_places_and_laws_stray_alike_whatever_the_way() -> None:
+    """The end of a bar that strays carries along the place that strays about it."""
+    sizes = {
+        "crank": 5e-5,
+        "B": {"x": 3e-5},
+        "D": 2e-5,
+        "rocker": {"C.y": 3e-5},
+        "motor": {"rate": 0.1},
+        "P": {"y": 1e-4},
+    }
+    asked: dict[str, Any] = {"n": 12, "steps": 12, "duration": 0.5}
+    for result in (samples("P.y", [0.25]), largest("rocker.theta")):
+        swept, simulated = (tolerances(four_bar(), sizes, result, way=way, **asked) for way in ("sweep", "simulate"))
+        assert simulated.way.startswith("simulated in one compiled loop")
+        assert simulated.values == pytest.approx(swept.values, abs=1e-9)
+        assert simulated.columns == swept.columns == ("crank", "B.x", "D.x", "D.y", "rocker.C.y", "motor.rate", "P.y")
+        assert (np.abs(simulated.slopes) > 1e-7).all()
+
+
+def test_simulated_places_are_those_of_mechanisms_built_there() -> None:
+    def built(x: float, y: float, torque: float) -> Mechanism:
+        m = Mechanism("lever")
+        lever = m.bar("lever", 0.1, mass=0.2)
+        m.revolute("pivot", m.ground.at(x, y), lever.start)
+        m.spring("spring", m.ground.at(0, 0.16), lever.end, stiffness=120.0, damping=0.2, free_length=0.1)
+        m.torque("push", lever, harmonic(torque, 20.0))
+        m.start_near(lever=80)
+        return m
+
+    sizes = {"pivot": 1e-3, "push": {"amplitude": (-0.01, 0.02)}}
+    t = tolerances(built(0.0, 0.0, 0.1), sizes, largest("lever.omega"), n=8, duration=0.3, steps=30)
+    assert t.columns == ("pivot.x", "pivot.y", "push.amplitude")
+    for (x, y, torque), value in zip(t.deviations, t.values, strict=True):
+        assert value == built(x, y, 0.1 + torque).simulate(0.3, steps=30).body("lever").omega.max()
+
+
+def test_names_of_a_joint_and_a_traced_point_are_told_apart_before_anything_is_simulated() -> None:
+    m = switch()
+    m.trace("pivot", m.bodies["lever"].end)
+    with pytest.raises(ModelError, match="'pivot' is a joint and a traced point; rename one of them"):
+        tolerances(m, {"pivot": {"x": 1e-4}}, largest("lever.omega"), duration=0.1)
 
 
 def test_a_function_may_build_the_mechanism() -> None:

@@ -1,6 +1,6 @@
 """The simulations that are asked for: values of numbers, of starts and of velocities, row by row, as mechanisms.
 
-vary={"closer": {"stiffness": [...], "damping": [...]}, "door": {"mass": [...]}}     as m.change takes them
+vary={"closer": {"stiffness": [...], "damping": [...]}, "hinge": {"x": [...]}}       see varied.py
 start={"door": [...]}       as m.start_near: degrees (n,), or (x, y, degrees) (n, 3)
 moving={"door": [...]}      as m.start_moving: rad/s (n,), or (vx, vy, omega) (n, 3)
 """
@@ -8,25 +8,20 @@ moving={"door": [...]}      as m.start_moving: rad/s (n,), or (vx, vy, omega) (n
 from __future__ import annotations
 
 import copy
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.dynamics.many.varied import Varied, named, refuse_law, refuse_wide, varied
 from mbsd.model.body import Body
-from mbsd.model.change import values_of
-from mbsd.model.mechanism import Model, Start, StartVelocity, connections
+from mbsd.model.mechanism import Model, StartVelocity, start_given
+from mbsd.model.numbers import put_together
+from mbsd.model.saved_model import SavedModel
 
-NAME = "name"
-ELSEWHERE = (
-    ". Places and numbers of laws, which change() does not take, vary in a study: study(build, grid, simulated(...))"
-)
 MOST = 100_000_000
 """Simulations of one call."""
 
@@ -45,26 +40,49 @@ class Designs:
     """(count, 1) rad/s or (count, 3)."""
     exact: bool = False
     """Whether each has the digits of a simulation by itself, whichever others are beside it."""
+    numbers: list[Varied] = field(default_factory=list)
+    """What ``change`` does not take as a whole: places, numbers of laws."""
 
     def copied(self) -> Any:
-        """A mechanism of its own to be changed, row by row."""
+        """A mechanism of its own to be changed."""
         return copy.deepcopy(self.m)
 
-    def put(self, work: Any, row: int) -> Any:
-        """The mechanism of a row: ``work``, changed into it. Raises ModelError for numbers that it refuses."""
-        for name, values in self.changes.items():
-            work.change(name, **{key: _plain(column[row]) for key, column in values.items()})
-        self.put_start(work, row)
-        return work
+    def row_by_row(self) -> RowByRow:
+        """A mechanism of its own that becomes that of one row after another."""
+        return RowByRow(self)
+
+    def put_numbers(self, work: Any, row: int) -> None:
+        """Give ``work``, which is as it was copied, all numbers of a row but its start. Raises ModelError."""
+        changes = {
+            name: {key: _plain(column[row]) for key, column in values.items()} for name, values in self.changes.items()
+        }
+        put_together(
+            work, [each.number for each in self.numbers], [float(each.values[row]) for each in self.numbers], changes
+        )
 
     def put_start(self, work: Any, row: int) -> None:
-        """Only the start of it, as start_near and start_moving set it."""
+        """Only the start of it, as start_near and start_moving set it. Raises ModelError as these do."""
         for name, values in self.starts.items():
             *place, degrees = values[row].tolist()
-            work.starts[name] = Start(math.radians(degrees), tuple(place) or None)
+            work.starts[name] = start_given(work, name, degrees, tuple(place) or None)
         for name, values in self.velocities.items():
             *place, omega = values[row].tolist()
             work.velocities[name] = StartVelocity(omega, tuple(place) or None)
+
+
+class RowByRow:
+    """A copy of the mechanism of ``designs`` that becomes that of one row after another."""
+
+    def __init__(self, designs: Designs) -> None:
+        self._designs, self.m = designs, designs.copied()
+        self._saved = SavedModel(self.m)
+
+    def of(self, row: int) -> Any:
+        """The mechanism of a row, until the next is asked for. Raises ModelError for numbers that it refuses."""
+        self._saved.restore()  # what stands at the end of a bar depends on its length
+        self._designs.put_numbers(self.m, row)
+        self._designs.put_start(self.m, row)
+        return self.m
 
 
 class Built(Designs):
@@ -76,9 +94,20 @@ class Built(Designs):
         self.why = why
         """Why their numbers are not put into one of them."""
 
-    def put(self, work: Any, row: int) -> Any:
+    def row_by_row(self) -> Any:
+        """Gives those that were built."""
+        return BuiltRows(self.mechanisms)
+
+
+class BuiltRows:
+    """Mechanisms that were built one by one, in the order of the rows."""
+
+    def __init__(self, mechanisms: Sequence[Model]) -> None:
+        self._mechanisms = mechanisms
+
+    def of(self, row: int) -> Any:
         """The mechanism of a row."""
-        return self.mechanisms[row]
+        return self._mechanisms[row]
 
 
 def _plain(value: Any) -> Any:
@@ -90,20 +119,14 @@ def _plain(value: Any) -> Any:
 def designs_of(m: Model, vary: Any, start: Any, moving: Any) -> Designs:
     """Check what is asked for. Raises ModelError for names that do not exist and lists that do not fit."""
     _refuse_too_many(m, vary, start, moving)
-    changes: dict[str, dict[str, np.ndarray]] = {}
-    for name, values in _named(m, "vary", vary).items():
-        if not isinstance(values, Mapping) or not all(isinstance(key, str) for key in values):
-            raise ModelError(
-                f"{m.name}: vary: '{name}' is {shown(values)}; give its arguments and their values, as change() takes "
-                "them: {'spring': {'stiffness': [...]}}"
-            )
-        changes[name] = {key: _column(f"{m.name}: vary: {key} of '{name}'", column) for key, column in values.items()}
+    changes, numbers = varied(m, vary)
     starts, velocities = (
-        {name: _wide(m, what, name, values) for name, values in _named(m, what, given).items()}
+        {name: _wide(m, what, name, values) for name, values in named(m, what, given).items()}
         for what, given in (("start", start), ("moving", moving))
     )
     columns = [
         *((f"{key} of '{name}'", column) for name, values in changes.items() for key, column in values.items()),
+        *((f"{each.key} of '{each.whole}'", each.values) for each in numbers),
         *((f"start of '{name}'", column) for name, column in starts.items()),
         *((f"moving of '{name}'", column) for name, column in velocities.items()),
     ]
@@ -128,6 +151,7 @@ def designs_of(m: Model, vary: Any, start: Any, moving: Any) -> Designs:
         {name: {key: spread(column) for key, column in values.items()} for name, values in changes.items()},
         {name: spread(values) for name, values in starts.items()},
         {name: spread(values) for name, values in velocities.items()},
+        numbers=[each._replace(values=spread(each.values)) for each in numbers],
     )
     _refuse_unknown(out)
     return out
@@ -149,36 +173,25 @@ def _refuse_unknown(designs: Designs) -> None:
     """Raise ModelError for names and arguments that the mechanism does not have, as its own methods do."""
     work = designs.copied()
     for name, values in designs.changes.items():
-        if NAME in values:  # the word by which change() takes the name itself
-            known = [key for key in values_of(work, name) or () if key != NAME]
-            raise ModelError(f"{work.name}: vary: '{name}': {no_such('argument', NAME, known)}")
         try:
             work.change(name, **{key: _plain(column[0]) for key, column in values.items()})
         except ModelError as error:
             if "there is no" in str(error):
-                said = str(error).replace(f"{work.name}: ", f"{work.name}: vary: ", 1)
-                raise ModelError(f"{said}{ELSEWHERE if name in _known(work) else ''}") from None
-        _refuse_wide(work, name, values)
+                raise ModelError(str(error).replace(f"{work.name}: ", f"{work.name}: vary: ", 1)) from None
+            refuse_law(designs.m, name, list(values))
+        refuse_wide(work, name, values)
+    for each in designs.numbers:
+        given = {"start": designs.starts, "moving": designs.velocities}.get(each.of_start or "", {})
+        if each.whole in given:
+            raise ModelError(
+                f"{work.name}: vary: '{each.number.name}' is also given by {each.of_start}=; leave out one of them"
+            )
     for what, name in [
+        *((f"vary: {each.of_start}", each.whole) for each in designs.numbers if each.of_start),
         *(("start", name) for name in designs.starts),
         *(("moving", name) for name in designs.velocities),
     ]:
         _refuse_held(work, what, work.known_body(name))
-
-
-def _known(m: Model) -> set[str]:
-    return {*(name for table in connections(m) for name in table), *m.bodies}
-
-
-def _refuse_wide(m: Model, name: str, values: Mapping[str, np.ndarray]) -> None:
-    """Raise ModelError for several numbers a row where the mechanism has a single one."""
-    nominal = values_of(m, name) or {}
-    for key, column in values.items():
-        if column.ndim > 1 and column.shape[1] > 1 and isinstance(nominal.get(key), int | float):
-            raise ModelError(
-                f"{m.name}: vary: {key} of '{name}' is a single number, and its values have shape {column.shape}; "
-                f"give ({len(column)},), a number a simulation"
-            )
 
 
 def _refuse_held(m: Model, what: str, body: Body) -> None:
@@ -191,22 +204,6 @@ def _refuse_held(m: Model, what: str, body: Body) -> None:
                 f"{m.name}: {what}: driver '{driver.name}' says where '{body.name}' is and how fast; start others, or "
                 "take a motor instead of the driver"
             )
-
-
-def _named(m: Model, what: str, given: Any) -> Mapping[str, Any]:
-    if given is None:
-        return {}
-    if not isinstance(given, Mapping) or not all(isinstance(name, str) for name in given):
-        raise ModelError(f"{m.name}: {what} is {shown(given)}; give names and their values: {{name: [...]}}")
-    return given
-
-
-def _column(what: str, values: Any) -> np.ndarray:
-    """(n,) or (n, k)."""
-    column = np.atleast_1d(number_array(what, values))
-    if column.ndim > 2:
-        raise ModelError(f"{what} has shape {column.shape}; give (n,), or (n, k) of what takes k numbers")
-    return column
 
 
 def _wide(m: Model, what: str, name: str, values: Any) -> np.ndarray:

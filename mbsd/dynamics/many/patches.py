@@ -1,8 +1,9 @@
 """Numbers that vary, put straight into the block of a prepared run: nothing is prepared anew for a row.
 
-Known are numbers of forces that are plain parameters of them, restitution and friction of contacts, masses and moments
-of inertia, poses and velocities at the start. What a row then differs by is found for all rows at once. Some rows are
-prepared in full, too, and all numbers of their blocks compared: where any differs, all rows are prepared one by one.
+Known are numbers of forces that are plain parameters of them or of their laws, restitution and friction of contacts,
+masses and moments of inertia, poses and velocities at the start. What a row then differs by is found for all rows at
+once. Some rows are prepared in full, too, and all numbers of their blocks compared: where any differs, all rows are
+prepared one by one.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE
 from mbsd.dynamics.many.base import Base
 from mbsd.dynamics.many.contact_numbers import contact_columns
 from mbsd.dynamics.many.designs import Designs
+from mbsd.dynamics.many.law_numbers import law_columns
 from mbsd.dynamics.many.starts import Starts, starts_of
 from mbsd.dynamics.prepare.mass_ratio import USUAL
 from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA
@@ -50,6 +52,10 @@ class Patches:
         m = designs.m
         if self.ready.packed.states:
             raise NotPatched("states of forces are found with the start")
+        of_laws = law_columns(designs, base, designs.numbers)
+        if of_laws is None:
+            raise NotPatched(" and ".join(f"{each.key} of '{each.whole}'" for each in designs.numbers))
+        columns += of_laws
         for name, values in designs.changes.items():
             if name in m.forces:
                 columns += self._of_force(name, values)
@@ -280,7 +286,7 @@ def agrees(patches: Patches, row: int, fresh: np.ndarray, content_of: Callable[[
 def _overwritten(base: Base) -> list[tuple[int, int]]:
     """Where in the block what every evaluation overwrites stands, and what preparing has left of the last one."""
     ws = getattr(base.arguments[1], "ws", None)
-    if ws is None:
-        return []
-    parts = [part for name, part in zip(ws._fields, ws, strict=True) if name != "relative" and part.size]
+    parts = [base.arguments[0].loads.law]
+    if ws is not None:
+        parts += [part for name, part in zip(ws._fields, ws, strict=True) if name != "relative" and part.size]
     return [(first, first + part.size) for part in parts for first in [base.layout.place(part)]]

@@ -231,10 +231,9 @@ def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], 
 
     Else what it raises is the reason of that row.
     """
-    model = designs.copied()
     with quiet():
         try:
-            sol = simulated(designs.put(model, 0), asked)
+            sol = simulated(designs.row_by_row().of(0), asked)
         except Exception:
             return
         try:
@@ -248,10 +247,10 @@ def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], 
 
 def _column_names(designs: Designs) -> list[str]:
     """Names of the columns of their solutions, from one of an instant: the mechanism itself, or a row that starts."""
-    model, first = designs.copied(), None
+    models, first = designs.row_by_row(), None
     for row in range(-1, min(designs.count, TRIED)):
         try:
-            own = designs.put(model, row) if row >= 0 else designs.m
+            own = models.of(row) if row >= 0 else designs.m
             return list(columns(simulate(own, 1e-9, 1, None, "dop853", 1e-6, None, None, {})))
         except MechanismError as error:
             first = first or error
@@ -265,10 +264,10 @@ def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mappi
     slow = [name for name, quantity in quantities.items() if quantity.of_motions is None]
     if slow:
         return f"'{slow[0]}' is that of a single solution"
+    models = designs.row_by_row()
     for row in {0, designs.count // 2, designs.count - 1}:
-        model = designs.copied()
         try:
-            run = single_run(designs.put(model, row), asked)
+            run = single_run(models.of(row), asked)
         except NotCompiled as why:
             return str(why)
         except Exception:

@@ -10,12 +10,14 @@ Else, and where that does not close, a row's start is found as that of a single 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mbsd.arrays.packing import pack
+from mbsd.base.errors import ModelError
 from mbsd.base.users_function import described
 from mbsd.dynamics.many.base import Base
 from mbsd.dynamics.many.designs import Designs
@@ -52,7 +54,7 @@ class Starts:
         packed.settle_laws(ready.start, ready.end)
         return packed
 
-    def __call__(self, rows: range) -> Started:
+    def __call__(self, rows: Sequence[int]) -> Started:
         """Those of some rows."""
         ready = self.ready
         q, v = np.repeat(ready.initial.q[None], len(rows), 0), np.repeat(ready.initial.v[None], len(rows), 0)
@@ -74,7 +76,7 @@ class StartsAtOnce(Starts):
     def __init__(self, designs: Designs, base: Base) -> None:
         super().__init__(designs, base)
         ready, packed = self.ready, self.ready.packed
-        designs.put_start(self.work, 0)
+        next(row for row in range(designs.count) if self._refused(row) is None)  # of it, what is given
         self.wanted = np.array([c for c, _ in given_coordinates(self.work, packed)])
         self.drive = packed.drives(np.array([ready.start]))[0]
         jac = self._jacobians(ready.initial.q[None])[1][0] * packed.column_scale()
@@ -85,8 +87,29 @@ class StartsAtOnce(Starts):
         self.nu = np.zeros(len(jac))
         self.nu[packed.driver_rows :] = self.drive[1:, 1]
 
-    def __call__(self, rows: range) -> Started:
+    def __call__(self, rows: Sequence[int]) -> Started:
         """Those of some rows."""
+        reasons = [self._refused(row) for row in rows]
+        known = [k for k, reason in enumerate(reasons) if reason is None]
+        if len(known) == len(rows):
+            return self._at_once(rows)
+        q, v = (np.repeat(part[None], len(rows), 0) for part in (self.ready.initial.q, self.ready.initial.v))
+        if known:
+            q[known], v[known], own = self._at_once([rows[k] for k in known])
+            for k, reason in zip(known, own, strict=True):
+                reasons[k] = reason
+        return q, v, reasons
+
+    def _refused(self, row: int) -> str | None:
+        """Why what is given of a row's start cannot be."""
+        try:
+            self.designs.put_start(self.work, row)
+        except ModelError as error:
+            return described(error)
+        return None
+
+    def _at_once(self, rows: Sequence[int]) -> Started:
+        """Those of rows whose starts can be."""
         q = np.repeat(self.ready.initial.q[None], len(rows), 0)
         targets = self._targets(rows)
         q[:, self.wanted] = targets
@@ -97,7 +120,7 @@ class StartsAtOnce(Starts):
             (q[k],), (v[k],), (reasons[k],) = super().__call__(rows[k : k + 1])
         return q, v, reasons
 
-    def _targets(self, rows: range) -> np.ndarray:
+    def _targets(self, rows: Sequence[int]) -> np.ndarray:
         out = np.zeros((len(rows), len(self.wanted)))
         for k, row in enumerate(rows):
             self.designs.put_start(self.work, row)
@@ -130,7 +153,7 @@ class StartsAtOnce(Starts):
             q[left, 3:] += _solved(np.concatenate([jac * size, units], 1), -np.concatenate([phi, off], 1)) * size
         return q, worst
 
-    def _velocities(self, rows: range, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _velocities(self, rows: Sequence[int], q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(R, 3 nb), and (R,) whether what is given contradicts neither the joints nor itself."""
         v, clear = np.zeros_like(q), np.ones(len(q), bool)
         if not self.work.velocities and not self.nu.any():

@@ -35,11 +35,12 @@ COMPARED = 6
 """Rows that are prepared for comparison."""
 NEAR = 1e-9
 """Part of the size, and rad, by which a start may differ from what it is."""
-OTHER, FAILED, NO_ROOM = -2, -4, -10
-"""Status of rows that the loop is not made for, of those beside which a function of the user failed, and of those whose
-gas or oil cannot be as it was found."""
+OTHER, FAILED, NO_ROOM, NO_START = -2, -4, -10, -11
+"""Status of rows that the loop is not made for, of those beside which a function of the user failed, of those whose
+gas or oil cannot be as it was found, and of those that cannot start as is given."""
 LEFT = {
     OTHER: "its start is that of another branch",
+    NO_START: "its start cannot be all that is given",
     NO_ROOM: "its gas or oil has no room or pressure somewhere",
     FAILED: "a function of the user failed in one of them",
     NOT_SOLVED: "what happened at an event there is decided by single simulations",
@@ -59,7 +60,7 @@ class Worker:
 
     def __init__(self, work: Work) -> None:
         self.work, self.designs = work, work.designs
-        self.model = work.designs.copied()
+        self.models = work.designs.row_by_row()
         self.base: Base | None = None
         self.patches: Patches | None = None
         self.loop: Loop | None = None
@@ -94,7 +95,7 @@ class Worker:
         return None
 
     def _run_of(self, row: int) -> SingleRun:
-        return single_run(self.designs.put(self.model, row), self.work.asked)
+        return single_run(self.models.of(row), self.work.asked)
 
     def _patches(self) -> Patches | None:
         """Numbers of rows that need not be prepared, if none need; some are prepared for comparison."""
@@ -133,10 +134,10 @@ class Worker:
         runs, times = [self.base.run], self.work.asked.times
         motions = MotionsOf(runs, mass, inertia)
         out = self._run(self.base.fresh, self.patches.place, value, motions, runs)
-        odd = np.array([reason is not None for reason in reasons])
         if q is not None:  # closed forms may stand on another branch than the start does
-            odd |= np.abs(out.y[:, 0, 0] - q).max(axis=1) > NEAR * self.base.run.ready.packed.size
-        out.status[odd] = OTHER
+            odd = np.abs(out.y[:, 0, 0] - q).max(axis=1) > NEAR * self.base.run.ready.packed.size
+            out.status[odd] = OTHER
+        out.status[[reason is not None for reason in reasons]] = NO_START
         reacting = self._reactions(self.patches).of_rows(rows, out, times) if self.work.reactive else None
         return self._measured(rows, lambda which: motions(out, which, reacting), out)
 
@@ -242,7 +243,7 @@ class Worker:
 
     def _simulated(self, row: int) -> dict[str, np.ndarray]:
         measures = self.work.measures
-        sol = simulated(self.designs.put(self.model, row), self.work.asked)
+        sol = simulated(self.models.of(row), self.work.asked)
         if not isinstance(measures, Mapping):
             return {name: np.array([value]) for name, value in numbers_of(sol.mechanism.name, measures(sol)).items()}
         along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}

@@ -27,6 +27,10 @@ class Cycloidal(Motion):
     begin: float = 0.0
     start: float = 0.0
 
+    def __post_init__(self) -> None:
+        if self.duration <= 0:
+            raise ModelError(f"cycloidal: duration is {self.duration} s; it must be positive")
+
     @property
     def given_derivatives(self) -> bool:
         """No: they follow from the numbers."""
@@ -60,6 +64,4 @@ class Cycloidal(Motion):
 def cycloidal(rise: float, duration: float, begin: float = 0.0, start: float = 0.0) -> Motion:
     """From ``start`` to ``start + rise`` within ``duration`` seconds after ``begin``, at rest before and after."""
     refuse_non_finite("cycloidal", rise=rise, duration=duration, begin=begin, start=start)
-    if duration <= 0:
-        raise ModelError(f"cycloidal: duration is {duration} s; it must be positive")
     return Cycloidal(float(rise), float(duration), float(begin), float(start))

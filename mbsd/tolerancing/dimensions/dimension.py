@@ -11,15 +11,15 @@ import numpy as np
 from mbsd.tolerancing.dimensions.clearance import Clearance
 from mbsd.tolerancing.dimensions.spreads import Spread
 
-Kind = Literal["length", "place", "argument", "number", "reaction", "bore"]
+Kind = Literal["length", "place", "argument", "part", "number", "reaction", "bore"]
 
 
 class Column(NamedTuple):
     """A number of the machine, whose deviation (m or its own unit) is a column of what is evaluated."""
 
     kind: Kind
-    """Length of a bar or rod, coordinate of a place, argument of change(), of a function, half of a play along a
-    reaction, coordinate of a pin in its bore."""
+    """Length of a bar or rod, coordinate of a place, argument of change(), a number of a law or whatever else
+    model/numbers.py names, argument of a function, half of a play along a reaction, coordinate of a pin in its bore."""
     name: str
     key: str = ""
     """Name of the argument, or "x" or "y"."""

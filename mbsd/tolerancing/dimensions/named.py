@@ -4,6 +4,7 @@
 {"D": 2e-5}                             both coordinates of the place of a joint or a traced point, as in ``batch``
 {"D": {"x": 1e-5}}                      one of them
 {"spring": {"stiffness": 4.0}}          a number that ``change`` takes: of a body, joint, driver, force or contact
+{"motor": {"rate": 0.1}}                a number of a law; {"rod": {"B.x": 1e-5}} the place of a joint on a body
 {"B": Clearance(3e-5)}                  the play of a pin; beside its place: {"B": {"x": 1e-5, "play": Clearance(3e-5)}}
 "m", or "IT9"                           the lengths of all bars and rods
 """
@@ -20,12 +21,13 @@ from mbsd.base.shown import shown
 from mbsd.model.change import values_of
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, connections
+from mbsd.model.numbers import known_numbers, number_in
 from mbsd.tolerancing.dimensions.clearance import Clearance
 from mbsd.tolerancing.dimensions.dimension import Column, Dimension, LoosePlay, PushedPlay, Size
 from mbsd.tolerancing.dimensions.reach import refuse_beyond
 from mbsd.tolerancing.dimensions.spreads import spread_of
 
-PIN, PLAY = "revolute", "play"
+PIN, PLAY, TOLERANCES = "revolute", "play", "tolerances"
 AXES = ("x", "y")
 SIZES = ("length", "radius", "diameter", "bore")
 """Parts of the names of arguments that are sizes, by which classes and grades go."""
@@ -100,8 +102,7 @@ def _plain(m: Model, name: Any, value: Any) -> list[Dimension]:
         known = [*_lengths(m), *m.joints, *m.traces]
         raise ModelError(f"{m.name}: tolerances: {no_such('bar, rod, joint or traced point', name, known)}")
     numbers = [key for key, nominal in (values_of(m, name) or {}).items() if _single(nominal)]
-    if not numbers:
-        raise ModelError(f"{m.name}: tolerances: '{name}' has neither a length nor a number that could stray")
+    numbers = numbers or known_numbers(m, name)
     raise ModelError(
         f"{m.name}: tolerances: '{name}' has no length; say which of its numbers strays ({', '.join(numbers)}): "
         f"{{'{name}': {{'{numbers[0]}': {shown(value)}}}}}"
@@ -113,16 +114,8 @@ def _named(m: Model, name: Any, key: str, value: Any) -> Dimension:
     if key in AXES and (name in m.traces or name in m.joints):
         return _coordinate(m, name, key, value)
     known = values_of(m, name)
-    if known is None and name in m.traces:
-        raise ModelError(f"{m.name}: tolerances: '{name}': {no_such('coordinate', key, AXES)}")
-    if known is None:
-        every = [*(other for table in connections(m) for other in table), *m.bodies, *m.traces]
-        raise ModelError(
-            f"{m.name}: tolerances: {no_such('body, joint, driver, force, contact or traced point', name, every)}"
-        )
-    if key not in known:
-        there = [*known, *((*AXES, PLAY) if name in m.joints else ())]
-        raise ModelError(f"{m.name}: tolerances: '{name}': {no_such('number', key, there)}")
+    if known is None or key not in known:
+        return _part(m, name, key, value)
     nominal = known[key]
     if not _single(nominal):
         raise ModelError(
@@ -133,6 +126,22 @@ def _named(m: Model, name: Any, key: str, value: Any) -> Dimension:
     label = name if kind == "length" else f"{name}.{key}"
     length = nominal if any(word in key for word in SIZES) else None
     return _size(m.name, label, value, Column(kind, name, key, float(nominal)), length)
+
+
+def _part(m: Model, name: Any, key: str, value: Any) -> Dimension:
+    """A number of a law, a coordinate of a marker by its body, an angle or speed of the start, a part of gravity."""
+    every = [*(other for table in connections(m) for other in table), *m.bodies, *m.traces, "gravity"]
+    if name not in every:
+        raise ModelError(
+            f"{m.name}: tolerances: {no_such('body, joint, driver, force, contact or traced point', name, every)}"
+        )
+    number = number_in(m, name, key, TOLERANCES)
+    place = number.marker if key.rpartition(".")[2] in AXES else None
+    length = None if place is None else math.hypot(place.x, place.y) or None
+    size = _size(m.name, number.name, value, Column("part", name, key, number.value), length)
+    if place is not None:
+        refuse_beyond(m, f"'{number.name}' strays by", max(map(abs, size.limits)), place)
+    return size
 
 
 def _single(value: Any) -> bool:
@@ -162,7 +171,7 @@ def _size(owner: str, label: str, value: Any, column: Column, length: float | No
     except ModelError as error:
         said = str(error)
         raise ModelError(said if said.startswith(what) else f"{what}: {said}") from None
-    if column.kind not in ("place", "number"):
+    if column.kind not in ("place", "part", "number"):
         _refuse_no_size(owner, label, column, spread)
     return Size(label, (column,), column.nominal, spread=spread)
 

@@ -34,7 +34,7 @@ def serves(m: Model, columns: Sequence[Column], result: Any, ready: Any) -> bool
     """Whether these machines can be swept all at once."""
     return (
         in_closed_form(ready)
-        and all(column.kind != "argument" for column in columns)
+        and all(column.kind not in ("argument", "part") for column in columns)
         and (not isinstance(result, Measure) or all(placed(m, name) for name in result.quantities))
     )
 

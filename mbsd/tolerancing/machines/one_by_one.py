@@ -20,11 +20,12 @@ import numpy as np
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.quiet import quiet
 from mbsd.dynamics.many.measures import Measure
-from mbsd.model.change import change
+from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
+from mbsd.model.numbers import Number, number_in, put_together
 from mbsd.synthesis.changed import lengthen, put_place
 from mbsd.tolerancing.dimensions.dimension import Column
-from mbsd.tolerancing.dimensions.named import first_marker
+from mbsd.tolerancing.dimensions.named import TOLERANCES, first_marker
 from mbsd.tolerancing.machines.results import NAME, FailingResult, NoNumber, OfSolution, called, number_of
 
 LONGEST = 200
@@ -110,17 +111,27 @@ def swept(m: Model, columns: Sequence[Column], result: Measure | Callable[[Any],
 def with_numbers(m: Model, columns: Sequence[Column], row: np.ndarray) -> Any:
     """A copy of ``m`` whose numbers differ by a row of deviations."""
     out: Any = copy.deepcopy(m)
-    deviations = list(zip(columns, row.tolist(), strict=True))
-    for column, deviation in deviations:
+    places: list[tuple[Column, float]] = []
+    changes: dict[str, dict[str, float]] = {}
+    parts: list[tuple[Number, float]] = []
+    for column, deviation in zip(columns, row.tolist(), strict=True):
         if column.kind == "length" and column.name in out.bodies:
             lengthen(out, out.bodies[column.name], column.nominal + deviation)
         elif column.kind in ("length", "argument"):
-            change(out, column.name, {column.key: column.nominal + deviation})
-    for column, deviation in deviations:
-        if column.kind in ("place", "bore"):
-            marker = out.traces.get(column.name) or first_marker(out, column.name)
-            dx, dy = (deviation, 0.0) if column.key == "x" else (0.0, deviation)
-            put_place(out, column.name, (marker.x + dx, marker.y + dy))
+            changes.setdefault(column.name, {})[column.key] = column.nominal + deviation
+        elif column.kind != "part" or (number := number_in(m, column.name, column.key, TOLERANCES)).marker is not None:
+            places.append((column, deviation))
+        else:
+            parts.append((number, column.nominal + deviation))
+    put_together(out, [number for number, _ in parts], [value for _, value in parts], changes)
+    for column, deviation in places:  # about where the ends of bars now are
+        if column.kind == "part":
+            number = number_in(out, column.name, column.key, TOLERANCES)
+            number.put(out, number.value + deviation)
+            continue
+        marker = out.traces.get(column.name) or first_marker(out, column.name)
+        dx, dy = (deviation, 0.0) if column.key == "x" else (0.0, deviation)
+        put_place(out, column.name, (marker.x + dx, marker.y + dy))
     return out
 
 
@@ -136,12 +147,16 @@ class Simulated:
         self._alone: Counter[str] = Counter()
         self._looped, self._note = False, ""
         for column in columns:
-            if column.kind not in ("length", "argument"):
-                what = "play" if column.kind in ("bore", "reaction") else "place"
+            if column.kind in ("bore", "reaction"):
                 raise ModelError(
-                    f"{m.name}: tolerances: the {what} of '{column.name}' cannot stray in a simulation; drivers "
-                    "that give the motion are swept, and a function that builds the mechanism takes anything"
+                    f"{m.name}: tolerances: the play of '{column.name}' cannot stray in a simulation; drivers that "
+                    "give the motion are swept, and the clearance of a clearance_joint is a number that may stray"
                 )
+            if column.kind == "place" and column.name in m.traces and column.name in m.joints:
+                raise ModelError(
+                    f"{m.name}: tolerances: '{column.name}' is a joint and a traced point; rename one of them"
+                )
+        self._ends = [self._end(column) for column in columns]
 
     @property
     def way(self) -> str:
@@ -151,6 +166,17 @@ class Simulated:
             ["simulated in one compiled loop" + self._note, *alone] if self._looped else ["simulated", *alone]
         )
 
+    def _end(self, column: Column) -> int | None:
+        """The column that is the length of a bar, along which a place at its end moves."""
+        marker = None
+        if column.kind in ("place", "part") and column.key.rpartition(".")[2] == "x":
+            marker = number_in(self._m, column.name, column.key, TOLERANCES).marker
+        if marker is None or marker.body.length is None or not at_end(marker, marker.body.length):
+            return None
+        lengths = [(other.kind, other.name) for other in self._columns]
+        bar = "length", marker.body.name
+        return lengths.index(bar) if bar in lengths else None
+
     def _of_solution(self, result: Callable[[Any], Any]) -> Callable[[Any], dict[str, float]]:
         of_solution = OfSolution(self._m, result)
         return lambda sol: {NAME: of_solution(sol)}
@@ -158,8 +184,9 @@ class Simulated:
     def __call__(self, x: np.ndarray) -> Answers:
         """The result of each row."""
         vary: dict[str, dict[str, np.ndarray]] = {}
-        for k, column in enumerate(self._columns):
-            vary.setdefault(column.name, {})[column.key] = column.nominal + x[:, k]
+        for k, (column, end) in enumerate(zip(self._columns, self._ends, strict=True)):
+            nominal = column.nominal if end is None else self._columns[end].nominal + x[:, end]
+            vary.setdefault(column.name, {})[column.key] = nominal + x[:, k]
         many = self._m.simulate_many(vary=vary, measure=self._result, **self._options)
         self._alone += Counter(why for why in many.alone if why is not None)
         self._looped |= None in many.alone

@@ -12,6 +12,7 @@ gravity.y                            m/s^2
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, replace
@@ -20,11 +21,11 @@ from typing import Any
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
-from mbsd.derivatives.saved_model import SavedModel
 from mbsd.model.body import Marker
-from mbsd.model.change import BAR, BODY, change, change_body, given, given_body
+from mbsd.model.change import BAR, BODY, change, given, given_body
 from mbsd.model.joint import Joint
-from mbsd.model.mechanism import Model, connections
+from mbsd.model.mechanism import Model, connections, start_given
+from mbsd.model.saved_model import SavedModel
 
 AXES = {"x": 0, "y": 1}
 PLACE = ("x", "y", "angle")
@@ -32,6 +33,18 @@ LISTED = 12
 """Numbers of a thing that a message lists."""
 START = {"start": ("angle", "x", "y"), "moving": ("omega", "vx", "vy")}
 START_METHOD = {"start": "near", "moving": "moving"}
+
+
+@dataclass(frozen=True)
+class Within:
+    """Where a number stands in what :func:`mbsd.model.change.change` takes."""
+
+    whole: str
+    """What is changed."""
+    key: str
+    """Its argument."""
+    path: str
+    """The number in the argument, "" where it is the argument itself."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +57,10 @@ class Number:
     """Gives a model another value of it. Raises ModelError for one that it refuses."""
     built: Callable[[float], Model] | None = None
     """The model with another value, of a number that a function of the author builds models from."""
+    within: Within | None = None
+    """Where it stands, if it is a part of what ``change`` takes."""
+    marker: Marker | None = None
+    """The marker whose coordinate or angle it is."""
 
 
 def numbers_named(m: Model, names: Sequence[str]) -> list[Number]:
@@ -58,25 +75,47 @@ def number_named(m: Model, name: str) -> Number:
     if not isinstance(name, str):
         raise ModelError(f"{m.name}: derivatives: {shown(name)} is no name of a number; write 'crank.length'")
     for whole, rest in _splits(name):
-        if whole == "gravity" and rest in AXES:
-            return _gravity(m, name, AXES[rest])
-        number = _of_entry(m, name, whole, rest) or _of_body(m, name, whole, rest) or _of_trace(m, name, whole, rest)
+        number = _number(m, whole, rest)
         if number is not None:
-            return number
-    known = [*(key for table in connections(m) for key in table), *m.bodies, *m.traces, "gravity"]
-    whole = next((whole for whole, _ in _splits(name) if whole in known), None)
-    if whole is None:
-        raise ModelError(f"{m.name}: derivatives: {no_such('thing with numbers', name.partition('.')[0], known)}")
-    rest, own = name[len(whole) + 1 :], _known_of(m, whole)
+            return replace(number, name=name)
+    known = _things(m)
+    whole = next((whole for whole, _ in _splits(name) if whole in known), name.partition(".")[0])
+    raise _no_number(m, whole, name[len(whole) + 1 :], "derivatives")
+
+
+def number_in(m: Model, whole: str, rest: str, asked: str) -> Number:
+    """The number ``rest`` of a thing: "x" of a joint. Raises ModelError, which says that ``asked`` asked for it."""
+    number = _number(m, whole, rest)
+    if number is None:
+        raise _no_number(m, whole, rest, asked)
+    return number
+
+
+def _number(m: Model, whole: str, rest: str) -> Number | None:
+    if whole == "gravity" and rest in AXES:
+        return _gravity(m, AXES[rest])
+    return _of_entry(m, whole, rest) or _of_body(m, whole, rest) or _of_trace(m, whole, rest)
+
+
+def _things(m: Model) -> list[str]:
+    return [*(key for table in connections(m) for key in table), *m.bodies, *m.traces, "gravity"]
+
+
+def _no_number(m: Model, whole: str, rest: str, asked: str) -> ModelError:
+    """Why a thing has no such number."""
+    if whole not in _things(m):
+        return ModelError(f"{m.name}: {asked}: {no_such('thing with numbers', whole, _things(m))}")
+    own = known_numbers(m, whole)
     if not rest:
         more = f"it has some: {', '.join(f'{whole}.{key}' for key in own[:LISTED])}" if own else "it has none"
-        raise ModelError(f"{m.name}: derivatives: '{name}' is no number; {more}")
+        return ModelError(f"{m.name}: {asked}: '{whole}' is no number; {more}")
     first = rest.partition(".")[0]
     if whole in m.bodies and first in START and not any(key.startswith(f"{first}.") for key in own):
-        raise ModelError(
-            f"{m.name}: derivatives: '{name}': '{whole}' has no such number before start_{START_METHOD[first]} gives it"
+        return ModelError(
+            f"{m.name}: {asked}: '{whole}.{rest}': '{whole}' has no such number before start_{START_METHOD[first]} "
+            "gives it"
         )
-    raise ModelError(f"{m.name}: derivatives: '{whole}': {no_such('number', rest, own)}")
+    return ModelError(f"{m.name}: {asked}: '{whole}': {no_such('number', rest, own)}")
 
 
 @contextmanager
@@ -96,9 +135,68 @@ def with_value(m: Model, number: Number, value: float, saved: SavedModel | None 
 def with_values(m: Any, numbers: Sequence[Number], values: Sequence[float]) -> Any:
     """A copy of a model with other values of numbers. Raises ModelError for those that it refuses."""
     out = copy.deepcopy(m)
-    for number, value in zip(numbers, values, strict=True):
-        number.put(out, float(value))
+    put_together(out, numbers, values)
     return out
+
+
+def put_together(
+    m: Model,
+    numbers: Sequence[Number],
+    values: Sequence[float],
+    changes: Mapping[str, Mapping[str, Any]] | None = None,
+) -> None:
+    """Give a model other values of numbers where it stands; ``changes``: other arguments of ``change`` by name.
+
+    All of one thing are changed at once, so that what it refuses are the new numbers alone. Places come last, as the
+    end of a bar follows its length. Raises ModelError for what the model refuses.
+    """
+    together: dict[str, dict[str, Any]] = {whole: dict(own) for whole, own in (changes or {}).items()}
+    others: list[tuple[Number, float]] = []
+    for number, value in zip(numbers, values, strict=True):
+        at = number.within
+        if at is None:
+            others.append((number, float(value)))
+            continue
+        own = together.setdefault(at.whole, {})
+        own[at.key] = _with_inner(at.path, own[at.key] if at.key in own else _arguments(m, at.whole)[at.key], value)
+    for whole, own in together.items():
+        change(m, whole, own)
+    for number, value in others:
+        number.put(m, value)
+
+
+def _with_inner(path: str, value: Any, new: float) -> Any:
+    """An argument with another number at ``path``."""
+    at = _within(path, value)
+    assert at is not None
+    return at[1](float(new))
+
+
+def _arguments(m: Model, whole: str) -> dict[str, Any]:
+    """What ``change`` takes, with all values that are known, derived ones, too."""
+    out: dict[str, Any] = {}
+    if whole in m.bodies:
+        body = m.bodies[whole]
+        out |= {"mass": body.mass, "inertia": body.inertia, "com": body.com}
+        out |= {key: value for key, value in given_body(body).items() if value is not None}
+    for table in connections(m):
+        if whole in table:
+            entry: Any = table[whole]
+            out |= {**entry.params, **given(entry)}
+    return out
+
+
+def _inner(name: str, whole: str, key: str, path: str, value: Any) -> Number | None:
+    """The number at ``path`` of the argument ``key``, whose value is given."""
+    at = _within(path, value)
+    if at is None:
+        return None
+    within = Within(whole, key, path)
+
+    def put(m: Model, new: float) -> None:
+        change(m, whole, {key: _with_inner(path, _arguments(m, whole)[key], new)})
+
+    return Number(name, at[0], put, within=within)
 
 
 def _splits(name: str) -> list[tuple[str, str]]:
@@ -129,25 +227,24 @@ def _within(path: str, value: Any) -> tuple[float, Callable[[float], Any]] | Non
     return None
 
 
-def _of_entry(m: Model, name: str, whole: str, rest: str) -> Number | None:
+def _of_entry(m: Model, whole: str, rest: str) -> Number | None:
     """The number of a joint, driver, force or contact."""
     table = next((table for table in connections(m) if whole in table), None)
     if table is None:
         return None
     entry: Any = table[whole]
-    arguments = given(entry)
+    arguments, name = given(entry), f"{whole}.{rest}"
     rest = rest or ("length" if whole not in m.bodies else "")
     first, _, inner = rest.partition(".")
     if first in arguments:
-        at = _within(inner, arguments[first])
-        return at and Number(name, at[0], lambda m, new: change(m, whole, {first: at[1](new)}))
+        return _inner(name, whole, first, inner, arguments[first])
     law = entry.motion if isinstance(entry, Joint) else next(iter(entry.laws.values()), None)
-    if law is not None and (at := _within(rest, law)) is not None:
+    if law is not None and _within(rest, law) is not None:
         key = next(key for key, value in arguments.items() if value is law)
-        return Number(name, at[0], lambda m, new: change(m, whole, {key: at[1](new)}))
+        return _inner(name, whole, key, rest, law)
     derived = entry.params.get(first)
     if derived is not None and _is_number(derived) and not inner:
-        return Number(name, float(derived), lambda m, new: change(m, whole, {first: new}))
+        return _inner(name, whole, first, "", derived)
     if first in ("i", "j") and inner in PLACE:
         return _of_marker(m, name, whole, first, inner)
     if rest in PLACE and isinstance(entry, Joint):
@@ -163,24 +260,20 @@ def _of_marker(m: Model, name: str, entry: str, side: str, axis: str) -> Number:
         table[entry] = replace(table[entry], **{side: replace(marker, **{axis: float(new)})})
 
     [marker] = [getattr(table[entry], side) for table in connections(m) if entry in table]
-    return Number(name, float(getattr(marker, axis)), put)
+    return Number(name, float(getattr(marker, axis)), put, marker=marker)
 
 
-def _of_body(m: Model, name: str, whole: str, rest: str) -> Number | None:
+def _of_body(m: Model, whole: str, rest: str) -> Number | None:
     if whole not in m.bodies:
         return None
-    body = m.bodies[whole]
+    body, name = m.bodies[whole], f"{whole}.{rest}"
     rest = rest or "length"
     first, _, inner = rest.rpartition(".")
     if first in START and inner in START[first]:
         return _of_start(m, name, whole, first, START[first].index(inner))
     if whole != "ground" and rest.partition(".")[0] in (BODY if body.length is None else BAR):
         key, _, inner = rest.partition(".")
-        values = {"mass": body.mass, "inertia": body.inertia, "com": body.com} | {
-            key: value for key, value in given_body(body).items() if value is not None
-        }
-        at = _within(inner, values.get(key))
-        return at and Number(name, at[0], lambda m, new: change_body(m, m.bodies[whole], {key: at[1](new)}))
+        return _inner(name, whole, key, inner, _arguments(m, whole).get(key))
     entry, _, axis = rest.rpartition(".")
     for table in connections(m):
         if entry in table and axis in PLACE:
@@ -198,6 +291,8 @@ def _of_start(m: Model, name: str, body: str, what: str, at: int) -> Number | No
     first = "angle" if what == "start" else "omega"
 
     def put(m: Model, new: float) -> None:
+        if what == "start" and not at:
+            start_given(m, body, math.degrees(new))
         table: Any = m.starts if what == "start" else m.velocities
         old = table[body]
         own = {first: float(new)} if not at else {"place": tuple(float(new) if k + 1 == at else value
@@ -207,34 +302,40 @@ def _of_start(m: Model, name: str, body: str, what: str, at: int) -> Number | No
     return Number(name, float(getattr(given_start, first) if not at else given_start.place[at - 1]), put)
 
 
-def _of_trace(m: Model, name: str, whole: str, rest: str) -> Number | None:
+def _of_trace(m: Model, whole: str, rest: str) -> Number | None:
     if whole not in m.traces or rest not in PLACE:
         return None
 
     def put(m: Model, new: float) -> None:
         m.traces[whole] = replace(m.traces[whole], **{rest: float(new)})
 
-    return Number(name, float(getattr(m.traces[whole], rest)), put)
+    return Number(f"{whole}.{rest}", float(getattr(m.traces[whole], rest)), put, marker=m.traces[whole])
 
 
-def _gravity(m: Model, name: str, axis: int) -> Number:
+def _gravity(m: Model, axis: int) -> Number:
     def put(m: Model, new: float) -> None:
         now = m.gravity or (0.0, 0.0)
         m.gravity = (float(new), now[1]) if axis == 0 else (now[0], float(new))
 
-    return Number(name, float((m.gravity or (0.0, 0.0))[axis]), put)
+    return Number(f"gravity.{'xy'[axis]}", float((m.gravity or (0.0, 0.0))[axis]), put)
 
 
-def _known_of(m: Model, whole: str) -> list[str]:
-    """Some of the numbers that a thing has, for a message."""
+def numbers_within(law: Any) -> list[str]:
+    """Names of the single numbers of a law; none of anything else."""
+    if not is_dataclass(law) or isinstance(law, type):
+        return []
+    return [part.name for part in fields(law) if _is_number(getattr(law, part.name))]
+
+
+def known_numbers(m: Model, whole: str) -> list[str]:
+    """Names of numbers that a thing has, for a message."""
     out: list[str] = []
     for table in connections(m):
         if whole in table:
             entry: Any = table[whole]
             out += [key for key, value in given(entry).items() if _is_number(value)]
             law = entry.motion if isinstance(entry, Joint) else next(iter(entry.laws.values()), None)
-            if law is not None and is_dataclass(law):
-                out += [part.name for part in fields(law) if _is_number(getattr(law, part.name))]
+            out += numbers_within(law)
             if isinstance(entry, Joint):
                 out += PLACE
             out += [f"{side}.{axis}" for side in ("i", "j") for axis in PLACE]

@@ -14,7 +14,7 @@ class SavedModel:
 
     def __init__(self, m: Model) -> None:
         self.m = m
-        tables: tuple[Any, ...] = (*connections(m), m.traces, m.starts, m.velocities)
+        tables: tuple[Any, ...] = (*connections(m), m.events, m.traces, m.starts, m.velocities)
         self._tables = [(table, dict(table)) for table in tables]
         self.bodies = [(body, dict(body.__dict__)) for body in m.bodies.values()]
         """Each body and its values."""

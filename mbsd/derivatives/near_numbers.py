@@ -76,8 +76,9 @@ class Near:
 class NearNumbers:
     """Numbers of the mechanism of a ``variation``, whose start moves as ``starts`` says."""
 
-    def __init__(self, variation: Variation, starts: StartTangents, loads: Loads) -> None:
-        self.variation, self.starts, self.loads = variation, starts, loads
+    def __init__(self, variation: Variation, starts: StartTangents, loads: Loads, whole: bool) -> None:
+        """With ``whole`` it is found as well whether joints, forces or traced points are made anew."""
+        self.variation, self.starts, self.loads, self.whole = variation, starts, loads, whole
         self._first = variation.first.system
         self._no_masses, self._no_gravity = np.zeros_like(self._first.mass), np.zeros_like(self._first.gravity)
         self._no_com = np.zeros_like(variation.first.com)
@@ -155,7 +156,9 @@ class NearNumbers:
 
     def _tables_kept(self, m: Model) -> bool:
         saved = self.variation.saved
-        return m is saved.m and all(unchanged(table, saved) for table in (m.joints, m.drivers, m.forces, m.traces))
+        return not self.whole or (
+            m is saved.m and all(unchanged(table, saved) for table in (m.joints, m.drivers, m.forces, m.traces))
+        )
 
     @cached_property
     def _numbers(self) -> dict[str, tuple[int, tuple[Element, ...]]]:

@@ -66,9 +66,12 @@ class BothSides:
         self.near: list[Near | None] = []
         """By number, how arrays change with it; None where they do not go on straight."""
 
-    def of(self, m: Model, variation: Variation, numbers: Sequence[Number]) -> list[Sides]:
-        """Those of all numbers of ``m``, which ``variation`` varies. Raises NotSmooth where the groups are others."""
-        near = NearNumbers(variation, StartTangents(m, self.ready), self.arrays.loads)
+    def of(self, m: Model, variation: Variation, numbers: Sequence[Number], whole: bool) -> list[Sides]:
+        """Those of all numbers of ``m``, which ``variation`` varies; ``whole``: for more than how bodies move.
+
+        Raises NotSmooth where the groups are others.
+        """
+        near = NearNumbers(variation, StartTangents(m, self.ready), self.arrays.loads, whole)
         self.near = [near.of(number) for number in numbers]
         straight = iter(self.straight([own for own in self.near if own is not None]))
         return [

@@ -62,9 +62,9 @@ Way = Callable[[np.ndarray], tuple[np.ndarray, Finish]]
 
 
 class SimulationTangents:
-    """A simulation at output times ``grid`` (T,), and its tangents by numbers at some of them.
+    """A simulation at output times ``grid`` (T,), and its tangents by numbers at rows that ``needed`` gives.
 
-    ``needed`` gives these rows; ``of_bodies`` is what is asked for, where that is how bodies move.
+    ``of_bodies`` is what is asked for, where that is how bodies move.
     """
 
     def __init__(
@@ -148,7 +148,7 @@ class SimulationTangents:
         asked, arrays = self._of_bodies, coordinates.copied(self._runs.tolerance)
         if self._sides is None:
             both = BothSides(ready, coordinates, arrays)
-            self._sides, self._near = both.of(self.m, self.variation, self._numbers), both.near
+            self._sides, self._near = both.of(self.m, self.variation, self._numbers, asked is None), both.near
         independent = IndependentTangents(ready, coordinates, arrays, self._sides)
         line = independent.carry(self._first, nodes_of(edges, self._met))
 

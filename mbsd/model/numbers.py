@@ -77,7 +77,7 @@ def number_named(m: Model, name: str) -> Number:
     for whole, rest in _splits(name):
         number = _number(m, whole, rest)
         if number is not None:
-            return replace(number, name=name)
+            return number if number.name == name else replace(number, name=name)
     known = _things(m)
     whole = next((whole for whole, _ in _splits(name) if whole in known), name.partition(".")[0])
     raise _no_number(m, whole, name[len(whole) + 1 :], "derivatives")

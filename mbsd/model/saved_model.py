@@ -16,6 +16,7 @@ class SavedModel:
         self.m = m
         tables: tuple[Any, ...] = (*connections(m), m.events, m.traces, m.starts, m.velocities)
         self._tables = [(table, dict(table)) for table in tables]
+        self._before = {id(table): (table, before) for table, before in self._tables}
         self.bodies = [(body, dict(body.__dict__)) for body in m.bodies.values()]
         """Each body and its values."""
         self.gravity = m.gravity
@@ -23,7 +24,8 @@ class SavedModel:
 
     def before(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
         """What one of the tables of the model held; nothing of another model."""
-        return next((before for own, before in self._tables if own is table), {})
+        own = self._before.get(id(table))
+        return own[1] if own is not None and own[0] is table else {}
 
     def restore(self) -> None:
         """Put everything back."""
@@ -35,4 +37,5 @@ class SavedModel:
             if body.__dict__ != own:
                 body.__dict__.clear()
                 body.__dict__.update(own)
-        self.m.gravity = self.gravity
+        if self.m.gravity is not self.gravity:
+            self.m.gravity = self.gravity

@@ -76,7 +76,7 @@ def _loads(packed: Packed) -> Loads:
         friction,
         friction_number,
         np.zeros((4, len(friction))),
-        np.zeros(2),
+        np.zeros(3),
         len(element) + len(interaction) + len(user),
     )
 

@@ -31,8 +31,15 @@ BY_RATE, NONE = 2.0, 0.0
 joint is released)."""
 X, LAST, FOUND, CHANGE = range(4)
 """Columns of ``normal``: the one used now, last residual, what the multipliers give, change to be applied."""
-WEIGHT, FAILED = 0, 1
-"""Columns of ``Loads.iteration``."""
+WEIGHT, FAILED, BEGAN = 0, 1, 2
+"""Columns of ``Loads.iteration``; the largest normal force that it began with."""
+SPOILT = 1e-6
+"""Part of that below which all forces are where its rounding is more than may be left, as after a trial stage far away:
+it begins again without normal forces."""
+OVERFLOWS = 1e100
+"""Normal forces whose squares may be no number."""
+GOES_ON, AGREES, BEGINS_AGAIN = range(3)
+"""What follows a pass."""
 SETTLED, FAINT = 1e-12, 0.1
 """Part of the largest normal force that may be left; no less than this part of the largest weight counts as largest."""
 MOST_PASSES = 100
@@ -146,18 +153,21 @@ def note_friction(system, loads, v, ws, lam):
 def begin_friction(system, loads, v, ws, load):
     """Add the friction under the normal forces of the last evaluation; returns its power (W)."""
     x = loads.normal[X]
+    largest = 0.0
     for k in range(x.shape[0]):
-        if not math.isfinite(x[k]):
+        if not x[k] < OVERFLOWS:
             x[k] = 0.0
+        largest = max(largest, x[k])
     loads.iteration[WEIGHT] = 0.0
+    loads.iteration[BEGAN] = largest
     return apply_friction(system, loads, v, ws, x, 1.0, load)
 
 
-@lazy(bool)
+@lazy(int)
 def settle(dyn, ws, a, lam):
-    """Compare with the normal forces at a (3 nb,) and lam (m,): True if they agree.
+    """Compare with the normal forces at a (3 nb,) and lam (m,): whether they agree, or what follows.
 
-    Else the change to apply stands in normal[CHANGE].
+    Where it goes on, the change to apply stands in normal[CHANGE].
     """
     loads = dyn.loads
     x = loads.normal[X]
@@ -177,14 +187,18 @@ def settle(dyn, ws, a, lam):
             x[k] = settled[k]
         gap = settled[k] - x[k]
         if not math.isfinite(gap):
-            return True
+            return AGREES
         largest = max(largest, settled[k])
         worst = max(worst, abs(gap))
         product += last[k] * (gap - last[k])
         square += (gap - last[k]) ** 2
+    if largest < SPOILT * loads.iteration[BEGAN]:
+        for k in range(x.shape[0]):
+            x[k] = 0.0
+        return BEGINS_AGAIN
     if worst <= SETTLED * largest:
         loads.iteration[FAILED] = 0.0
-        return True
+        return AGREES
     weight = loads.iteration[WEIGHT]
     if weight == 0.0 or square == 0.0:
         weight = 1.0
@@ -197,7 +211,7 @@ def settle(dyn, ws, a, lam):
         moved = max(x[k] + weight * gap, 0.0)
         change[k] = moved - x[k]
         x[k] = moved
-    return False
+    return GOES_ON
 
 
 @kernel

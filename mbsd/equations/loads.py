@@ -54,7 +54,7 @@ class Loads(NamedTuple):
     normal: Any
     """(4, f) their normal forces now, and scratch of the iteration."""
     iteration: Any
-    """(2,) weight of the iteration's steps, and whether it failed."""
+    """(3,) weight of the iteration's steps, whether it failed, and the largest normal force that it began with."""
     total: int
     """Number of all elements, interactions and forces of the user; friction is not among them."""
 

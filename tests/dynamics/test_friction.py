@@ -11,8 +11,12 @@ from mbsd import Mechanism, ModelError, SimulationError, constant_rate, polynomi
 from mbsd.arrays.friction_along import normals_along
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import pack
-from mbsd.equations.joint_friction import tabulate_friction
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.reference.arrays import scratch_for
+from mbsd.equations.joint_friction import X, tabulate_friction
 from mbsd.testing.forces import motion
+from tools.models.rough import pusher
 from tools.models.slider_cranks import slider_crank
 
 G = 9.80665
@@ -239,6 +243,27 @@ def test_normal_forces_are_those_of_the_reactions() -> None:
         np.testing.assert_allclose(normal[:, k], sol.joint(pin).magnitude, rtol=1e-12)
     rail = sol.joint("rail")
     np.testing.assert_allclose(normal[:, 3], np.maximum(abs(rail.fy), 2 * abs(rail.torque) / 0.08), rtol=1e-9)
+
+
+@pytest.mark.parametrize("far", [1e9, 1e30, 1e80, 1e300])
+@pytest.mark.parametrize("slides", [False, True])
+def test_normal_forces_of_a_trial_stage_far_away_leave_nothing(far: float, slides: bool) -> None:
+    feet = dict.fromkeys(("rear", "front"), (0.3, 0.3))
+    ready = prepare_dynamics(pusher(False, "OAB", 5.0, (0.5, 2.0), feet, (1.0, 2.0), 60.0), 0.0, 1.0, contacts=True)
+    dynamics, contact = ready.dynamics, ready.switches.contacts[0]
+    if slides:
+        ready.switches.hold_row(contact.gap)
+        ready.switches.now.factors[contact.sliding] = contact.friction
+    scratch = scratch_for(dynamics, ready.packed.ws, 0, 1)
+    state = np.stack([ready.initial.q, 1.0 + 0.3 * np.arange(len(ready.initial.q))])
+    seen = []
+    for begin in (0.0, far):
+        out, lam = np.zeros_like(state), np.zeros(len(ready.packed.ws.phi))
+        dynamics.loads.normal[...], dynamics.loads.normal[X] = 0.0, begin
+        power = derivative(dynamics, scratch, 0.3, state, out, lam)
+        seen.append(np.concatenate([out[1], lam, [power], dynamics.loads.normal[X]]))
+    assert np.abs(seen[0]).max() > 1.0
+    np.testing.assert_allclose(seen[1], seen[0], rtol=1e-9, atol=1e-9)
 
 
 def test_joints_that_jam_are_told() -> None:

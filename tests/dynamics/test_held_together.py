@@ -12,6 +12,7 @@ from mbsd import Mechanism, polynomial
 from mbsd.measures import samples
 from mbsd.results.solution import Solution
 from tools.models.random_rough import five_bar_with_stops, level_chain, shaken_box, striker
+from tools.models.rough import pusher
 
 WEIGHT, STATIC, KINETIC = 10.0, (0.5, 0.7), 0.3
 HALF, BELOW = 0.1, 0.05
@@ -77,6 +78,16 @@ def check(machines: Machines, seeds: range) -> None:
         assert sol.t[-1] == pytest.approx(0.8)
         assert_coulomb(sol)
         assert all(event.energy <= 1e-9 for event in sol.events if event.what == "impact")
+
+
+def test_a_block_at_rest_on_both_feet_gives_way_once() -> None:
+    """Its rows are those of one foot, on which it would tilt: the other pushes only where loads are divided."""
+    feet = dict.fromkeys(("rear", "front"), (0.5111247677857788, 0.5111247677857788))
+    m = pusher(True, "OAB", 21.6322488607124, (0.5111247677857788, 0.5111247677857788), feet, (2.41, 7.92), 20.0)
+    sol = m.simulate(0.2, steps=20, tolerance=1e-8)
+    assert sol.t[-1] == pytest.approx(0.2)
+    assert_coulomb(sol)
+    assert len({event.time for event in sol.events if event.what in ("slides", "sticks")}) < 10
 
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow), pytest.param(2, marks=pytest.mark.slow)])

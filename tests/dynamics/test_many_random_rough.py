@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, harmonic
 from tests.dynamics.beside_single_runs import assert_as_single_ones, between
-from tools.models.rough import rub
+from tools.models.rough import pusher, rub
 
 pytestmark = pytest.mark.slow
 MACHINES = 15
@@ -44,24 +44,12 @@ def chains(draw: st.DrawFn) -> tuple[Mechanism, str]:
 @st.composite
 def pushers(draw: st.DrawFn) -> tuple[Mechanism, str]:
     """A linkage with dry bearings that pushes a rough block to and fro."""
-    m = Mechanism("pusher", gravity=(0, -9.81))
     sticks, friction = draw(st.booleans()), draw(between(0.05, 0.6))
-    crank, rod = m.bar("crank", 0.1, mass=draw(between(0.2, 1.0))), m.bar("rod", 0.4, mass=0.2)
-    block = m.body("part", draw(between(0.5, 3.0)), inertia=0.02)
-    m.revolute("O", m.ground.at(0, 0.07), crank.start)
-    m.revolute("A", crank.end, rod.start)
-    m.revolute("B", rod.end, block.at(0, 0.02))
-    rub(m, sticks, draw(st.sampled_from(["O", "A", "B", "OA", "OAB"])), draw(between(1.0, 30.0)))
-    for name, x in (("rear", -0.1), ("front", 0.1)):
-        static = friction * draw(st.sampled_from([1.0, 1.3]))
-        m.rigid_contact(name, m.ground.at(0, 0), block.at(x, -0.05), 0.0, 0.2, friction, static)
-    m.torque("motor", crank, harmonic(draw(between(0.5, 3.0)), draw(between(2.0, 8.0))))
-    angle = draw(between(20.0, 160.0))
-    height = 0.07 + 0.1 * math.sin(math.radians(angle))
-    tilt = -math.asin((height - 0.07) / 0.4)
-    reach = 0.1 * math.cos(math.radians(angle)) + 0.4 * math.cos(tilt)
-    m.start_near(crank=angle, rod=math.degrees(tilt), part=(reach, 0.05, 0))
-    return m, "part"
+    crank, block = draw(between(0.2, 1.0)), draw(between(0.5, 3.0))
+    joints, preload = draw(st.sampled_from(["O", "A", "B", "OA", "OAB"])), draw(between(1.0, 30.0))
+    rubbing = {name: (friction, friction * draw(st.sampled_from([1.0, 1.3]))) for name in ("rear", "front")}
+    motor = draw(between(0.5, 3.0)), draw(between(2.0, 8.0))
+    return pusher(sticks, joints, preload, (crank, block), rubbing, motor, draw(between(20.0, 160.0))), "part"
 
 
 @st.composite

@@ -58,6 +58,36 @@ def pushed_block(sticks: bool, static: float | None = None, torque: Any = 1.5, p
     return m
 
 
+def pusher(
+    sticks: bool,
+    joints: str,
+    preload: float,
+    masses: tuple[float, float],
+    rubbing: dict[str, tuple[float, float]],
+    motor: tuple[float, float],
+    angle: float,
+) -> Mechanism:
+    """A linkage with dry bearings that pushes a rough block, its "part", to and fro.
+
+    ``masses``: of crank and block (kg); ``rubbing``: kinetic and static friction of the feet "rear" and "front";
+    ``motor``: amplitude (N m) and rate (rad/s) of its torque; ``angle``: of the crank at the start (degrees).
+    """
+    m = Mechanism("pusher", gravity=(0, -9.81))
+    crank, rod, block = m.bar("crank", 0.1, masses[0]), m.bar("rod", 0.4, 0.2), m.body("part", masses[1], inertia=0.02)
+    m.revolute("O", m.ground.at(0, 0.07), crank.start)
+    m.revolute("A", crank.end, rod.start)
+    m.revolute("B", rod.end, block.at(0, 0.02))
+    rub(m, sticks, list(joints), preload)
+    for name, x in (("rear", -0.1), ("front", 0.1)):
+        m.rigid_contact(name, m.ground.at(0, 0), block.at(x, -0.05), 0.0, 0.2, *rubbing[name])
+    m.torque("motor", crank, harmonic(*motor))
+    height = 0.07 + 0.1 * math.sin(math.radians(angle))
+    tilt = -math.asin((height - 0.07) / 0.4)
+    reach = 0.1 * math.cos(math.radians(angle)) + 0.4 * math.cos(tilt)
+    m.start_near(crank=angle, rod=math.degrees(tilt), part=(reach, 0.05, 0))
+    return m
+
+
 def swinging_load(sticks: bool, static: float | None = None) -> Mechanism:
     """A sledge on a rough base that goes to and fro; a pendulum hangs on it in a dry bearing."""
     m = Mechanism("swinging load", gravity=(0, -9.81))

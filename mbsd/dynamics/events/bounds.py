@@ -32,6 +32,11 @@ AGREED = 1e-12
 """Part of the largest friction that may still change."""
 PASSES_TOGETHER, AGREED_TOGETHER = 30, 1e-11
 """Passes in which contacts and joints that hold together agree on their limits, at most; what may still change."""
+PASSES_BETWEEN = 100
+"""The same where they are looked for between bounds."""
+MOST_PUSH = 10.0
+"""Times all normal forces before, and what loads ask for, that they may be after they are divided: where bodies wedge
+the least part of their limits belongs to infinite ones."""
 WEAKEST = 1e-9
 """Part of the largest limit that each has at least, where limits are weights."""
 TRIED = np.array([0.1337, 0.5437])

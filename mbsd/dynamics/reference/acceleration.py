@@ -18,12 +18,14 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import kernel, merged
+from mbsd.compiling.jit import kernel, lazy, merged
 from mbsd.dynamics.reference.pins import factor_pins, solve_pins
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
 from mbsd.equations.joint_friction import (
+    AGREES,
+    BEGINS_AGAIN,
     CHANGE,
     FAILED,
     MOST_PASSES,
@@ -34,6 +36,21 @@ from mbsd.equations.joint_friction import (
 )
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
+
+
+@lazy(float)
+def _begin_again(dyn, scratch, t, state, a, lam):
+    """Loads and friction as before the first pass; returns their power (W)."""
+    force = scratch.force
+    power = 0.0
+    for c in range(a.shape[0]):
+        force[c] = dyn.weight[c]
+        a[c] = 0.0
+    for r in range(lam.shape[0]):
+        lam[r] = 0.0
+    if dyn.loads.total > 0:
+        power = apply_loads(dyn.loads, dyn.laws, t, state[0], state[1], scratch.ws.cos_sin, force)
+    return power + begin_friction(dyn.system, dyn.loads, state[1], scratch.ws, force)
 
 
 @merged
@@ -87,6 +104,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
                     gamma[r] -= 2.0 * alpha * times_jacobian(factors, schur, k, s, v) + beta * beta * ws.phi[r]
         for k in range(system.driven.shape[0]):
             gamma[system.driven[k, 0]] += 2.0 * alpha * drive[system.driven[k, 1], 1]
+    first = dyn.passes
     for done in range(dyn.passes + MOST_PASSES):
         for c in range(3, n3):
             ws.pose[c] = a[c] + dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
@@ -103,20 +121,25 @@ def accelerate(dyn, scratch, t, state, a, lam):
                 r = schur.rows[k, s]
                 if r >= 0:
                     lam[r] += y[k, s, 0]
-        if done + 1 >= dyn.passes:
+        if done + 1 >= first:
             if sliding:
-                if done + 1 == dyn.passes:
+                if done + 1 == first:
                     begin_sliding(dyn, scratch)
                 power += slide(dyn, scratch, v, a, lam)
             if not with_friction:
                 break
-            if settle(dyn, ws, a, lam):
+            follows = settle(dyn, ws, a, lam)
+            if follows == AGREES:
                 break
             if done + 1 == dyn.passes + MOST_PASSES:
                 dyn.loads.iteration[FAILED] = 1.0
                 for c in range(3, n3):
                     a[c] = math.nan
                 break
+            if follows == BEGINS_AGAIN:
+                power = _begin_again(dyn, scratch, t, state, a, lam)
+                first = done + 1 + dyn.passes
+                continue
             power += apply_friction(system, dyn.loads, v, ws, dyn.loads.normal[CHANGE], 0.0, force)
     if with_friction:
         note_friction(system, dyn.loads, v, ws, lam)

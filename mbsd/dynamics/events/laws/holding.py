@@ -8,9 +8,10 @@ N and T do; of those the ones are chosen that ask for the smallest part s of wha
 L_k: limit of a joint. As s multiplies N, it is found by linear programmes, each with an s that is known and limits w_k
 of the solution before:
 
-    minimise d   with   |T_k| <= s (mu_k N_k + L_k) + d w_k,   N >= 0
+    minimise d   with   |T_k| <= s (mu_k N_k + L_k) + d w_k,   N >= 0,   sum N <= most
 
-by the simplex method. Bodies at rest can stay so as long as s <= 1; without any such N the contacts would have to pull.
+by the simplex method; ``most`` is there where bodies wedge, as then the more contacts push the smaller d is. Bodies at
+rest can stay so as long as s <= 1; without any such N the contacts would have to pull.
 
 Source: Crouzeix, Ferland, Schaible 1985, J. Optim. Theory Appl. 47 (Dinkelbach's method for several ratios); Chvatal,
 Linear Programming, ch. 8, with Bland's rule.
@@ -18,6 +19,7 @@ Linear Programming, ch. 8, with Bland's rule.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,14 +36,15 @@ class Holding(NamedTuple):
     """Scratch for c normal forces and k ways at rest."""
 
     table: Any
-    """(c + 2 k + 2, 2 c + 4 k + 3) rows: those held, limits, the objective, what lacks of balance; last column: b."""
+    """(c + 2 k + 3, 2 c + 4 k + 4) rows: those held, limits, most, the objective, what lacks of balance; last column:
+    b."""
     basis: Any
-    """(c + 2 k,) int, columns that are not zero"""
+    """(c + 2 k + 1,) int, columns that are not zero"""
 
 
 def holding_of(c: int, k: int) -> Holding:
     """Scratch for c normal forces and k ways at rest, or for less of the first and as much more of the others."""
-    return Holding(np.zeros((c + 2 * k + 2, 2 * c + 4 * k + 3)), np.zeros(c + 2 * k, np.int64))
+    return Holding(np.zeros((c + 2 * k + 3, 2 * c + 4 * k + 4)), np.zeros(c + 2 * k + 1, np.int64))
 
 
 @internal
@@ -84,14 +87,14 @@ def _lower(table, basis, rows, columns, last, objective):
 
 
 @internal
-def _fill(work, compliance, balance, pick, limit, weight, part):
+def _fill(work, compliance, balance, pick, limit, weight, part, most):
     """Fill the table; returns numbers of rows, of columns that are no artificial ones, and of all columns."""
     table = work.table
     m, n = compliance.shape
     k, c = pick.shape
-    columns = c + 3 * k + 2
+    columns = c + 3 * k + 3
     last = columns + m
-    for i in range(m + k + 2):
+    for i in range(m + k + 3):
         for j in range(last + 1):
             table[i, j] = 0.0
     for i in range(m):
@@ -104,8 +107,8 @@ def _fill(work, compliance, balance, pick, limit, weight, part):
         table[i, last] = sign * balance[i]
         work.basis[i] = columns + i
         for j in range(columns):
-            table[m + k + 1, j] -= table[i, j]
-        table[m + k + 1, last] -= table[i, last]
+            table[m + k + 2, j] -= table[i, j]
+        table[m + k + 2, last] -= table[i, last]
     for w in range(k):
         i = m + w
         for j in range(c):
@@ -117,24 +120,29 @@ def _fill(work, compliance, balance, pick, limit, weight, part):
         table[i, c + 2 * k + 2 + w] = 1.0
         table[i, last] = part * limit[w]
         work.basis[i] = c + 2 * k + 2 + w
-    table[m + k, c + 2 * k] = 1.0
-    table[m + k, c + 2 * k + 1] = -1.0
-    return m + k, columns, last
+    for j in range(c):
+        table[m + k, j] = 1.0
+    table[m + k, columns - 1] = 1.0
+    table[m + k, last] = most
+    work.basis[m + k] = columns - 1
+    table[m + k + 1, c + 2 * k] = 1.0
+    table[m + k + 1, c + 2 * k + 1] = -1.0
+    return m + k + 1, columns, last
 
 
 @kernel
-def hold(compliance, balance, pick, limit, weight, part, work, force):
-    """Fill force (c + k,) with N and T that hold; returns whether there are any, else what lacks least.
+def hold(compliance, balance, pick, limit, weight, part, most, work, force):
+    """Fill force (c + k,) with N and T that hold; returns d, infinite where there are none, but what lacks least.
 
     ``compliance`` (m, c + k) of the m rows that hold, ``balance`` (m,) = b, both of order one; ``pick`` (k, c) and
     ``limit`` (k,): what friction may be is pick N + limit; ``weight`` (k,) is w, ``part`` is s.
     """
     k, c = pick.shape
-    rows, columns, last = _fill(work, compliance, balance, pick, limit, weight, part)
+    rows, columns, last = _fill(work, compliance, balance, pick, limit, weight, part, most)
     table = work.table
     basis = work.basis
     largest = 0.0
-    for i in range(rows - k):
+    for i in range(rows - k - 1):
         largest = max(largest, abs(balance[i]))
     _lower(table, basis, rows, columns, last, rows + 1)
     holds = -table[rows + 1, last] <= PULLS * largest
@@ -157,4 +165,4 @@ def hold(compliance, balance, pick, limit, weight, part, work, force):
             force[j] += value
         elif j < c + 2 * k:
             force[j - k] -= value
-    return holds
+    return -table[rows, last] if holds else math.inf

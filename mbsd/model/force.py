@@ -145,6 +145,17 @@ def _no_interactions(force: Force, masses: Masses) -> Sequence[Interaction]:
     return ()
 
 
+class Press(NamedTuple):
+    """How surfaces of a play are pressed together."""
+
+    depth: float
+    """m, below 0 where there is room left."""
+    force: float
+    """N, that this takes."""
+    room: float
+    """The play to either side (m)."""
+
+
 @dataclass(frozen=True)
 class ForceKind(ByName):
     """A kind of force."""
@@ -171,6 +182,8 @@ class ForceKind(ByName):
     """Where gears with play stand in their teeth."""
     ideal: Callable[[Force], Joint | None] | None = None
     """The joint whose place it takes, which holds at the start alone; None of a force that starts as bodies do."""
+    press: Callable[[Force], Press | None] | None = None
+    """How its surfaces are pressed together at the start, where its ``ideal`` joint holds; None where that does not."""
     along: Callable[[Force], Element] | None = None
     """The one element along which its interaction acts, without terms, if it acts along one."""
     chamber: Callable[[Force, Masses], Chamber] | None = None

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, constant_rate, polynomial
+from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, SimulationError, constant_rate, polynomial
 from mbsd.measures import final, largest
 from mbsd.model.adding.restitution import MODELS
 from mbsd.results.force_view import ForceView
@@ -160,6 +160,44 @@ def test_it_hangs_at_rest_where_the_contact_carries_it() -> None:
     bounce = max(mode.frequency for mode in m.modes() if mode.frequency)
     stiff = 1.5 * 6e8 * depth**0.5
     assert 2.0 * math.pi * bounce == pytest.approx(math.sqrt(stiff / 1.0), rel=1e-3)
+
+
+def test_a_journal_starts_no_deeper_in_the_wall_than_its_load_presses_it() -> None:
+    """It may be pressed in ten times harder than by its load, in any direction; and by a hundredth of its clearance."""
+    depth = (G / 6e8) ** (2.0 / 3.0)
+    for times, refused in ((1.0, False), (9.9, False), (10.1, True), (100.0, True)):
+        away = 1e-4 + depth * times ** (2.0 / 3.0)
+        for place in ((0.0, -away), (0.6 * away, 0.8 * away)):
+            if not refused:
+                assert hanging(place).simulate(1e-6).force("pin").effort[0] == pytest.approx(times * G, rel=1e-6)
+                continue
+            with pytest.raises(
+                SimulationError, match=r"hanging: force 'pin' starts .* m deep .* pin .* carries 9.81 N"
+            ):
+                hanging(place).simulate(1e-6)
+    light = hanging((0.0, 1.009e-4))
+    light.gravity = None
+    light.simulate(1e-6)
+    light.change("pin", start=(0.0, 1.011e-4))
+    with pytest.raises(
+        SimulationError, match=r"without play carries 0 N. Give start= within its clearance of 0.0001 m"
+    ):
+        light.simulate(1e-6)
+    light.change("pin", start=None)
+    light.simulate(1e-6)
+
+
+def test_rows_of_many_that_press_a_journal_in_have_the_reason_of_single_ones() -> None:
+    m = slider_crank(0.5e-3, modulus=None, stiffness=6.6e10, start=(0.4e-3, 0.0))
+    measure = {"x": final("slider.x")}
+    many = m.simulate_many(0.1 * TURN, {"B": {"clearance": [0.5e-3, 0.1e-3]}}, measure=measure)
+    assert many.good.tolist() == [True, False]
+    assert "starts with its journal 0.0003 m deep" in str(many.reason[1])
+    apart = m.simulate_many(0.1 * TURN, {"B": {"stiffness": [6.6e10, 6e10]}}, measure=measure)
+    assert apart.way == "all of 2 in the compiled loop"
+    m.change("B", start=(0.51e-3, 0.0))
+    deep = m.simulate_many(0.1 * TURN, {"B": {"stiffness": [6.6e10, 6.6e14]}}, measure=measure)
+    assert deep.good.tolist() == [True, False]
 
 
 def test_many_simulations_are_those_that_one_makes() -> None:

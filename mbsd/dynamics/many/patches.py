@@ -24,6 +24,7 @@ from mbsd.dynamics.many.designs import Designs
 from mbsd.dynamics.many.law_numbers import law_columns
 from mbsd.dynamics.many.starts import Starts, starts_of
 from mbsd.dynamics.prepare.mass_ratio import USUAL
+from mbsd.dynamics.prepare.pressed import presses
 from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA
 from mbsd.model.body import rod_inertia
 from mbsd.model.force import Force
@@ -52,6 +53,8 @@ class Patches:
         m = designs.m
         if self.ready.packed.states:
             raise NotPatched("states of forces are found with the start")
+        if presses(m):
+            raise NotPatched("a journal starts pressed into its bearing")
         of_laws = law_columns(designs, base, designs.numbers)
         if of_laws is None:
             raise NotPatched(" and ".join(f"{each.key} of '{each.whole}'" for each in designs.numbers))
@@ -141,6 +144,8 @@ class Patches:
                     work.change(name, **{key: number})
                 except MechanismError:
                     raise NotPatched(f"some {key} of '{name}' are refused") from None
+                if presses(work):
+                    raise NotPatched(f"some {key} of '{name}' start pressed into its bearing")
                 after = work.forces[name].params
                 changed = {other for other in {*before, *after} if not _same(before.get(other), after.get(other))}
                 if not changed <= {key} or after.get(key) != number:

@@ -17,6 +17,7 @@ from mbsd.base.kept import Kept
 from mbsd.dynamics.prepare.dependent import refuse_singular_start
 from mbsd.dynamics.prepare.mass_ratio import as_heavy_as_ground, passes_for
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.prepare.pressed import refuse_pressed
 from mbsd.dynamics.prepare.start_states import take_start_states
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
@@ -125,6 +126,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
         _refuse_unheld(ready)
     if packed.states:
         take_start_states(ready)
+    refuse_pressed(m, start, end, prepare_dynamics)
     return ready
 
 

@@ -24,6 +24,7 @@ ch. 3; Lankarani, Nikravesh 1990, J. Mech. Des. 112, 369; Ambrosio 2003, in Virt
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -33,7 +34,7 @@ from mbsd.base.errors import ModelError
 from mbsd.model.adding.forces import above_zero, add_force, amounts_given
 from mbsd.model.adding.restitution import loss_of, restitution_given
 from mbsd.model.body import Marker
-from mbsd.model.force import Force, ForceKind, Interaction, register
+from mbsd.model.force import Force, ForceKind, Interaction, Press, register
 from mbsd.model.joint import Joint
 from mbsd.model.joints.revolute import REVOLUTE
 from mbsd.model.mechanism import Model, number_given
@@ -59,11 +60,18 @@ def _pin(force: Force) -> Joint | None:
     return Joint(REVOLUTE, force.name, _moved(force.i, x, y), force.j)
 
 
+def _press(force: Force) -> Press | None:
+    """How the journal is pressed into the wall at the start."""
+    p = force.params
+    if p["start"] is None:
+        return None
+    depth = math.hypot(*p["start"]) - p["clearance"]
+    return Press(depth, p["stiffness"] * max(depth, 0.0) ** p["exponent"], p["clearance"])
+
+
 def _moved(marker: Marker, x: float, y: float) -> Marker:
     """The marker moved in its own axes (m)."""
-    from math import cos, sin
-
-    c, s = cos(marker.angle), sin(marker.angle)
+    c, s = math.cos(marker.angle), math.sin(marker.angle)
     return replace(marker, x=marker.x + c * x - s * y, y=marker.y + s * x + c * y)
 
 
@@ -74,6 +82,7 @@ CLEARANCE_JOINT = register(
         journal=lambda force: (force.params["radius"] - force.params["clearance"], force.params["clearance"]),
         depth_potential=_depth_potential,
         ideal=_pin,
+        press=_press,
         sign="clearance",
         example=lambda m, i, j: m.clearance_joint(
             "example", i, j, 1e-3, 0.2, stiffness=500.0, damping=0.02, friction=0.4, slip_speeds=(0.1, 1.0), start=None
@@ -113,7 +122,8 @@ def clearance_joint(
     acts fully from the second of the ``slip_speeds`` (m/s) on, and not below the first.
 
     ``start``: where in the bearing's axes the journal's centre is at the start (m); bodies then start moving as if
-    this were a pin. None: they start as start_near and start_moving say.
+    this were a pin. None: they start as start_near and start_moving say. A simulation raises SimulationError where it
+    would start pressed into the wall ten times harder than by what that pin carries.
     """
     params: dict[str, Any] = {
         "clearance": above_zero(m, name, "clearance", clearance),

@@ -170,8 +170,26 @@ class NearNumbers:
             first += sum(len(part.terms) for part in own)
         return out
 
-    def _elements(self, m: Model, away: float) -> dict[str, np.ndarray] | None:
-        """Slopes of numbers of elements; None where these are others, elsewhere, or have other laws."""
+    @cached_property
+    def _ends(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of each element, its markers i and j, and whether it is turned."""
+        own = [
+            (*markers, part.turned)
+            for markers, (_, parts) in zip(self.variation.first.force_markers, self._numbers.values(), strict=True)
+            for part in parts
+        ]
+        i, j, turned = np.array(own, np.int64).reshape(-1, 3).T
+        return i, j, turned == 1
+
+    def _places(self, packed: Packed) -> np.ndarray:
+        """(e, 6) ``Loads.place`` of the same elements in another packing."""
+        (i, j, turned), system = self._ends, packed.system
+        axis = system.marker_axis[i]
+        axis[turned] = np.stack([-axis[turned, 1], axis[turned, 0]], axis=1)
+        return np.concatenate([system.marker_arm[i], axis, system.marker_arm[j]], axis=1)
+
+    def _elements(self, m: Model, away: float, moved: bool = False) -> dict[str, np.ndarray] | None:
+        """Slopes of numbers of elements; None where these are others, have other laws or, but for ``moved``, places."""
         slope, before = None, self.variation.saved.before(m.forces)
         if m.forces.keys() != before.keys():
             return None
@@ -181,8 +199,8 @@ class NearNumbers:
                 continue
             first, known = self._numbers[name]
             own = tuple(force.kind.elements(force))
-            moved = force.kind is not old.kind or force.i != old.i or force.j != old.j
-            if moved or _structure(own) != _structure(known):
+            elsewhere = not moved and (force.i != old.i or force.j != old.j)
+            if elsewhere or force.kind is not old.kind or _structure(own) != _structure(known):
                 return None
             if not same_laws([*force.laws.values()], [*old.laws.values()]):
                 return None
@@ -197,6 +215,9 @@ class NearNumbers:
         plain = not (len(base.interaction) or len(base.user) or len(base.friction))
         if not packed.forces or (plain and same_com and unchanged(m.forces, own.saved)):
             return {}
+        if plain and self._elements(m, away, moved=True) == {}:
+            place = self._places(packed)
+            return {} if np.array_equal(place, base.place) else {"place": (place - base.place) / away}
         loads = pack_loads(packed)
         if any(getattr(loads, name).tobytes() != getattr(base, name).tobytes() for name in TABLES_OF_LOADS):
             return None

@@ -110,15 +110,24 @@ class BothSides:
     def _straight(self, near: Near, away: list[float], rows: Callable[[], np.ndarray] | None) -> list[Embedding]:
         """Arrays for changes ``away`` of a number, with (2, g, 21) ``rows`` of the groups, if these change."""
         system, arrays = self.ready.packed.system, self.arrays
-        slopes = {"inertia": near.inertia, "weight": near.weight(system.gravity, system.mass), "gravity": near.gravity}
+        slopes: dict[str, np.ndarray] = {}
+        heavier, pulled = near.mass.any(), near.gravity.any()
+        if heavier or near.moment.any():
+            slopes["inertia"] = near.inertia
+        if heavier or pulled:
+            slopes["weight"] = near.weight(system.gravity, system.mass)
+        if pulled:
+            slopes["gravity"] = near.gravity
         number = None if rows is None else rows()
         out: list[Embedding] = []
         for side, h in enumerate(away):
             own: dict[str, Any] = {name: getattr(arrays, name) + h * slope for name, slope in slopes.items()}
             if number is not None:
                 own["number"] = number[side]
-            parts = {name: getattr(arrays.loads, name) + h * slope for name, slope in near.loads.items()}
-            out.append(arrays._replace(**own, loads=arrays.loads._replace(**parts)))
+            if near.loads:
+                parts = {name: getattr(arrays.loads, name) + h * slope for name, slope in near.loads.items()}
+                own["loads"] = arrays.loads._replace(**parts)
+            out.append(arrays._replace(**own))
         return out
 
     def _rows_beside(self, every: Sequence[Near], away: np.ndarray) -> np.ndarray:

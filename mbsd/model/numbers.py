@@ -167,6 +167,8 @@ def put_together(
 
 def _with_inner(path: str, value: Any, new: float) -> Any:
     """An argument with another number at ``path``."""
+    if not path:
+        return float(new)
     at = _within(path, value)
     assert at is not None
     return at[1](float(new))
@@ -194,7 +196,8 @@ def _inner(name: str, whole: str, key: str, path: str, value: Any) -> Number | N
     within = Within(whole, key, path)
 
     def put(m: Model, new: float) -> None:
-        change(m, whole, {key: _with_inner(path, _arguments(m, whole)[key], new)})
+        given_now = None if not path else _arguments(m, whole)[key]
+        change(m, whole, {key: _with_inner(path, given_now, new)})
 
     return Number(name, at[0], put, within=within)
 
@@ -273,7 +276,8 @@ def _of_body(m: Model, whole: str, rest: str) -> Number | None:
         return _of_start(m, name, whole, first, START[first].index(inner))
     if whole != "ground" and rest.partition(".")[0] in (BODY if body.length is None else BAR):
         key, _, inner = rest.partition(".")
-        return _inner(name, whole, key, inner, _arguments(m, whole).get(key))
+        plain = key in ("mass", "inertia", "com", "length")
+        return _inner(name, whole, key, inner, getattr(body, key) if plain else _arguments(m, whole).get(key))
     entry, _, axis = rest.rpartition(".")
     for table in connections(m):
         if entry in table and axis in PLACE:

@@ -172,7 +172,7 @@ class NearNumbers:
 
     @cached_property
     def _ends(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of each element, its markers i and j, and whether it is turned."""
+        """Markers i and j of each element, and whether it is turned."""
         own = [
             (*markers, part.turned)
             for markers, (_, parts) in zip(self.variation.first.force_markers, self._numbers.values(), strict=True)

@@ -39,7 +39,7 @@ class WithFunctions:
 
 
 def with_copied_fields(thing: Any, memo: dict[int, Any]) -> Any:
-    """A deep copy of what its ``__dict__`` holds, several times as fast as that of the standard library."""
+    """A deep copy of what its ``__dict__`` holds, in about half the time that the standard library takes."""
     out = object.__new__(type(thing))
     memo[id(thing)] = out
     out.__dict__.update({key: _copied(value, memo) for key, value in thing.__dict__.items()})

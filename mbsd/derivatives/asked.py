@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
+from mbsd.derivatives.solution_rows import rows_of
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.many.quantities import ACCELERATIONS, Motions, quantity_named
 from mbsd.model.mechanism import Model
@@ -170,7 +171,7 @@ def _quantity(m: Model, name: str, sol: Solution) -> Callable[[Solution], np.nda
     of_force = reads_forces(m, name)
     if of_force is not None:
         return of_force
-    known = list(columns(taken(sol, np.arange(1))))
+    known = list(columns(rows_of(sol, np.arange(1))))
     quantity = quantity_named(m, name, known)
     title = whole.split(" ", 1)[-1] if whole.split(" ", 1)[0] in ("joint", "driver", "force") else whole
     if whole in m.bodies or name == "kinetic" or whole.startswith("trace "):
@@ -197,11 +198,3 @@ def _numbers(m: Model, label: str, given: Callable[[Solution], Any], sol: Soluti
     if out.dtype.kind not in "fiu" or not out.size or not np.isfinite(out).all():
         raise ModelError(f"{m.name}: '{label}' gives {shown(value)}; it must give a number, or an array of them")
     return out.astype(float)
-
-
-def taken(sol: Solution, rows: np.ndarray) -> Solution:
-    """Some rows of a solution."""
-    keys = ("t", "q", "v", "a", "wrench", "lam", "drives", "work", "held", "law_times", "approached", "states")
-    parts = {key: getattr(sol, key)[rows] for key in keys if getattr(sol, key) is not None}
-    margin = sol.margin if callable(sol.margin) else sol.margin[rows]
-    return replace(sol, margin=margin, between=None, **parts)

@@ -12,9 +12,9 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.base.names import names_in, no_such
 from mbsd.derivatives.asked import Wanted, labelled, needed, needs_models, needs_reactions, of_bodies, wanted
+from mbsd.derivatives.driven.sweeps import SweepTangents
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.simulations import SimulationTangents
-from mbsd.derivatives.sweeps import SweepTangents
 from mbsd.derivatives.with_model import with_model
 from mbsd.dynamics.mobility import mobility
 from mbsd.dynamics.repeated import Repeated

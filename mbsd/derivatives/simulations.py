@@ -13,24 +13,33 @@ from itertools import pairwise
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.base.errors import ModelWarning, SimulationError
-from mbsd.base.warn import warn
-from mbsd.derivatives.asked import OfBodies, taken
-from mbsd.derivatives.free_tangents import FreeTangents
-from mbsd.derivatives.independent_tangents import IndependentTangents, suits
-from mbsd.derivatives.jumps import Jump, jumps_of
-from mbsd.derivatives.linear_motion import NODES
-from mbsd.derivatives.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of, refined
-from mbsd.derivatives.near_numbers import Near
+from mbsd.base.errors import SimulationError
+from mbsd.derivatives.asked import OfBodies
+from mbsd.derivatives.driven.sweeps import displaced
+from mbsd.derivatives.driven.tangents import Tangent, has_kinks
+from mbsd.derivatives.free.free_tangents import FreeTangents
+from mbsd.derivatives.free.jumps import Jump, jumps_of
+from mbsd.derivatives.free.linear_motion import NODES
+from mbsd.derivatives.free.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of
+from mbsd.derivatives.free.step_errors import Finish, refined_to_error
+from mbsd.derivatives.free.stretch import Stretch, Tangents, joined
+from mbsd.derivatives.numbers.near_numbers import Near
+from mbsd.derivatives.numbers.straight_variants import variants_beside
+from mbsd.derivatives.numbers.terms import Along
+from mbsd.derivatives.numbers.variants import KINKED, SECOND, TINY, Variants, Variation, models_of
 from mbsd.derivatives.refused_motions import refuse
-from mbsd.derivatives.sides import BothSides, Sides
-from mbsd.derivatives.smooth_motion import CLOSE, Motion, NotSmooth, between, looked_at_closely, motion_of, terms_along
-from mbsd.derivatives.straight_variants import variants_beside
-from mbsd.derivatives.stretch import Stretch, Tangents, joined
-from mbsd.derivatives.sweeps import along_of, displaced
-from mbsd.derivatives.tangents import Tangent, has_kinks
-from mbsd.derivatives.terms import Along
-from mbsd.derivatives.variants import KINKED, SECOND, TINY, Variants, Variation, models_of
+from mbsd.derivatives.smooth.independent_tangents import IndependentTangents, suits
+from mbsd.derivatives.smooth.sides import BothSides, Sides
+from mbsd.derivatives.smooth.smooth_motion import (
+    CLOSE,
+    Motion,
+    NotSmooth,
+    between,
+    looked_at_closely,
+    motion_of,
+    terms_along,
+)
+from mbsd.derivatives.solution_rows import along_of, rows_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics, started
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated import Outputs, Repeated
@@ -41,24 +50,6 @@ from mbsd.model.contact import ContactKind
 from mbsd.model.mechanism import Model
 from mbsd.model.numbers import Number
 from mbsd.results.solution import Solution
-
-ENOUGH = 5e-6
-"""Error of tangents, as part of the largest, beyond which nodes come closer."""
-AIMED = 1e-6
-"""What they then come to."""
-OF_KINKS = 0.05
-"""Part of these where contacts by penalty have kinks, of which the estimate knows too little."""
-MOST = 6
-"""So often at most."""
-DOUBTFUL = 1e-3
-"""Error that is warned of."""
-MOST_STEPS = 20_000
-"""Steps at most."""
-
-Finish = Callable[[], Tangents | None]
-"""Evaluates tangents at the outputs of which they are asked; None where that gave the slopes themselves."""
-Way = Callable[[np.ndarray], tuple[np.ndarray, Finish]]
-"""Gives the errors of steps between edges, and what finishes them."""
 
 
 class SimulationTangents:
@@ -96,7 +87,7 @@ class SimulationTangents:
         edges = first_edges((span[0], float(reached[-1])), self._met, self._first.t, longest)
         for way in (self._in_independent_coordinates, self._between_looks, self._at_nodes):
             try:
-                made, error = self._refined(way, edges)
+                made, error = refined_to_error(way, edges, has_kinks(self.terms), m.name)
                 break
             except NotSmooth:
                 continue
@@ -114,30 +105,6 @@ class SimulationTangents:
         return self._variants
 
     # -- ways to the tangents --------------------------------------------------------------------------------------
-
-    def _refined(self, way: Way, edges: np.ndarray) -> tuple[Tangents | None, float]:
-        """Tangents by one of the ways below, with steps as short as errors ask for, and their error."""
-        before = error = 0.0
-        part = OF_KINKS if has_kinks(self.terms) else 1.0
-        for turn in range(MOST):
-            errors, finish = way(edges)
-            before, error = error, float(errors.sum())
-            if error <= part * ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
-                break
-            finer = refined(edges, errors, part * AIMED)
-            if len(finer) > MOST_STEPS:
-                break
-            edges = finer
-        if error > part * ENOUGH and turn == MOST - 1:  # where forces jump, a node meets them or misses them by chance
-            error = max(before, error)
-        if error > DOUBTFUL:
-            warn(
-                f"{self.m.name}: derivatives along this simulation are known to {error:.1g} of the largest at best, "
-                "however close their nodes are. A force that jumps, or a curve that bends more tightly than the wheel "
-                "on it, does that: smooth it, or take differences of whole simulations",
-                ModelWarning,
-            )
-        return finish(), error
 
     def _in_independent_coordinates(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
         """Errors of steps between edges, and what evaluates the tangents at outputs. Raises NotSmooth."""
@@ -199,7 +166,7 @@ class SimulationTangents:
 
         def finish() -> Tangents:
             assert whole.solution is not None
-            self._take(taken(whole.solution, rows), needed)
+            self._take(rows_of(whole.solution, rows), needed)
             if self.redundant:
                 made.lam[:] = np.nan  # joints that repeat others share their loads in many ways
             if needed[-1] < len(rows) - 1:
@@ -218,7 +185,7 @@ class SimulationTangents:
     def _take(self, sol: Solution, needed: np.ndarray) -> None:
         """Keep the simulation at all outputs, and at those of which tangents are asked."""
         self.t, self.solve = sol.t, lambda: sol
-        self.known = sol if len(needed) == len(sol.t) else taken(sol, needed)
+        self.known = sol if len(needed) == len(sol.t) else rows_of(sol, needed)
         """The outputs of which tangents are known."""
         self.along = along_of(self.known)
 

@@ -13,9 +13,9 @@ import numpy as np
 from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
+from mbsd.derivatives.driven.sweeps import SweepTangents
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, values_and_slopes
-from mbsd.derivatives.sweeps import SweepTangents
 from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.derivatives.tangents import Inverse
-from mbsd.derivatives.terms import Along, terms_of
-from mbsd.derivatives.variants import SECOND, TINY, Variation
+from mbsd.derivatives.driven.tangents import Inverse
+from mbsd.derivatives.numbers.terms import Along, terms_of
+from mbsd.derivatives.numbers.variants import SECOND, TINY, Variation
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.prepared import Prepared
 from mbsd.model.body import Marker

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from mbsd.derivatives.asked import wanted
+from mbsd.derivatives.numbers.variants import FOURTH
 from mbsd.derivatives.sensitivities import moves_freely, sensitivities
-from mbsd.derivatives.variants import FOURTH
 from mbsd.mechanism import Mechanism
 from mbsd.model.numbers import number_named, with_values
 from mbsd.testing.differences import compare

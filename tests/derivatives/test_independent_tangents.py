@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import mbsd
-from mbsd.derivatives import near_numbers, simulations
+from mbsd.derivatives import simulations
+from mbsd.derivatives.numbers import near_numbers
 from mbsd.derivatives.sensitivities import simulation_tangents
 from mbsd.measures import final, integral, samples
 from mbsd.model.numbers import Number

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from mbsd.derivatives.linear_motion import NODES, PLACES, carried
-from mbsd.derivatives.mesh import first_edges, longest_steps, looked_at, nodes_of, refined
+from mbsd.derivatives.free.linear_motion import NODES, PLACES, carried
+from mbsd.derivatives.free.mesh import first_edges, longest_steps, looked_at, nodes_of, refined
 
 
 def turning(steps: int) -> tuple[float, float, float]:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, ModelWarning, curve
-from mbsd.derivatives import free_tangents
+from mbsd.derivatives.free import free_tangents
 from mbsd.measures import final, largest, samples
 from mbsd.testing.derivatives import check_derivatives
 from mechanisms.quarter_car import mechanism as quarter_car

@@ -10,8 +10,8 @@ from numpy.polynomial import Polynomial
 
 import mbsd
 from mbsd.derivatives import simulations
-from mbsd.derivatives.between_looks import between_looks
-from mbsd.derivatives.mesh import looked_at_closer
+from mbsd.derivatives.free.mesh import looked_at_closer
+from mbsd.derivatives.smooth.between_looks import between_looks
 from mbsd.dynamics.repeated import Repeated
 from mbsd.measures import final
 from mbsd.model.numbers import number_named, with_values

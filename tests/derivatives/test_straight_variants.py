@@ -10,8 +10,8 @@ import pytest
 import mbsd
 from benchmarks.derivatives.measure import linkage
 from mbsd.derivatives import simulations
-from mbsd.derivatives.straight_variants import variants_beside
-from mbsd.derivatives.variants import PLACES, SECOND, TINY, Variants
+from mbsd.derivatives.numbers.straight_variants import variants_beside
+from mbsd.derivatives.numbers.variants import PLACES, SECOND, TINY, Variants
 from mbsd.equations.loads import Loads
 from mbsd.model.numbers import Number
 

@@ -17,8 +17,8 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
-from mbsd.derivatives.repacked import repacked, unchanged
-from mbsd.derivatives.terms import Terms, terms_of
+from mbsd.derivatives.numbers.repacked import repacked, unchanged
+from mbsd.derivatives.numbers.terms import Terms, terms_of
 from mbsd.equations.loads import Loads
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model

@@ -17,9 +17,9 @@ import numpy as np
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
-from mbsd.derivatives.repacked import repacked, unchanged
-from mbsd.derivatives.start_tangents import StartTangents
-from mbsd.derivatives.variants import PLACES, Variation, alike, same_laws, size_of
+from mbsd.derivatives.numbers.repacked import repacked, unchanged
+from mbsd.derivatives.numbers.start_tangents import StartTangents
+from mbsd.derivatives.numbers.variants import PLACES, Variation, alike, same_laws, size_of
 from mbsd.equations.loads import Loads
 from mbsd.model.body import Marker
 from mbsd.model.force import Element

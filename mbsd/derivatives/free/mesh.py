@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from mbsd.derivatives.linear_motion import NODES, PLACES
-from mbsd.derivatives.step_lengths import EVEN, fill_lengths
+from mbsd.derivatives.free.linear_motion import NODES, PLACES
+from mbsd.derivatives.free.step_lengths import EVEN, fill_lengths
 
 SAME = 1e-9
 """Part of a step that is none."""

@@ -11,11 +11,11 @@ import numpy as np
 
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.packing import Packed
-from mbsd.derivatives.forces_beside import ForcesBeside
-from mbsd.derivatives.near_numbers import Near, NearNumbers
-from mbsd.derivatives.smooth_motion import NotSmooth
-from mbsd.derivatives.start_tangents import StartTangents
-from mbsd.derivatives.variants import SECOND, TINY, Variant, Variants, Variation
+from mbsd.derivatives.numbers.near_numbers import Near, NearNumbers
+from mbsd.derivatives.numbers.start_tangents import StartTangents
+from mbsd.derivatives.numbers.variants import SECOND, TINY, Variant, Variants, Variation
+from mbsd.derivatives.smooth.forces_beside import ForcesBeside
+from mbsd.derivatives.smooth.smooth_motion import NotSmooth
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.embedding.coordinates import choices
 from mbsd.dynamics.prepare.prepared import PreparedDynamics

@@ -9,10 +9,10 @@ import numpy as np
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.arrays.laws import pack_laws
 from mbsd.arrays.loads import pack_loads
-from mbsd.derivatives.differentiated import Made, Nodes, Own, Scratch, differentiate
+from mbsd.derivatives.free.differentiated import Made, Nodes, Own, Scratch, differentiate
 
 if TYPE_CHECKING:
-    from mbsd.derivatives.terms import Terms
+    from mbsd.derivatives.numbers.terms import Terms
 
 
 def differentiated(

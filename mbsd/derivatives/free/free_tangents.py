@@ -14,12 +14,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from mbsd.derivatives.beside import accelerate_along, close, combine
-from mbsd.derivatives.compiled_nodes import can_differentiate, differentiated
-from mbsd.derivatives.differentiated import Made, Nodes, Own
-from mbsd.derivatives.linear_motion import NODES, carried
-from mbsd.derivatives.stretch import Carried, Stretch, Tangents, joined
-from mbsd.derivatives.tangents import (
+from mbsd.derivatives.driven.beside import accelerate_along, close, combine
+from mbsd.derivatives.driven.tangents import (
     LOOSE,
     along_directions,
     by_numbers,
@@ -30,8 +26,12 @@ from mbsd.derivatives.tangents import (
     shortened,
     steps_along,
 )
-from mbsd.derivatives.terms import Along, Change, Left, Terms
-from mbsd.derivatives.variants import Variants
+from mbsd.derivatives.free.compiled_nodes import can_differentiate, differentiated
+from mbsd.derivatives.free.differentiated import Made, Nodes, Own
+from mbsd.derivatives.free.linear_motion import NODES, carried
+from mbsd.derivatives.free.stretch import Carried, Stretch, Tangents, joined
+from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms
+from mbsd.derivatives.numbers.variants import Variants
 
 REACH = 1e-5
 """How far differences along a direction go: sizes, rad, parts of the fastest speed."""

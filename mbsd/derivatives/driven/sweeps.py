@@ -10,9 +10,10 @@ import numpy as np
 
 from mbsd.arrays.reactions import wrenches
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.tangents import Inverse, Tangent, has_kinks, tangent
-from mbsd.derivatives.terms import Along, Terms, terms_of
-from mbsd.derivatives.variants import KINKED, STEP, Variant, Variants, Variation, models_of
+from mbsd.derivatives.driven.tangents import Inverse, Tangent, has_kinks, tangent
+from mbsd.derivatives.numbers.terms import Along, Terms, terms_of
+from mbsd.derivatives.numbers.variants import KINKED, STEP, Variant, Variants, Variation, models_of
+from mbsd.derivatives.solution_rows import along_of
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
@@ -21,12 +22,6 @@ from mbsd.results.solution import Solution
 
 FAR = 1e-3
 """A variant's motion is no farther than this from the motion itself, in sizes and rad."""
-
-
-def along_of(sol: Solution) -> Along:
-    """A solution as arrays."""
-    q, v, a = (np.ascontiguousarray(part.reshape(len(sol.t), -1)) for part in (sol.q, sol.v, sol.a))
-    return Along(sol.t if sol.law_times is None else sol.law_times, q, v, a, sol.lam, sol.states, sol.approached)
 
 
 class SweepTangents:

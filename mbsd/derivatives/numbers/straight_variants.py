@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.derivatives.near_numbers import Near
-from mbsd.derivatives.terms import Terms
-from mbsd.derivatives.variants import PLACES, SECOND, TINY, Variant, Variants, Variation
+from mbsd.derivatives.numbers.near_numbers import Near
+from mbsd.derivatives.numbers.terms import Terms
+from mbsd.derivatives.numbers.variants import PLACES, SECOND, TINY, Variant, Variants, Variation
 from mbsd.equations.system import workspace
 from mbsd.model.numbers import Number, with_value
 

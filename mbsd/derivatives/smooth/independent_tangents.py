@@ -13,16 +13,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mbsd.derivatives.between_looks import between_looks
-from mbsd.derivatives.forces_beside import slopes_of_forces
-from mbsd.derivatives.free_tangents import REACH, at_rows, slight_changes
-from mbsd.derivatives.linear_motion import Carried, carried
-from mbsd.derivatives.rates_beside import FIRST, Held, motions_beside, rates_beside
-from mbsd.derivatives.sides import Sides, forces_beside
-from mbsd.derivatives.smooth_motion import CLOSE, NotSmooth
-from mbsd.derivatives.stretch import Stretch, Tangents
-from mbsd.derivatives.terms import Along, Terms
-from mbsd.derivatives.variants import Variants
+from mbsd.derivatives.free.free_tangents import REACH, at_rows, slight_changes
+from mbsd.derivatives.free.linear_motion import Carried, carried
+from mbsd.derivatives.free.stretch import Stretch, Tangents
+from mbsd.derivatives.numbers.terms import Along, Terms
+from mbsd.derivatives.numbers.variants import Variants
+from mbsd.derivatives.smooth.between_looks import between_looks
+from mbsd.derivatives.smooth.forces_beside import slopes_of_forces
+from mbsd.derivatives.smooth.rates_beside import FIRST, Held, motions_beside, rates_beside
+from mbsd.derivatives.smooth.sides import Sides, forces_beside
+from mbsd.derivatives.smooth.smooth_motion import CLOSE, NotSmooth
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.many.quantities import Motions
 from mbsd.dynamics.prepare.prepared import PreparedDynamics

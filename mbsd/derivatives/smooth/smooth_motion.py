@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.derivatives.asked import taken
-from mbsd.derivatives.between_looks import between_looks
-from mbsd.derivatives.mesh import longest_steps, looked_at_closer
-from mbsd.derivatives.sweeps import along_of
-from mbsd.derivatives.terms import Along, Terms, terms_of
+from mbsd.derivatives.free.mesh import longest_steps, looked_at_closer
+from mbsd.derivatives.numbers.terms import Along, Terms, terms_of
+from mbsd.derivatives.smooth.between_looks import between_looks
+from mbsd.derivatives.solution_rows import along_of, rows_of
 from mbsd.dynamics.repeated import Course, Repeated
 from mbsd.results.solution import Solution
 
@@ -40,7 +39,7 @@ class Motion:
 
     def take(self, rows: np.ndarray) -> Motion:
         """Some of its times."""
-        solution = None if self.solution is None else taken(self.solution, rows)
+        solution = None if self.solution is None else rows_of(self.solution, rows)
         return Motion(self.t[rows], self.along.take(rows), solution)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.derivatives.terms import Along
+from mbsd.derivatives.numbers.terms import Along
 
 
 @dataclass

@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.beside import differ, displace
-from mbsd.derivatives.terms import Along, Change, Left, Terms, stacked
-from mbsd.derivatives.variants import FOURTH, STEP, Variant, Variants
+from mbsd.derivatives.driven.beside import differ, displace
+from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms, stacked
+from mbsd.derivatives.numbers.variants import FOURTH, STEP, Variant, Variants
 from mbsd.model.output_times import refuse_beyond_memory
 
 REACH = 1e-4

@@ -16,9 +16,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.tangents import along_direction
-from mbsd.derivatives.terms import Along, Terms
-from mbsd.derivatives.variants import SECOND, Variant, Variants, Variation
+from mbsd.derivatives.driven.tangents import along_direction
+from mbsd.derivatives.numbers.terms import Along, Terms
+from mbsd.derivatives.numbers.variants import SECOND, Variant, Variants, Variation
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.impact import impacts
 from mbsd.dynamics.events.moment import Moment

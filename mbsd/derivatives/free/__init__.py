@@ -1,0 +1,1 @@
+"""Motions that forces drive, between events and across them: linear equations along nodes, and jumps."""

@@ -1,0 +1,58 @@
+"""Steps of tangents as short as their errors ask for: those that err too much are divided."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mbsd.base.errors import ModelWarning
+from mbsd.base.warn import warn
+from mbsd.derivatives.free.mesh import refined
+from mbsd.derivatives.free.stretch import Tangents
+
+ENOUGH = 5e-6
+"""Error of tangents, as part of the largest, beyond which nodes come closer."""
+AIMED = 1e-6
+"""What they then come to."""
+OF_KINKS = 0.05
+"""Part of these where contacts by penalty have kinks, of which the estimate knows too little."""
+MOST = 6
+"""So often at most."""
+DOUBTFUL = 1e-3
+"""Error that is warned of."""
+MOST_STEPS = 20_000
+"""Steps at most."""
+
+Finish = Callable[[], Tangents | None]
+"""Evaluates tangents at the outputs of which they are asked; None where that gave the slopes themselves."""
+Way = Callable[[np.ndarray], tuple[np.ndarray, Finish]]
+"""Gives the errors of steps between edges, and what finishes them."""
+
+
+def refined_to_error(way: Way, edges: np.ndarray, kinked: bool, name: str) -> tuple[Tangents | None, float]:
+    """Tangents of the mechanism ``name`` by one way, beginning with steps between ``edges`` (k,) (s), and their error.
+
+    ``kinked`` says that contacts by penalty are among the forces. The error is a part of the largest tangent.
+    """
+    before = error = 0.0
+    part = OF_KINKS if kinked else 1.0
+    for turn in range(MOST):
+        errors, finish = way(edges)
+        before, error = error, float(errors.sum())
+        if error <= part * ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
+            break
+        finer = refined(edges, errors, part * AIMED)
+        if len(finer) > MOST_STEPS:
+            break
+        edges = finer
+    if error > part * ENOUGH and turn == MOST - 1:  # where forces jump, a node meets them or misses them by chance
+        error = max(before, error)
+    if error > DOUBTFUL:
+        warn(
+            f"{name}: derivatives along this simulation are known to {error:.1g} of the largest at best, "
+            "however close their nodes are. A force that jumps, or a curve that bends more tightly than the wheel "
+            "on it, does that: smooth it, or take differences of whole simulations",
+            ModelWarning,
+        )
+    return finish(), error

@@ -1,0 +1,1 @@
+"""Motions without events, known between a few looks: tangents by differences in independent coordinates."""

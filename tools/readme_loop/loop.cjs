@@ -8,9 +8,10 @@ const [, , file, planFile, folder] = process.argv;
 const { launch, open } = require(process.env.PAGE_BROWSER);
 const plan = JSON.parse(fs.readFileSync(planFile, "utf8"));
 
+const BACKDROP = "#0b0e14";
 const STYLE = `
   .mbsd { grid-template: minmax(0, 1fr) / ${plan.lines_width}px minmax(0, 1fr) !important; grid-template-areas: "code stage" !important; position: fixed !important; }
-  .mbsd :is(.top, .side, .bar, .chips, .labels, .notice) { display: none !important; }
+  .mbsd :is(.top, .side, .bar, .shows, .labels, .notice) { display: none !important; }
   .mbsd .stage { grid-template-rows: minmax(0, 1fr); }
   .mbsd .view { visibility: visible !important; }
   .mbsd .legend { right: 18px; left: auto; bottom: 14px; font-size: 14px; padding: 5px 11px; border-radius: 8px; background: rgb(13 17 23 / 0.82); }
@@ -22,7 +23,7 @@ const STYLE = `
   .loop-code .changes { color: #0d1117; background: #ffa657; border-radius: 4px; padding: 2px 0; box-shadow: -3px 0 #ffa657; font-weight: 700; }`;
 
 /** Run in the page: its layout, and window.loop(frame), which draws one. */
-const prepare = ({ style, lines, changed, low, high, closer: CLOSER, brighter }) => {
+const prepare = ({ style, lines, changed, low, high, closer: CLOSER, brighter, backdrop }) => {
   const { app } = window.mbsd, { stage } = app, { solid, plane } = stage;
   document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
   const pre = document.createElement("pre");
@@ -31,6 +32,8 @@ const prepare = ({ style, lines, changed, low, high, closer: CLOSER, brighter })
   const escape = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
   const coloured = (text) => escape(text).replace(/("[^"]*")|\b(\d[\d.]*)\b|\b([a-z_]+)(?=\()|\b(Mechanism)\b/g, (all, string, figure, call, kind) =>
     string ? `<span class="text">${string}</span>` : figure ? `<span class="figure">${figure}</span>` : `<span class="call">${call ?? kind}</span>`);
+  const pen = plane.canvas.getContext("2d"), fill = pen.fillRect.bind(pen);
+  pen.fillRect = (...rectangle) => { pen.fillStyle = backdrop; fill(...rectangle); }; // both views have one: WebP leaves edges where they differ by little
   let exposure = null;
   const written = (number) => `<code>${lines.split("\n").map((line) => line.split(changed).map(coloured).join(`<span class="changes">${number}</span>`)).join("\n")}</code>`;
   Object.assign(plane, { held: true, corners: [...low, ...high] });
@@ -98,7 +101,7 @@ const prepare = ({ style, lines, changed, low, high, closer: CLOSER, brighter })
 
 (async () => {
   const browser = await launch(), { page, errors } = await open(browser, file, { width: plan.width, height: plan.height, theme: "dark" });
-  await page.evaluate(prepare, { style: STYLE, lines: plan.lines, changed: plan.changed, low: plan.low, high: plan.high, closer: plan.closer, brighter: plan.brighter });
+  await page.evaluate(prepare, { style: STYLE, lines: plan.lines, changed: plan.changed, low: plan.low, high: plan.high, closer: plan.closer, brighter: plan.brighter, backdrop: BACKDROP });
   for (const [k, frame] of plan.frames.entries()) {
     await page.evaluate((one) => window.loop(one), { ...frame, patch: frame.patch === null ? null : plan.patches[frame.patch] });
     await page.screenshot({ path: path.join(folder, `${String(k).padStart(4, "0")}.png`), timeout: 180000 });

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from tools.readme_loop.lines import CRANK
 
-RATE = 16
+RATE = 12
 """Frames a second."""
 SECONDS = 6.4
 TURNS = 3

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.dynamics.many.repeated.arrays import BETTER, HELD, OPENED, SCALE, Repeated
+from mbsd.dynamics.many.repeated.arrays import BETTER, FOLLOWS, HELD, OPENED, SCALE, UNTIL, Repeated
 from mbsd.dynamics.prepare.exchange import WORN
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.kinematics.pose.mobility import BETTER as FACTOR
+from mbsd.kinematics.pose.mobility import RANK_TOLERANCE
 
 MOST = 200
 """Rows of joints of which some repeat others."""
@@ -25,13 +26,15 @@ def repeated_of(ready: PreparedDynamics) -> Repeated:
     """Those of a run at its start."""
     packed, switches = ready.packed, ready.switches
     spare = set(switches.spare)
-    rows = [row for row in sorted(switches.place) if row < packed.contact_rows] if spare else []
+    rows = range(packed.contact_rows) if spare else []
     k, n3, scale = len(rows), len(ready.initial.q), packed.row_scale()
-    number = np.zeros((k, SCALE + 1))
+    number = np.zeros((k, UNTIL + 1))
     number[:, HELD] = [row not in spare for row in rows]
     number[:, OPENED] = [row in spare for row in rows]
     number[:, SCALE] = [scale[row] for row in rows]
-    clock = np.zeros(BETTER + 1)
+    number[:, UNTIL] = np.inf
+    clock = np.zeros(FOLLOWS + 1)
+    clock[FOLLOWS] = RANK_TOLERANCE
     clock[BETTER] = WORN if len(ready.dynamics.loads.friction) else FACTOR
     return Repeated(
         np.array([(row, *switches.place[row]) for row in rows], np.int64).reshape(-1, 3),

@@ -12,6 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
+from mbsd.dynamics.many.base import based_on
+from mbsd.dynamics.many.simulate_many import asked_for
+from mbsd.dynamics.many.single_run import single_run
 from mbsd.dynamics.runs import reference_steps
 from mbsd.measures import final, largest, samples
 from tests.dynamics.beside_single_runs import assert_as_single_ones, between
@@ -126,6 +129,14 @@ def test_rows_that_repeat_others_hold_as_in_single_simulations(case: str, monkey
         np.testing.assert_allclose(many["work"][k], sol.work[-1], atol=5e-6 if case == "motor" else 1e-9)
     assert (case == "turning") <= bool(exchanged)
     assert (case == "stops") <= (struck >= count)
+
+
+def test_rows_are_exchanged_for_steps_in_which_all_contacts_are_open_as_well() -> None:
+    m = cranks(12.0, stops=True)
+    asked = asked_for(m, 1.0, STEPS, None, "dop853", 1e-9, None, "auto", {})
+    dyn, _, _, _, contacts, _ = based_on(single_run(m, asked)).arguments
+    assert contacts.schur.rows is dyn.schur.rows
+    assert contacts.schur.rows.flags.writeable
 
 
 @pytest.mark.slow

@@ -96,7 +96,7 @@ def test_joints_let_go_as_in_single_simulations(case: str) -> None:
         met += sum(event.what == "event" for event in sol.events)
         columns = dict(zip([c.rpartition(" [")[0] for c in sol.columns()], sol.columns().values(), strict=True))
         for name in (*names, *reactions):
-            allowed = 1e-9 if name in names else 1e-6 * max(1.0, float(np.abs(columns[name]).max()))
+            allowed = 1e-8 if name in names else 1e-6 * max(1.0, float(np.abs(columns[name]).max()))
             np.testing.assert_allclose(many[name][k], columns[name], rtol=0.0, atol=allowed, err_msg=name)
     assert met >= len(masses)
 

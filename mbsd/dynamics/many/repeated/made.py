@@ -7,19 +7,16 @@ import numpy as np
 from mbsd.dynamics.many.repeated.arrays import BETTER, FOLLOWS, HELD, OPENED, SCALE, UNTIL, Repeated
 from mbsd.dynamics.prepare.exchange import WORN
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.start.large import MANY_COORDINATES
 from mbsd.kinematics.pose.mobility import BETTER as FACTOR
 from mbsd.kinematics.pose.mobility import RANK_TOLERANCE
-
-MOST = 200
-"""Rows of joints of which some repeat others."""
 
 
 def why_not(ready: PreparedDynamics) -> str | None:
     """Why a mechanism whose joints repeat others is left to single simulations, or None."""
-    if not ready.switches.spare and not ready.dropped:
+    if ready.switches.spare or not ready.dropped:
         return None
-    rows = ready.packed.contact_rows
-    return f"joints repeat others, and have {rows} rows; {MOST} at most" if rows > MOST else None
+    return f"joints repeat others in a mechanism of {ready.packed.coordinates} coordinates; {MANY_COORDINATES} at most"
 
 
 def repeated_of(ready: PreparedDynamics) -> Repeated:

@@ -94,7 +94,7 @@ def _steps(monkeypatch: pytest.MonkeyPatch):
 
     def noted(*arguments):
         run_rows(*arguments)
-        taken.append(arguments[-2].copy())
+        taken.append(arguments[-3].copy())
 
     monkeypatch.setattr(loop, "run_rows", noted)
 

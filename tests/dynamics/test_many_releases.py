@@ -97,17 +97,6 @@ def test_a_row_begins_with_all_its_joints() -> None:
     assert many["y"][2] == pytest.approx(1.0, abs=1e-12)
 
 
-def test_what_is_left_to_single_simulations_is_named() -> None:
-    m = chain()
-    m.friction("dry", "A", 0.1, radius=0.02, sticks=True)
-    many = m.simulate_many(0.1, vary={"spring": {"stiffness": [1.0]}}, measure={"x": final("arm.x")}, steps=2)
-    assert many.way == "1 one by one (event 'stop' releases joint 'A', whose friction 'dry' may stick)"
-    m = sling()
-    m.revolute("twin", m.ground.at(0, 1), m.bodies["arm"].start)
-    many = m.simulate_many(0.1, vary={"spring": {"torque": [1.0]}}, measure={"x": final("arm.x")}, steps=2)
-    assert many.way == "1 one by one (event 'off' releases a joint where joints repeat others)"
-
-
 def test_a_body_without_mass_that_is_let_go_goes_on_as_it_went() -> None:
     m = Mechanism("light")
     rod, bob = m.bar("rod", 0.5, mass=0.0), m.body("arm", mass=1.0, inertia=0.1)

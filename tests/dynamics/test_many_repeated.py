@@ -12,6 +12,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
+from mbsd.dynamics.many import worker
+from mbsd.dynamics.many.base import based_on
+from mbsd.dynamics.many.simulate_many import asked_for
+from mbsd.dynamics.many.single_run import single_run
 from mbsd.dynamics.runs import reference_steps
 from mbsd.measures import final, largest, samples
 from tests.dynamics.beside_single_runs import assert_as_single_ones, between
@@ -126,6 +130,44 @@ def test_rows_that_repeat_others_hold_as_in_single_simulations(case: str, monkey
         np.testing.assert_allclose(many["work"][k], sol.work[-1], atol=5e-6 if case == "motor" else 1e-9)
     assert (case == "turning") <= bool(exchanged)
     assert (case == "stops") <= (struck >= count)
+
+
+def test_rows_are_exchanged_for_steps_in_which_all_contacts_are_open_as_well() -> None:
+    m = cranks(12.0, stops=True)
+    asked = asked_for(m, 1.0, STEPS, None, "dop853", 1e-9, None, "auto", {})
+    dyn, _, _, _, contacts, _ = based_on(single_run(m, asked)).arguments
+    assert contacts.schur.rows is dyn.schur.rows
+    assert contacts.schur.rows.flags.writeable
+
+
+def test_machines_with_many_rows_are_prepared_a_few_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    vary, measure = (
+        {"coupler": {"mass": [0.5, 0.7, 1.0, 2.0]}},
+        {"own": largest("A1.fy"), "theta": final("crank2.theta")},
+    )
+    given = []
+    for most in (worker.GRAMS_AT_ONCE, 0, 2 * 12**2):
+        monkeypatch.setattr(worker, "GRAMS_AT_ONCE", most)
+        many = cranks(stops=True).simulate_many(1.0, vary=vary, measure=measure, steps=10, threads=1)
+        assert many.alone == [None] * 4
+        assert "anew" in many.way
+        given.append(many)
+    for name in measure:
+        np.testing.assert_array_equal(given[0][name], given[1][name])
+        np.testing.assert_array_equal(given[0][name], given[2][name])
+
+
+@pytest.mark.slow
+def test_as_many_rows_repeat_others_as_single_simulations_exchange() -> None:
+    measure = {"theta": final("crank0.theta"), "own": final("A2.fx")}
+    many = row_of_cranks(60).simulate_many(0.5, vary={"spring": {"stiffness": [1.0, 3.0]}}, measure=measure, steps=10)
+    assert many.alone == [None, None], many.way
+    for k, stiffness in enumerate((1.0, 3.0)):
+        m = row_of_cranks(60)
+        m.change("spring", stiffness=stiffness)
+        sol = m.simulate(0.5, steps=10)
+        np.testing.assert_allclose(many["theta"][k], sol.body("crank0").theta[-1], atol=1e-10)
+        np.testing.assert_allclose(many["own"][k], sol.joint("A2").fx[-1], rtol=1e-8)
 
 
 @pytest.mark.slow

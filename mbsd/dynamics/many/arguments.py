@@ -46,6 +46,7 @@ def laid_out(arguments: tuple[Any, ...]) -> tuple[tuple[Any, ...], np.ndarray, L
     block = _aligned(at)
     views = {key: _view(block, places[key], array) for key, array in arrays.items()}
     new = {view.ctypes.data: places[key] for key, view in views.items() if view.size}
+    copies: dict[int, np.ndarray] = {}
 
     def put(value: Any) -> Any:
         if isinstance(value, tuple):
@@ -53,7 +54,9 @@ def laid_out(arguments: tuple[Any, ...]) -> tuple[tuple[Any, ...], np.ndarray, L
             return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
         if _numbers(value):
             return views[id(value)]
-        return value.copy() if isinstance(value, np.ndarray) and value.flags.writeable else value
+        if isinstance(value, np.ndarray) and value.flags.writeable:
+            return copies.setdefault(id(value), value.copy())
+        return value
 
     return put(arguments), block, Layout(new, at)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -81,4 +81,4 @@ class Known:
 def window(out: Outputs, begin: int, end: int) -> Outputs:
     """Outputs ``begin`` to ``end`` (left out) of all rows."""
     y, a, lam, work, margin = (part[:, begin:end] for part in (out.y, out.a, out.lam, out.work, out.margin))
-    return Outputs(out.t[begin:end], y, a, lam, work, margin, out.status, out.steps, out.over)
+    return replace(out, t=out.t[begin:end], y=y, a=a, lam=lam, work=work, margin=margin)

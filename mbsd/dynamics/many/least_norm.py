@@ -25,10 +25,21 @@ def shares(ready: PreparedDynamics) -> bool:
 
 
 def shared(
-    packed: list[Packed], y: np.ndarray, jacobians: np.ndarray, lam: np.ndarray, times: np.ndarray, joints: np.ndarray
+    packed: list[Packed],
+    y: np.ndarray,
+    jacobians: np.ndarray,
+    lam: np.ndarray,
+    times: np.ndarray,
+    joints: np.ndarray,
+    gone: np.ndarray | None = None,
 ) -> Reacting:
-    """Reactions in ``joints`` (k,); jacobians (R, T, rows of all joints and drivers, 6) are compact, lam (R, T, m)."""
+    """Reactions in ``joints`` (k,); jacobians (R, T, rows of all joints and drivers, 6) are compact, lam (R, T, m).
+
+    ``gone`` (R, T, rows): which rows hold no more.
+    """  # fmt: skip
     first, rows = packed[0], jacobians.shape[2]
+    if gone is not None:
+        jacobians[gone] = 0.0
     out = lam.copy()
     for mine, compact, multipliers in zip(out, jacobians, lam, strict=True):
         j = _spread(first, compact)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -32,7 +33,7 @@ class Loop:
         thin = work.plan.few is not None and run.outputs_alone
         self.plan = work.plan if thin or work.plan.few is None else all_outputs(len(times))
         forces = run.outputs_count or any(quantity.forces for quantity in work.quantities.values())
-        self._shape = len(run.ready.initial.q), len(run.ready.packed.ws.phi), forces
+        self._shape = len(run.ready.initial.q), len(run.ready.packed.ws.phi), forces, len(run.events)
 
     def __call__(
         self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, motions: MotionsOf
@@ -73,7 +74,7 @@ class Loop:
             room = self.room = room_for(count, times, *self._shape)
         out = Outputs(times, *(array[:count] for array in room.arrays))
         out.status[:] = WAITING
-        out.over[:] = np.inf
+        out.over[:] = out.released[:] = np.inf
         return out
 
     def _run(
@@ -109,7 +110,7 @@ class Loop:
         if not len(later):
             return
         rest = room_for(len(out.status), out.t[few], *self._shape)
-        rest = Outputs(rest.t, rest.y, rest.a, rest.lam, rest.work, rest.margin, out.status, out.steps, out.over)
+        rest = replace(rest, status=out.status, steps=out.steps, over=out.over, released=out.released)
         made = counts[later, NEXT]  # the last step may have gone beyond the window
         counts[later, NEXT] = np.searchsorted(few, made)
         out.status[later] = UNDERWAY

@@ -28,16 +28,18 @@ class Outputs:
     steps: np.ndarray
     over: np.ndarray
     """(R,) when an event of the user ended a simulation (s); infinite where none did."""
+    released: np.ndarray
+    """(R, e) when each event of the user released its joints (s); infinite where it did not."""
 
     @property
-    def shape(self) -> tuple[int, int, bool]:
-        """Coordinates and rows of a simulation, and whether the loop finds multipliers and accelerations."""
-        return self.y.shape[-1], self.lam.shape[-1], self.lam.shape[1] > 0
+    def shape(self) -> tuple[int, int, bool, int]:
+        """Coordinates and rows of a simulation, whether the loop finds multipliers and accelerations, and events."""
+        return self.y.shape[-1], self.lam.shape[-1], self.lam.shape[1] > 0, self.released.shape[-1]
 
     @property
     def arrays(self) -> tuple[np.ndarray, ...]:
         """In the order of the loop's arguments."""
-        return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps, self.over
+        return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps, self.over, self.released
 
 
 def until(times: np.ndarray, over: np.ndarray) -> np.ndarray:
@@ -45,7 +47,7 @@ def until(times: np.ndarray, over: np.ndarray) -> np.ndarray:
     return np.minimum(times, over[:, None]) if np.isfinite(over).any() else times
 
 
-def room_for(count: int, t: np.ndarray, coordinates: int, rows: int, forces: bool) -> Outputs:
+def room_for(count: int, t: np.ndarray, coordinates: int, rows: int, forces: bool, events: int) -> Outputs:
     """Outputs of ``count`` simulations, used again and again: memory that is touched first costs more than a step.
 
     Without ``forces`` the loop finds neither multipliers nor accelerations.
@@ -61,6 +63,7 @@ def room_for(count: int, t: np.ndarray, coordinates: int, rows: int, forces: boo
         np.zeros(count, np.int64),
         np.zeros(count, np.int64),
         np.full(count, np.inf),
+        np.full((count, events), np.inf),
     )
 
 

@@ -58,5 +58,19 @@ class Reactions:
             )  # fmt: skip
         packed = [run.ready.packed for run in runs]
         if self.least:
-            return shared(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints)
+            gone = self._gone(out, times)
+            return shared(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, gone)
         return Reacting(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, self.rows)
+
+    def _gone(self, out: Outputs, times: np.ndarray) -> np.ndarray | None:
+        """(R, T, rows) which rows of joints and drivers events have released; None where they release none."""
+        packed, events = self.run.ready.packed, self.run.events
+        if not any(event.releases for event in events):
+            return None
+        names = [joint.name for joint in packed.joints]
+        gone = np.zeros((len(out.lam), len(times), len(self.rows)), bool)
+        for when, event in zip(out.released.T[..., None], events, strict=True):
+            since = (times > when) | (out.over[:, None] <= times) & (when <= out.over[:, None])
+            for joint in map(names.index, event.releases):
+                gone[..., packed.first_row[joint] : packed.first_row[joint + 1]] |= since[..., None]
+        return gone

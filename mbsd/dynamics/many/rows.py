@@ -10,6 +10,7 @@ from __future__ import annotations
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.integrators.formulation import derivative
 from mbsd.dynamics.many.contacts.steps import NOT_SOLVED, OVER, go_on
+from mbsd.dynamics.many.events.arrays import GONE
 from mbsd.dynamics.many.indexing.steps import index
 from mbsd.dynamics.many.repeated.exchange import again, opens
 from mbsd.dynamics.many.through import through
@@ -47,7 +48,7 @@ def take_up(state, block, kept, counts):
 @threaded
 def run_rows(
     dyn, scratch, state, settings, contacts, genevas, method, block, fresh, place, value, t, before, after, at_once,
-    most, near, stop, upto, kept, counts, y, a, lam, work, margin, status, steps, over,
+    most, near, stop, upto, kept, counts, y, a, lam, work, margin, status, steps, over, released,
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 
@@ -58,7 +59,8 @@ def run_rows(
     above 0, a row ends where its margin falls below this part of the largest so far (runs/carried_steps.py). Rows whose
     status (R,) is WAITING begin, those UNDERWAY go on. With ``upto`` outputs, less than T, they are put away in
     ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY. ``over`` (R,) is when (s) an event of the user ended a row,
-    infinite where none did; the outputs behind are then that moment.
+    infinite where none did; the outputs behind are then that moment. ``released`` (R, e) is when (s) each of them
+    released its joints, infinite where it did not.
     """
     end = t[t.shape[0] - 1]
     whole = upto == t.shape[0]
@@ -121,6 +123,8 @@ def run_rows(
         if ended == OVER:
             ended = REACHED
             over[r] = state.clock[TIME]
+        for e in range(released.shape[1]):
+            released[r, e] = contacts.events.number[e, GONE]
         status[r] = STOPPED if stop[0] != 0 else ended
         if not whole and status[r] == PAUSED and state.count[NEXT] >= upto:
             put_away(state, block, widest, kept[r], counts[r])

@@ -33,6 +33,8 @@ TRIED = 64
 """Rows of which the first that can be prepared is what others go by."""
 COMPARED = 6
 """Rows that are prepared for comparison."""
+GRAMS_AT_ONCE = 1_000_000
+"""Products of rows of J, where joints repeat others, that prepared rows hold together: a third of 24 MB."""
 NEAR = 1e-9
 """Part of the size, and rad, by which a start may differ from what it is."""
 OTHER, FAILED, NO_ROOM, NO_START = -2, -4, -10, -11
@@ -151,19 +153,22 @@ class Worker:
                 continue
             try:
                 run = self._run_of(row)
-                alike.setdefault(run.kind, {})[row] = run
+                same = alike.setdefault(run.kind, {})
+                same[row] = run
+                if len(same) * run.contacts.repeated.gram.size > GRAMS_AT_ONCE:
+                    done |= self._of_kind(run.kind, alike.pop(run.kind))
             except NotCompiled as why:
                 done[row] = self._single(row, str(why))
             except Exception as error:
                 done[row] = failed(described(error))
         for kind, runs in alike.items():
-            if self.base is None or self.base.kind != kind:
-                self.base, self.reactions = based_on(next(iter(runs.values()))), None
-            done |= self._of_one_kind(runs)
+            done |= self._of_kind(kind, runs)
         return joined([done[row] for row in rows])
 
-    def _of_one_kind(self, runs: Mapping[int, SingleRun]) -> dict[int, Done]:
+    def _of_kind(self, kind: tuple[Any, ...], runs: Mapping[int, SingleRun]) -> dict[int, Done]:
         """Rows that share a block, by their numbers."""
+        if self.base is None or self.base.kind != kind:
+            self.base, self.reactions = based_on(next(iter(runs.values()))), None
         own, times = list(runs.values()), self.work.asked.times
         motions = MotionsOf(own, None, None)
         fresh = np.array([content(run.arguments) for run in own])

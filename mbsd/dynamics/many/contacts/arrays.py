@@ -18,10 +18,10 @@ ROW, BLOCK, SIDE, KIND, RELATIVE, FRICTION = range(6)
 """Columns of Contacts.place: the row in J, its block and its place there in Schur.rows; GAP, CLUTCH, WAY or SLIDE; its
 row in Workspace.relative; the joint's row in Loads.friction, -1 of what is no joint that sticks."""
 GAP, CLUTCH, WAY, SLIDE = range(4)
-NEAR, REST, SETTLE, RESTITUTION, SCALE, CLOSED, HELD, SIGN = range(8)
+NEAR, REST, SETTLE, RESTITUTION, SCALE, CLOSED, HELD, SIGN, RELEASED = range(9)
 """Columns of Contacts.number: gap (rate of a clutch, way or slide) and rate that count as zero, slowest rebound,
 coefficient of restitution, what makes the gap dimensionless; whether it is closed (way, slide: sticks) now, and whether
-its row holds; direction in which a way or slide goes, 0 where it does not."""
+its row holds; direction in which a way or slide goes, 0 where it does not; whether an event released the joint."""
 VALUE, RATE, NORMAL, GIVEN, FREE, ALONE, PUSH, SHIFT = range(8)
 """Rows of Contacts.vector."""
 SKIPPED, TOUCHING, STAYING, TAKING, KEPT, RESTING = range(6)
@@ -123,7 +123,7 @@ class Contacts(NamedTuple):
     place: Any
     """(c, 6) int"""
     number: Any
-    """(c, 8)"""
+    """(c, 9)"""
     clock: Any
     """(11,)"""
     before: Any

@@ -22,6 +22,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     NORMAL,
     PUSH,
     RATE,
+    RELEASED,
     REST,
     RESTITUTION,
     ROW,
@@ -274,7 +275,8 @@ def moving(dyn, scratch, contacts, v):
         rests = contacts.vector[NORMAL, gap[w]] > 0.0 and abs(contacts.vector[RATE, p]) <= contacts.number[p, REST]
         contacts.chosen[TAKING, p] = 1 if rests else 0
     for k in range(gaps + gap.shape[0], contacts.place.shape[0]):
-        contacts.chosen[TAKING, k] = 1 if contacts.number[k, SIGN] == 0.0 else 0
+        sticks = contacts.number[k, SIGN] == 0.0 and contacts.number[k, RELEASED] == 0.0
+        contacts.chosen[TAKING, k] = 1 if sticks else 0
     if moving:
         keep_independent(contacts, contacts.chosen[TAKING])
     return moving

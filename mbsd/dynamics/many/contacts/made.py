@@ -21,10 +21,10 @@ from mbsd.dynamics.many.contacts.arrays import (
     LEFT,
     MOST_LOOKS,
     PARTS,
+    RELEASED,
     RESTING,
     SHARING,
     SHIFT,
-    SIGN,
     SLIDE,
     STATIC,
     WAY,
@@ -41,7 +41,6 @@ from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.schur import Schur
 from mbsd.dynamics.reference.sequence import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
-from mbsd.dynamics.rows.joint_sticks import JointStick
 from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import State
 from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
@@ -61,18 +60,7 @@ def why_not(ready: PreparedDynamics, events: Sequence[Event]) -> str | None:
         return f"'{[*contacts, *sticks, *events][0].name}' is beside a contact that remembers how fast it began"
     if len(contacts) + len(sticks) > MOST:
         return f"it has {len(contacts) + len(sticks)} contacts and joints that stick; {MOST} at most"
-    dry = {force.params["joint"]: force.name for force in ready.packed.forces if force.name in _names(sticks)}
-    for event in events:
-        if event.releases and (ready.switches.spare or ready.dropped):
-            return f"event '{event.name}' releases a joint where joints repeat others"
-        for joint in event.releases:
-            if joint in dry:
-                return f"event '{event.name}' releases joint '{joint}', whose friction '{dry[joint]}' may stick"
     return None
-
-
-def _names(sticks: Sequence[JointStick]) -> set[str]:
-    return {stick.name for stick in sticks}
 
 
 def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], longest: float) -> Contacts:
@@ -91,7 +79,7 @@ def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], 
 
     return Contacts(
         np.array(own, np.int64).reshape(-1, FRICTION + 1),
-        np.array(_numbers(ready)).reshape(-1, SIGN + 1),
+        np.array(_numbers(ready)).reshape(-1, RELEASED + 1),
         np.zeros(SHARING + 1),
         another(),
         another(),
@@ -142,11 +130,11 @@ def _numbers(ready: PreparedDynamics) -> list[tuple[float, ...]]:
     for contact in ready.switches.contacts:
         size = scale[contact.gap]
         near = STILL if contact.always_closed else CLOSED_GAP
-        out.append((near / size, STILL / size, contact.settle, contact.restitution, size, 0.0, 0.0, 0.0))
+        out.append((near / size, STILL / size, contact.settle, contact.restitution, size, 0.0, 0.0, 0.0, 0.0))
     ways = [(contact.way or 0, 0.0) for _, contact in _rough(ready)]
     for way, sign in [*ways, *((stick.way, stick.sign) for stick in ready.sticks)]:
         still = STILL / scale[way]
-        out.append((still, still, 0.0, 0.0, scale[way], 0.0, 0.0, sign))
+        out.append((still, still, 0.0, 0.0, scale[way], 0.0, 0.0, sign, 0.0))
     return out
 
 

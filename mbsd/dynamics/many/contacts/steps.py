@@ -28,13 +28,13 @@ from mbsd.dynamics.many.contacts.arrays import (
 from mbsd.dynamics.many.contacts.bare import any_held, without_contacts
 from mbsd.dynamics.many.contacts.crossing import event_time, first_met
 from mbsd.dynamics.many.contacts.events.happening import ENDED, HAPPENED, happen
+from mbsd.dynamics.many.contacts.events.releases import hold_joints
 from mbsd.dynamics.many.contacts.jumps import resolve
 from mbsd.dynamics.many.contacts.rows import hold_rows
 from mbsd.dynamics.many.contacts.sticking.jumps import resolve_friction
 from mbsd.dynamics.many.contacts.sticking.ways import share_outputs
 from mbsd.dynamics.many.contacts.wheels import advance_to
 from mbsd.dynamics.many.contacts.within import fit
-from mbsd.dynamics.many.events.releases import hold_joints
 from mbsd.dynamics.many.events.sides import begin_sides, find_sides
 from mbsd.dynamics.many.repeated.exchange import hold_independent, look
 from mbsd.dynamics.many.rows_at import measure

@@ -9,7 +9,7 @@ VALUE, FIRST, FRAMES, DIRECTION, ENDS, ACTION, ACTION_FIRST, ACTION_FRAMES = ran
 whether the simulation ends there; address of the action, 0 where there is none; its frames."""
 SIDE, LEVEL, SHORTEST, GONE = range(4)
 """Columns of Events.number: sign of the value, 0 where that is zero; what is taken off the function's number; how long
-the shortest thing in it lasts (s), 0 where nothing is said; whether the joints that it releases are gone."""
+the shortest thing in it lasts (s), 0 where nothing is said; when (s) it released its joints, infinite before."""
 EVENT, ROW, BLOCK, SIDE_OF_BLOCK, OPEN_BLOCK, OPEN_SIDE, ITS_FRICTION = range(7)
 """Columns of Events.release: the event; a row of J that it releases; its block and its place there in Schur.rows, and
 the same without contacts; the row of a friction of its joint in Loads.friction. -1: there is none."""

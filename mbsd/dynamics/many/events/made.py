@@ -55,7 +55,7 @@ def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float, 
         value = _value(ready, event.value, seen, what)
         table.append((value, first, len(seen), event.direction, ends, action, *kinds))
         level = event.value.level if isinstance(event.value, Reaching) else 0.0
-        number.append((0.0, level, event.shortest or 0.0, 0.0))
+        number.append((0.0, level, event.shortest or 0.0, math.inf))
     most = max((len(frames) for frames in [[], *(event.frames for event in events), *_ready(events)]), default=0)
     n3, looks = len(ready.initial.q), max((_looks(event, longest) for event in events), default=0)
     return Events(

@@ -6,22 +6,26 @@ from typing import Any, NamedTuple
 
 ROW, BLOCK, SIDE = range(3)
 """Columns of Repeated.place: the row in J, its block and its place there in Schur.rows."""
-HELD, OPENED, SCALE = range(3)
-"""Columns of Repeated.number: whether it holds now; whether it did not once, so that it might open; what makes its
-residual dimensionless."""
-STEPS, BETTER = range(2)
-"""Entries of Repeated.clock: steps so far; by what factor other rows must be better."""
+HELD, OPENED, SCALE, UNTIL = range(4)
+"""Columns of Repeated.number: 1 where it holds, 0 where others do in its place, GONE; whether it did not hold once, so
+that it might open; what makes its residual dimensionless; when (s) an event of the user released its joint, infinite
+while none has."""
+GONE = -1.0
+"""Its joint is released."""
+STEPS, BETTER, FOLLOWS = range(3)
+"""Entries of Repeated.clock: steps so far; by what factor other rows must be better; what part of itself a row adds at
+least to others from which it does not follow."""
 
 
 class Repeated(NamedTuple):
-    """k rows, all of joints and drivers; see prepare/exchange.py."""
+    """k rows: all of joints and drivers, in order; see prepare/exchange.py."""
 
     place: Any
     """(k, 3) int"""
     number: Any
-    """(k, 3)"""
+    """(k, 4)"""
     clock: Any
-    """(2,)"""
+    """(3,)"""
     size: Any
     """(3 nb,) of a unit step of each coordinate; 0 of ground."""
     jac: Any

@@ -11,7 +11,7 @@ import math
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, inlined, internal, lazy
 from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.many.repeated.arrays import BETTER, BLOCK, HELD, OPENED, ROW, SCALE, SIDE, STEPS
+from mbsd.dynamics.many.repeated.arrays import BETTER, BLOCK, GONE, HELD, OPENED, ROW, SCALE, SIDE, STEPS, UNTIL
 from mbsd.dynamics.many.rows_at import measure
 from mbsd.dynamics.many.through import through
 from mbsd.dynamics.reference.arrays import Dynamics
@@ -31,8 +31,8 @@ def hold_independent(dyn, repeated):
 
 
 @apart
-def _find_products(dyn, scratch, repeated, t, q):
-    """Fill jac and gram at q (3 nb,)."""
+def find_rows(dyn, scratch, repeated, t, q):
+    """Fill jac at q (3 nb,) and t (s)."""
     measure(dyn, scratch, t, q)
     jac = repeated.jac
     size = repeated.size
@@ -44,6 +44,14 @@ def _find_products(dyn, scratch, repeated, t, q):
             at = 3 * dyn.system.row_body[row, side]
             for c in range(3):
                 jac[i, at + c] += scratch.ws.jac[row, 3 * side + c] * repeated.number[i, SCALE] * size[at + c]
+
+
+@apart
+def _find_products(dyn, scratch, repeated, t, q):
+    """Fill jac and gram at q (3 nb,)."""
+    find_rows(dyn, scratch, repeated, t, q)
+    jac = repeated.jac
+    for i in range(jac.shape[0]):
         for j in range(i + 1):
             product = 0.0
             for c in range(jac.shape[1]):
@@ -110,7 +118,7 @@ def _choose(repeated, count):
     whole = repeated.whole
     rows = repeated.place.shape[0]
     for i in range(rows):
-        left[i] = repeated.gram[i, i]
+        left[i] = repeated.gram[i, i] if repeated.number[i, HELD] != GONE else -1.0
     for n in range(count):
         best = -1
         for i in range(rows):
@@ -164,10 +172,19 @@ def _exchange(dyn, scratch, repeated, t, q):
     hold_independent(dyn, repeated)
 
 
+@internal
+def _any_spare(repeated):
+    """Whether a row could hold that does not."""
+    spare = False
+    for i in range(repeated.place.shape[0]):
+        spare = spare or repeated.number[i, HELD] == 0.0
+    return spare
+
+
 @lazy(None)
 def look(dyn, scratch, repeated, state, steps):
-    """Exchange rows if it is time to, before so many steps are taken."""
-    if repeated.clock[STEPS] % LOOK == 0.0:
+    """Exchange rows if it is time to and some repeat others, before so many steps are taken."""
+    if repeated.clock[STEPS] % LOOK == 0.0 and _any_spare(repeated):
         _exchange(dyn, scratch, repeated, state.clock[TIME], state.y[0])
     repeated.clock[STEPS] += steps
 
@@ -179,7 +196,7 @@ def _opens(dyn, scratch, repeated, out, first, end):
     for k in range(first, end):
         measure(dyn, scratch, out.t[k], out.y[k, 0])
         for i in range(repeated.place.shape[0]):
-            if repeated.number[i, OPENED] > 0.0:
+            if repeated.number[i, OPENED] > 0.0 and out.t[k] <= repeated.number[i, UNTIL]:
                 gap = abs(scratch.ws.phi[repeated.place[i, ROW]] * repeated.number[i, SCALE])
                 open_now = open_now or not gap <= OPENED_BY
     return open_now

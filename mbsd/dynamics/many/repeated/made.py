@@ -4,34 +4,34 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.dynamics.many.repeated.arrays import BETTER, HELD, OPENED, SCALE, Repeated
+from mbsd.dynamics.many.repeated.arrays import BETTER, FOLLOWS, HELD, OPENED, SCALE, UNTIL, Repeated
 from mbsd.dynamics.prepare.exchange import WORN
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.start.large import MANY_COORDINATES
 from mbsd.kinematics.pose.mobility import BETTER as FACTOR
-
-MOST = 200
-"""Rows of joints of which some repeat others."""
+from mbsd.kinematics.pose.mobility import RANK_TOLERANCE
 
 
 def why_not(ready: PreparedDynamics) -> str | None:
     """Why a mechanism whose joints repeat others is left to single simulations, or None."""
-    if not ready.switches.spare and not ready.dropped:
+    if ready.switches.spare or not ready.dropped:
         return None
-    rows = ready.packed.contact_rows
-    return f"joints repeat others, and have {rows} rows; {MOST} at most" if rows > MOST else None
+    return f"joints repeat others in a mechanism of {ready.packed.coordinates} coordinates; {MANY_COORDINATES} at most"
 
 
 def repeated_of(ready: PreparedDynamics) -> Repeated:
     """Those of a run at its start."""
     packed, switches = ready.packed, ready.switches
     spare = set(switches.spare)
-    rows = [row for row in sorted(switches.place) if row < packed.contact_rows] if spare else []
+    rows = range(packed.contact_rows) if spare else []
     k, n3, scale = len(rows), len(ready.initial.q), packed.row_scale()
-    number = np.zeros((k, SCALE + 1))
+    number = np.zeros((k, UNTIL + 1))
     number[:, HELD] = [row not in spare for row in rows]
     number[:, OPENED] = [row in spare for row in rows]
     number[:, SCALE] = [scale[row] for row in rows]
-    clock = np.zeros(BETTER + 1)
+    number[:, UNTIL] = np.inf
+    clock = np.zeros(FOLLOWS + 1)
+    clock[FOLLOWS] = RANK_TOLERANCE
     clock[BETTER] = WORN if len(ready.dynamics.loads.friction) else FACTOR
     return Repeated(
         np.array([(row, *switches.place[row]) for row in rows], np.int64).reshape(-1, 3),

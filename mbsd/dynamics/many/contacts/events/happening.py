@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mbsd.compiling.callback import call
 from mbsd.compiling.jit import lazy
+from mbsd.dynamics.many.contacts.events.releases import release_joints
 from mbsd.dynamics.many.contacts.rows import release_rows
 from mbsd.dynamics.many.events.arrays import (
     ACTION,
@@ -12,10 +13,8 @@ from mbsd.dynamics.many.events.arrays import (
     DIRECTION,
     ENDS,
     EVENT,
-    GONE,
     SIDE,
 )
-from mbsd.dynamics.many.events.releases import hold_joints
 from mbsd.dynamics.many.events.values import read_frames
 from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.state import TIME
@@ -53,8 +52,7 @@ def happen(dyn, scratch, contacts, state, e):
             v[b + 1] = events.outputs[3 * i + 1] - omega * x
             v[b + 2] = omega
     if releases:
-        events.number[e, GONE] = 1.0
-        hold_joints(dyn, contacts)
+        release_joints(dyn, scratch, contacts, e, state.clock[TIME], state.y[0])
     if releases or table[e, ACTION] != 0:
         release_rows(dyn, contacts)
         project(dyn, scratch, state.clock[TIME], state.y, 2)

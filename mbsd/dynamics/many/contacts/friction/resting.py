@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.many.contacts.arrays import ALONE, BROKEN, RATE, REST, RESTING, STAYING
+from mbsd.dynamics.many.contacts.arrays import ALONE, BROKEN, RATE, RELEASED, REST, RESTING, STAYING
 from mbsd.dynamics.many.contacts.pushes import STIFF
 from mbsd.dynamics.many.contacts.rows import find_rates, gaps_of, keep_independent, stop
 
@@ -30,6 +30,8 @@ def _more_rest(contacts, gaps, halted):
     for k in range(gaps, resting.shape[0]):
         w = k - gaps
         if resting[k] != 0 or (w < friction.gap.shape[0] and contacts.chosen[STAYING, friction.gap[w]] == 0):
+            continue
+        if contacts.number[k, RELEASED] != 0.0:
             continue
         slow = abs(contacts.vector[RATE, k]) <= contacts.number[k, REST]
         if gives(contacts, k) and (slow or _halts(contacts, k, gaps, halted)):

@@ -21,6 +21,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     NORMAL,
     NOW,
     RATE,
+    RELEASED,
     REST,
     RESTING,
     ROW,
@@ -49,7 +50,7 @@ def _find_signs(dyn, contacts, halted):
     joints = contacts.place.shape[0] - contacts.sticks.joint.shape[0]
     for k in range(contacts.place.shape[0]):
         resting[k] = 0
-        if k < joints:
+        if k < joints or contacts.number[k, RELEASED] != 0.0:
             continue
         rate = contacts.vector[RATE, k]
         sign = contacts.number[k, SIGN]

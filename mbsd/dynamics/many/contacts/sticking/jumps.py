@@ -14,6 +14,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     KEPT,
     KIND,
     NORMAL,
+    RELEASED,
     SHARING,
     SIGN,
     SLIDE,
@@ -40,9 +41,18 @@ from mbsd.equations.joint_friction import SENSE
 
 
 @internal
+def _any_joint(contacts):
+    """Whether there is a joint that may stick and that no event has released."""
+    there = False
+    for k in range(contacts.place.shape[0] - contacts.sticks.joint.shape[0], contacts.place.shape[0]):
+        there = there or contacts.number[k, RELEASED] == 0.0
+    return there
+
+
+@internal
 def _settled(dyn, scratch, contacts, state, staying, halted, slipping, touched):
     """Decide, and again once the ``staying`` gaps that hold are at rest; returns False where nothing is possible."""
-    if staying == 0 and contacts.sticks.joint.shape[0] == 0:
+    if staying == 0 and not _any_joint(contacts):
         for k in range(contacts.place.shape[0]):
             contacts.vector[NORMAL, k] = 0.0
         return True
@@ -71,6 +81,9 @@ def _set(dyn, scratch, contacts):
             move_zero(scratch, contacts, k)
     slide_or_stick(scratch, contacts)
     for k in range(joints, count):
+        taking[k] = 0
+        if number[k, RELEASED] != 0.0:
+            continue
         taking[k] = 1 if number[k, SIGN] == 0.0 else 0
         dyn.loads.friction_number[contacts.place[k, FRICTION], SENSE] = number[k, SIGN]
         if taking[k] != 0 and number[k, CLOSED] == 0.0:
@@ -106,7 +119,8 @@ def resolve_friction(dyn, scratch, contacts, state, met):
     stand(dyn, scratch, state.clock[TIME], state.y)
     touching = find_touching(scratch, contacts, met)
     for k in range(contacts.place.shape[0]):
-        chosen[TAKING, k] = 1 if chosen[TOUCHING, k] != 0 or contacts.place[k, KIND] == WAY else 0
+        way = contacts.place[k, KIND] == WAY and contacts.number[k, RELEASED] == 0.0
+        chosen[TAKING, k] = 1 if chosen[TOUCHING, k] != 0 or way else 0
     find_answers(dyn, scratch, contacts, chosen[TAKING])
     if touching > 0 and not impacts(dyn, scratch, contacts, v):
         return False

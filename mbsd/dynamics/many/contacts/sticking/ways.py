@@ -15,6 +15,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     FRICTION,
     KIND,
     LOAD,
+    RELEASED,
     ROW,
     SHARING,
     SIGN,
@@ -55,6 +56,9 @@ def read_ways(dyn, scratch, contacts, y, forces):
         if contacts.place[k, KIND] != WAY:
             continue
         row = contacts.place[k, ROW]
+        if contacts.number[k, RELEASED] != 0.0:
+            contacts.vector[VALUE, k] = contacts.clock[LOAD]
+            continue
         if contacts.number[k, CLOSED] == 0.0:
             contacts.vector[VALUE, k] = contacts.number[k, SIGN] * along(dyn, scratch, row, y[1])
             continue

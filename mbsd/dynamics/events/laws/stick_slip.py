@@ -98,7 +98,7 @@ class _Moment:
         self.signs: dict[str, float] = {}
         self.resting = []
         for stick in sticks:
-            sign = self._moving(stick, rates[stick.way])
+            sign = self._moving(stick, rates[stick.way]) if stick.holds else stick.sign or 1.0
             if sign == 0.0:
                 self.resting.append(stick)
             else:
@@ -120,7 +120,7 @@ class _Moment:
         """Rates of all ways by row, those at rest taken to be so exactly: others may be at rest with them."""
         case, at = self.case, self.at
         rows = {contact.way: contact.name for contact in case.closed if contact.way is not None}
-        rows |= {stick.way: stick.name for stick in sticks}
+        rows |= {stick.way: stick.name for stick in sticks if stick.holds}
         ways = np.array([*rows], np.int64)
         halted = np.array([name == case.halted or case.forced.get(name) == 0.0 for name in rows.values()], bool)
         moved, rates = np.array([self._gives(way) for way in ways], bool), at.rates(ways, case.v)

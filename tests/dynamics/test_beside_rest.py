@@ -1,4 +1,5 @@
-"""Joints that slide beside bodies at rest, whose forces say how hard they are pressed; joints without friction."""
+"""Joints that slide beside bodies at rest, whose forces say how hard they are pressed; joints without friction; bodies
+that hold each other by forces that end with their rest."""
 
 from __future__ import annotations
 
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, harmonic
 from mbsd.measures import samples
+from tools.models.rough import pusher
 
 TIMES = np.linspace(0.0, 1.0, 21)
 
@@ -112,3 +114,23 @@ def test_a_joint_with_a_coefficient_of_zero_moves_as_one_without_friction(
     many = m.simulate_many(vary={"sledge2": {"mass": masses[2:]}}, measure=measure, times=TIMES, tolerance=1e-10)
     assert many.alone[0] is None
     np.testing.assert_allclose(many["x"][0], sol.body("sledge2").x, atol=1e-8)
+
+
+def test_a_block_gives_way_to_a_linkage_that_pressed_it_down_while_it_held() -> None:
+    """Torques of dry pins at rest turn the rod onto the block, whose feet hold more by that, and end with the rest."""
+    angle, rubbing = 84.8264358, {"rear": (0.2, 0.2), "front": (0.2, 0.2)}
+    m = pusher(True, "OAB", 2.3037288079360136, (0.2, 0.5), rubbing, (0.5, 4.843645223170216), angle)
+    sol, fine = (m.simulate(times=TIMES, tolerance=tolerance) for tolerance in (1e-8, 1e-11))
+    begins = [event.time for event in sol.events if event.what == "slides"]
+    assert {event.name for event in sol.events if event.time == begins[0]} >= {
+        "rear",
+        "front",
+        "rub O",
+        "rub A",
+        "rub B",
+    }
+    assert begins[0] == pytest.approx(0.07533634, abs=1e-5)
+    np.testing.assert_allclose(sol.body("part").x, fine.body("part").x, atol=1e-6)
+    still = begins[0] > TIMES
+    assert np.ptp(sol.body("part").x[still]) < 1e-12
+    assert np.ptp(sol.body("part").x) > 0.01

@@ -35,8 +35,8 @@ ROUNDING = 1e-10
 CLOSES, LOCKS, OPENS, SLIPS, HALTS, USER = "closes", "locks", "opens", "slips", "halts", "event"
 
 
-Divide = Callable[[float, np.ndarray, np.ndarray], tuple[np.ndarray, float]]
-"""Multipliers divided, and the part s, from a time (s), a pose (3 nb,) and multipliers (m,)."""
+Divide = Callable[[float, np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, float]]
+"""Multipliers divided, and the part s, from a time (s), a pose and velocities (3 nb,), multipliers (m,)."""
 
 
 class Samples:
@@ -72,7 +72,7 @@ class Samples:
     def divided(self, divide: Divide) -> tuple[np.ndarray, np.ndarray]:
         """Multipliers (S, m) with what rows at rest share divided among them, and the parts s (S,) that they need."""
         if self._divided is None:
-            along = zip(self.t, self.q, self.multipliers(), strict=True)
+            along = zip(self.t, self.q, self.v, self.multipliers(), strict=True)
             shares = [divide(*sample) for sample in along]
             self._divided = np.array([lam for lam, _ in shares]), np.array([part for _, part in shares])
         return self._divided
@@ -177,7 +177,7 @@ def stick_monitors(
     """
     out, resting = [], []
     for stick in sticks:
-        if stick.state == SLIDES:
+        if stick.state == SLIDES and stick.holds:
             out.append(Monitor(stick.name, HALTS, _speed(stick), still[stick.way], stick=stick))
         elif stick.state == STICKS:
             resting.append(stick)

@@ -165,7 +165,8 @@ class EventSteps:
             self.held[self._told : following] = self.switches.held()
             if self._shares is not None:
                 for k in range(self._told, following):
-                    self.out.lam[k] = self._shares(self.out.t[k], self.out.y[k, 0], self.out.lam[k])[0]
+                    q, v = self.out.y[k]
+                    self.out.lam[k] = self._shares(self.out.t[k], q, v, self.out.lam[k])[0]
             self._told = following
 
     # -- joints at rest that share their friction ---------------------------------------------------------------
@@ -175,13 +176,11 @@ class EventSteps:
         held = self.switches.held() if self.switches.place else np.zeros(0, bool)
         self._together = shares_contacts(self.switches, self.sticks, held, self.jumps.by_turns)
         sharing = any(stick.state == STICKS and not held[stick.way] for stick in self.sticks)
-        self._shares = self._held_together if self._together else self._carried if sharing else None
+        self._shares = self._divided if self._together or sharing else None
 
-    def _carried(self, time: float, q: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, float]:
-        return carried(self.jumps.compliance(time, q), self.sticks, self.switches, lam)
-
-    def _held_together(self, time: float, q: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, float]:
-        return held_together(self.jumps.compliance(time, q), self.sticks, self.switches, lam)
+    def _divided(self, time: float, q: np.ndarray, v: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, float]:
+        divide = held_together if self._together else carried
+        return divide(self.jumps.compliance(time, q), self.sticks, self.switches, v, lam)
 
     # -- finding ------------------------------------------------------------------------------------------------
 
@@ -342,7 +341,9 @@ class EventSteps:
             float(state.clock[TIME]),
             state.y.copy(),
             state.dy[1].copy(),
-            state.lam.copy() if shares is None else shares(float(state.clock[TIME]), state.y[0], state.lam)[0],
+            state.lam.copy()
+            if shares is None
+            else shares(float(state.clock[TIME]), state.y[0], state.y[1], state.lam)[0],
             float(state.clock[WORK]),
             float(self.run.scratch.report[0]),
             self.switches.held(),

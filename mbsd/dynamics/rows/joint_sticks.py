@@ -70,6 +70,11 @@ class JointStick:
         """Its row of Loads.friction_number."""
         return self.loads.friction_number[self.at]
 
+    @property
+    def holds(self) -> bool:
+        """Whether friction can hold it: with a coefficient of zero it slides for ever, and rests by chance."""
+        return bool(self.number[STATIC] > 0.0)
+
     def limit(self, normal: np.ndarray) -> np.ndarray:
         """Largest friction (N, N m) of the joint at rest under normal forces (..., f) of all joints (N)."""
         lever = self.number[SIZE] if self.loads.friction[self.at, SHAPE] == PIN else 1.0

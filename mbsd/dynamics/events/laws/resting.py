@@ -24,6 +24,7 @@ import numpy as np
 
 from mbsd.arrays.friction_along import normals_along
 from mbsd.dynamics.events.bounds import AGREED, PASSES
+from mbsd.dynamics.events.laws.beside import Beside, beside, raw_of
 from mbsd.dynamics.events.laws.complementarity import gives_way
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.sharing import share, share_any
@@ -33,40 +34,58 @@ from mbsd.dynamics.rows.switches import RunContact, Switches
 
 
 def carried(
-    at: Compliance, sticks: Sequence[JointStick], switches: Switches, lam: np.ndarray
+    at: Compliance, sticks: Sequence[JointStick], switches: Switches, v: np.ndarray, lam: np.ndarray
 ) -> tuple[np.ndarray, float]:
-    """Multipliers (m,) with the friction shared, and the part s of their limits that the joints need; lam (m,)."""
+    """Multipliers (m,) with the friction shared, and the part s of their limits that the joints need.
+
+    ``v`` (3 nb,), ``lam`` (m,). The multipliers are those of the motion, s is what the friction of sliding joints asks
+    for that belongs to what holds.
+    """
     resting = [stick for stick in sticks if stick.state == STICKS]
     ways = [stick.way for stick in resting]
     directions = at.generalised(ways)
     dv, lam_of = at.answers(directions)
-    compliance, start, part = directions.T @ dv, -lam[ways], 0.0
-    held = switches.held()
+    compliance, start = directions.T @ dv, -lam[ways]
+    held, whole = switches.held(), compliance
     pushing = [(row, contact) for contact in switches.contacts for row in _rows(contact) if held[row]]
+    pressed = beside(at, v, lam)
     moved, sharing = np.arange(len(ways)), compliance
     sliding = any(contact.way is not None and contact.sign for _, contact in pushing)
     if pushing:
-        dv, lam_of = _reacting(at, pushing, directions, dv, lam_of)
+        dv, lam_of = _reacting(at, pushing, dv, lam_of)
+        if pressed is not None:
+            pressed = Beside(pressed.start, *_reacting(at, pushing, pressed.a, pressed.lam))
         compliance = sharing = directions.T @ dv
         if sliding:
             sharing = dv.T @ (dv / at.dynamics.inverse[3:, None])
         moved = np.array([k for k, way in enumerate(ways) if gives_way(at, way, compliance[k, k])], np.int64)
+        whole = compliance
         compliance, sharing = compliance[np.ix_(moved, moved)], sharing[np.ix_(moved, moved)]
-    forces, out = start, lam
-    for _ in range(PASSES):
-        normal = normals_along(at.packed, at.dynamics.loads, at.q[None], at.compact[None], out[None])[0]
-        limits = np.array([resting[k].limit(normal) for k in moved])
-        shared = start.copy()
-        if len(moved):
-            shared[moved], part = share(sharing, start[moved], limits)
-            if sliding:
-                part = share_any(compliance, start[moved], limits)[1]
-        change = float(np.abs(shared - forces).max())
-        forces, out = shared, lam + lam_of @ (shared - start)
-        out[ways] = -shared
-        if change <= AGREED * float(np.abs(shared).max()):
-            break
-    return out, part
+
+    def agreed(begin: np.ndarray, pressed: Beside | None) -> tuple[np.ndarray, float]:
+        forces, part, out = start, 0.0, begin
+        change = None if pressed is None else raw_of(pressed, directions, whole, held[ways])
+        for _ in range(PASSES):
+            normal = normals_along(at.packed, at.dynamics.loads, at.q[None], at.compact[None], out[None])[0]
+            limits = np.array([resting[k].limit(normal) for k in moved])
+            unshared, base = start, lam
+            if pressed is not None and change is not None:
+                more = normal - pressed.start
+                unshared, base = start + change @ more, lam + pressed.lam @ more
+            shared = unshared.copy()
+            if len(moved):
+                shared[moved], part = share(sharing, unshared[moved], limits)
+                if sliding:
+                    part = share_any(compliance, unshared[moved], limits)[1]
+            moving = float(np.abs(shared - forces).max())
+            forces, out = shared, base + lam_of @ (shared - start)
+            out[ways] = -shared
+            if moving <= AGREED * float(np.abs(shared).max()):
+                break
+        return out, part
+
+    out, part = agreed(lam, None)
+    return (out, part) if pressed is None else (out, agreed(out, pressed)[1])
 
 
 def _rows(contact: RunContact) -> list[int]:
@@ -76,11 +95,10 @@ def _rows(contact: RunContact) -> list[int]:
 def _reacting(
     at: Compliance,
     pushing: Sequence[tuple[int, RunContact]],
-    directions: np.ndarray,
     dv: np.ndarray,
     lam_of: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """V (n, k) and multipliers (m, k) of unit friction of joints, where rows of contacts hold and react."""
+    """V (n, k) and multipliers (m, k) of unit forces, where rows of contacts hold and react."""
     rows = [row for row, _ in pushing]
     across = at.generalised(rows)
     pushed, factors = across.copy(), np.zeros(len(rows))

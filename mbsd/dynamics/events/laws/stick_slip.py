@@ -11,7 +11,7 @@ several joints at rest can share is shared (sharing.py).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -98,7 +98,7 @@ class _Moment:
         self.signs: dict[str, float] = {}
         self.resting = []
         for stick in sticks:
-            sign = self._moving(stick, rates[stick.way])
+            sign = self._moving(stick, rates[stick.way]) if stick.holds else stick.sign or 1.0
             if sign == 0.0:
                 self.resting.append(stick)
             else:
@@ -120,7 +120,7 @@ class _Moment:
         """Rates of all ways by row, those at rest taken to be so exactly: others may be at rest with them."""
         case, at = self.case, self.at
         rows = {contact.way: contact.name for contact in case.closed if contact.way is not None}
-        rows |= {stick.way: stick.name for stick in sticks}
+        rows |= {stick.way: stick.name for stick in sticks if stick.holds}
         ways = np.array([*rows], np.int64)
         halted = np.array([name == case.halted or case.forced.get(name) == 0.0 for name in rows.values()], bool)
         moved, rates = np.array([self._gives(way) for way in ways], bool), at.rates(ways, case.v)
@@ -199,6 +199,60 @@ class _Moment:
 
     def _agreed(self, pick: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """N and T (c + k,), the limits (k,) of joints at rest under them, and the largest load."""
+        moving = np.zeros(len(self.ways))
+        pushing = np.zeros(len(self.gaps), bool)
+
+        def decided(limits: np.ndarray) -> np.ndarray:
+            at, closed, rates = self.at, self.case.closed, self.free
+            both = complementarity(at, closed, self.ways, self.compliance, rates, self._hair * pick, limits)
+            forces = self._shared(np.concatenate(both), self._hair * pick, limits)
+            left = self._left(forces, self._hair * pick @ both[0] + limits)
+            if left.any():
+                moving[:], pushing[:] = np.sign(left), both[0] > 0.0
+            return forces
+
+        try:
+            return self._repeated(decided)
+        except SimulationError:
+            if not self.case.slipping or not moving.any():
+                raise
+            given = self._given_way(self._hair * pick, moving, pushing)
+            if given is None:
+                raise
+            return given
+
+    def _given_way(
+        self, pick: np.ndarray, moving: np.ndarray, pushing: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, float] | None:
+        """The same where ways with signs ``moving`` (k,) give way and gaps ``pushing`` (c,) stay closed, if they do so.
+
+        What is at rest may hold each other by forces that no longer act once they move: with those they are pressed as
+        if they moved they could hold, and the other way round. Where nothing holds them under its own forces they move.
+        """
+        c = len(self.gaps)
+        rows = np.concatenate([np.flatnonzero(pushing), c + np.flatnonzero(moving == 0.0)])
+        spread = np.zeros((c + len(moving), len(rows)))
+        spread[rows, np.arange(len(rows))] = 1.0
+        spread[c:] -= moving[:, None] * (pick @ spread[:c])
+
+        def solved(limits: np.ndarray) -> np.ndarray:
+            given = np.concatenate([np.zeros(c), -moving * limits])
+            needed = -(self.free + self.compliance @ given)[rows]
+            return given + spread @ np.linalg.lstsq(self.compliance[rows] @ spread, needed, rcond=1e-12)[0]
+
+        try:
+            forces, limits, largest = self._repeated(solved)
+        except SimulationError:
+            return None
+        bends = self.compliance @ forces + self.free
+        most = pick @ forces[:c] + limits
+        left = self._left(forces, most)
+        opening = bends[:c][~pushing] >= 0.0
+        agrees = (np.sign(left) == moving).all() and (forces[:c] >= 0.0).all() and opening.all()
+        return (forces, limits, largest) if agrees and (np.abs(forces[c:]) <= most * (1.0 + AT_LIMIT)).all() else None
+
+    def _repeated(self, solve: Callable[[np.ndarray], np.ndarray]) -> tuple[np.ndarray, np.ndarray, float]:
+        """N and T that ``solve`` gives for limits (k,) of joints, until the normal forces of joints agree."""
         at, v = self.at, self.case.v
         packed, loads = at.packed, at.dynamics.loads
         x = np.nan_to_num(loads.normal[X].copy())
@@ -208,10 +262,7 @@ class _Moment:
             a, lam = at.accelerations(load, self.gamma)
             self.free = self.directions.T @ a - self.gamma[[*self.gaps, *self.ways]]
             limits = np.array([0.0] * len(self.rough) + [self._hair * stick.limit(x) for stick in self.resting])
-            forces = np.concatenate(
-                complementarity(at, self.case.closed, self.ways, self.compliance, self.free, self._hair * pick, limits)
-            )
-            forces = self._shared(forces, self._hair * pick, limits)
+            forces = solve(limits)
             normal_forces = normals_along(
                 packed, loads, at.q[None], at.compact[None], (lam + self.lam_of @ forces)[None]
             )[0]

@@ -14,6 +14,7 @@ import numpy as np
 
 from mbsd.arrays.friction_along import normals_along
 from mbsd.dynamics.events.bounds import AGREED_TOGETHER, PASSES
+from mbsd.dynamics.events.laws.beside import Beside, beside, raw_of
 from mbsd.dynamics.events.laws.complementarity import alone
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.least_part import FORCE, OWN, PULLED, RAW, UNIT, least_part, together_of
@@ -43,9 +44,12 @@ def shares_contacts(switches: Switches, sticks: Sequence[JointStick], held: np.n
 
 
 def held_together(
-    at: Compliance, sticks: Sequence[JointStick], switches: Switches, lam: np.ndarray
+    at: Compliance, sticks: Sequence[JointStick], switches: Switches, v: np.ndarray, lam: np.ndarray
 ) -> tuple[np.ndarray, float]:
-    """Multipliers (m,) with which all hold, and the part s of their limits that they need; lam (m,)."""
+    """Multipliers (m,) with which all hold, and the part s of their limits that they need; v (3 nb,), lam (m,).
+
+    The multipliers are those of the motion, s that under the friction of sliding joints that belongs to what holds.
+    """
     closed = [contact for contact in switches.contacts if contact.state != OPEN]
     rough = [k for k, contact in enumerate(closed) if contact.state == STICKS]
     resting = [stick for stick in sticks if stick.state == STICKS]
@@ -58,16 +62,26 @@ def held_together(
     compliance, unit = directions.T @ dv, 1.0 / np.sqrt(alone(at, rows.tolist()))
     pick = np.zeros((len(ways), len(gaps)))
     pick[np.arange(len(rough)), rough] = [closed[k].static_friction for k in rough]
-    force, part, out = raw, 1.0, lam
-    for _ in range(PASSES):
-        normal = normals_along(at.packed, at.dynamics.loads, at.q[None], at.compact[None], out[None])[0]
-        own = np.array([0.0] * len(rough) + [stick.limit(normal) for stick in resting])
-        before = force
-        force, part = divided(compliance, raw, unit, pick, own, held)
-        out = _multipliers(lam + lam_of @ (force - raw), closed, rows, force)
-        if part == PULLED or np.abs(force - before).max() <= AGREED_TOGETHER * np.abs(force).max(initial=0.0):
-            break
-    return out, part
+
+    def agreed(begin: np.ndarray, pressed: Beside | None) -> tuple[np.ndarray, float]:
+        force, part, out = raw, 1.0, begin
+        change = None if pressed is None else raw_of(pressed, directions, compliance, held)
+        for _ in range(PASSES):
+            normal = normals_along(at.packed, at.dynamics.loads, at.q[None], at.compact[None], out[None])[0]
+            own = np.array([0.0] * len(rough) + [stick.limit(normal) for stick in resting])
+            before, unshared, base = force, raw, lam
+            if pressed is not None and change is not None:
+                more = normal - pressed.start
+                unshared, base = raw + change @ more, lam + pressed.lam @ more
+            force, part = divided(compliance, unshared, unit, pick, own, held)
+            out = _multipliers(base + lam_of @ (force - raw), closed, rows, force)
+            if part == PULLED or np.abs(force - before).max() <= AGREED_TOGETHER * np.abs(force).max(initial=0.0):
+                break
+        return out, part
+
+    out, part = agreed(lam, None)
+    pressed = beside(at, v, lam)
+    return (out, part) if pressed is None else (out, agreed(out, pressed)[1])
 
 
 def divided(

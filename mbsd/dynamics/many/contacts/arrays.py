@@ -91,8 +91,9 @@ class Curves(NamedTuple):
 LIMIT, FORCE, UNSHARED, PREVIOUS, LEFT = range(5)
 """Rows of Sticks.vector: limits of friction; normal forces and friction; friction before it is shared, and as it was
 shared last; accelerations that friction leaves, and friction that would hold joints alone."""
-NOW, LAST, FOUND = range(3)
-"""Rows of Sticks.normal: normal forces used now, their last error, those that the multipliers give."""
+NOW, LAST, FOUND, BASIS = range(4)
+"""Rows of Sticks.normal: normal forces used now, their last error, those that the multipliers give, those of the motion
+where joints slide beside others at rest."""
 
 
 class Sticks(NamedTuple):
@@ -104,13 +105,19 @@ class Sticks(NamedTuple):
     vector: Any
     """(5, c)"""
     normal: Any
-    """(3, f)"""
+    """(4, f)"""
     borne: Any
     """(c, m) multipliers of joints and drivers by a unit impulse of each row."""
     lam: Any
     """(2, m)"""
     load: Any
     """(2, 3 nb) without and with friction of joints."""
+    beside: Any
+    """(f, 3 nb) accelerations by the friction of each joint that slides, under a unit normal force."""
+    beside_lam: Any
+    """(f, m) multipliers of joints and drivers by it."""
+    change: Any
+    """(c, f) what it changes of forces of rows that hold."""
     division: Any
     """mbsd.dynamics.events.laws.division.Division, of c rows."""
     together: Any

@@ -12,8 +12,8 @@ from mbsd.dynamics.events.laws.division import division_of
 from mbsd.dynamics.events.laws.least_part import together_of
 from mbsd.dynamics.events.steps import STILL
 from mbsd.dynamics.many.contacts.arrays import (
+    BASIS,
     CLUTCH,
-    FOUND,
     FRICTION,
     GAP,
     HOLDING,
@@ -145,10 +145,13 @@ def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Sticks:
     return Sticks(
         np.arange(c - len(ready.sticks), c),
         np.zeros((LEFT + 1, own)),
-        np.zeros((FOUND + 1, frictions)),
+        np.zeros((BASIS + 1, frictions)),
         np.zeros((own, rows)),
         np.zeros((2, rows)),
         np.zeros((2, n3)),
+        np.zeros((frictions, n3)),
+        np.zeros((frictions, rows)),
+        np.zeros((own, frictions)),
         division_of(own),
         together_of(own),
     )

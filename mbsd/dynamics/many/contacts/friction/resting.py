@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.many.contacts.arrays import ALONE, BROKEN, RATE, RELEASED, REST, RESTING, STAYING
+from mbsd.dynamics.many.contacts.arrays import ALONE, BROKEN, FRICTION, RATE, RELEASED, REST, RESTING, STAYING
 from mbsd.dynamics.many.contacts.pushes import STIFF
 from mbsd.dynamics.many.contacts.rows import find_rates, gaps_of, keep_independent, stop
+from mbsd.equations.joint_friction import STATIC
 
 
 @internal
 def gives(contacts, k):
     """Whether a force along way k moves anything: none does at a turning point, or where drivers alone move it."""
     return contacts.compliance[k, k] > STIFF * contacts.vector[ALONE, k]
+
+
+@internal
+def holds(dyn, contacts, k):
+    """Whether friction can hold way k; that of a joint with a coefficient of zero cannot."""
+    at = contacts.place[k, FRICTION]
+    return at < 0 or dyn.loads.friction_number[at, STATIC] > 0.0
 
 
 @internal
@@ -22,7 +30,7 @@ def _halts(contacts, k, gaps, halted):
 
 
 @internal
-def _more_rest(contacts, gaps, halted):
+def _more_rest(dyn, contacts, gaps, halted):
     """Add ways to chosen[RESTING] by vector[RATE]; whether there were more."""
     friction = contacts.friction
     resting = contacts.chosen[RESTING]
@@ -31,7 +39,7 @@ def _more_rest(contacts, gaps, halted):
         w = k - gaps
         if resting[k] != 0 or (w < friction.gap.shape[0] and contacts.chosen[STAYING, friction.gap[w]] == 0):
             continue
-        if contacts.number[k, RELEASED] != 0.0:
+        if contacts.number[k, RELEASED] != 0.0 or not holds(dyn, contacts, k):
             continue
         slow = abs(contacts.vector[RATE, k]) <= contacts.number[k, REST]
         if gives(contacts, k) and (slow or _halts(contacts, k, gaps, halted)):
@@ -52,7 +60,7 @@ def find_resting(dyn, scratch, contacts, v, halted):
     for k in range(contacts.place.shape[0]):
         contacts.chosen[RESTING, k] = 0
     find_rates(dyn, scratch, contacts, v)
-    while _more_rest(contacts, gaps, halted):
+    while _more_rest(dyn, contacts, gaps, halted):
         for c in range(v.shape[0]):
             own[c] = v[c]
         keep_independent(contacts, contacts.chosen[RESTING])

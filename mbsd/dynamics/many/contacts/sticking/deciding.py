@@ -31,7 +31,7 @@ from mbsd.dynamics.many.contacts.arrays import (
 )
 from mbsd.dynamics.many.contacts.friction.decisions import begin_deciding, begin_touched, breaks, guess, left_of, press
 from mbsd.dynamics.many.contacts.friction.pushes import solve_with_friction
-from mbsd.dynamics.many.contacts.friction.resting import find_resting, gives
+from mbsd.dynamics.many.contacts.friction.resting import find_resting, gives, holds
 from mbsd.dynamics.many.contacts.jumps import FAINT
 from mbsd.dynamics.many.contacts.rows import along, gaps_of
 from mbsd.dynamics.many.contacts.sticking.answers import respond, stand
@@ -54,7 +54,9 @@ def _find_signs(dyn, contacts, halted):
             continue
         rate = contacts.vector[RATE, k]
         sign = contacts.number[k, SIGN]
-        if abs(rate) > contacts.number[k, REST]:
+        if not holds(dyn, contacts, k):
+            sign = sign if sign != 0.0 else 1.0
+        elif abs(rate) > contacts.number[k, REST]:
             sign = math.copysign(1.0, rate)
         elif gives(contacts, k):
             sign = 0.0

@@ -10,6 +10,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     FORCE,
     FOUND,
     FRICTION,
+    HELD,
     KIND,
     LEFT,
     LIMIT,
@@ -21,6 +22,13 @@ from mbsd.dynamics.many.contacts.arrays import (
 )
 from mbsd.dynamics.many.contacts.rows import hold_rows
 from mbsd.dynamics.many.contacts.sticking.answers import answer_resting
+from mbsd.dynamics.many.contacts.sticking.beside import (
+    add_beside,
+    add_beside_lam,
+    find_changes,
+    note_beside,
+    press_beside,
+)
 from mbsd.equations.joint_friction import PIN, PRELOAD, SHAPE, SIZE, STATIC, normal_forces
 
 
@@ -53,11 +61,11 @@ def _find_moved(dyn, contacts, flags):
     return True
 
 
-@apart
-def carry(dyn, scratch, contacts, lam):
-    """Divide the friction in the multipliers lam (m,) among the joints at rest, at the pose of scratch.ws.
+@internal
+def _agree(dyn, scratch, contacts, sliding, beside, lam):
+    """Divide the friction again until limits agree, under the friction ``beside`` of joints that slide; returns s.
 
-    Returns the part s of their limits that they need.
+    lam (m,) begins with what presses joints at first.
     """
     count = contacts.place.shape[0]
     flags = contacts.chosen[RESTING]
@@ -68,25 +76,18 @@ def carry(dyn, scratch, contacts, lam):
     limit = contacts.sticks.vector[LIMIT]
     before = contacts.sticks.lam[0]
     normal = contacts.sticks.normal[FOUND]
-    for k in range(count):
-        flags[k] = 1 if contacts.place[k, KIND] == WAY and contacts.number[k, CLOSED] > 0.0 else 0
-        start[k] = -lam[contacts.place[k, ROW]]
-        force[k] = start[k]
-    answer_resting(dyn, scratch, contacts, flags)
-    hold_rows(dyn, contacts)
-    sliding = _find_moved(dyn, contacts, flags)
     moved = contacts.friction.compliance if sliding else contacts.compliance
-    for r in range(lam.shape[0]):
-        before[r] = lam[r]
     part = 0.0
+    for k in range(count):
+        force[k] = start[k]
     for _ in range(PASSES):
         normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, normal)
         for k in range(count):
             if flags[k] != 0:
                 limit[k] = limit_of(dyn, contacts.place[k, FRICTION], normal)
                 previous[k] = force[k]
-                force[k] = start[k]
-                held[k] = start[k]
+                force[k] = add_beside(contacts, k, start[k]) if beside else start[k]
+                held[k] = force[k]
         part = divide(moved, flags, force, limit, contacts.sticks.division)
         if sliding:
             part = divide(contacts.compliance, flags, held, limit, contacts.sticks.division)
@@ -101,9 +102,45 @@ def carry(dyn, scratch, contacts, lam):
             for k in range(count):
                 if flags[k] != 0:
                     lam[r] += contacts.sticks.borne[k, r] * (force[k] - start[k])
+        if beside:
+            add_beside_lam(contacts, lam)
         for k in range(count):
             if flags[k] != 0:
                 lam[contacts.place[k, ROW]] = -force[k]
         if change <= AGREED * largest:
             break
     return part
+
+
+@apart
+def carry(dyn, scratch, contacts, v, lam, asked):
+    """Divide the friction in the multipliers lam (m,) among the joints at rest, at the pose of scratch.ws.
+
+    Returns the part s of their limits that they need, if it is ``asked`` for under the friction of joints that slide at
+    velocities v (3 nb,).
+    """
+    count = contacts.place.shape[0]
+    flags = contacts.chosen[RESTING]
+    start = contacts.sticks.vector[UNSHARED]
+    before = contacts.sticks.lam[0]
+    held = contacts.sticks.together.held
+    for k in range(count):
+        flags[k] = 1 if contacts.place[k, KIND] == WAY and contacts.number[k, CLOSED] > 0.0 else 0
+        start[k] = -lam[contacts.place[k, ROW]]
+    answer_resting(dyn, scratch, contacts, flags)
+    hold_rows(dyn, contacts)
+    sliding = _find_moved(dyn, contacts, flags)
+    for r in range(lam.shape[0]):
+        before[r] = lam[r]
+    part = _agree(dyn, scratch, contacts, sliding, False, lam)
+    if not asked or not press_beside(dyn, scratch, contacts, v, before, True):
+        return part
+    for k in range(count):
+        held[k] = 1 if flags[k] != 0 and contacts.number[k, HELD] > 0.0 else 0
+        if held[k] != 0:
+            note_beside(dyn, scratch, contacts, k, contacts.place[k, ROW])
+    find_changes(contacts, contacts.compliance, held, count)
+    other = contacts.sticks.lam[1]
+    for r in range(lam.shape[0]):
+        other[r] = lam[r]
+    return _agree(dyn, scratch, contacts, sliding, True, other)

@@ -20,10 +20,18 @@ from mbsd.dynamics.many.contacts.arrays import (
     ROW,
     SIGN,
     STATIC,
+    UNSHARED,
     WAY,
 )
 from mbsd.dynamics.many.contacts.rows import gaps_of, hold_rows, release_rows
 from mbsd.dynamics.many.contacts.sticking.answers import factor, find_answers
+from mbsd.dynamics.many.contacts.sticking.beside import (
+    add_beside,
+    add_beside_lam,
+    find_changes,
+    note_beside,
+    press_beside,
+)
 from mbsd.dynamics.many.contacts.sticking.sharing import limit_of
 from mbsd.equations.joint_friction import normal_forces
 
@@ -89,12 +97,12 @@ def _pushes(contacts, k):
 
 @internal
 def _fill(contacts, lam, n):
-    """Fill compliance, number[RAW] and held of the n rows that are listed."""
+    """Fill compliance, sticks.vector[UNSHARED] and held of the n rows that are listed."""
     work = contacts.sticks.together
     for i in range(n):
         k = work.row[i]
         work.held[i] = 1 if contacts.number[k, HELD] > 0.0 else 0
-        work.number[RAW, i] = -lam[contacts.place[k, ROW]] if work.held[i] != 0 else 0.0
+        contacts.sticks.vector[UNSHARED, i] = -lam[contacts.place[k, ROW]] if work.held[i] != 0 else 0.0
         way, part = _pushes(contacts, k)
         for j in range(n):
             value = contacts.compliance[work.row[j], k]
@@ -104,15 +112,20 @@ def _fill(contacts, lam, n):
 
 
 @internal
-def _put(contacts, lam, before, n):
-    """Fill lam (m,) with what multipliers ``before`` (m,) become under number[FORCE] of the n rows."""
+def _put(contacts, lam, before, n, beside):
+    """Fill lam (m,) with what multipliers ``before`` (m,) become under number[FORCE] of the n rows.
+
+    ``beside``: and under the friction of joints that slide.
+    """
     work = contacts.sticks.together
     borne = contacts.sticks.borne
     for r in range(lam.shape[0]):
         lam[r] = before[r]
+    if beside:
+        add_beside_lam(contacts, lam)
     for i in range(n):
         way, part = _pushes(contacts, work.row[i])
-        change = work.number[FORCE, i] - work.number[RAW, i]
+        change = work.number[FORCE, i] - contacts.sticks.vector[UNSHARED, i]
         for r in range(lam.shape[0]):
             lam[r] += borne[work.row[i], r] * change
             if way >= 0:
@@ -124,25 +137,21 @@ def _put(contacts, lam, before, n):
             lam[contacts.place[way, ROW]] = part * work.number[FORCE, i]
 
 
-@apart
-def carry_together(dyn, scratch, contacts, lam):
-    """Divide the multipliers lam (m,) among all that is at rest, at the pose of scratch.ws.
+@internal
+def _agree(dyn, scratch, contacts, c, k, beside, lam):
+    """Divide again until limits agree, under the friction ``beside`` of joints that slide; returns s.
 
-    Returns the part s of their limits that they need, PULLED where contacts would have to pull.
+    lam (m,) begins with what presses joints at first.
     """
-    flags = contacts.chosen[RESTING]
     work = contacts.sticks.together
     normal = contacts.sticks.normal[FOUND]
     before = contacts.sticks.lam[0]
-    _begin(dyn, scratch, contacts, flags)
-    c, k = list_rows(contacts, flags, STATIC)
-    hold_rows(dyn, contacts)
-    _fill(contacts, lam, c + k)
-    for r in range(lam.shape[0]):
-        before[r] = lam[r]
     part = 1.0
     for _ in range(PASSES):
         normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, normal)
+        for i in range(c + k):
+            raw = contacts.sticks.vector[UNSHARED, i]
+            work.number[RAW, i] = add_beside(contacts, i, raw) if beside else raw
         for i in range(c, c + k):
             row = work.row[i]
             if contacts.place[row, KIND] == WAY:
@@ -153,10 +162,39 @@ def carry_together(dyn, scratch, contacts, lam):
         for i in range(c + k):
             change = max(change, abs(work.number[FORCE, i] + lam[contacts.place[work.row[i], ROW]]))
             largest = max(largest, abs(work.number[FORCE, i]))
-        _put(contacts, lam, before, c + k)
+        _put(contacts, lam, before, c + k, beside)
         if part == PULLED or change <= AGREED_TOGETHER * largest:
             break
     return part
+
+
+@apart
+def carry_together(dyn, scratch, contacts, v, lam, asked):
+    """Divide the multipliers lam (m,) among all that is at rest, at the pose of scratch.ws.
+
+    Returns the part s of their limits that they need, PULLED where contacts would have to pull; if it is ``asked`` for,
+    under the friction of joints that slide at velocities v (3 nb,).
+    """
+    flags = contacts.chosen[RESTING]
+    work = contacts.sticks.together
+    before = contacts.sticks.lam[0]
+    _begin(dyn, scratch, contacts, flags)
+    c, k = list_rows(contacts, flags, STATIC)
+    hold_rows(dyn, contacts)
+    _fill(contacts, lam, c + k)
+    for r in range(lam.shape[0]):
+        before[r] = lam[r]
+    part = _agree(dyn, scratch, contacts, c, k, False, lam)
+    if not asked or not press_beside(dyn, scratch, contacts, v, before, False):
+        return part
+    for i in range(c + k):
+        if work.held[i] != 0:
+            note_beside(dyn, scratch, contacts, i, contacts.place[work.row[i], ROW])
+    find_changes(contacts, work.compliance, work.held, c + k)
+    other = contacts.sticks.lam[1]
+    for r in range(lam.shape[0]):
+        other[r] = lam[r]
+    return _agree(dyn, scratch, contacts, c, k, True, other)
 
 
 @internal

@@ -24,6 +24,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     VALUE,
     WAY,
 )
+from mbsd.dynamics.many.contacts.friction.resting import holds
 from mbsd.dynamics.many.contacts.rows import along, gaps_of
 from mbsd.dynamics.many.contacts.sticking.sharing import carry, limit_of
 from mbsd.dynamics.many.contacts.sticking.together import carry_together
@@ -35,11 +36,11 @@ ROUNDING = 1e-10
 
 
 @internal
-def _share(dyn, scratch, contacts, lam):
-    """Divide lam (m,) at the pose of scratch.ws; returns s."""
+def _share(dyn, scratch, contacts, v, lam, asked):
+    """Divide lam (m,) at the pose of scratch.ws; returns s, if it is ``asked`` for at velocities v (3 nb,)."""
     if contacts.clock[SHARING] == TOGETHER:
-        return carry_together(dyn, scratch, contacts, lam)
-    return carry(dyn, scratch, contacts, lam)
+        return carry_together(dyn, scratch, contacts, v, lam, asked)
+    return carry(dyn, scratch, contacts, v, lam, asked)
 
 
 @lazy(None)
@@ -56,7 +57,7 @@ def read_ways(dyn, scratch, contacts, y, forces):
         if contacts.place[k, KIND] != WAY:
             continue
         row = contacts.place[k, ROW]
-        if contacts.number[k, RELEASED] != 0.0:
+        if contacts.number[k, RELEASED] != 0.0 or not holds(dyn, contacts, k):
             contacts.vector[VALUE, k] = contacts.clock[LOAD]
             continue
         if contacts.number[k, CLOSED] == 0.0:
@@ -69,7 +70,7 @@ def read_ways(dyn, scratch, contacts, y, forces):
         if resting < 0:
             resting = k
     if forces and sharing != APART:
-        part = _share(dyn, scratch, contacts, contacts.lam)
+        part = _share(dyn, scratch, contacts, y[1], contacts.lam, True)
         for k in range(contacts.place.shape[0]):
             if resting < 0 and contacts.place[k, KIND] == SLIDE and contacts.number[k, CLOSED] > 0.0:
                 resting = k
@@ -85,4 +86,4 @@ def share_outputs(dyn, scratch, contacts, out, first, end):
     """Divide the friction of joints at rest in outputs ``first`` to ``end`` (left out)."""
     for k in range(first, end):
         measure(dyn, scratch, out.t[k], out.y[k, 0])
-        _share(dyn, scratch, contacts, out.lam[k])
+        _share(dyn, scratch, contacts, out.y[k, 1], out.lam[k], False)

@@ -11,6 +11,9 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism
+from mbsd.dynamics.many.contacts import made
+from mbsd.dynamics.many.simulate_many import asked_for
+from mbsd.dynamics.many.single_run import single_run
 from mbsd.measures import final, largest, samples, smallest
 from tests.dynamics.many_models import barrier
 
@@ -167,3 +170,35 @@ def test_friction_of_contacts_is_met_as_by_single_simulations() -> None:
         assert any(event.what == "impact" for event in sol.events)
         np.testing.assert_allclose(many["x"][k], sol.body("ball").x[-1], atol=2e-9)
         np.testing.assert_allclose(many["spin"][k], sol.body("ball").omega[-1], atol=1e-7)
+
+
+def test_steps_of_pins_without_contacts_have_the_digits_of_all_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    def measured() -> Any:
+        many = barrier(stops=True).simulate_many(
+            0.6,
+            vary={"spring": {"damping": [0.1, 0.3, 0.8]}},
+            measure={"angle": final("rocker.theta"), "force": largest("D.fy"), "back": smallest("rocker.omega")},
+            steps=60,
+            threads=1,
+        )
+        assert many.alone == [None] * 3
+        return [many[name].tolist() for name in ("angle", "force", "force_time", "back")]
+
+    by_pins = measured()
+    monkeypatch.setattr(made, "PINS", 1000)
+    assert measured() == by_pins
+
+
+def test_only_pins_that_are_all_rows_go_their_own_way() -> None:
+    def pins(m: Mechanism) -> int:
+        return len(contacts_of_run(m).schur.pins)
+
+    def contacts_of_run(m: Mechanism) -> Any:
+        asked = asked_for(m, 0.5, 10, None, "dop853", 1e-7, None, "auto", {})
+        return single_run(m, asked).arguments[4]
+
+    assert pins(barrier(stops=True)) == 4
+    assert pins(ball()) == pins(bumpers()) == 0
+    dry = barrier(stops=True)
+    dry.friction("dry", "D", coefficient=0.1, radius=0.01)
+    assert pins(dry) == 0

@@ -91,7 +91,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     loads = pack_loads(packed)
     passes = max(apart, REFINEMENTS if light[3:].any() else 1)
     if not (spare or len(loads.friction) or passes > 1 or m.events):
-        schur = with_pins(schur, packed.system)
+        schur = with_pins(schur, packed.system, len(packed.system.row_body))
     sliding = sliding_for(friction_rows(packed), len(inertia), len(packed.ws.phi))
     held = Held.of(schur, packed.ws, sliding, loads)
     switches = Switches(packed, held, spare)

@@ -19,13 +19,16 @@ from mbsd.dynamics.reference.schur import INDEX, Schur, eliminate, solve_schur
 from mbsd.equations.system import System
 
 MANY = 16
-"""Pins from which on it pays to hand arrays over."""
+"""Pins from which on it pays in single simulations to compile these kernels beside the others."""
 
 
-def with_pins(schur: Schur, system: System) -> Schur:
-    """The sequence with the markers of its pins, if all rows of J are those of many pins, and none is left out."""
+def with_pins(schur: Schur, system: System, rows: int, least: int = MANY) -> Schur:
+    """The sequence with the markers of its pins, if the first ``rows`` of J are those of ``least`` pins or more.
+
+    They must be all rows in the sequence, and none of them left out.
+    """
     (first, second), count = schur.rows.T, len(schur.rows)
-    if count < MANY or len(system.point) != count or len(system.row_body) != 2 * count or (second != first + 1).any():
+    if count < least or len(system.point) != count or rows != 2 * count or (second != first + 1).any():
         return schur
     pin = np.empty(2 * count, np.int64)
     pin[system.point[:, 2]] = np.arange(count)

@@ -75,6 +75,12 @@ def schur_factors(sequence: Schur) -> SchurFactors:
 
 
 @inlined
+def padded(schur, k):
+    """Whether a block has no row, like that of an open contact: nothing of S meets it."""
+    return schur.rows[k, 0] < 0 and schur.rows[k, 1] < 0
+
+
+@inlined
 def eliminate(schur, fac):
     """Factor S, which stands in fac.value and its diagonal in fac.low; returns as factor_schur."""
     value = fac.value
@@ -82,6 +88,10 @@ def eliminate(schur, fac):
     count = schur.rows.shape[0]
     margin = 1.0
     for k in range(count):
+        if padded(schur, k):
+            low[k, 1] = 1.0
+            low[k, 2] = 1.0
+            continue
         cross = 0.5 * (value[k, 1] + value[k, 2])
         det = value[k, 0] * value[k, 3] - cross * cross
         low[k, 1] = value[k, 0] / low[k, 0]
@@ -166,6 +176,8 @@ def solve_schur(schur, fac, sides):
     y = fac.side
     count = schur.rows.shape[0]
     for k in range(count):
+        if padded(schur, k):
+            continue
         for e in range(schur.first_lower[k], schur.first_lower[k + 1]):
             s = schur.lower[e, 0]
             i = schur.lower[e, 1]
@@ -173,6 +185,8 @@ def solve_schur(schur, fac, sides):
                 y[i, 0, n] -= low[s, 0] * y[k, 0, n] + low[s, 1] * y[k, 1, n]
                 y[i, 1, n] -= low[s, 2] * y[k, 0, n] + low[s, 3] * y[k, 1, n]
     for k in range(count - 1, -1, -1):
+        if padded(schur, k):
+            continue
         for n in range(sides):
             first = y[k, 0, n]
             second = y[k, 1, n]

@@ -38,6 +38,7 @@ from mbsd.dynamics.many.events.made import events_of
 from mbsd.dynamics.many.repeated.made import repeated_of
 from mbsd.dynamics.prepare.following import SHORTEST
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.reference.pins import with_pins
 from mbsd.dynamics.reference.schur import Schur
 from mbsd.dynamics.reference.sequence import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
@@ -51,6 +52,8 @@ from mbsd.model.teeth import with_radii
 
 MOST = 40
 """Contacts of which all meet all others in small full matrices."""
+PINS = 2
+"""Pins from which on steps without contacts go their own way (reference/pins.py): a third less an evaluation."""
 
 
 def why_not(ready: PreparedDynamics, events: Sequence[Event]) -> str | None:
@@ -72,7 +75,7 @@ def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], 
     c, n3, rows = len(own), state.y.shape[1], len(state.lam)
     pushing = c + 2 * len(_rough(ready)) + 2 * len(ready.sticks)
 
-    bare = _without(ready)
+    bare = _without(ready, events)
 
     def another() -> State:
         return State(*(np.zeros_like(part) for part in state))
@@ -200,7 +203,7 @@ def _curves_of(ready: PreparedDynamics) -> Curves:
     return Curves(np.array(place, np.int64).reshape(-1, 4), numbers, np.zeros(len(place)))
 
 
-def _without(ready: PreparedDynamics) -> tuple[Schur, np.ndarray]:
+def _without(ready: PreparedDynamics, events: Sequence[Event]) -> tuple[Schur, np.ndarray]:
     """What steps need while all contacts are open."""
     packed, schur, special = ready.packed, ready.dynamics.schur, ready.packed.system.special
     if not ready.switches.contacts and not ready.sticks:
@@ -211,4 +214,8 @@ def _without(ready: PreparedDynamics) -> tuple[Schur, np.ndarray]:
         return schur, first  # rows that stand in for others are planned in it
     blocks = schur.rows[(schur.rows >= 0).any(axis=1)]
     kept = blocks[np.argsort(blocks.max(axis=1))]
-    return plan_schur(packed.system.row_body, np.ascontiguousarray(kept, np.int64))[0], first
+    bare = plan_schur(packed.system.row_body, np.ascontiguousarray(kept, np.int64))[0]
+    dry, releasing = len(ready.dynamics.loads.friction) > 0, any(event.releases for event in events)
+    if not (dry or releasing or len(first) or ready.dynamics.passes > 1):
+        bare = with_pins(bare, packed.system, packed.contact_rows, PINS)
+    return bare, first

@@ -17,8 +17,10 @@ def gives(contacts, k):
 
 @internal
 def holds(dyn, contacts, k):
-    """Whether friction can hold way k; that of a joint with a coefficient of zero cannot."""
+    """Whether friction can hold way k; that of a released joint, or of one with a coefficient of zero, cannot."""
     at = contacts.place[k, FRICTION]
+    if contacts.number[k, RELEASED] != 0.0:
+        return False
     return at < 0 or dyn.loads.friction_number[at, STATIC] > 0.0
 
 
@@ -39,7 +41,7 @@ def _more_rest(dyn, contacts, gaps, halted):
         w = k - gaps
         if resting[k] != 0 or (w < friction.gap.shape[0] and contacts.chosen[STAYING, friction.gap[w]] == 0):
             continue
-        if contacts.number[k, RELEASED] != 0.0 or not holds(dyn, contacts, k):
+        if not holds(dyn, contacts, k):
             continue
         slow = abs(contacts.vector[RATE, k]) <= contacts.number[k, REST]
         if gives(contacts, k) and (slow or _halts(contacts, k, gaps, halted)):

@@ -15,7 +15,6 @@ from mbsd.dynamics.many.contacts.arrays import (
     FRICTION,
     KIND,
     LOAD,
-    RELEASED,
     ROW,
     SHARING,
     SIGN,
@@ -57,7 +56,7 @@ def read_ways(dyn, scratch, contacts, y, forces):
         if contacts.place[k, KIND] != WAY:
             continue
         row = contacts.place[k, ROW]
-        if contacts.number[k, RELEASED] != 0.0 or not holds(dyn, contacts, k):
+        if not holds(dyn, contacts, k):
             contacts.vector[VALUE, k] = contacts.clock[LOAD]
             continue
         if contacts.number[k, CLOSED] == 0.0:

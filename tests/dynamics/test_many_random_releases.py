@@ -24,13 +24,14 @@ def clock(m: Mechanism) -> None:
     m.start_near(clock=(3.0, 3.0, 0.0))
 
 
-def released(m: Mechanism, draw: st.DrawFn, joints: list[str], bodies: list[str]) -> None:
-    """Some events, each of which releases some joints: at a time, at an angle or at a speed; two may do so at once."""
+def released(m: Mechanism, draw: st.DrawFn, joints: list[str], bodies: list[str], turning: bool = True) -> None:
+    """Some events that release joints: at a time or, of bodies that are ``turning``, at an angle or a speed."""
     clock(m)
     last = draw(between(0.0, 0.6))
     for k in range(draw(st.integers(1, 3))):
         let_go = draw(st.lists(st.sampled_from(joints), min_size=1, max_size=2, unique=True))
-        body, what = m.bodies[draw(st.sampled_from(bodies))], draw(st.sampled_from(["time", "same", "angle", "speed"]))
+        body = m.bodies[draw(st.sampled_from(bodies))]
+        what = draw(st.sampled_from(["time", "same", "angle", "speed"] if turning else ["time", "same"]))
         if what == "time":
             last = draw(st.sampled_from([1e-6, 0.05]) | between(0.0, 0.6))
         value = angle_reaches(m.bodies["clock"], last)
@@ -77,7 +78,7 @@ def sledges(draw: st.DrawFn) -> tuple[Mechanism, str]:
         m.force(f"pull{k}", body.origin, harmonic(draw(between(2.0, 12.0)), draw(between(1.0, 4.0))))
         below, starts[body.name] = body, (0, 0, 0)
     m.start_near(**starts)
-    released(m, draw, [f"on{k}" for k in range(len(starts))], list(starts))
+    released(m, draw, [f"on{k}" for k in range(len(starts))], list(starts), turning=False)
     return m, below.name
 
 

@@ -7,11 +7,14 @@ import math
 import numba
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from mbsd import Mechanism
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics.many import loop
-from mbsd.measures import Measure, first, integral, samples
+from mbsd.dynamics.many.early import MOST_PASSED
+from mbsd.measures import Measure, final, first, integral, samples
 from tests.dynamics.many_models import barrier, door, pendulum
 
 DURATION, STEPS = 4.0, 300
@@ -50,6 +53,53 @@ def test_the_numbers_are_those_of_whole_simulations(name: str, formulation: str)
     for column, values in short.columns.items():
         np.testing.assert_array_equal(values, whole[column], err_msg=column)
     assert np.isnan(short["never"]).any() if "never" in measures else short.good.all()
+
+
+LEVELS = st.floats(-0.5, 2.0).map(lambda level: round(level, 3))
+TIMES = st.lists(st.integers(0, STEPS).map(lambda k: DURATION * k / STEPS), min_size=1, max_size=3)
+
+
+@st.composite
+def measures_of(draw: st.DrawFn, body: str) -> dict[str, Measure]:
+    """Some that end a simulation, and some that read a few outputs."""
+    out: dict[str, Measure] = {}
+    for k in range(draw(st.integers(1, 3))):
+        quantity, way = f"{body}.{draw(st.sampled_from(['theta', 'omega']))}", draw(st.sampled_from(["below", "above"]))
+        given = draw(st.sampled_from([None, f"{body}.x", f"{body}.omega"]))
+        out[f"first {k}"] = first(quantity, **{way: draw(LEVELS)}, give=given)
+    if draw(st.booleans()):
+        out["some"] = samples(f"{body}.theta", draw(TIMES))
+    if draw(st.booleans()):
+        out["last"] = final(f"{body}.omega")
+    return out
+
+
+@pytest.mark.parametrize(("name", "body"), [("door", "door"), ("pendulum", "b"), ("barrier", "crank")])
+@settings(max_examples=12)
+@given(data=st.data())
+def test_angles_and_rates_that_pass_thresholds_anywhere(name: str, body: str, data: st.DataObject) -> None:
+    m, vary, _ = MACHINES[name]
+    measures = data.draw(measures_of(body))
+    whole, short = _many(m, vary, {**measures, **WHOLE}), _many(m, vary, measures)
+    for column, values in short.columns.items():
+        np.testing.assert_array_equal(values, whole[column], err_msg=column)
+
+
+def test_more_thresholds_than_the_loop_compares_are_looked_at_in_windows() -> None:
+    m, vary, _ = MACHINES["door"]
+    measures = {f"{k}": first("door.theta", below=1.5 - 0.03 * k) for k in range(MOST_PASSED + 3)}
+    whole, short = _many(m, vary, {**measures, **WHOLE}), _many(m, vary, measures)
+    for column, values in short.columns.items():
+        np.testing.assert_array_equal(values, whole[column], err_msg=column)
+
+
+def test_an_angle_needs_no_full_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps = _steps(monkeypatch)
+    vary = {"closer": {"stiffness": [30.0, 30.0]}}
+    _many(door(), vary, {"moves": first("door.theta", below=math.pi / 2 - 1e-3)})
+    compared = steps()
+    _many(door(), vary, {"moves": first("door.x", above=-1.0)})  # known at the start
+    assert (compared < steps()).all()
 
 
 def test_rows_end_where_all_is_known(monkeypatch: pytest.MonkeyPatch) -> None:

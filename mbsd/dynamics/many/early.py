@@ -1,6 +1,7 @@
 """Which outputs are made: rows end where all their measures are known, and what nobody reads is left out.
 
-Outputs are looked at window by window. What a measure says of a window is what it says of all outputs up to its end, if
+Where what decides is an angle or its rate, the loop itself compares every output with what it is to pass. All else is
+looked at window by window. What a measure says of a window is what it says of all outputs up to its end, if
 it knew nothing of those before: each window begins with the last output of the one before, as straight lines between
 outputs do. Behind the last that needs all outputs a row goes on to its end with the few that the others read.
 """
@@ -8,7 +9,7 @@ outputs do. Behind the last that needs all outputs a row goes on to its end with
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,8 +22,21 @@ MOST, LEAST = 10, 24
 """Windows, and outputs of a window: looking costs as much as some steps of a row."""
 MOSTLY = 4
 """Where more than one part in so many of all rows is underway, all are looked at."""
-STEPS = 4
+MOST_PASSED = 32
+"""Thresholds that the loop compares, a bit each."""
+STEPS = 2
 """Steps between two looks at how far a row came."""
+
+
+@dataclass(frozen=True)
+class Passed:
+    """A threshold of an angle or of an angular velocity."""
+
+    body: str
+    part: int
+    """0: angle (rad), 1: angular velocity (rad/s)."""
+    value: float
+    below: bool
 
 
 @dataclass(frozen=True)
@@ -33,6 +47,10 @@ class Plan:
     """Numbers of outputs at which rows are looked at, the last of them that of all; none where few are made at once."""
     few: np.ndarray | None = None
     """Rows of the output times that are made behind the windows, the first and the last among them; None: rows end."""
+    passed: tuple[Passed, ...] = ()
+    """What all decides, if the loop can compare it itself: there are no windows then."""
+    least: int = 0
+    """Outputs that a row has at least, then."""
 
 
 def all_outputs(times: int) -> Plan:
@@ -49,10 +67,24 @@ def plan_of(t: np.ndarray, measures: Mapping[str, Measure], quantities: Mapping[
         return all_outputs(times)
     size = max(LEAST, math.ceil(times / MOST))
     windows = [*range(size, times, size), times]
+    passed = _passed([measure for measure in every if not measure.reads_few], quantities)
     if all(measure.ends for measure in every):
-        return Plan(windows)
+        read = [measure.needed(t).max() for measure in every if measure.reads_few]
+        return Plan([times], None, passed, 1 + max(read, default=-1)) if passed else Plan(windows)
     few = np.unique(np.concatenate([[0, times - 1], *(m.needed(t) for m in every if m.reads_few)]))
-    return Plan([] if all(measure.reads_few for measure in every) else windows, few.astype(np.int64))
+    alone = all(measure.reads_few for measure in every)
+    return Plan([] if alone else [times] if passed else windows, few.astype(np.int64), passed)
+
+
+def _passed(measures: Sequence[Measure], quantities: Mapping[str, Quantity]) -> tuple[Passed, ...]:
+    """What these are to pass; nothing if there are too many, or any is none that the loop can compare."""
+    out = []
+    for measure in measures:
+        threshold, turn = measure.threshold, quantities[measure.quantity].turn
+        if threshold is None or turn is None:
+            return ()
+        out.append(Passed(*turn, *threshold))
+    return tuple(out) if len(out) <= MOST_PASSED else ()
 
 
 class Known:

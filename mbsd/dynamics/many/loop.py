@@ -12,12 +12,14 @@ from mbsd.dynamics.many.base import Base
 from mbsd.dynamics.many.early import STEPS, Known, all_outputs, window
 from mbsd.dynamics.many.methods import number_of
 from mbsd.dynamics.many.outputs import MotionsOf, Outputs, room_for
-from mbsd.dynamics.many.rows import UNDERWAY, WAITING, run_rows
+from mbsd.dynamics.many.rows import KNOWN, UNDERWAY, WAITING, run_rows
 from mbsd.dynamics.many.work import Work
 from mbsd.dynamics.state import NEXT, REACHED
 
 MOST_STEPS = 200_000
 """Steps after which a simulation is left to ``simulate``, which knows what to say of it."""
+NOTHING = np.zeros((0, 4))
+"""No threshold."""
 LATER = -7
 """Status of rows that wait to be gone on with when the windows have passed."""
 
@@ -32,6 +34,17 @@ class Loop:
         run, times = base.run, work.asked.times
         thin = work.plan.few is not None and run.outputs_alone
         self.plan = work.plan if thin or work.plan.few is None else all_outputs(len(times))
+        self.passed = np.array(
+            [
+                (
+                    threshold.part,
+                    3 * run.ready.packed.body_names.index(threshold.body) + 2,
+                    threshold.value,
+                    threshold.below,
+                )
+                for threshold in self.plan.passed
+            ]
+        ).reshape(-1, 4)
         forces = run.outputs_count or any(quantity.forces for quantity in work.quantities.values())
         self._shape = len(run.ready.initial.q), len(run.ready.packed.ws.phi), forces, len(run.events)
 
@@ -46,13 +59,20 @@ class Loop:
         alone = plan.few is not None and not plan.windows
         out = self._outputs(max(len(fresh), len(value)), times[plan.few] if alone else times)
         count, whole = len(out.status), len(out.t)
-        early, written = alone or len(plan.windows) > 1, np.full(count, whole)
+        early, written = alone or bool(plan.passed) or len(plan.windows) > 1, np.full(count, whole)
         kept = np.zeros((count if early and not alone else 0, len(self.base.block) + 1))
         counts = np.zeros((len(kept), len(self.base.run.state.count)), np.int64)
         if alone:
             self._run(numbers, out, whole, kept, counts)
             return out, written
         measures = self.work.measures if isinstance(self.work.measures, Mapping) else {}
+        if plan.passed:
+            self._run(numbers, out, whole, kept, counts, self.passed)
+            done = np.flatnonzero(out.status == KNOWN)
+            out.status[done], written[done] = REACHED if plan.few is None else LATER, counts[done, NEXT]
+            if plan.few is not None:
+                self._go_on(numbers, out, plan.few, written, kept, counts)
+            return out, written
         known = Known(measures, self.work.quantities, count, plan.few is not None)
         for begin, upto in zip([0, *plan.windows], plan.windows, strict=False):
             self._run(numbers, out, upto, kept, counts)
@@ -84,16 +104,18 @@ class Loop:
         upto: int,
         kept: np.ndarray,
         counts: np.ndarray,
+        passed: np.ndarray = NOTHING,
     ) -> None:
         """Go on to so many outputs."""
         base, run, stops = self.base, self.base.run, self.base.run.ready.stops
         at_once = run.steps_at_once
         # where a jump is passed decides how far a run goes back: steps are counted as those of a single simulation
-        if upto < len(out.t) and not len(run.genevas.body):
+        if (upto < len(out.t) or len(passed)) and not len(run.genevas.body):
             at_once = min(at_once, STEPS)
         self._run_rows(
             *base.arguments, number_of(self.work.asked.integrator), base.block, *numbers, out.t, stops.before,
-            stops.after, at_once, MOST_STEPS, run.near, self.work.stop, upto, kept, counts, *out.arrays,
+            stops.after, at_once, MOST_STEPS, run.near, self.work.stop, upto, passed, self.plan.least, kept,
+            counts, *out.arrays,
         )  # fmt: skip
 
     def _go_on(

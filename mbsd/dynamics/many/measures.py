@@ -55,6 +55,11 @@ class Measure:
         """Whether it reads the outputs that are ``needed`` alone, which are few, whatever the others are."""
         return False
 
+    @property
+    def threshold(self) -> tuple[float, bool] | None:
+        """What its quantity is to pass, and whether it is to be below; None where more decides what is known."""
+        return None
+
     def known(self, t: np.ndarray, along: Mapping[str, np.ndarray]) -> np.ndarray:
         """(n,) whether the outputs so far tell it, of which these are the last; see early.py."""
         return np.zeros(len(along[self.quantity]), bool)
@@ -117,6 +122,10 @@ class _First(Measure):
     @property
     def ends(self) -> bool:
         return True
+
+    @property
+    def threshold(self) -> tuple[float, bool] | None:
+        return self.level, self.below
 
     def known(self, t: np.ndarray, along: Mapping[str, np.ndarray]) -> np.ndarray:
         return self._there(along).any(axis=1)

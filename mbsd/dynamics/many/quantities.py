@@ -23,6 +23,7 @@ from mbsd.results.moved_frame import moved_frame
 from mbsd.results.solution import Solution
 
 ACCELERATIONS = ("ax", "ay", "alpha")
+TURNS = ("theta", "omega")
 WRENCH = ("fx", "fy", "torque")
 """Components of the reaction of a joint that are found of many at once."""
 
@@ -118,6 +119,8 @@ class Quantity:
     """Whether it comes from multipliers."""
     joint: int | None = None
     """Number of the joint whose reaction it is, if so."""
+    turn: tuple[str, int] | None = None
+    """Body whose angle (0) or angular velocity (1) it is, if so: a number of the state itself."""
 
     @property
     def forces(self) -> bool:
@@ -145,6 +148,7 @@ def quantity_named(m: Model, name: str, columns: list[str]) -> Quantity:
             name,
             lambda sol: getattr(sol.body(whole), component),
             lambda motions: motions.of_frame(whole, "body", component),
+            turn=(whole, TURNS.index(component)) if component in TURNS else None,
         )
     if traced and (bare != whole or whole not in {*m.joints, *m.drivers, *m.forces}):
         return Quantity(

@@ -18,8 +18,8 @@ from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, TIME, Output
 
 STOPPED, NEARLY_SINGULAR = -1, -3
 """Status of rows that were not computed because all was stopped, and of those that came near a singular pose."""
-WAITING, UNDERWAY = -5, -6
-"""Status of rows that have not begun, and of those that wait to be gone on with."""
+WAITING, UNDERWAY, KNOWN = -5, -6, -12
+"""Status of rows that have not begun, of those that wait to be gone on with, and of those of which all is known."""
 
 LOOKED_AT = 4000
 """Steps between two looks at the pace."""
@@ -45,10 +45,23 @@ def take_up(state, block, kept, counts):
     return kept[block.shape[0]]
 
 
+@internal
+def still_open(passed, y, since, count, unmet):
+    """Bits of thresholds ``passed`` (k, 4) that outputs ``since`` to ``count`` (left out) of y leave unmet."""
+    for at in range(since, count):
+        if unmet == 0:
+            break
+        for k in range(passed.shape[0]):
+            value = y[at, int(passed[k, 0]), int(passed[k, 1])]
+            if (value < passed[k, 2]) if passed[k, 3] > 0.0 else (value > passed[k, 2]):
+                unmet &= ~(1 << k)
+    return unmet
+
+
 @threaded
 def run_rows(
     dyn, scratch, state, settings, contacts, genevas, method, block, fresh, place, value, t, before, after, at_once,
-    most, near, stop, upto, kept, counts, y, a, lam, work, margin, status, steps, over, released,
+    most, near, stop, upto, passed, least, kept, counts, y, a, lam, work, margin, status, steps, over, released,
 ):  # fmt: skip
     """Simulate R rows; outputs y (R, T, 2, 3 nb), a (R, T, 3 nb), lam, work and margin as those of Output by rows.
 
@@ -58,9 +71,11 @@ def run_rows(
     ``after``. ``at_once`` steps are taken between two looks at ``stop`` (1,), ``most`` altogether. Where ``near`` is
     above 0, a row ends where its margin falls below this part of the largest so far (runs/carried_steps.py). Rows whose
     status (R,) is WAITING begin, those UNDERWAY go on. With ``upto`` outputs, less than T, they are put away in
-    ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY. ``over`` (R,) is when (s) an event of the user ended a row,
-    infinite where none did; the outputs behind are then that moment. ``released`` (R, e) is when (s) each of them
-    released its joints, infinite where it did not.
+    ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY. Each row of ``passed`` (k, 4) is the part of the state, the
+    coordinate, a value and whether (1) outputs are to come below it, not above; where each was met by some output and
+    at least ``least`` of these are made, a row is put away in the same way and is KNOWN. ``over`` (R,) is when (s) an
+    event of the user ended a row, infinite where none did; the outputs behind are then that moment. ``released`` (R, e)
+    is when (s) each of them released its joints, infinite where it did not.
     """
     end = t[t.shape[0] - 1]
     whole = upto == t.shape[0]
@@ -89,6 +104,7 @@ def run_rows(
                 widest = scratch.report[0]
         since = state.clock[TIME]
         counted = state.count[ACCEPTED]
+        unmet = (1 << passed.shape[0]) - 1
         while ended == PAUSED and stop[0] == 0 and state.count[ACCEPTED] < most:
             gone = state.count[ACCEPTED] - counted
             if gone >= LOOKED_AT:  # at this pace it would take more than is allowed
@@ -120,13 +136,19 @@ def run_rows(
                 widest = max(widest, scratch.report[0])
                 if not scratch.report[0] > near * widest:
                     ended = NEARLY_SINGULAR
+            if passed.shape[0] > 0 and ended == PAUSED:
+                unmet = still_open(passed, out.y, written, state.count[NEXT], unmet)
+                if unmet == 0 and state.count[NEXT] >= least:
+                    ended = KNOWN
         if ended == OVER:
             ended = REACHED
             over[r] = state.clock[TIME]
         for e in range(released.shape[1]):
             released[r, e] = contacts.events.number[e, GONE]
         status[r] = STOPPED if stop[0] != 0 else ended
-        if not whole and status[r] == PAUSED and state.count[NEXT] >= upto:
+        if status[r] == KNOWN:
+            put_away(state, block, widest, kept[r], counts[r])
+        elif not whole and status[r] == PAUSED and state.count[NEXT] >= upto:
             put_away(state, block, widest, kept[r], counts[r])
             status[r] = UNDERWAY
         steps[r] = state.count[ACCEPTED]

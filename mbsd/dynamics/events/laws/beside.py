@@ -31,7 +31,7 @@ class Beside(NamedTuple):
 
 
 def beside(at: Compliance, v: np.ndarray, lam: np.ndarray) -> Beside | None:
-    """Of joints that slide at velocities v (3 nb,) with multipliers lam (m,); None where no friction acts on any."""
+    """What the friction of joints that slide at v (3 nb,) adds; lam (m,) of the motion. None where none acts on any."""
     loads = at.dynamics.loads
     count = len(loads.friction)
     if not count:

@@ -126,6 +126,7 @@ class EventSteps:
             turn += 1
             self.ready.stops.cross(state)
             self._make_valid()
+            self._leave_zero()
             before = copied(state)
             status = advance(self.run, state, self.out, end, 1)
             crossing = self._crossing(before) if state.clock[TIME] > before.clock[TIME] else None
@@ -145,6 +146,7 @@ class EventSteps:
                 if len(self.happenings) > known:  # a gap that only rounding closes is no event
                     self.rows += [before_it] if self.ended else [before_it, self._row()]
             else:
+                self._make_valid()
                 self._turn_side(monitor)
                 self._restart()
         return False
@@ -280,7 +282,10 @@ class EventSteps:
             advance(self.run, self.state, self.out, root)
 
     def _turn_side(self, monitor: Monitor) -> None:
-        self.now.events[monitor.name] = -(self.now.events[monitor.name] or 1.0)
+        """The side of an event that has just passed zero: none where its value stays there."""
+        assert monitor.event is not None
+        stays = self._side_ahead(monitor.event) == 0.0
+        self.now.events[monitor.name] = 0.0 if stays else -self.now.events[monitor.name]
 
     # -- jumps --------------------------------------------------------------------------------------------------
 
@@ -320,11 +325,21 @@ class EventSteps:
         self.monitors += stick_monitors(self.sticks, self._shares, next(resting, ""), self.still, load)
         for event in self.events:
             if self.now.events[event.name] == 0.0:
-                self.now.events[event.name] = side_ahead(
-                    self.packed, event, self.state, self.ready.end - self.ready.start
-                )
-            self.monitors.append(event_monitor(self.packed, event, self.now.events[event.name] or 1.0))
+                self.now.events[event.name] = self._side_ahead(event)
+            if self.now.events[event.name] != 0.0:
+                self.monitors.append(event_monitor(self.packed, event, self.now.events[event.name]))
         self.snapshots.append(self.snapshot())
+
+    def _side_ahead(self, event: Event) -> float:
+        return side_ahead(self.packed, event, self.state, self.ready.end - self.ready.start)
+
+    def _leave_zero(self) -> None:
+        """Monitor events whose value has stayed zero, which passes nothing by rounding, once they leave it."""
+        for event in self.events:
+            if self.now.events[event.name] == 0.0:
+                side = self.now.events[event.name] = self._side_ahead(event)
+                if side != 0.0:
+                    self.monitors.append(event_monitor(self.packed, event, side))
 
     def snapshot(self) -> Snapshot:
         """This moment, to go on from."""

@@ -6,6 +6,7 @@ import threading
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from copy import copy
 from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any
@@ -250,7 +251,8 @@ def _column_names(designs: Designs) -> list[str]:
     models, first = designs.row_by_row(), None
     for row in range(-1, min(designs.count, TRIED)):
         try:
-            own = models.of(row) if row >= 0 else designs.m
+            own = copy(models.of(row) if row >= 0 else designs.m)
+            own.events = {}  # none belongs to this instant
             return list(columns(simulate(own, 1e-9, 1, None, "dop853", 1e-6, None, None, {})))
         except MechanismError as error:
             first = first or error

@@ -147,6 +147,8 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
         own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
         cross(state, before, after)
         begin(own, scratch, state)
+        if contacts.events.table.shape[0] > 0:
+            find_sides(contacts.events, state)
         copy_state(contacts.before, state)
         status = advance_to(own, scratch, state, out, settings, contacts, end, 1, before, after)
         if status != REACHED and status != PAUSED:

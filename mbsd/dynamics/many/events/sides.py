@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart, lazy
+from mbsd.compiling.jit import apart, internal, lazy
 from mbsd.dynamics.events.bounds import AHEAD, BEYOND
 from mbsd.dynamics.many.events.arrays import SIDE
 from mbsd.dynamics.many.events.values import value_of
@@ -53,6 +53,13 @@ def _side_ahead(events, e, t, y, a):
     return 0.0
 
 
+@internal
+def turn_side(events, e, state):
+    """The side of an event that has just passed zero: none where its value stays there."""
+    stays = _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1]) == 0.0
+    events.number[e, SIDE] = 0.0 if stays else -events.number[e, SIDE]
+
+
 @lazy(None)
 def begin_sides(events, state):
     """On which side all events are at the start."""
@@ -62,7 +69,7 @@ def begin_sides(events, state):
 
 @lazy(None)
 def find_sides(events, state):
-    """To which side those go that are zero."""
+    """To which side those go that are zero; none of those that stay so."""
     for e in range(events.table.shape[0]):
         if events.number[e, SIDE] == 0.0:
             events.number[e, SIDE] = _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1])

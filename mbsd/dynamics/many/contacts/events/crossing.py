@@ -6,6 +6,7 @@ from mbsd.compiling.jit import apart, lazy
 from mbsd.dynamics.many.contacts.arrays import BEYOND, WHERE
 from mbsd.dynamics.many.contacts.events.resolution import look
 from mbsd.dynamics.many.contacts.roots import dips_before, root_between
+from mbsd.dynamics.many.events.arrays import SIDE
 from mbsd.dynamics.many.events.sides import rounding_of
 from mbsd.dynamics.state import TIME
 
@@ -37,7 +38,7 @@ def _met_of(dyn, scratch, settings, contacts, out, before, after, e, until):
 def first_event(dyn, scratch, settings, contacts, out, before, after, best):
     """The number of what is met first: ``best`` with WHERE and BEYOND of the clock, -1 for none, or an event."""
     for e in range(contacts.events.table.shape[0]):
-        if contacts.events.skipped[e] != 0:
+        if contacts.events.skipped[e] != 0 or contacts.events.number[e, SIDE] == 0.0:  # it has stayed zero
             continue
         until = 2.0 if best < 0 else contacts.clock[BEYOND]
         where, negative = _met_of(dyn, scratch, settings, contacts, out, before, after, e, until)

@@ -15,6 +15,7 @@ from mbsd.dynamics.many.events.arrays import (
     EVENT,
     SIDE,
 )
+from mbsd.dynamics.many.events.sides import turn_side
 from mbsd.dynamics.many.events.values import read_frames
 from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.state import TIME
@@ -29,7 +30,7 @@ def happen(dyn, scratch, contacts, state, e):
     events = contacts.events
     table = events.table
     side = -1 if events.number[e, SIDE] < 0.0 else 1
-    events.number[e, SIDE] = -side
+    turn_side(events, e, state)
     if table[e, DIRECTION] != 0 and table[e, DIRECTION] != -side:
         return PASSED
     if table[e, ENDS] != 0:

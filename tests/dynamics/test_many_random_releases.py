@@ -134,4 +134,4 @@ def test_random_machines_come_apart_as_by_themselves(machines) -> None:
         met.extend(assert_as_single_ones(*machine, 0.8, steps, tolerance))
 
     agree()
-    assert np.mean(met) > 0.5
+    assert np.mean(met) > 0.3

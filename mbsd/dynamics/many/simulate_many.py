@@ -253,11 +253,15 @@ def _column_names(designs: Designs) -> list[str]:
         try:
             own = copy(models.of(row) if row >= 0 else designs.m)
             own.events = {}  # none belongs to this instant
-            return list(columns(simulate(own, 1e-9, 1, None, "dop853", 1e-6, None, None, {})))
+            return list(columns(simulate(own, 1e-9, 1, None, "dop853", 1e-6, None, _unseen, {})))
         except MechanismError as error:
             first = first or error
     assert first is not None
     raise first
+
+
+def _unseen(part: float) -> None:
+    """The progress of an instant, which may compile for a while and would say how far it is."""
 
 
 def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mapping[str, Quantity]) -> str | None:

@@ -51,3 +51,13 @@ def raw_of(beside: Beside, directions: np.ndarray, compliance: np.ndarray, held:
     rows = np.flatnonzero(held)
     out[rows] = -np.linalg.solve(compliance[np.ix_(rows, rows)], directions[:, rows].T @ beside.a)
     return out
+
+
+def pressed_anew(
+    beside: Beside | None, change: np.ndarray | None, normal: np.ndarray, raw: np.ndarray, lam: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Forces ``raw`` (k,) and multipliers lam (m,) as normal forces (f,) change them; ``change`` is Y."""
+    if beside is None or change is None:
+        return raw, lam
+    more = normal - beside.start
+    return raw + change @ more, lam + beside.lam @ more

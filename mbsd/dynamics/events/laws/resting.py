@@ -24,7 +24,7 @@ import numpy as np
 
 from mbsd.arrays.friction_along import normals_along
 from mbsd.dynamics.events.bounds import AGREED, PASSES
-from mbsd.dynamics.events.laws.beside import Beside, beside, raw_of
+from mbsd.dynamics.events.laws.beside import Beside, beside, pressed_anew, raw_of
 from mbsd.dynamics.events.laws.complementarity import gives_way
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.sharing import share, share_any
@@ -68,10 +68,7 @@ def carried(
         for _ in range(PASSES):
             normal = normals_along(at.packed, at.dynamics.loads, at.q[None], at.compact[None], out[None])[0]
             limits = np.array([resting[k].limit(normal) for k in moved])
-            unshared, base = start, lam
-            if pressed is not None and change is not None:
-                more = normal - pressed.start
-                unshared, base = start + change @ more, lam + pressed.lam @ more
+            unshared, base = pressed_anew(pressed, change, normal, start, lam)
             shared = unshared.copy()
             if len(moved):
                 shared[moved], part = share(sharing, unshared[moved], limits)

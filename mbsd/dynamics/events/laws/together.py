@@ -14,7 +14,7 @@ import numpy as np
 
 from mbsd.arrays.friction_along import normals_along
 from mbsd.dynamics.events.bounds import AGREED_TOGETHER, PASSES
-from mbsd.dynamics.events.laws.beside import Beside, beside, raw_of
+from mbsd.dynamics.events.laws.beside import Beside, beside, pressed_anew, raw_of
 from mbsd.dynamics.events.laws.complementarity import alone
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.least_part import FORCE, OWN, PULLED, RAW, UNIT, least_part, together_of
@@ -69,10 +69,8 @@ def held_together(
         for _ in range(PASSES):
             normal = normals_along(at.packed, at.dynamics.loads, at.q[None], at.compact[None], out[None])[0]
             own = np.array([0.0] * len(rough) + [stick.limit(normal) for stick in resting])
-            before, unshared, base = force, raw, lam
-            if pressed is not None and change is not None:
-                more = normal - pressed.start
-                unshared, base = raw + change @ more, lam + pressed.lam @ more
+            before = force
+            unshared, base = pressed_anew(pressed, change, normal, raw, lam)
             force, part = divided(compliance, unshared, unit, pick, own, held)
             out = _multipliers(base + lam_of @ (force - raw), closed, rows, force)
             if part == PULLED or np.abs(force - before).max() <= AGREED_TOGETHER * np.abs(force).max(initial=0.0):

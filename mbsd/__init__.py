@@ -221,6 +221,15 @@ _LATER = {
 
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
-        raise AttributeError(f"module 'mbsd' has no attribute '{name}'")
+        from difflib import get_close_matches
+
+        meant = [] if name.startswith("_") else get_close_matches(name, __all__, n=1)
+        raise AttributeError(
+            f"module 'mbsd' has no attribute '{name}'" + "".join(f", did you mean '{m}'?" for m in meant)
+        )
     value = globals()[name] = getattr(importlib.import_module(_LATER[name]), name)
     return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

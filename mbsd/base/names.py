@@ -1,12 +1,18 @@
-"""Words for a name that is not known: what there is, and the name that was probably meant."""
+"""Errors for unknown names: they list the known names and suggest the one that was probably meant.
+
+:func:`no_such` words them, :class:`Named` raises them for a key, :class:`Suggesting` for an attribute.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
+from typing import Any, Generic, NoReturn, TypeVar
 
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
+
+Value = TypeVar("Value")
 
 LISTED = 30
 """Known names that a message lists."""
@@ -46,3 +52,44 @@ def _meant(name: object, names: list[str]) -> str | None:
         small.setdefault(known_name.lower(), known_name)
     near = get_close_matches(name.strip().lower(), small, n=1, cutoff=ALIKE)
     return small[near[0]] if near else None
+
+
+class UnknownNameError(ModelError, KeyError):
+    """No item of a :class:`Named` has this name."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])  # a KeyError shows the repr of its message
+
+
+class Named(dict[str, Value], Generic[Value]):
+    """A dictionary by name: ``d["crnk"]`` raises UnknownNameError with the names that there are.
+
+    ``kind`` says what its values are: ``body``, ``joint``.
+    """
+
+    def __init__(self, kind: str, values: Mapping[str, Value] | None = None) -> None:
+        super().__init__(values or {})
+        self.kind = kind
+
+    def __missing__(self, name: object) -> NoReturn:
+        raise UnknownNameError(no_such(self.kind, name, self))
+
+
+class Suggesting:
+    """Raises AttributeErrors that suggest the attribute which was probably meant."""
+
+    other_words: Mapping[str, str] = {}
+    """Attributes by other common words for them: ``pin`` is ``revolute``."""
+
+    def __getattr__(self, name: str) -> Any:
+        kind = type(self)
+        if name.startswith("_"):
+            raise AttributeError(f"{kind.__name__} has no attribute '{name}'")
+        public = [known for known in {**vars(self), **dict.fromkeys(dir(kind))} if not known.startswith("_")]
+        public.remove("other_words")
+        word = kind.other_words.get(name)
+        meant = word if word in public else _meant(name, public)
+        hint = f", did you mean '{meant}'?" if meant else ""
+        if not meant and len(public) <= LISTED:
+            hint = f"; it has: {', '.join(public)}"
+        raise AttributeError(f"{kind.__name__} has no attribute '{name}'{hint}")

@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from mbsd.base.errors import ModelError
+from mbsd.base.names import Named
 from mbsd.base.shown import shown
 
 OWN = "mbsd."
@@ -50,8 +51,9 @@ def _copied(value: Any, memo: dict[int, Any]) -> Any:
     kind = type(value)
     if kind in ATOMS:
         return value
-    if kind is dict:
-        return {key: _copied(part, memo) for key, part in value.items()}
+    if kind is dict or kind is Named:
+        parts = {key: _copied(part, memo) for key, part in value.items()}
+        return Named(value.kind, parts) if kind is Named else parts
     if callable(value) and not kind.__module__.startswith(OWN):
         return value
     return copy.deepcopy(value, memo)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
+from mbsd.base.names import Named, Suggesting, no_such
 from mbsd.base.pickled import with_copied_fields
 from mbsd.base.shown import shown
 from mbsd.model.body import Body, Marker, rod_inertia
@@ -38,20 +40,43 @@ class StartVelocity:
 
 
 @dataclass(eq=False)
-class Model:
+class Model(Suggesting):
     """What a mechanism holds, and the checks that all its methods share. See :class:`mbsd.mechanism.Mechanism`."""
 
     name: str
     gravity: tuple[float, float] | None = STANDARD_GRAVITY
-    bodies: dict[str, Body] = field(default_factory=dict)
-    joints: dict[str, Joint] = field(default_factory=dict)
-    drivers: dict[str, Joint] = field(default_factory=dict)
-    forces: dict[str, Force] = field(default_factory=dict)
-    contacts: dict[str, Joint] = field(default_factory=dict)
-    events: dict[str, Event] = field(default_factory=dict)
-    traces: dict[str, Marker] = field(default_factory=dict)
+    bodies: dict[str, Body] = field(default_factory=partial(Named, "body"))
+    joints: dict[str, Joint] = field(default_factory=partial(Named, "joint"))
+    drivers: dict[str, Joint] = field(default_factory=partial(Named, "driver"))
+    forces: dict[str, Force] = field(default_factory=partial(Named, "force"))
+    contacts: dict[str, Joint] = field(default_factory=partial(Named, "contact"))
+    events: dict[str, Event] = field(default_factory=partial(Named, "event"))
+    traces: dict[str, Marker] = field(default_factory=partial(Named, "traced point"))
     starts: dict[str, Start] = field(default_factory=dict)
     velocities: dict[str, StartVelocity] = field(default_factory=dict)
+
+    other_words = MappingProxyType(
+        {
+            "pin": "revolute",
+            "hinge": "revolute",
+            "pivot": "revolute",
+            "slider": "prismatic",
+            "slide": "prismatic",
+            "link": "bar",
+            "rod": "bar",
+            "fix": "weld",
+            "fixed": "weld",
+            "gear": "gear_pair",
+            "gears": "gear_pair",
+            "cam": "cam_roller",
+            "rack": "rack_and_pinion",
+            "wheel": "rolling_disc",
+            "damper": "spring",
+            "cable": "rope",
+            "solve": "sweep",
+            "plot": "draw",
+        }
+    )
 
     findings_told = False
     """Whether suspicious units were reported; see mbsd/analyses/suspicious_units.py."""

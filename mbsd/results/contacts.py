@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.base.names import Suggesting
+
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
 
 
 @dataclass(frozen=True)
-class ContactView:
+class ContactView(Suggesting):
     """A contact, (T,) arrays: m and N, or rad and N m for stops of angles."""
 
     gap: np.ndarray

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.base.errors import ModelError
+from mbsd.base.names import Suggesting
 from mbsd.results.views import Wrench
 
 UNITS: Mapping[str, str] = {"length": "m", "angle": "rad", "coordinate": "m", "gap": "m"}
@@ -26,7 +27,7 @@ class Action(Wrench):
 
 
 @dataclass(frozen=True)
-class ForceView:
+class ForceView(Suggesting):
     """A force along a motion, (T, ...) arrays; x, y, fx, fy, force, torque and magnitude are those on the second body.
 
     A load from outside acts on one body, which is the second. One that acts on several bodies (a user's function, a

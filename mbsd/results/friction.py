@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.base.names import Suggesting
+
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
 
 
 @dataclass(frozen=True)
-class FrictionView:
+class FrictionView(Suggesting):
     """Friction of a joint, (T,) arrays."""
 
     rate: np.ndarray

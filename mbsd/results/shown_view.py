@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import fields
 from html import escape
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+
+from mbsd.base.names import Suggesting
 
 UNITS = {
     "x": "m", "y": "m", "theta": "rad", "vx": "m/s", "vy": "m/s", "omega": "rad/s",
@@ -17,8 +20,23 @@ UNITS = {
 """Units of fields that always have the same."""
 
 
-class ShownView:
+class ShownView(Suggesting):
     """A dataclass of arrays over time that shows how each begins and ends, and how far it goes."""
+
+    other_words = MappingProxyType(
+        {
+            "angle": "theta",
+            "position": "x",
+            "velocity": "vx",
+            "speed": "omega",
+            "acceleration": "ax",
+            "force_x": "fx",
+            "force_y": "fy",
+            "moment": "torque",
+            "kinetic_energy": "kinetic",
+            "potential_energy": "potential",
+        }
+    )
 
     def __repr__(self) -> str:
         rows = list(self._rows())

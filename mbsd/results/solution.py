@@ -20,6 +20,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Generic
 
 import numpy as np
@@ -27,7 +28,7 @@ import numpy as np
 from mbsd.arrays.start_state import AnyModel
 from mbsd.base.arguments import finite_number, number_array, number_pair
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
+from mbsd.base.names import Named, Suggesting, no_such
 from mbsd.base.shown import shown
 from mbsd.model.event import Happening
 from mbsd.results.acting import acting
@@ -63,9 +64,23 @@ SHOWN = 40
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Generic[AnyModel]):
+class Solution(Suggesting, Generic[AnyModel]):
     """The motion of one mechanism. q, v, a hold centres of mass, (T, nb, 3); the views give the author's frames."""
 
+    other_words = MappingProxyType(
+        {
+            "bodies": "body",
+            "joints": "joint",
+            "drivers": "driver",
+            "points": "point",
+            "contacts": "contact",
+            "time": "t",
+            "times": "t",
+            "plot": "draw",
+            "kinetic": "energy",
+            "potential": "energy",
+        }
+    )
     mechanism: AnyModel
     """What was solved: a Mechanism, where its methods were asked."""
     packed: Packed
@@ -167,7 +182,7 @@ class Solution(Generic[AnyModel]):
     @property
     def forces(self) -> dict[str, ForceView]:
         """All forces by name, in the order they were added."""
-        return {force.name: self.force(force.name) for force in self.packed.forces}
+        return Named("force", {force.name: self.force(force.name) for force in self.packed.forces})
 
     def body(self, name: str) -> FrameView:
         """Motion of a body's frame."""

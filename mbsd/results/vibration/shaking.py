@@ -18,6 +18,7 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError
+from mbsd.base.names import Suggesting
 from mbsd.model.body import Body
 from mbsd.results.views import Wrench
 
@@ -75,7 +76,7 @@ def planes_of(bodies: Iterable[Body]) -> Planes:
 
 
 @dataclass(frozen=True)
-class PointView:
+class PointView(Suggesting):
     """Motion of a point: (T,) arrays, m, m/s, m/s^2."""
 
     x: np.ndarray

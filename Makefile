@@ -131,13 +131,13 @@ all: run-all ## the same
 overnight: libraries ## all of it in the background, also after the logout; WATTS=85 tells the energy it takes
 	@$(MBSD) overnight
 
-status:  ## what every film is at: frames, seconds a frame, time left, last error
+status:  ## progress of every film: frames, seconds a frame, time left, last error
 	@$(MBSD) status
 
-stop:  ## end that after the frame in flight; the same command goes on from there
+stop:  ## stop `overnight` after the current frame; run `overnight` again to resume
 	@$(MBSD) stop
 
-check-%: install always ## what in a model looks as if it was not meant, before anything is made
+check-%: install always ## look for likely mistakes in a model before anything is built
 	@$(MBSD) check -- "$$MECHANISM"
 
 parts-%: libraries always ## the solids: out/<name>/parts/ (STL, STEP, parts.json); SCALE=1:20 of a model
@@ -179,7 +179,7 @@ poster-%: libraries always ## one picture at its best: out/<name>/poster.png
 exploded-%: libraries always ## the parts taken apart, with names and masses: out/<name>/exploded.png, .glb
 	@$(MBSD) exploded -- "$$MECHANISM"
 
-contact-%: libraries always ## a sheet of twelve frames, drafts if nothing else is asked: out/<name>/contact.png
+contact-%: libraries always ## contact sheet of twelve frames, draft quality by default: out/<name>/contact.png
 	@$(MBSD) contact -- "$$MECHANISM"
 
 still-%: libraries always ## one frame of the film: out/<name>/stills/; FRAME=15 (from 0)
@@ -215,7 +215,7 @@ gallery: libraries ## posters of all mechanisms and the page that shows them: do
 showreel: install ## the finished films, each under its title, as one; stories where made or STORY=loop; ONLY=four_bar
 	@$(MBSD) showreel
 
-fetch: install ## bring the films of another machine home, what changed alone: HOST=user@machine FOLDER=mbsd
+fetch: install ## copy new films from another computer: HOST=user@machine FOLDER=mbsd
 	@$(MBSD) fetch -- "$$HOST"
 
 scheduler: install ## scheduler of a cluster; it prints its address; HOST=address for other machines

@@ -36,7 +36,7 @@ def main() -> int | None:
         if command == "parts":
             sub.add_argument("--anyway", default="", help="1: also where the same was refused before")
             sub.add_argument("--or-none", action="store_true", help="go on where there are no automatic parts")
-            sub.add_argument("--if-needed", choices=("model", "proof"), help="those that a model or its proof needs")
+            sub.add_argument("--if-needed", choices=("motion", "model", "proof"), help="only if this needs them")
     fresh = commands.add_parser("new", help="a new mechanism that already runs")
     fresh.add_argument("name", help="folder to make")
     fresh.add_argument("--kind", default="driven", help="driven or simulated")
@@ -70,11 +70,15 @@ def main() -> int | None:
         if arguments.command == "print":
             return stage.run(name, bed=arguments.bed, gap=arguments.gap, scale=arguments.scale)
         if getattr(arguments, "if_needed", None):
-            return stage.run_for_model(name, arguments.if_needed == "proof")
+            return stage.run_if_needed(name, arguments.if_needed)
         if getattr(arguments, "or_none", False):
             return stage.run_or_none(name)
         if arguments.command == "parts":
             return stage.run(name, scale=arguments.scale, anyway=arguments.anyway not in ("", "0"))
+        if arguments.command == "solve":
+            from mechanisms.stages.parts.stage import are_outdated
+
+            return stage.run(name, are_outdated(name))
         return stage.run(name, scale=arguments.scale) if arguments.command == "clearance" else stage.run(name)
     if arguments.command == "variants":
         owner = owner_of(arguments.name)

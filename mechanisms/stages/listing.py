@@ -6,8 +6,19 @@ import ast
 
 import msgspec
 
-from shared.stage.console import warn
-from shared.stage.paths import NAME_RULE, Out, mechanism_file, mechanism_names, out_root, unfit_names, variants_in
+from shared.stage.console import say, warn
+from shared.stage.face import to_run
+from shared.stage.paths import (
+    MECHANISMS,
+    NAME_RULE,
+    Out,
+    in_workshop,
+    mechanism_file,
+    mechanism_names,
+    out_root,
+    unfit_names,
+    variants_in,
+)
 
 
 class _Diagnostics(msgspec.Struct):
@@ -29,6 +40,9 @@ def run(names: bool = False, as_json: bool = False) -> None:
     if as_json:
         print(msgspec.json.encode([_entry(name) for name in _all_names()]).decode())
         return
+    if not mechanism_names():
+        where = MECHANISMS if in_workshop() else "mechanisms/"
+        say("list", f"there are no mechanisms in {where}; {to_run('new', 'excavator')} makes one")
     for name in mechanism_names():
         made = ", ".join(_made(name)) or "nothing yet"
         print(f"{name.replace('_', '-'):<24} {_title(name)}\n{'':<24} {_freedom(name)}made: {made}")

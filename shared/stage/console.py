@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import time
 import traceback
@@ -11,9 +12,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, NoReturn, Protocol
 
+from shared.stage import lineage
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.files import OF_THE_DISK, refusal
-from shared.stage.lineage import end_with_make
 from shared.stage.paths import out_root
 from shared.stage.signals import Stopped, terminable
 from shared.system.home import without_home
@@ -121,7 +123,7 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
     """
     try:
         with terminable():
-            end_with_make()
+            lineage.end_with_make()
             without_home(Path(os.path.abspath(out_root())) / HOME)
             code = main() or 0
             sys.stdout.flush()
@@ -132,10 +134,10 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
         code = error.code
     except (KeyboardInterrupt, Stopped) as stop:
         with suppress(OSError):  # the terminal may be what has gone
-            fail("stopped; what is finished is kept, the same command goes on from here")
+            fail(f"stopped{_reason(stop)}; what is finished is kept, the same command goes on from here")
         code = stop.code if isinstance(stop, Stopped) else 130
     except MemoryError:
-        fail("the memory ran out; close other programs or take a smaller PRESET. The same command goes on from here")
+        fail("the memory ran out; close other programs or take a smaller preset. The same command goes on from here")
         code = 1
     except ImportError as error:
         if not (libraries := missing_libraries()):
@@ -151,6 +153,15 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
         fail(refusal(error.filename or "a file", error, "use"))
         code = 1
     sys.exit(code)
+
+
+def _reason(stop: BaseException) -> str:
+    """Return why a signal came, as far as this process knows."""
+    if lineage.ended:
+        return ", because the command that started this stage has ended"
+    if isinstance(stop, Stopped) and stop.code == 128 + signal.SIGHUP:
+        return f", because its terminal was closed ({to_run('overnight')} works without one)"
+    return ""
 
 
 class _Pace:

@@ -18,10 +18,10 @@ def to_run(command: str, name: str = "") -> str:
 
 
 def said(**words: str) -> str:
-    """``PRESET=final ASPECT=9:16`` or ``--preset final --aspect 9:16``."""
+    """``PRESET=final ASPECT=9:16`` or ``--preset final --aspect 9:16``; an empty value is that of a flag."""
     if _is_program():
-        return " ".join(f"--{key} {value}" for key, value in words.items())
-    return " ".join(f"{key.upper()}={value}" for key, value in words.items())
+        return " ".join(f"--{key} {value}".rstrip() for key, value in words.items())
+    return " ".join(f"{key.upper()}={value or 1}" for key, value in words.items())
 
 
 def is_of_make() -> bool:

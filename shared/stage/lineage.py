@@ -16,23 +16,28 @@ VARIABLE = "MBSD_MAKE"
 """Environment variable in which the Makefile names the process of the outermost make."""
 PERIOD = 0.5
 """Seconds between two looks at make."""
+ended = False
+"""True once the make above this process has ended, which stops this process."""
 FATAL = (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGTERM)
 
 
 def end_with_make() -> None:
     """Send this process SIGTERM as soon as the make that it belongs to has ended or got a signal to end.
 
-    Does nothing where no make of this project is above.
+    Does nothing if no make of this project is above, or if this process is itself the outermost one: like any program
+    it then outlives the shell that started it with ``nohup`` or ``&``.
     """
     make = os.environ.get(VARIABLE, "")
-    if make.isdigit():
+    if make.isdigit() and int(make) != os.getpid():
         threading.Thread(target=_watch, args=(int(make), os.getppid()), daemon=True).start()
 
 
 def _watch(make: int, parent: int) -> None:
     orphaned = parent == 1 != make
+    global ended
     while not orphaned and os.getppid() == parent and _is_running(make) and not is_ending(make):
         time.sleep(PERIOD)
+    ended = True
     os.kill(os.getpid(), signal.SIGTERM)
 
 

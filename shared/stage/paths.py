@@ -98,8 +98,10 @@ def mechanism_name(name: str) -> str:
     """
     canonical = canonical_name(name)
     if not NAME.fullmatch(canonical):
+        known = mechanism_names()
         raise UserError(
-            f"{name!r} is not the name of a mechanism: {NAME_RULE}; there is: {', '.join(mechanism_names()) or 'none'}"
+            f"{name!r} is not the name of a mechanism: {NAME_RULE}; there is: {', '.join(known) or 'none'}"
+            f"{did_you_mean(canonical, known)}"
         )
     if _source(canonical) is not None:
         return canonical
@@ -171,13 +173,13 @@ def _names() -> list[str]:
             path.stem for path in MECHANISMS.glob("*.py") if path.name != "mechanism.py" and defines(path, "build")
         }
         if (MECHANISMS / "mechanism.py").is_file():
-            names.add(_own_name())
+            names.add(name_of_folder(MECHANISMS))
     return sorted(names)
 
 
-def _own_name() -> str:
-    """The name of a mechanism whose files lie in the user's folder itself."""
-    name = re.sub(r"[^a-z0-9]+", "_", MECHANISMS.name.lower()).strip("_")
+def name_of_folder(folder: Path) -> str:
+    """Return the name of a mechanism whose mechanism.py lies in the user's folder itself."""
+    name = re.sub(r"[^a-z0-9]+", "_", folder.name.lower()).strip("_")
     return name if NAME.fullmatch(name) else f"machine_{name}".rstrip("_")
 
 
@@ -200,7 +202,7 @@ def _source(owner: str) -> Path | None:
     if (single := MECHANISMS / f"{owner}.py").is_file():
         return single
     own = MECHANISMS / "mechanism.py"
-    return own if own.is_file() and owner == _own_name() else None
+    return own if own.is_file() and owner == name_of_folder(MECHANISMS) else None
 
 
 def _is_twofold(source: Path) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from shared.stage.errors import UserError
+from shared.stage.face import said
 
 SMALLEST, LARGEST = Fraction(1, 10_000), Fraction(100)
 _NUMBER = r"[0-9]+(?:\.[0-9]+)?"
@@ -43,11 +44,12 @@ def scale_of(text: str) -> Scale | None:
     ratio = Fraction(match[1]) / below if match and below else Fraction(0)
     if not SMALLEST <= ratio <= LARGEST:
         raise UserError(
-            f"SCALE={text} is no scale between 1:{1 / SMALLEST} and {LARGEST}:1; write a length of the model to that "
-            "of the machine, such as SCALE=1:20, 1/20 or 0.05"
+            f"{said(scale=text)} is no scale between 1:{1 / SMALLEST} and {LARGEST}:1; write a length of the model to "
+            f"that of the machine, such as {said(scale='1:20')}, 1/20 or 0.05"
         )
     if match and match[2] is None and ratio > 1:
         raise UserError(
-            f"SCALE={text} may mean two things; write SCALE=1:{text} for a small model, {text}:1 for a large one"
+            f"{said(scale=text)} may mean two things; write {said(scale=f'1:{text}')} for a small model, {text}:1 for "
+            "a large one"
         )
     return Scale(ratio.numerator, ratio.denominator)

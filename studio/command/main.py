@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from shared.stage.errors import UserError
 from shared.stage.face import is_of_make
@@ -14,7 +16,7 @@ from shared.stage.paths import known_name, mechanism_names, work_in
 from shared.stage.suggestions import did_you_mean
 from studio.command import doing, made
 from studio.command.options import OPTIONS
-from studio.command.place import Place, place_of
+from studio.command.place import Place, is_path, place_of, place_of_file
 from studio.command.running import Run
 from studio.command.table import COMMANDS, Command
 
@@ -39,9 +41,24 @@ OPERANDS = {
 }
 
 
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors suggest the command that was probably meant instead of listing all."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print the error and exit with 2."""
+        unknown = re.match(r"argument COMMAND: invalid choice: (?:'([^']*)'|\"([^\"]*)\")", message)
+        if unknown:
+            name = unknown[1] or unknown[2] or ""
+            message = f"there is no command '{name}'; mbsd --help lists all{did_you_mean(name, COMMANDS)}"
+        elif message.endswith("required: COMMAND"):
+            self.print_help(sys.stderr)
+            self.exit(2)
+        super().error(message)
+
+
 def parser(make: bool = False) -> argparse.ArgumentParser:
-    """The whole command line; ``make``: what nobody gave comes from the variables that the Makefile exports."""
-    top = argparse.ArgumentParser(
+    """Return the whole command line; with ``make`` the defaults are the variables that the Makefile exports."""
+    top = Parser(
         "mbsd", description="Planar mechanisms: from one short file to physics, parts and film.", epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )  # fmt: skip
@@ -83,7 +100,10 @@ def _add(commands: argparse._SubParsersAction[argparse.ArgumentParser], command:
 
 def main(arguments: Sequence[str] | None = None, make: bool = False) -> int:
     """Do one command; its exit code. Raises UserError."""
-    asked = parser(make).parse_args(arguments)
+    whole = parser(make)
+    asked, unknown = whole.parse_known_args(arguments)
+    if unknown:
+        whole.error(_unknown_word(asked.command, unknown[0]))
     if asked.command == "completion":
         from studio.command import completion
 
@@ -91,11 +111,14 @@ def main(arguments: Sequence[str] | None = None, make: bool = False) -> int:
         return 0
     if asked.command == "compile":  # with words before it: mbsd/__main__.py does it
         return Run({}).last([sys.executable, "-m", "mbsd", "compile"])
-    place = place_of(Path(asked.folder))
+    command, folder = COMMANDS[asked.command], Path(asked.folder)
+    if command.of == "machine" and is_path(asked.operand):
+        place, asked.operand = place_of_file(folder, asked.operand)
+    else:
+        place = place_of(folder)
     if place.machines is not None:
         work_in(place.machines)
     os.environ.update(place.environment())
-    command = COMMANDS[asked.command]
     said = _said(command, asked, place, make)
     run = Run(
         place.environment(),
@@ -107,6 +130,15 @@ def main(arguments: Sequence[str] | None = None, make: bool = False) -> int:
     if run.quiet and not run.planned:
         print(made.summary(command, operand, run, code))
     return code
+
+
+def _unknown_word(command: str, word: str) -> str:
+    """Return an error message for a word of the command line that a command does not take."""
+    options = [f"--{name}" for name in (*COMMANDS[command].options, "json", "plan")] if command in COMMANDS else []
+    if not word.startswith("-"):
+        return f"mbsd {command} does not take '{word}'; mbsd {command} --help says what it takes"
+    known = f"; its options are: {', '.join(dict.fromkeys(options))}" if options else ""
+    return f"mbsd {command} has no option '{word}'{known}{did_you_mean(word.partition('=')[0], options)}"
 
 
 def _said(command: Command, asked: argparse.Namespace, place: Place, make: bool) -> dict[str, str]:

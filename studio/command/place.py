@@ -8,7 +8,7 @@ from pathlib import Path
 
 from shared.stage.errors import UserError
 from shared.stage.face import is_of_make
-from shared.stage.paths import ROOT
+from shared.stage.paths import ROOT, name_of_folder
 from studio.command.settings import FILE, Settings, read
 
 
@@ -54,6 +54,32 @@ def place_of(folder: Path) -> Place:
         if above == ROOT and (ROOT / "Makefile").is_file():
             return Place(None, read(ROOT), _inside(folder, ROOT / "mechanisms"))
     return Place(folder, Settings())
+
+
+def is_path(operand: str) -> bool:
+    """True if an operand is the path of a mechanism, as a shell completes it, and not its name."""
+    return operand.endswith(".py") or os.sep in operand or operand in (".", "..")
+
+
+def place_of_file(folder: Path, operand: str) -> tuple[Place, str]:
+    """Return the place and the name of the mechanism at a path: ``lamp.py``, ``./lamp.py``, ``lamp/``.
+
+    ``operand`` is relative to ``folder``. The place is that of ``folder`` if it holds the mechanism, else that of the
+    folder which does. Raises UserError if there is no mechanism at the path.
+    """
+    path = Path(os.path.abspath(folder / os.path.expanduser(operand)))
+    if path.is_file() and (path.parent / "mechanism.py").is_file():
+        path = path.parent
+    if not (path.is_file() and path.suffix == ".py") and not (path / "mechanism.py").is_file():
+        what = "has no mechanism.py" if path.is_dir() else "is no file or folder of a mechanism"
+        raise UserError(f"{operand} {what}; give the name or the path of a mechanism, such as lamp, lamp.py or lamp/")
+    for place in (place_of(folder), place_of(path.parent), place_of(path if path.is_dir() else path.parent)):
+        machines = place.machines or ROOT / "mechanisms"
+        if path.parent == machines:
+            return place, path.stem if path.is_file() else path.name
+        if path == machines:
+            return place, name_of_folder(path)
+    raise UserError(f"{operand} is outside of the folder of mechanisms, {machines}; run the command in its own folder")
 
 
 def _refuse_none(folder: Path) -> None:

@@ -41,6 +41,8 @@ class Stage:
 _PICTURE = ("preset", "aspect", "show")
 PARTS = Stage("mechanisms", "parts", solids=True)
 PARTS_IF_ANY = Stage("mechanisms", "parts", also=("--or-none",))
+PARTS_FOR_MOTION = Stage("mechanisms", "parts", also=("--if-needed=motion",))
+"""Those whose masses the motion needs, because mechanism.py does not give them."""
 SOLVE = Stage("mechanisms", "solve")
 CLEARANCE = Stage("mechanisms", "clearance", solids=True)
 SHOT = Stage("mechanisms", "shot")
@@ -65,7 +67,7 @@ POSTER, CONTACT, FRAMES, SCENE, SCENE_UI = (
 EXPLODED = Stage("render", "exploded", ("preset", "aspect"), solids=True)
 FILM = Stage("render", "film", (*_PICTURE, "story", "loop", "sound"), solids=True)
 STILL = Stage("render", "still", ("frame", *_PICTURE), solids=True)
-BARE_MOTION = (PARTS_IF_ANY, SOLVE)
-"""Motion and plots go on where there are no automatic parts."""
+BARE_MOTION = (PARTS_FOR_MOTION, SOLVE)
+"""The motion by itself; it goes on if there are no automatic parts."""
 MOTION = (PARTS, SOLVE)
 SCENERY = (PARTS, SOLVE, SHOT)

@@ -60,11 +60,11 @@ COMMANDS: dict[str, Command] = {
             (Stage("studio.night", "start", _NIGHT, starts_stages=True, solids=True),), of="",
             example="mbsd overnight --preset final",
         ),
-        Command("status", "what every film is at: frames, seconds a frame, time left, last error",
+        Command("status", "progress of every film: frames, seconds a frame, time left, last error",
                 (Stage("studio.night", "status"),), of=""),
-        Command("stop", "end that after the frame in flight; the same command goes on from there",
+        Command("stop", "stop `overnight` after the current frame; run `overnight` again to resume",
                 (Stage("studio.night", "stop"),), of=""),
-        Command("check", "what in a model looks as if it was not meant, before anything is made",
+        Command("check", "look for likely mistakes in a model before anything is built",
                 (Stage("mechanisms", "check", ("json",)),)),
         Command("parts", "the solids: out/<name>/parts/ (STL, STEP, parts.json)", (stages.MODEL,),
                 example="mbsd parts excavator --scale 1:20", never_kept=("scale",)),
@@ -86,14 +86,14 @@ COMMANDS: dict[str, Command] = {
         Command("glb", "the parts with their motion in one file for any glTF viewer: out/<name>/<name>.glb",
                 (*stages.SCENERY, stages.GLB)),
         Command("view", "one HTML page with the machine, its forces and its plots: out/<name>/view.html",
-                (*stages.BARE_MOTION, stages.SHOT, stages.VIEW)),
+                (stages.PARTS_IF_ANY, stages.SOLVE, stages.SHOT, stages.VIEW)),
         Command(
             "live", "a page that follows the editor: sliders, dragging, fits to a path; prints its address",
             (Stage("studio.live", options=("port", "limit", "no-parts", "open")),),
             example="mbsd live excavator --open",
         ),
         Command("poster", "one picture at its best: out/<name>/poster.png", (*stages.SCENERY, stages.POSTER)),
-        Command("contact", "a sheet of twelve frames, drafts if nothing else is asked: out/<name>/contact.png",
+        Command("contact", "contact sheet of twelve frames, draft quality by default: out/<name>/contact.png",
                 (*stages.SCENERY, stages.CONTACT), defaults={"preset": "draft"}),
         Command("exploded", "the parts taken apart, with names and masses: out/<name>/exploded.png, .glb",
                 (*stages.SCENERY, stages.EXPLODED)),
@@ -117,7 +117,7 @@ COMMANDS: dict[str, Command] = {
                 defaults={"story": "explain"}),
         Command("gallery", "posters of all mechanisms and the page that shows them",
                 (stages.CLEARANCE, stages.POSTER), of=""),
-        Command("fetch", "bring the films of another machine home, what changed alone",
+        Command("fetch", "copy new films from another computer",
                 (Stage("studio.fetch", options=("folder",)),), of="host", example="mbsd fetch anna@server"),
         Command("scheduler", "scheduler of a cluster; it prints its address",
                 (Stage("shared.cluster", "scheduler", ("host",)),), of=""),
@@ -144,3 +144,11 @@ COMMANDS: dict[str, Command] = {
     )
 }  # fmt: skip
 """In the order of ``make help``."""
+
+STAGE_HELP: dict[str, str] = {
+    **{command.stages[-1].name: command.help for command in COMMANDS.values()},
+    **{name: command.help for name, command in COMMANDS.items()},
+    "shot": "the description of the film, checked: out/<name>/shot.json",
+    "plots": COMMANDS["plot"].help,
+}
+"""One line for each stage and command, by its name, for ``--plan``."""

@@ -18,7 +18,7 @@ GRACE = 2
 
 
 def main() -> int:
-    """Serve until it is stopped."""
+    """Serve until Ctrl-C or a signal ends it."""
     parser = argparse.ArgumentParser(prog="python -m studio.live", description="A page that follows the editor.")
     parser.add_argument("name", help="mechanism or variant; four-bar and four_bar are one")
     parser.add_argument("--port", type=int, default=0, help="of 127.0.0.1; any free one if not given")
@@ -30,7 +30,10 @@ def main() -> int:
     if not arguments.limit > 0:
         raise UserError(f"live: --limit {arguments.limit:g} is no time; give seconds above 0")
     with bound(arguments.port) as listener:
-        asyncio.run(_serve(name, listener, arguments))
+        try:
+            asyncio.run(_serve(name, listener, arguments))
+        except KeyboardInterrupt:  # the usual way to end it
+            say("live", f"{name}: ended")
     return 0
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.loading import loading
-from mechanisms.stages.parts.of_models import needs_machine
+from mechanisms.stages.parts.of_models import needs_machine, needs_masses
 from mechanisms.stages.solve import solving
 from shared.stage.errors import UserError
 
@@ -43,6 +43,7 @@ def test_only_a_simulation_without_masses_needs_the_machine(
     monkeypatch.setattr(loading, "params", lambda _: None)
     monkeypatch.setattr(solving, "build", lambda *_: bar(driven, mass))
     assert needs_machine("bar") is needs
+    assert needs_masses("bar") is (mass is None)
 
 
 def test_what_is_refused_is_left_to_the_machines_own_stage(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -51,3 +52,4 @@ def test_what_is_refused_is_left_to_the_machines_own_stage(monkeypatch: pytest.M
 
     monkeypatch.setattr(loading, "load", refused)
     assert needs_machine("bar")
+    assert needs_masses("bar")

@@ -197,7 +197,8 @@ def test_a_piece_larger_than_the_bed_is_named_with_the_bed_that_it_needs(
 ) -> None:
     files = press.run(bed="105x90")
     said = capsys.readouterr()
-    assert re.search(r"four_bar: bar needs a bed of 150 x 12 mm, this one has 105 x 90 mm", said.out + said.err)
+    needed = "larger bed than 105 x 90 mm, so they are on no plate: bar of 150 x 12 mm"
+    assert f"these pieces need a {needed}; give BED=150x12, or print a model: SCALE=1:2 fits" in said.out + said.err
     made = rows(files, "make")
     assert made["bar"]["bed_mm"] == "150 x 12"
     assert made["bar"]["plates"] == ""

@@ -25,7 +25,7 @@ from mechanisms.stages.loading.wished_mount import of_shot, wishing
 from mechanisms.stages.loading.wished_scale import scaling
 from mechanisms.stages.parts import remembered
 from mechanisms.stages.parts.kept_pieces import KeptPieces
-from mechanisms.stages.parts.of_models import needs_machine
+from mechanisms.stages.parts.of_models import needs_machine, needs_masses
 from mechanisms.stages.parts.plain_values import plain_text
 from mechanisms.stages.parts.traced_params import fields_of, traced
 from shared.cluster.address import address
@@ -218,13 +218,28 @@ def are_current(name: str) -> bool:
     return _is_fresh(out, params(out.name), _wish(out.name))
 
 
-def run_for_model(name: str, proof: bool) -> None:
-    """The same where a model needs the machine's: its motion may follow from their masses, and a ``proof`` takes the
-    motion that is solved with those that are there, which must not be old.
+def run_if_needed(name: str, purpose: str) -> None:
+    """Make the parts if what follows needs them.
+
+    A ``motion`` needs them for masses that mechanism.py does not give. A ``model`` at a scale needs the machine's if
+    its motion may follow from their masses; so does its ``proof``, which takes the motion that is solved with the parts
+    that are there, and these must be current.
     """
     out = Out(name)
-    if (proof and out.parts.is_file()) or ((proof or not has(out.name, "parts")) and needs_machine(out.name)):
+    if purpose == "motion":
+        needed = needs_masses(out.name)
+    elif purpose == "proof" and out.parts.is_file():
+        needed = True
+    else:
+        needed = (purpose == "proof" or not has(out.name, "parts")) and needs_machine(out.name)
+    if needed:
         run_or_none(name)
+
+
+def are_outdated(name: str) -> bool:
+    """Return True if the parts that are there were made of an older version of the mechanism."""
+    out = Out(name)
+    return out.parts.is_file() and bool(_notes(out)) and not are_current(name)
 
 
 def run_or_none(name: str) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from shared.contract import read_parts
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
+from shared.stage.face import said
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out
 from shared.stage.scale import scale_of
@@ -64,9 +65,7 @@ def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
             path.unlink()
     stage.outputs = [out.print_folder / file for file in files]
     stage.done()
-    for part in made:
-        if part.bed:
-            _tell_large(out.title, part, size, at.ratio if at else 1.0)
+    _tell_large(out.title, [part for part in made if part.bed], size, at.ratio if at else 1.0)
     if at is not None:
         _tell_thin(out.title, made)
     say("print", _summary(out.title, files, made, bought, size))
@@ -93,7 +92,8 @@ def bed_of(text: str) -> Bed:
     """A bed from words like 220x220 or 220x220x250; raises UserError if it is none."""
     lengths = text.lower().split("x")
     if len(lengths) not in (2, 3) or not all(_LENGTH.fullmatch(length) and float(length) > 0 for length in lengths):
-        raise UserError(f"BED={text} is no size of a bed; write its length and width in mm, such as BED=220x220")
+        example = said(bed="220x220")
+        raise UserError(f"{said(bed=text)} is no size of a bed; write its length and width in mm, such as {example}")
     x, y, *z = (float(length) for length in lengths)
     return x, y, z[0] if z else math.inf
 
@@ -101,18 +101,29 @@ def bed_of(text: str) -> Bed:
 def gap_of(text: str) -> float:
     """A gap (mm); raises UserError if it is none."""
     if not _LENGTH.fullmatch(text):
-        raise UserError(f"GAP={text} is no gap; write what pieces keep apart in mm, such as GAP=5")
+        raise UserError(f"{said(gap=text)} is no gap; write what pieces keep apart in mm, such as {said(gap='5')}")
     return float(text)
 
 
-def _tell_large(name: str, part: Made, bed: Bed, ratio: float) -> None:
-    several = f" ({len(part.names)} of them)" if len(part.names) > 1 else ""
+def _tell_large(name: str, parts: list[Made], bed: Bed, ratio: float) -> None:
+    """Name the pieces that are larger than the bed, the largest first, with the bed and the scale that fit all."""
+    if not parts:
+        return
+    times = {part.name: max(own / length for own, length in zip(part.piece.size, bed, strict=True)) for part in parts}
+    parts = sorted(parts, key=lambda part: -times[part.name])
+    listed = ", ".join(
+        f"{part.name}{f' ({len(part.names)} of them)' if len(part.names) > 1 else ''} of {part.bed} mm"
+        for part in parts[:LISTED]
+    )
+    others = f" and {len(parts) - LISTED} others" if len(parts) > LISTED else ""
     size = " x ".join(f"{length:.0f}" for length in bed if math.isfinite(length))
-    times = max(own / length for own, length in zip(part.piece.size, bed, strict=True))
+    scale = said(scale=f"1:{math.ceil(times[parts[0].name] / ratio)}")
+    needed = zip(*(map(int, part.bed.split(" x ")) for part in parts), strict=True)
+    larger = said(bed="x".join(str(max(lengths)) for lengths in needed))
     warn(
         "print",
-        f"{name}: {part.name}{several} needs a bed of {part.bed} mm, this one has {size} mm, so it is on no plate; "
-        f"give BED={part.bed.replace(' ', '')}, or make a model of it: SCALE=1:{math.ceil(times / ratio)}",
+        f"{name}: these pieces need a larger bed than {size} mm, so they are on no plate: {listed}{others}; "
+        f"give {larger}, or print a model: {scale} fits all of them",
     )
 
 

@@ -55,6 +55,11 @@ def give_masses(m: Mechanism, parts: Parts | None) -> tuple[dict[str, Source], l
     return source, sentences
 
 
+def leaves_masses(m: Mechanism) -> bool:
+    """Return True if mechanism.py leaves the mass of a body to its parts; ``m`` then has estimates in their place."""
+    return "estimate" in give_masses(m, None)[0].values()
+
+
 def give_masses_aloud(stage: str, name: str, m: Mechanism, parts: Parts | None) -> None:
     """:func:`give_masses` of the mechanism ``name``; its sentences are said in the name of ``stage``."""
     sources, sentences = give_masses(m, parts)

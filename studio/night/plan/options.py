@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from render.presets import PRESETS, Preset, preset_named
 from render.shown import has_sound
 from shared.stage.errors import UserError
+from shared.stage.face import said
 from shared.stage.paths import known_name, mechanism_names, unfit_names
 
 
@@ -80,5 +81,8 @@ def watts_of(words: str) -> float | None:
     except ValueError:
         watts = math.nan
     if not 0 < watts < math.inf:
-        raise UserError(f"WATTS={words} is no power; write what the machine takes while it renders, in watts: WATTS=85")
+        raise UserError(
+            f"{said(watts=words)} is no power; write what this computer takes while it renders, in watts: "
+            f"{said(watts='85')}"
+        )
     return watts

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from shared.stage.errors import UserError
+from shared.stage.face import said
 from shared.stage.paths import out_root
 from studio.night.plan.options import Options
 from studio.night.progress.forecast import RESERVE, Forecast, forecast, size
@@ -25,6 +26,6 @@ def refuse(asked: Options, forecast: Forecast) -> None:
     raise UserError(
         f"{forecast.pictures} pictures of {asked.preset.name} are still to be made and need {size(forecast.least)} of "
         f"disk at the least; {out_root()} has {size(forecast.free)} free, of which {size(RESERVE)} stay free. "
-        "Free some space, take a smaller PRESET, or set MBSD_OUT to another disk; ANYWAY=1 begins all the same and "
-        "makes films as long as there is room"
+        "Free some space, take a smaller preset, or set MBSD_OUT to another disk; "
+        f"{said(anyway='')} begins all the same and makes films as long as there is room"
     )

@@ -14,6 +14,7 @@ from mechanisms.stages.automatic.layout.sizes import LEAST_LINK, OVERALL, PIN, S
 from shared.shapes.fit import Fit
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
+from shared.stage.face import said
 
 if TYPE_CHECKING:
     from shared.stage.scale import Scale
@@ -56,5 +57,6 @@ def _too_short(name: str, shortest: float, link: str, own: float, scale: Scale) 
     least = f"1:{math.floor(times)}" if times >= 1 else f"{math.ceil(1 / times)}:1"
     return (
         f"{name} at {scale}: {link} becomes {mm(own) * scale.ratio:.3g} mm, and the thinnest pins that can be "
-        f"printed, of {LEAST:g} mm, need {needed * own / shortest:.3g} mm; SCALE={least} is the smallest that would do"
+        f"printed, of {LEAST:g} mm, need {needed * own / shortest:.3g} mm; "
+        f"{said(scale=least)} is the smallest that works"
     )

@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from mbsd import Mechanism
 
+OLDEST = (3, 12)
+"""The first Python of the rooms beside the solver."""
 STUDIO = "studio.command.__main__"
 """The program beside the solver, where its rooms are there."""
 
@@ -122,6 +124,14 @@ def _studio() -> int:
     if not rooms.is_dir():
         rooms = Path(__file__).parent.parent  # a clone
     if (rooms / "studio" / "command").is_dir():
+        if sys.version_info < OLDEST:
+            print(
+                f"mbsd: error: the solver runs on Python {sys.version_info[0]}.{sys.version_info[1]}, the program mbsd "
+                "needs Python 3.12 or later, and 3.13 for pictures and films: uv tool install --python 3.13 "
+                "'mbsd[studio]'",
+                file=sys.stderr,
+            )
+            return 2
         if find_spec("msgspec") is None:
             print("mbsd: error: this needs more packages: pip install 'mbsd[studio]'", file=sys.stderr)
             return 2

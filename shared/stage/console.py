@@ -9,6 +9,7 @@ import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, NoReturn, Protocol
 
@@ -140,9 +141,11 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
         fail("the memory ran out; close other programs or take a smaller preset. The same command goes on from here")
         code = 1
     except ImportError as error:
-        if not (libraries := missing_libraries()):
+        libraries = missing_libraries()
+        words = f"{sentence(libraries)} ({error})" if libraries else _missing_package(error)
+        if not words:
             raise
-        fail(f"{sentence(libraries)} ({error})")
+        fail(words)
         code = 1
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -153,6 +156,20 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
         fail(refusal(error.filename or "a file", error, "use"))
         code = 1
     sys.exit(code)
+
+
+def _missing_package(error: ImportError) -> str:
+    """Return a sentence on a package that is not installed; an empty one if the error is another."""
+    package = (error.name or "").partition(".")[0]
+    if not package or find_spec(package) is not None:
+        return ""
+    if package == "bpy":
+        python = f"{sys.version_info[0]}.{sys.version_info[1]}"
+        return (
+            "pictures and films need Blender's package bpy, which exists for Python 3.13 alone; this is Python "
+            f"{python}. Install mbsd there: uv tool install --python 3.13 'mbsd[studio]'"
+        )
+    return f"this needs the package '{package}', which is not installed: pip install 'mbsd[studio]'"
 
 
 def _reason(stop: BaseException) -> str:

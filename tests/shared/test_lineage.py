@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -12,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from shared.stage.lineage import is_ending
+from shared.stage.lineage import PERIOD, is_ending
 from shared.stage.paths import ROOT
 from tests.running.processes import command_lines, working_for
 
@@ -74,6 +75,43 @@ def test_whatever_ends_run_all_ends_its_stages(tmp_path: Path, victim: str, how:
     finally:
         for pid in working_for(tmp_path):
             os.kill(pid, signal.SIGKILL)
+
+
+def test_a_command_outlives_the_shell_that_started_it(tmp_path: Path) -> None:
+    """``nohup mbsd film x &``: the stage takes the place of the program, which is the outermost of its lineage."""
+    left = tmp_path / "left behind"
+    (tmp_path / "stage.py").write_text(STAGE)
+    program = f"export MBSD_MAKE=$$; exec '{sys.executable}' '{tmp_path}/stage.py' '{left}'"
+    command = f"nohup sh -c {shlex.quote(program)} > '{tmp_path}/log' 2>&1 &"
+    subprocess.run(["sh", "-c", command], env=os.environ | {"PYTHONPATH": str(ROOT)}, check=True)
+    try:
+        wait_until(left.exists)
+        time.sleep(3 * PERIOD)
+        [process] = working_for(left)
+        assert left.exists(), (tmp_path / "log").read_text()
+        os.kill(process, signal.SIGTERM)
+        wait_until(lambda: not left.exists())
+    finally:
+        for pid in working_for(tmp_path):
+            os.kill(pid, signal.SIGKILL)
+
+
+def test_a_stage_that_ends_with_its_command_says_why(tmp_path: Path) -> None:
+    left = tmp_path / "left behind"
+    (tmp_path / "stage.py").write_text(STAGE)
+    with subprocess.Popen(["sleep", "60"]) as command:
+        stage = subprocess.Popen(
+            [sys.executable, str(tmp_path / "stage.py"), str(left)],
+            env=os.environ | {"PYTHONPATH": str(ROOT), "MBSD_MAKE": str(command.pid)},
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        wait_until(left.exists)
+        command.kill()
+    _, said = stage.communicate(timeout=20)
+    assert stage.returncode == 128 + signal.SIGTERM
+    assert "error: stopped, because the command that started this stage has ended; what is finished is kept" in said
+    assert not left.exists()
 
 
 @LINUX

@@ -1,4 +1,4 @@
-"""Word that kernels are being compiled, for who waits for the first solution on a machine."""
+"""A notice that kernels are being compiled, for a user who waits for the first solution on a machine."""
 
 from __future__ import annotations
 
@@ -9,11 +9,22 @@ from numba.core.event import Event, Listener, register
 
 LOG = logging.getLogger("mbsd")
 PATIENCE = 3.0
-"""s of one kernel before a word is said."""
+"""s of one kernel before the notice."""
+SUBJECTS = {
+    "mbsd.dynamics.many": ("batches of simulations", "a minute"),
+    "mbsd.dynamics": ("simulations", "15 s"),
+    "mbsd.derivatives": ("derivatives", "20 s"),
+    "mbsd.kinematics": ("sweeps", "10 s"),
+    "mbsd": ("this kind of model", "5 s"),
+}
+"""What the kernels of a package solve, and how long they take to compile on two idle cores; the first match counts."""
 
 
 class CompileNotice(Listener):
-    """Logs a warning, once, when a kernel of this package takes longer than ``patience`` (s) to compile."""
+    """Logs a warning, once, when a kernel of this package takes longer than ``patience`` (s) to compile.
+
+    The outermost kernel says what is being compiled: it calls the others.
+    """
 
     def __init__(self, patience: float = PATIENCE) -> None:
         self.patience = patience
@@ -26,7 +37,7 @@ class CompileNotice(Listener):
             return
         self._depth += 1
         if self._timer is None:
-            self._timer = threading.Timer(self.patience, self._tell)
+            self._timer = threading.Timer(self.patience, self._tell, [_module(event)])
             self._timer.daemon = True
             self._timer.start()
 
@@ -39,13 +50,23 @@ class CompileNotice(Listener):
             self._timer.cancel()
             self._timer = None
 
-    def _tell(self) -> None:
-        LOG.warning("mbsd: compiling for this machine, which is done once and takes a minute or more")
+    def _tell(self, module: str) -> None:
+        subject, seconds = next(words for package, words in SUBJECTS.items() if f"{module}.".startswith(f"{package}."))
+        LOG.warning(
+            "mbsd: compiling the solver for %s, which takes about %s on idle cores and is kept for later runs; "
+            "'mbsd compile' compiles all of it at once",
+            subject,
+            seconds,
+        )
 
 
 def _ours(event: Event) -> bool:
+    return _module(event).split(".")[0] == __name__.split(".")[0]
+
+
+def _module(event: Event) -> str:
     assert event.data is not None
-    return event.data["dispatcher"].py_func.__module__.split(".")[0] == __name__.split(".")[0]
+    return event.data["dispatcher"].py_func.__module__
 
 
 def give_notice() -> None:

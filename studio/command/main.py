@@ -74,7 +74,7 @@ def parser(make: bool = False) -> argparse.ArgumentParser:
     return top
 
 
-def _add(commands: argparse._SubParsersAction[argparse.ArgumentParser], command: Command, make: bool) -> None:
+def _add(commands: argparse._SubParsersAction[Parser], command: Command, make: bool) -> None:
     example = f"example: {command.example}" if command.example else None
     sub = commands.add_parser(command.name, help=command.help, description=command.help, epilog=example)
     if command.of:

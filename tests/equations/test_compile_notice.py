@@ -30,7 +30,22 @@ def test_long_compilations_of_the_package_are_told(caplog, module: str, wait: fl
             notice.notify(event(status, module))
     time.sleep(0.1)
     assert [record.levelname for record in caplog.records] == ["WARNING"] * words
-    assert all("compiling for this machine" in record.getMessage() for record in caplog.records)
+    assert all("compiling the solver for this kind of model" in record.getMessage() for record in caplog.records)
+
+
+def test_every_package_with_kernels_is_named(caplog) -> None:
+    for module in (
+        "mbsd.dynamics.integrators.dop853.loop",
+        "mbsd.dynamics.many.rows",
+        "mbsd.kinematics.sweep",
+        "mbsd.x",
+    ):
+        notice = CompileNotice(patience=0.0)
+        notice.notify(event(EventStatus.START, module))
+        time.sleep(0.05)
+        notice.notify(event(EventStatus.END, module))
+    said = [record.getMessage().partition(" for ")[2].partition(",")[0] for record in caplog.records]
+    assert said == ["simulations", "batches of simulations", "sweeps", "this kind of model"]
 
 
 def test_numba_tells_of_each_compilation() -> None:

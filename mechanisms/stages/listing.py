@@ -1,4 +1,4 @@
-"""``make list``: every mechanism, what it is and what is made of it."""
+"""``make list``: every mechanism, what it is, what is made of it, and what of that is of an older version."""
 
 from __future__ import annotations
 
@@ -37,6 +37,34 @@ def run(names: bool = False, as_json: bool = False) -> None:
             print(f"{'':<24} {name}-{variant}: made: {made}".replace("_", "-"))
     for folder in unfit_names():
         warn("list", f"{folder!r} is left out, because that cannot name a mechanism: {NAME_RULE}")
+
+
+def tell_current(names: Iterable[str]) -> None:
+    """Print the names whose motion, parts and shot follow from the author's files as they are, a line each.
+
+    mechanism.py is run for its parameters and may do anything, so this is asked in a process of its own.
+    """
+    with remembered():
+        for name in names:
+            if is_current(name):
+                print(name, flush=True)
+
+
+def is_current(name: str) -> bool:
+    """Whether motion, parts and shot that are there follow from the author's files as they are."""
+    from mechanisms.stages.parts import stage as parts
+    from mechanisms.stages.shot import stage as shot
+    from mechanisms.stages.solve import stage as solve
+
+    out = Out(name)
+    try:
+        return (
+            solve.is_fresh(name)
+            and (not out.shot.is_file() or shot.is_fresh(name))
+            and (not out.parts.is_file() or parts.are_current(name))
+        )
+    except (UserError, OSError):
+        return False  # the stage tells why
 
 
 def _all_names() -> list[str]:

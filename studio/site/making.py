@@ -14,9 +14,9 @@ from render.gallery.posters import small_poster
 from shared.stage import locks
 from shared.stage.console import progress, say, warn
 from shared.stage.errors import Busy, UserError
-from shared.stage.files import file_hash, refusal, write_bytes
+from shared.stage.files import refusal, write_bytes
 from shared.stage.paths import ROOT, Out, in_workshop, out_root, refuse_links
-from shared.stage.stages import Stage
+from shared.stage.stages import Stage, key_of
 from studio.pages import making as view_pages
 from studio.site import loops
 from studio.site.downloads import write_downloads
@@ -128,7 +128,7 @@ def _copied(source: Path, target: Path) -> None:
 
 def _once(source: Path, target: Path, write: Callable[[Path, Path], object]) -> str:
     """Write ``target`` unless it was made from the source as it is; the name of the file."""
-    stage = Stage(Out(target.parent.name), f"site-{target.stem}", file_hash(source), [target])
+    stage = Stage(Out(target.parent.name), f"site-{target.stem}", key_of(source), [target])
     if not stage.is_fresh():
         write(source, target)
         stage.done()

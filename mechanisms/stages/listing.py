@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterable
 
 import msgspec
 
 from shared.stage.console import warn
+from shared.stage.errors import UserError
+from shared.stage.memory import remembered
 from shared.stage.paths import NAME_RULE, Out, mechanism_file, mechanism_names, out_root, unfit_names, variants_in
 
 

@@ -127,11 +127,24 @@ def outdated_by(out: Out, path: Path) -> list[str]:
     return list(dict.fromkeys(changed))
 
 
+def is_recorded(out: Out, path: Path) -> bool:
+    """Whether a stage has recorded what it made a file of; not so of files that were brought from elsewhere."""
+    return _stamp_of(out, path) is not None
+
+
 def _stamp_of(out: Out, path: Path) -> StageStamp | None:
     """The stamp of the stage that made a file; None where none has recorded it."""
     name = _name_in(out, path)
-    stamps = (_read(file) for file in sorted(out.stamps.glob("*.json")))
-    return next((stamp for stamp in stamps if stamp is not None and name in stamp.outputs), None)
+    word = msgspec.json.encode(name)
+    for file in sorted(out.stamps.glob("*.json")):
+        try:
+            is_named = word in file.read_bytes()  # a look is faster than to decode all of them
+        except OSError:
+            continue
+        stamp = _read(file) if is_named else None
+        if stamp is not None and name in stamp.outputs:
+            return stamp
+    return None
 
 
 def _read(file: Path) -> StageStamp | None:

@@ -132,6 +132,12 @@ def is_recorded(out: Out, path: Path) -> bool:
     return _stamp_of(out, path) is not None
 
 
+def results_of(out: Out, path: Path) -> set[Path]:
+    """Return the results of other stages that a file was made of, at first hand; none of a file without a record."""
+    stamp = _stamp_of(out, path)
+    return {Path(os.path.normpath(out.folder / name)) for name in stamp.results} if stamp else set()
+
+
 def _stamp_of(out: Out, path: Path) -> StageStamp | None:
     """The stamp of the stage that made a file; None where none has recorded it."""
     name = _name_in(out, path)

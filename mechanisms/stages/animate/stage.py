@@ -21,7 +21,7 @@ from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.body_colours import body_colours, main_material
 from shared.stage import console
 from shared.stage.errors import UserError
-from shared.stage.files import refusal, sources_hash
+from shared.stage.files import sources_hash
 from shared.stage.paths import ROOT, Out, mechanism_file
 from shared.stage.stages import Stage, key_of, versions
 from shared.stage.suggestions import did_you_mean
@@ -130,8 +130,6 @@ def _draw(solution: Solution, path: Path, words: str, parts: Parts | None) -> No
             film = animate(solution, path, show, progress=progress, inks=inks)
         except MechanismError as error:
             raise UserError(f"{name}: {path.name}: {error}") from error
-        except OSError as error:
-            raise UserError(refusal(path, error)) from error
     rate = "" if film.rate == 1.0 else f", {film.rate:g} of real time"
     size = path.stat().st_size / 1e6
     console.say("animate", f"{name}: {path}: {film.pictures} pictures, {film.seconds:.1f} s{rate}, {size:.1f} MB")

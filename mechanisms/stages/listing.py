@@ -12,7 +12,7 @@ import msgspec
 from shared.stage.console import warn
 from shared.stage.errors import UserError
 from shared.stage.memory import remembered
-from shared.stage.paths import NAME_RULE, Out, mechanism_file, mechanism_names, out_root, unfit_names, variants_in
+from shared.stage.paths import Out, mechanism_file, mechanism_names, out_root, unfit_names, variants_in
 from shared.stage.stages import outdated_by, results_of
 
 
@@ -43,8 +43,8 @@ def run(names: bool = False, as_json: bool = False) -> None:
             print(f"{name.replace('_', '-'):<24} {_title(name)}\n{'':<24} {_freedom(name)}{_made_words(name)}")
             for variant in variants_in(mechanism_file(name)):
                 print(f"{'':<24} {name}-{variant}: ".replace("_", "-") + _made_words(f"{name}-{variant}"))
-    for folder in unfit_names():
-        warn("list", f"{folder!r} is left out, because that cannot name a mechanism: {NAME_RULE}")
+    for name, why in unfit_names().items():
+        warn("list", f"{name!r} is left out, because that cannot name a mechanism: {why}")
 
 
 def tell_current(names: Iterable[str]) -> None:

@@ -52,8 +52,6 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
     if any("-" not in name for name in left):
         missing = [name for name in left if "-" not in name]  # a variant's film is one that somebody asked for
         say("showreel", f"left out, since they have no film of {preset.name}: {', '.join(missing)}")
-    if NAME in mechanism_names():
-        raise UserError(f"showreel: a mechanism has this name, and so has its film; call {NAME} otherwise")
     target = named(out_root() / "films" / f"{NAME}-{preset.name}.mp4", show)
     home = out_root() / f".{NAME}"
     say("showreel", f"{len(films)} films of {preset}, each under its title")

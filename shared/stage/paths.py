@@ -44,8 +44,18 @@ def work_in(folder: Path) -> None:
 
 MECHANISMS = _machines()
 """The folder of machines: each a folder with a mechanism.py; in a user's own one also single files, or itself."""
-RESERVED = ("stages", "automatic")
-"""Names that the package of the machines needs for itself."""
+RESERVED = {
+    **dict.fromkeys(("stages", "automatic"), "the package of the mechanisms has a module of this name"),
+    "films": "out/films holds the films",
+    "showreel": "the film of all mechanisms has this name",
+    "night": "out/night holds the log of the nights",
+    "site": "out/site holds the site",
+    "gallery": "out/gallery holds the gallery",
+    "docs": "out/docs holds the pages of the documents",
+    "engines": "out/engines holds the tables of engine layouts",
+    "hunt_parts": "out/hunt_parts holds the cases of hunts",
+}
+"""Names that no mechanism can have, and why: results of it and of others would be in one folder."""
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 """The name of a mechanism: its folder, Python package and make target."""
 NAME_RULE = "write lower-case letters, digits and underscores (or hyphens), a letter first"
@@ -159,9 +169,9 @@ def mechanism_names() -> list[str]:
     return [name for name in _names() if NAME.fullmatch(name) and name not in RESERVED]
 
 
-def unfit_names() -> list[str]:
-    """Names of folders and files that hold a mechanism but cannot be the name of one."""
-    return [name for name in _names() if not NAME.fullmatch(name) or name in RESERVED]
+def unfit_names() -> dict[str, str]:
+    """Names of folders and files that hold a mechanism but cannot be the name of one, and why."""
+    return {name: RESERVED.get(name, NAME_RULE) for name in _names() if not NAME.fullmatch(name) or name in RESERVED}
 
 
 def _names() -> list[str]:
@@ -178,7 +188,7 @@ def _names() -> list[str]:
 def _own_name() -> str:
     """The name of a mechanism whose files lie in the user's folder itself."""
     name = re.sub(r"[^a-z0-9]+", "_", MECHANISMS.name.lower()).strip("_")
-    return name if NAME.fullmatch(name) else f"machine_{name}".rstrip("_")
+    return name if NAME.fullmatch(name) and name not in RESERVED else f"machine_{name}".rstrip("_")
 
 
 def defines(file: Path, name: str) -> bool:
@@ -192,10 +202,12 @@ def defines(file: Path, name: str) -> bool:
 
 def _source(owner: str) -> Path | None:
     """The file that defines this mechanism's model, if there is one."""
+    if owner in RESERVED:
+        return None
     file = MECHANISMS / owner / "mechanism.py"
     if file.is_file():
         return file
-    if not in_workshop() or owner in RESERVED:
+    if not in_workshop():
         return None
     if (single := MECHANISMS / f"{owner}.py").is_file():
         return single
@@ -248,6 +260,8 @@ def mechanism_folder(name: str) -> Path:
         raise UserError(f"{owner}/mechanism.py and {owner}.py in {MECHANISMS} have one name; give one another name")
     if source is None:
         known, name = mechanism_names(), mechanism_name(name)
+        if name in RESERVED and name in unfit_names():
+            raise UserError(f"'{name}' cannot name a mechanism, because {RESERVED[name]}; give it another name")
         _refuse_unknown_variant(name, known)
         raise UserError(
             f"there is no mechanism '{name}' in {MECHANISMS if in_workshop() else 'mechanisms/'}; there is: "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import time
@@ -273,6 +274,29 @@ def test_the_listing_names_what_is_of_an_older_version(tmp_path: Path) -> None:
     assert listed() == "motion; of an older version: plots"
     plotted()
     assert listed() == "motion, plots"
+
+
+def test_no_machine_shares_a_folder_of_results(tmp_path: Path) -> None:
+    """A machine called site had its results between the pages of the site."""
+    environment = {"MBSD_WORKSHOP": str(tmp_path), "MBSD_OUT": str(tmp_path / "out")}
+    (tmp_path / "site.py").write_text(PENDULUM)
+    (tmp_path / "films").mkdir()
+    (tmp_path / "films" / "mechanism.py").write_text(PENDULUM)
+    for name, why in (("site", "out/site holds the site"), ("films", "out/films holds the films")):
+        refused = cli("solve", name, **environment)
+        assert refused.returncode == 1
+        assert refused.stderr == f"error: '{name}' cannot name a mechanism, because {why}; give it another name\n"
+    listed = cli("list", **environment)
+    assert "'site' is left out, because that cannot name a mechanism: out/site holds the site" in listed.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_every_folder_of_results_is_reserved() -> None:
+    folders = set()
+    for room in ("shared", "render", "mechanisms", "studio", "tools"):
+        for source in (ROOT / room).rglob("*.py"):
+            folders |= set(re.findall(r'out_root\(\) / "([a-z_]+)"', source.read_text()))
+    assert {"films", "site", "night", "gallery"} <= folders <= set(paths.RESERVED)
 
 
 def test_an_unknown_mechanism_is_one_sentence() -> None:

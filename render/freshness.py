@@ -65,7 +65,10 @@ def current_names(names: Sequence[str]) -> set[str]:
     except subprocess.TimeoutExpired:
         current, said = set(), f"no answer within {SILENCE:.0f} s"
     if said:
-        warn("current", f"which results are of an older version is not known of all, so the others count as older: {said}")
+        warn(
+            "current",
+            f"which results are of an older version is not known of all, so the others count as older: {said}",
+        )
     return current
 
 

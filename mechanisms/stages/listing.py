@@ -99,7 +99,7 @@ def _entry(name: str) -> dict[str, object]:
 def _title(name: str) -> str:
     """First line of mechanism.py's docstring, read without running the file."""
     try:
-        docstring = ast.get_docstring(ast.parse((mechanism_file(name)).read_text()))
+        docstring = ast.get_docstring(ast.parse(mechanism_file(name).read_bytes()))
     except SyntaxError as error:
         return f"({mechanism_file(name).name} does not parse: line {error.lineno}: {error.msg})"
     return (docstring or "(no docstring)").splitlines()[0]

@@ -76,6 +76,6 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
 def description(name: str) -> str:
     """The docstring of mechanism.py, read without running it; empty where there is none."""
     try:
-        return ast.get_docstring(ast.parse((mechanism_file(name)).read_text())) or ""
+        return ast.get_docstring(ast.parse(mechanism_file(name).read_bytes())) or ""
     except (SyntaxError, OSError):
         return ""

@@ -6,6 +6,7 @@ import ast
 import os
 import re
 import shlex
+import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -66,11 +67,25 @@ def out_root() -> Path:
     return Path(os.environ.get("MBSD_OUT") or (MECHANISMS if in_workshop() else ROOT) / "out")
 
 
-def cache_root() -> Path:
-    """The folder of what is kept for the next time: ``.cache`` in the clone, else the user's cache folder."""
-    if (ROOT / "Makefile").is_file():
-        return ROOT / ".cache"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "mbsd"
+def cache_roots() -> list[Path]:
+    """Return the folders of what is kept for the next time, that to write to first.
+
+    ``.cache`` in the clone, or the user's cache folder; both where the clone is another user's, which is then read.
+    """
+    clones = [ROOT / ".cache"] if (ROOT / "Makefile").is_file() else []
+    if clones and _is_writable(clones[0]):
+        return clones
+    return [Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "mbsd", *clones]
+
+
+def _is_writable(folder: Path) -> bool:
+    """Whether this user may write into a folder, or make it."""
+    try:
+        folder.mkdir(exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return False
+    return True
 
 
 def refuse_links(path: Path) -> None:

@@ -104,7 +104,10 @@ class _Shown:
     def warn(self) -> None:
         if self.older:
             files = "; ".join(f"{file} ({why})" for file, why in self.older.items())
-            warn("site", f"{self._out.name}: left out, being of an older version: {files}; {to_run('run', self._out.name)}")
+            warn(
+                "site",
+                f"{self._out.name}: left out, being of an older version: {files}; {to_run('run', self._out.name)}",
+            )
 
 
 def _made(name: str, folder: Path, freshness: Freshness) -> Entry:

@@ -104,7 +104,9 @@ class Author:
         try:
             parts = contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
             if parts is not None and not are_current(self.name):
-                console.say("parts", f"{self.name}: masses and solids are of an older version until parts are made again")
+                console.say(
+                    "parts", f"{self.name}: masses and solids are of an older version until parts are made again"
+                )
             return parts
         except UserError:
             return None

@@ -73,7 +73,7 @@ def current_names(names: Sequence[str]) -> set[str]:
 
 
 def clearance_files(out: Out) -> list[Path]:
-    """Return clearance.json of a machine, if it is there and of the motion and the parts that are there; else nothing."""
+    """Return clearance.json of a machine, if it is there and of the motion and the parts beside it; else nothing."""
     return [out.clearance] if out.clearance.is_file() and not outdated_by(out, out.clearance) else []
 
 

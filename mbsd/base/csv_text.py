@@ -38,7 +38,7 @@ def frame_csv(frame: pandas.DataFrame, **options: Any) -> str:
     """Return a table of pandas as CSV by its own ``to_csv`` with these ``options``, names and texts as :func:`cell`."""
     plain = frame.rename(columns=cell).rename_axis(index=cell)
     for place, kind in enumerate(frame.dtypes):
-        if kind == object or kind == "str":
+        if kind.kind == "O":
             texts = plain.iloc[:, place].map(lambda value: cell(value) if isinstance(value, str) else value)
             plain.isetitem(place, texts)
     return plain.to_csv(lineterminator="\n", **options)

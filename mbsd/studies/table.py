@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mbsd.base.errors import ModelError
 from mbsd.base.csv_text import frame_csv
+from mbsd.base.errors import ModelError
 from mbsd.base.files import write_whole
 from mbsd.base.shown import shown
 from mbsd.studies.points import REASON, Point

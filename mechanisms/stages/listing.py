@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import ast
-import importlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 import msgspec
@@ -143,8 +142,11 @@ def _made(out: Out) -> dict[str, Path]:
 
 def _older(out: Out, made: Mapping[str, Path]) -> list[str]:
     """What of it is older than what it was made of."""
-    stale = set() if _is_fresh("solve", out) else {out.motion, out.skeleton, out.animation("", ".mp4")}
-    stale |= set() if not out.shot.is_file() or _is_fresh("shot", out) else {out.shot}
+    from mechanisms.stages.shot import stage as shot
+    from mechanisms.stages.solve import stage as solve
+
+    stale = set() if _is_fresh(solve.is_fresh, out) else {out.motion, out.skeleton, out.animation("", ".mp4")}
+    stale |= set() if not out.shot.is_file() or _is_fresh(shot.is_fresh, out) else {out.shot}
     return [word for word, path in made.items() if path in stale or _is_outdated(out, path, stale)]
 
 
@@ -154,9 +156,8 @@ def _is_outdated(out: Out, path: Path, stale: set[Path]) -> bool:
     return bool(read and (read & stale or outdated_by(out, path)))
 
 
-def _is_fresh(stage: str, out: Out) -> bool:
-    module = importlib.import_module(f"mechanisms.stages.{stage}.stage")
+def _is_fresh(is_fresh: Callable[[str], bool], out: Out) -> bool:
     try:
-        return module.is_fresh(out.name)
+        return is_fresh(out.name)
     except (UserError, OSError):
-        return False
+        return False  # the stage tells why

@@ -25,7 +25,8 @@ STRIP = "strip.jpg"
 def run(folder: Path = FOLDER) -> int:
     """Write README.md, a poster of each mechanism and some of them in one; posters of mechanisms that are gone go.
 
-    Returns 1 if a mechanism is left out, because it has no poster, or one of an older version. Raises UserError if none has one.
+    Returns 1 if a mechanism is left out, because it has no poster, or one of an older version. Raises UserError if none
+    has one.
     """
     entries, posters = [], {}
     names = mechanism_names()

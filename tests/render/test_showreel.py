@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 
+from render import freshness
 from render.film.story.frame import Caption
 from render.film.story.subtitles import captions_of, srt
-from render import freshness
 from render.frames import encode, muxing
 from render.presets import Preset
 from render.showreel import card, reel_words, showreel

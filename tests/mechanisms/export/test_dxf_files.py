@@ -1,4 +1,4 @@
-"""DXF files have the same bytes in every process, and layers that other programs can read, whatever bodies are called."""
+"""DXF files have the same bytes in every process, and layers that programs can read, whatever bodies are called."""
 
 from __future__ import annotations
 

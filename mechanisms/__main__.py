@@ -59,6 +59,8 @@ def main() -> int | None:
     looked = commands.add_parser("check", help="what in a model looks as if it was not meant")
     looked.add_argument("name", help="mechanism; four-bar and four_bar are one")
     looked.add_argument("--json", action="store_true", help="for other programs")
+    now = commands.add_parser("current", help="those whose motion, parts and shot are of their files as they are")
+    now.add_argument("names", nargs="*", help="mechanisms")
     every = commands.add_parser("list", help="the mechanisms and what is made of them")
     every.add_argument("--names", action="store_true", help="names alone, a line each")
     every.add_argument("--json", action="store_true", help="for other programs")
@@ -106,6 +108,8 @@ def main() -> int | None:
         return new.run(arguments.name, arguments.kind, arguments.single)
     from mechanisms.stages import listing
 
+    if arguments.command == "current":
+        return listing.tell_current(arguments.names)
     return listing.run(arguments.names, arguments.json)
 
 

@@ -1,34 +1,101 @@
-"""Files are written whole."""
+"""Files are written whole: to a temporary file beside the target, then to its name.
+
+A temporary file is locked by its writer for as long as he works, so the next writer of the same target can tell what a
+kill has left and removes it. The system gives a file the rights that the user's umask leaves.
+"""
 
 from __future__ import annotations
 
 import os
-import tempfile
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from glob import escape
 from pathlib import Path
 
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+
 
 def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
-    """Write a file by a temporary file beside the target, then a rename: no part of a file ever has the final name."""
+    """Write a file: no part of a file ever has the final name. Raises ModelError where the disk refuses it."""
     _refuse_no_path(path)
-    path, temporary = Path(path), None
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
-        temporary = Path(name)
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.chmod(0o644)
+    with whole_file(Path(path)) as temporary:
+        temporary.write_bytes(content)
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yield a temporary path with the suffix of ``path``, which it replaces at the end; an error leaves the old file.
+
+    Raises ModelError where the disk refuses it.
+    """
+    with temporary_file(path) as temporary:
+        yield temporary
+        with temporary.open("rb") as written:
+            os.fsync(written.fileno())
         os.replace(temporary, path)
+
+
+@contextmanager
+def temporary_file(path: Path) -> Iterator[Path]:
+    """Yield a new hidden file beside ``path``, with its suffix, that is locked meanwhile and removed at the end.
+
+    Those that killed writers of ``path`` have left are removed first. Raises ModelError where the disk refuses it.
+    """
+    handle, temporary = -1, None
+    try:
+        _remove_leftovers(path)
+        handle, temporary = _locked_file(path)
+        yield temporary
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or error
         raise ModelError(f"cannot write {path}: {why}; choose another place or free some disk space") from error
     finally:
         if temporary is not None:
-            temporary.unlink(missing_ok=True)
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+            os.close(handle)
+
+
+def _locked_file(path: Path) -> tuple[int, Path]:
+    while True:
+        temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
+        try:
+            handle = os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o666)
+        except FileExistsError:
+            continue
+        _is_locked_here(handle)
+        if os.fstat(handle).st_nlink:
+            return handle, temporary
+        os.close(handle)  # another process took it for a leftover before it was locked
+
+
+def _remove_leftovers(path: Path) -> None:
+    for left in path.parent.glob(f".{escape(path.stem)}-*{escape(path.suffix)}"):
+        with suppress(OSError):
+            handle = os.open(left, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0))
+            try:
+                if _is_locked_here(handle):
+                    left.unlink(missing_ok=True)
+            finally:
+                os.close(handle)
+
+
+def _is_locked_here(handle: int) -> bool:
+    """Lock an open file for this process; False if another one holds it, or the disk knows no locks."""
+    if fcntl is None:
+        return False
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
 
 
 def _refuse_no_path(path: object) -> None:

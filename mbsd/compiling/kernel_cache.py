@@ -5,14 +5,16 @@ old numbers. So each kernel's folder is named after a hash of its file and of al
 files of installed packages left out. An edit that no kernel is made of compiles nothing anew; going back to
 an earlier source finds its code again.
 
-A wheel may bring compiled code along, in ``mbsd/kernels``. It is looked at first and never written to; what it lacks is
-looked for, compiled and kept in the user's folder.
+A wheel may bring compiled code along, in ``mbsd/kernels``, and a clone that another user owns has its own. Both are
+looked at first; what they lack is looked for, compiled and kept in the user's folder. How files are written, and what
+becomes of damaged ones, is in ``kernel_files.py``.
 """
 
 from __future__ import annotations
 
 import hashlib
 import importlib
+import logging
 import os
 import re
 import shutil
@@ -28,6 +30,7 @@ from typing import Any
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
 
 from mbsd.compiling.alternatives import kernel_for
+from mbsd.compiling.kernel_files import KernelFiles
 from mbsd.compiling.kernel_library import Apart
 from mbsd.compiling.lazy_kernel import cell_of
 from mbsd.compiling.shipped_kernels import SHIPPED, tell_of_other_kernels
@@ -37,10 +40,12 @@ try:
 except ImportError:  # Windows
     fcntl = None
 
+LOG = logging.getLogger("mbsd")
 _PACKAGE = Path(__file__).parent.parent
 _HERE = _PACKAGE.parent
 _ABOUT_THE_CACHE = {
-    str(_PACKAGE / "compiling" / name) for name in ("kernel_cache.py", "shipped_kernels.py", "notice.py")
+    str(_PACKAGE / "compiling" / name)
+    for name in ("kernel_cache.py", "kernel_files.py", "shipped_kernels.py", "notice.py")
 }
 """Files that decide where code is kept and what is said, not what it does."""
 KEPT = 4
@@ -70,7 +75,7 @@ def _parents() -> Iterator[Path]:
     given, user_cache = os.environ.get("NUMBA_CACHE_DIR"), os.environ.get("XDG_CACHE_HOME")
     if given:
         yield Path(given)
-    yield _PACKAGE / "__pycache__"
+    yield _beside_package()
     if not user_cache:
         with suppress(RuntimeError):  # a user whom the system knows by number alone, as in a container, has no home
             user_cache = Path.home() / ".cache"
@@ -78,6 +83,19 @@ def _parents() -> Iterator[Path]:
         yield Path(user_cache) / "mbsd"
     if (own := _own_temporary()) is not None:
         yield own
+
+
+def _beside_package() -> Path:
+    return _PACKAGE / "__pycache__"
+
+
+def _folders_to_read() -> tuple[Path, ...]:
+    """Folders with kernels of others that are read before the user's own: the wheel's, and those of a clone that this
+    user cannot write to.
+    """
+    clones = _beside_package() / "kernels"
+    others = () if os.environ.get("NUMBA_CACHE_DIR") or clones == cache_root() else (clones,)
+    return tuple(folder for folder in (SHIPPED, *others) if folder.is_dir())
 
 
 def _own_temporary() -> Path | None:
@@ -172,14 +190,16 @@ class _Locator(_CacheLocator):
         return made
 
 
-class _ShippedLocator(_Locator):
-    """The same in the wheel."""
+class _LocatorToRead:
+    """Says where the code of a function is in a folder that is only read."""
 
-    @classmethod
-    def from_function(cls, py_func: Callable[..., Any], py_file: str) -> _ShippedLocator | None:
-        """None where the wheel has nothing of that file as it is."""
-        made = cls(py_func, py_file, SHIPPED) if os.path.isfile(py_file) else None
-        return made if made is not None and os.path.isdir(made._path) else None
+    def __init__(self, root: Path) -> None:
+        self.root = root
+
+    def from_function(self, py_func: Callable[..., Any], py_file: str) -> _Locator | None:
+        """Return the locator; None where the folder has nothing of that file as it is."""
+        found = _Locator(py_func, py_file, self.root) if os.path.isfile(py_file) else None
+        return found if found is not None and os.path.isdir(found.get_cache_path()) else None
 
 
 def _forget_old(folder: Path) -> None:
@@ -238,15 +258,16 @@ def _at(module: str, function: str) -> Any:
 
 
 class _Files(FunctionCache):
+    """numba's cache of one function, with our files; in ``root``, which is only read, if that is given."""
+
     _impl_class = _Results
 
-
-class _ShippedResults(_Results):
-    _locator_classes = [_ShippedLocator]
-
-
-class _ShippedFiles(FunctionCache):
-    _impl_class = _ShippedResults
+    def __init__(self, py_func: Callable[..., Any], root: Path | None = None) -> None:
+        if root is not None:
+            self._impl_class = type("_ResultsToRead", (_Results,), {"_locator_classes": [_LocatorToRead(root)]})
+        super().__init__(py_func)
+        locator = self._impl.locator
+        self._cache_file = KernelFiles(locator.get_cache_path(), self._impl.filename_base, locator.get_source_stamp())
 
 
 @contextmanager
@@ -259,6 +280,12 @@ def _alone_in(folder: str) -> Iterator[None]:
     with open(os.path.join(folder, ".lock"), "ab") as held:
         fcntl.flock(held, fcntl.LOCK_EX)
         yield
+
+
+@cache
+def _tell_of_full_disk(folder: str, reason: str) -> None:
+    """Log, once, that compiled code cannot be kept."""
+    LOG.warning("mbsd: compiled code cannot be kept in %s (%s), so the next run compiles again", folder, reason)
 
 
 class KernelCache(_Cache):
@@ -276,11 +303,12 @@ class KernelCache(_Cache):
             return None
 
     @cached_property
-    def _shipped(self) -> _ShippedFiles | None:
-        try:
-            return _ShippedFiles(self._py_func) if SHIPPED.is_dir() else None
-        except (RuntimeError, OSError):
-            return None
+    def _to_read(self) -> list[_Files]:
+        found = []
+        for folder in _folders_to_read():
+            with suppress(RuntimeError, OSError):
+                found.append(_Files(self._py_func, folder))
+        return found
 
     @property
     def cache_path(self) -> str | None:  # pyright: ignore[reportIncompatibleMethodOverride, reportIncompatibleVariableOverride]
@@ -291,18 +319,23 @@ class KernelCache(_Cache):
         """The compiled function, or None."""
         if not self._enabled:
             return None
-        overload = self._shipped.load_overload(sig, target_context) if self._shipped is not None else None
-        if overload is None and self._files is not None:
-            overload = self._files.load_overload(sig, target_context)
+        overload = None
+        for files in (*self._to_read, self._files):
+            if overload is None and files is not None:
+                overload = files.load_overload(sig, target_context)
         if overload is None and SHIPPED.is_dir():
             tell_of_other_kernels()
         return overload
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep a compiled function."""
-        if self._enabled and self._files is not None:
+        """Keep a compiled function, where the disk takes it."""
+        if not self._enabled or self._files is None:
+            return
+        try:
             with _alone_in(self._files.cache_path):
                 self._files.save_overload(sig, data)
+        except OSError as error:
+            _tell_of_full_disk(str(cache_root()), error.strerror or str(error))
 
     def enable(self) -> None:
         """Use it."""

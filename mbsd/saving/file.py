@@ -33,7 +33,7 @@ def load(path: str | os.PathLike[str], make: type[M]) -> M:
     except (OSError, ValueError) as error:
         raise ModelError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
     try:
-        written = json.loads(content.decode(), object_pairs_hook=lambda pairs: _no_twins(pairs, path))
+        written = json.loads(content.decode("utf-8-sig"), object_pairs_hook=lambda pairs: _no_twins(pairs, path))
     except RecursionError as error:
         raise _too_deep(path) from error
     except ValueError as error:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mbsd.base.csv_text import frame_csv
 from mbsd.base.errors import ModelError
 from mbsd.base.files import write_whole
 from mbsd.base.shown import shown
@@ -68,7 +69,7 @@ def refuse_format(path: str | os.PathLike[str]) -> None:
 def save_table(frame: pandas.DataFrame, path: str | os.PathLike[str]) -> None:
     """Write the table whole."""
     if Path(path).suffix == ".csv":
-        write_whole(path, frame.to_csv(index=False).encode())
+        write_whole(path, frame_csv(frame, index=False).encode())
         return
     content = io.BytesIO()
     frame.to_parquet(content, index=False)

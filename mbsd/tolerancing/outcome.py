@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import io
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from mbsd.base.csv_text import csv_text
 from mbsd.base.errors import ModelError
 from mbsd.base.files import write_whole
 from mbsd.tolerancing.dimensions.dimension import Dimension
@@ -163,9 +163,11 @@ class Tolerances:
         """Write the rows of :attr:`tighten`, or all ``machines``, their deviations and results."""
         if machines:
             rows = np.column_stack([self.deviations, self.values]).tolist()
-            _write(path, [*self.columns, "result"], rows)
+            text = csv_text([*self.columns, "result"], rows)
         else:
-            _write(path, Row._fields, self.tighten)
+            rows = [[value if isinstance(value, str) else float(value) for value in row] for row in self.tighten]
+            text = csv_text(Row._fields, rows)
+        write_whole(path, text.encode())
 
     def plot(self, ax: Any = None) -> Picture:
         """The distribution with its limits, and the share of each dimension. ``ax``: two axes. Needs ``draw``."""
@@ -182,18 +184,3 @@ class Tolerances:
         from mbsd.tolerancing.words import report
 
         return report(self)
-
-
-def _write(path: str | os.PathLike[str], names: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
-    """A table with all digits; an empty field where there is no number."""
-    out = io.StringIO()
-    out.write(",".join(map(_field, names)) + "\n")
-    for row in rows:
-        out.write(",".join(_field(value) for value in row) + "\n")
-    write_whole(path, out.getvalue().encode())
-
-
-def _field(value: Any) -> str:
-    if isinstance(value, str):
-        return '"' + value.replace('"', '""') + '"' if any(mark in value for mark in ',"\n') else value
-    return "" if value != value else repr(float(value))

@@ -1,16 +1,19 @@
-"""``make list``: every mechanism, what it is and what is made of it."""
+"""``make list``: every mechanism, what it is, what is made of it, and what of that is of an older version."""
 
 from __future__ import annotations
 
 import ast
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 
 import msgspec
 
 from shared.stage.console import say, warn
+from shared.stage.errors import UserError
 from shared.stage.face import to_run
+from shared.stage.memory import remembered
 from shared.stage.paths import (
     MECHANISMS,
-    NAME_RULE,
     Out,
     in_workshop,
     mechanism_file,
@@ -19,6 +22,7 @@ from shared.stage.paths import (
     unfit_names,
     variants_in,
 )
+from shared.stage.stages import outdated_by, results_of
 
 
 class _Diagnostics(msgspec.Struct):
@@ -32,6 +36,9 @@ class _Solved(msgspec.Struct):
 def run(names: bool = False, as_json: bool = False) -> None:
     """Print a line for each mechanism: name, degrees of freedom (once solved), first line of its docstring, files.
 
+    Results that are older than the files or results that they were made of are named apart. No author's code is run, so
+    of parts it is not known.
+
     ``names``: names alone, of variants as well; ``as_json``: all of it for other programs.
     """
     if names:
@@ -43,14 +50,41 @@ def run(names: bool = False, as_json: bool = False) -> None:
     if not mechanism_names():
         where = MECHANISMS if in_workshop() else "mechanisms/"
         say("list", f"there are no mechanisms in {where}; {to_run('new', 'excavator')} makes one")
-    for name in mechanism_names():
-        made = ", ".join(_made(name)) or "nothing yet"
-        print(f"{name.replace('_', '-'):<24} {_title(name)}\n{'':<24} {_freedom(name)}made: {made}")
-        for variant in variants_in(mechanism_file(name)):
-            made = ", ".join(_made(f"{name}-{variant}")) or "nothing yet"
-            print(f"{'':<24} {name}-{variant}: made: {made}".replace("_", "-"))
-    for folder in unfit_names():
-        warn("list", f"{folder!r} is left out, because that cannot name a mechanism: {NAME_RULE}")
+    with remembered():
+        for name in mechanism_names():
+            print(f"{name.replace('_', '-'):<24} {_title(name)}\n{'':<24} {_freedom(name)}{_made_words(name)}")
+            for variant in variants_in(mechanism_file(name)):
+                print(f"{'':<24} {name}-{variant}: ".replace("_", "-") + _made_words(f"{name}-{variant}"))
+    for name, why in unfit_names().items():
+        warn("list", f"{name!r} is left out, because that cannot name a mechanism: {why}")
+
+
+def tell_current(names: Iterable[str]) -> None:
+    """Print the names whose motion, parts and shot follow from the author's files as they are, a line each.
+
+    mechanism.py is run for its parameters and may do anything, so this is asked in a process of its own.
+    """
+    with remembered():
+        for name in names:
+            if is_current(name):
+                print(name, flush=True)
+
+
+def is_current(name: str) -> bool:
+    """Whether motion, parts and shot that are there follow from the author's files as they are."""
+    from mechanisms.stages.parts import stage as parts
+    from mechanisms.stages.shot import stage as shot
+    from mechanisms.stages.solve import stage as solve
+
+    out = Out(name)
+    try:
+        return (
+            solve.is_fresh(name)
+            and (not out.shot.is_file() or shot.is_fresh(name))
+            and (not out.parts.is_file() or parts.are_current(name))
+        )
+    except (UserError, OSError):
+        return False  # the stage tells why
 
 
 def _all_names() -> list[str]:
@@ -63,19 +97,21 @@ def _all_names() -> list[str]:
 
 def _entry(name: str) -> dict[str, object]:
     out = Out(name)
+    made = _made(out)
     return {
         "name": name,
         "title": _title(name),
         "file": str(mechanism_file(name)),
         "out": str(out.folder),
-        "made": _made(name),
+        "made": list(made),
+        "older": _older(out, made),
     }
 
 
 def _title(name: str) -> str:
     """First line of mechanism.py's docstring, read without running the file."""
     try:
-        docstring = ast.get_docstring(ast.parse((mechanism_file(name)).read_text()))
+        docstring = ast.get_docstring(ast.parse(mechanism_file(name).read_bytes()))
     except SyntaxError as error:
         return f"({mechanism_file(name).name} does not parse: line {error.lineno}: {error.msg})"
     return (docstring or "(no docstring)").splitlines()[0]
@@ -89,17 +125,52 @@ def _freedom(name: str) -> str:
     return f"{dof} degree{'' if dof == 1 else 's'} of freedom; "
 
 
-def _made(name: str) -> list[str]:
+def _made_words(name: str) -> str:
+    """``made: parts, motion; of an older version: poster``."""
     out = Out(name)
-    files = {"parts": out.parts, "motion": out.motion, "clearance": out.clearance, "shot": out.shot}
-    made = [word for word, path in files.items() if path.is_file()]
-    if (out.print_folder / "pieces.md").is_file():
-        made.append("print")
-    if out.animation("", ".mp4").is_file():
-        made.append("animation")
-    if any(out.plots.glob("*.png")):
-        made.append("plots")
-    if out.poster.is_file():
-        made.append("poster")
-    presets = [film.stem.removeprefix(f"{name}-") for film in sorted((out_root() / "films").glob(f"{name}-*.mp4"))]
-    return made + [f"film ({preset})" for preset in presets if "-" not in preset]  # else a variant's
+    made = _made(out)
+    older = _older(out, made)
+    words = f"made: {', '.join(word for word in made if word not in older) or 'nothing yet'}"
+    return f"{words}; of an older version: {', '.join(older)}" if older else words
+
+
+def _made(out: Out) -> dict[str, Path]:
+    """What is there of a mechanism, and the file that stands for it."""
+    files = {
+        "parts": out.parts,
+        "motion": out.motion,
+        "clearance": out.clearance,
+        "shot": out.shot,
+        "print": out.print_folder / "pieces.md",
+        "animation": out.animation("", ".mp4"),
+        "plots": min(out.plots.glob("*.png"), default=out.plots / "none"),
+        "poster": out.poster,
+    }
+    for film in sorted((out_root() / "films").glob(f"{out.name}-*.mp4")):
+        preset = film.stem.removeprefix(f"{out.name}-")
+        if "-" not in preset:  # else a variant's
+            files[f"film ({preset})"] = film
+    return {word: path for word, path in files.items() if path.is_file()}
+
+
+def _older(out: Out, made: Mapping[str, Path]) -> list[str]:
+    """What of it is older than what it was made of."""
+    from mechanisms.stages.shot import stage as shot
+    from mechanisms.stages.solve import stage as solve
+
+    stale = set() if _is_fresh(solve.is_fresh, out) else {out.motion, out.skeleton, out.animation("", ".mp4")}
+    stale |= set() if not out.shot.is_file() or _is_fresh(shot.is_fresh, out) else {out.shot}
+    return [word for word, path in made.items() if path in stale or _is_outdated(out, path, stale)]
+
+
+def _is_outdated(out: Out, path: Path, stale: set[Path]) -> bool:
+    """Whether a result was made of an older one, or of one that is ``stale`` itself."""
+    read = results_of(out, path)
+    return bool(read and (read & stale or outdated_by(out, path)))
+
+
+def _is_fresh(is_fresh: Callable[[str], bool], out: Out) -> bool:
+    try:
+        return is_fresh(out.name)
+    except (UserError, OSError):
+        return False  # the stage tells why

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from render.freshness import Freshness, current_clearance
 from render.gallery.page import Entry, page, sentences
 from render.gallery.posters import small_poster, strip
 from render.report import description
 from render.report.facts import facts
 from shared.contract import read_motion, read_parts
-from shared.contract.clearance import read_clearance
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -25,18 +25,23 @@ STRIP = "strip.jpg"
 def run(folder: Path = FOLDER) -> int:
     """Write README.md, a poster of each mechanism and some of them in one; posters of mechanisms that are gone go.
 
-    Returns 1 if a mechanism is left out, because it has no poster. Raises UserError if none has one.
+    Returns 1 if a mechanism is left out, because it has no poster, or one of an older version. Raises UserError if none
+    has one.
     """
     entries, posters = [], {}
     names = mechanism_names()
+    freshness = Freshness(names)
     for name in names:
         out = Out(name)
         if not (out.poster.is_file() and out.motion.is_file()):
             warn("gallery", f"{name} is left out: it has no poster; {to_run('poster', name)}")
             continue
+        if why := freshness.why_older(out, out.poster):
+            warn("gallery", f"{name} is left out: its poster is of an older version: {why}; {to_run('poster', name)}")
+            continue
         motion = read_motion(out.motion, name)
         parts = read_parts(out.parts, name) if out.parts.is_file() else None
-        clearance = read_clearance(out.clearance) if parts is not None and out.clearance.is_file() else None
+        clearance = current_clearance(out, parts, "gallery")
         posters[f"{name}.jpg"] = small_poster(out.poster)
         place = os.path.relpath(mechanism_file(name), folder)
         entries.append(Entry(name, sentences(description(name)), facts(motion, parts, clearance), place))

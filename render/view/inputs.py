@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from render.film.film import Film
+from render.freshness import current_clearance
 from render.view.loads import clearance_of
 from render.view.payload import payload
 from render.view.solid import with_parts
 from shared.contract import read_motion, read_parts
-from shared.contract.clearance import read_clearance
 from shared.contract.shot import Shot, read_shot
 from shared.contract.skeleton import read_skeleton
 from shared.contract.spanning import with_rods
@@ -34,6 +34,7 @@ def read_payload(out: Out) -> dict[str, Any]:
     film = Film(motion, parts, shot, out.parts_folder) if parts else None
     if film is not None:
         page = with_parts(page, film)
-    if out.clearance.is_file():
-        page["clearance"] = clearance_of(read_clearance(out.clearance), film)
+    clearance = current_clearance(out, parts, "view")
+    if clearance is not None:
+        page["clearance"] = clearance_of(clearance, film)
     return page

@@ -6,8 +6,8 @@ import errno
 import glob
 import hashlib
 import os
+import secrets
 import shutil
-import tempfile
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -41,7 +41,6 @@ def whole_file(path: Path, put: Callable[[Path, Path], object] = os.replace) -> 
         path.parent.mkdir(parents=True, exist_ok=True)
         _remove_leftovers(path)
         handle, temporary = _locked_file(path)
-        os.chmod(temporary, 0o644)
         yield temporary
         with temporary.open("rb") as written:
             os.fsync(written.fileno())
@@ -80,11 +79,15 @@ def _free(path: Path) -> str:
 def _locked_file(path: Path) -> tuple[int, Path]:
     """A new temporary file beside ``path`` and its handle, which holds a lock for as long as it is open."""
     while True:
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+        temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
+        try:
+            handle = os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o666)  # less what the umask takes
+        except FileExistsError:
+            continue
         with suppress(OSError):  # a disk without locks: what a kill leaves there stays
             locks.take(handle)
         if os.fstat(handle).st_nlink:
-            return handle, Path(name)
+            return handle, temporary
         os.close(handle)  # another process took it for a leftover before it was locked
 
 

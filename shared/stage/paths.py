@@ -6,6 +6,7 @@ import ast
 import os
 import re
 import shlex
+import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -44,8 +45,18 @@ def work_in(folder: Path) -> None:
 
 MECHANISMS = _machines()
 """The folder of machines: each a folder with a mechanism.py; in a user's own one also single files, or itself."""
-RESERVED = ("stages", "automatic")
-"""Names that the package of the machines needs for itself."""
+RESERVED = {
+    **dict.fromkeys(("stages", "automatic"), "the package of the mechanisms has a module of this name"),
+    "films": "out/films holds the films",
+    "showreel": "the film of all mechanisms has this name",
+    "night": "out/night holds the log of the nights",
+    "site": "out/site holds the site",
+    "gallery": "out/gallery holds the gallery",
+    "docs": "out/docs holds the pages of the documents",
+    "engines": "out/engines holds the tables of engine layouts",
+    "hunt_parts": "out/hunt_parts holds the cases of hunts",
+}
+"""Names that no mechanism can have, and why: results of it and of others would be in one folder."""
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 """The name of a mechanism: its folder, Python package and make target."""
 NAME_RULE = "write lower-case letters, digits and underscores (or hyphens), a letter first"
@@ -56,11 +67,25 @@ def out_root() -> Path:
     return Path(os.environ.get("MBSD_OUT") or (MECHANISMS if in_workshop() else ROOT) / "out")
 
 
-def cache_root() -> Path:
-    """The folder of what is kept for the next time: ``.cache`` in the clone, else the user's cache folder."""
-    if (ROOT / "Makefile").is_file():
-        return ROOT / ".cache"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "mbsd"
+def cache_roots() -> list[Path]:
+    """Return the folders of what is kept for the next time, that to write to first.
+
+    ``.cache`` in the clone, or the user's cache folder; both where the clone is another user's, which is then read.
+    """
+    clones = [ROOT / ".cache"] if (ROOT / "Makefile").is_file() else []
+    if clones and _is_writable(clones[0]):
+        return clones
+    return [Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "mbsd", *clones]
+
+
+def _is_writable(folder: Path) -> bool:
+    """Whether this user may write into a folder, or make it."""
+    try:
+        folder.mkdir(exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return False
+    return True
 
 
 def refuse_links(path: Path) -> None:
@@ -161,9 +186,9 @@ def mechanism_names() -> list[str]:
     return [name for name in _names() if NAME.fullmatch(name) and name not in RESERVED]
 
 
-def unfit_names() -> list[str]:
-    """Names of folders and files that hold a mechanism but cannot be the name of one."""
-    return [name for name in _names() if not NAME.fullmatch(name) or name in RESERVED]
+def unfit_names() -> dict[str, str]:
+    """Names of folders and files that hold a mechanism but cannot be the name of one, and why."""
+    return {name: RESERVED.get(name, NAME_RULE) for name in _names() if not NAME.fullmatch(name) or name in RESERVED}
 
 
 def _names() -> list[str]:
@@ -180,7 +205,7 @@ def _names() -> list[str]:
 def name_of_folder(folder: Path) -> str:
     """Return the name of a mechanism whose mechanism.py lies in the user's folder itself."""
     name = re.sub(r"[^a-z0-9]+", "_", folder.name.lower()).strip("_")
-    return name if NAME.fullmatch(name) else f"machine_{name}".rstrip("_")
+    return name if NAME.fullmatch(name) and name not in RESERVED else f"machine_{name}".rstrip("_")
 
 
 def defines(file: Path, name: str) -> bool:
@@ -194,10 +219,12 @@ def defines(file: Path, name: str) -> bool:
 
 def _source(owner: str) -> Path | None:
     """The file that defines this mechanism's model, if there is one."""
+    if owner in RESERVED:
+        return None
     file = MECHANISMS / owner / "mechanism.py"
     if file.is_file():
         return file
-    if not in_workshop() or owner in RESERVED:
+    if not in_workshop():
         return None
     if (single := MECHANISMS / f"{owner}.py").is_file():
         return single
@@ -250,6 +277,8 @@ def mechanism_folder(name: str) -> Path:
         raise UserError(f"{owner}/mechanism.py and {owner}.py in {MECHANISMS} have one name; give one another name")
     if source is None:
         known, name = mechanism_names(), mechanism_name(name)
+        if name in RESERVED and name in unfit_names():
+            raise UserError(f"'{name}' cannot name a mechanism, because {RESERVED[name]}; give it another name")
         _refuse_unknown_variant(name, known)
         raise UserError(
             f"there is no mechanism '{name}' in {MECHANISMS if in_workshop() else 'mechanisms/'}; there is: "

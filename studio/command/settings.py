@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from pathlib import Path
 
 import msgspec
@@ -50,7 +51,17 @@ def read(folder: Path) -> Settings:
     except OSError as error:
         raise UserError(f"{file} cannot be read: {error.strerror}") from error
     try:
-        return msgspec.toml.decode(content, type=Settings)
-    except (msgspec.ValidationError, msgspec.DecodeError, UnicodeDecodeError) as error:
-        known = ", ".join(field.encode_name for field in msgspec.structs.fields(Settings))
-        raise UserError(f"{file}: {error}; it may say: {known}") from error
+        settings = msgspec.toml.decode(content.removeprefix(codecs.BOM_UTF8), type=Settings)
+    except RecursionError as error:
+        raise UserError(f"{file}: it is nested too deep; {_known()}") from error
+    except (msgspec.DecodeError, ValueError) as error:  # a number of 5000 digits is a ValueError
+        raise UserError(f"{file}: {error}; {_known()}") from error
+    for field in msgspec.structs.fields(Settings):
+        value = getattr(settings, field.name)
+        if isinstance(value, str) and not value.isprintable():
+            raise UserError(f"{file}: {field.encode_name} is {value!r}, with characters that cannot be printed")
+    return settings
+
+
+def _known() -> str:
+    return f"it may say: {', '.join(field.encode_name for field in msgspec.structs.fields(Settings))}"

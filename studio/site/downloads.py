@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,10 +25,10 @@ class Download:
     size: int
 
 
-def write_downloads(name: str, folder: Path) -> list[Download]:
-    """Put what there is of a machine into ``folder``; files of earlier times that are gone are removed."""
+def write_downloads(name: str, folder: Path, is_of_now: Callable[[Path], bool]) -> list[Download]:
+    """Put what there is of a machine as it is now into ``folder``; files of earlier times are removed."""
     out, written = Out(name), []
-    for file, words, content in _offered(out, mechanism_file(name)):
+    for file, words, content in _offered(out, mechanism_file(name), is_of_now):
         if len(content) > LARGEST:
             continue
         path = folder / file
@@ -40,7 +40,7 @@ def write_downloads(name: str, folder: Path) -> list[Download]:
     return written
 
 
-def _offered(out: Out, source: Path) -> Iterator[tuple[str, str, bytes]]:
+def _offered(out: Out, source: Path, is_of_now: Callable[[Path], bool]) -> Iterator[tuple[str, str, bytes]]:
     yield source.name, "the model, Python", source.read_bytes()
     singles = (
         (out.motion, "the motion, JSON"),
@@ -48,7 +48,7 @@ def _offered(out: Out, source: Path) -> Iterator[tuple[str, str, bytes]]:
         (out.report, "the report"),
     )
     for path, words in singles:
-        if path.is_file():
+        if path.is_file() and is_of_now(path):
             yield path.name, words, path.read_bytes()
     folders = (
         (out.parts_folder, "*.stl", f"{out.name}_stl.zip", "parts, STL"),
@@ -57,7 +57,7 @@ def _offered(out: Out, source: Path) -> Iterator[tuple[str, str, bytes]]:
         (out.print_folder, "*.dxf", f"{out.name}_dxf.zip", "outlines to cut, DXF"),
     )
     for folder, pattern, file, words in folders:
-        if paths := sorted(folder.glob(pattern)):
+        if (paths := sorted(folder.glob(pattern))) and all(map(is_of_now, paths)):
             yield file, words, _zipped(paths)
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from render.freshness import current_clearance
 from render.gallery.page import sentences
 from render.report import description
 from render.report.facts import facts
 from render.view.payload import title_of
 from shared.contract import read_motion, read_parts
-from shared.contract.clearance import read_clearance
 from shared.stage.paths import Out
 from studio.site.downloads import Download
 from studio.site.purposes import purposes
@@ -37,6 +37,6 @@ def entry_of(name: str) -> Entry:
     out = Out(name)
     motion = read_motion(out.motion, name)
     parts = read_parts(out.parts, name) if out.parts.is_file() else None
-    clearance = read_clearance(out.clearance) if parts is not None and out.clearance.is_file() else None
+    clearance = current_clearance(out, parts, "site")
     text = description(name)
     return Entry(name, title_of(name), sentences(text), facts(motion, parts, clearance), purposes(name, text, motion))

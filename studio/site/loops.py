@@ -16,22 +16,15 @@ PATIENCE = 600.0
 """Seconds in which ffmpeg has to make a loop."""
 
 
-def film_of(out: Out) -> Path | None:
-    """The best film that is there: that of the finest preset, else the skeleton in motion."""
-    films = [out.film(preset) for preset in reversed(list(PRESETS))]
-    for path in (*films, out.animation("skeleton", ".mp4"), out.animation("", ".mp4")):
-        if path.is_file():
-            return path
-    return None
+def films_of(out: Out) -> list[Path]:
+    """Return the loops that are there, the finest preset first."""
+    return [path for preset in reversed(list(PRESETS)) if (path := out.film(preset)).is_file()]
 
 
-def page_film(out: Out) -> Path | None:
-    """The film for a machine's own page: the best story, else the best loop; None where there is no film."""
-    for preset in reversed(list(PRESETS)):
-        for path in (story_of(out, preset), out.film(preset)):
-            if path.is_file():
-                return path
-    return None
+def page_films(out: Out) -> list[Path]:
+    """Return the films for a machine's own page that are there, the best first: of each preset the story, the loop."""
+    films = (path for preset in reversed(list(PRESETS)) for path in (story_of(out, preset), out.film(preset)))
+    return [path for path in films if path.is_file()]
 
 
 def write_loop(film: Path, target: Path) -> None:

@@ -1,4 +1,7 @@
-"""The site of all machines, made from their files: what has not changed is left, and a machine that fails is named."""
+"""The site of all machines, made from their files: what has not changed is left, and a machine that fails is named.
+
+All that is shown of a machine is of its files as they are now: its results of an older version are left out and named.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +13,15 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from render.freshness import Freshness
 from render.gallery.posters import small_poster
 from shared.stage import locks
 from shared.stage.console import progress, say, warn
 from shared.stage.errors import Busy, UserError
-from shared.stage.files import file_hash, refusal, write_bytes
-from shared.stage.paths import ROOT, Out, in_workshop, out_root, refuse_links
-from shared.stage.stages import Stage
+from shared.stage.face import to_run
+from shared.stage.files import refusal, write_bytes
+from shared.stage.paths import ROOT, Out, out_root, refuse_links
+from shared.stage.stages import Stage, key_of
 from studio.pages import making as view_pages
 from studio.site import loops
 from studio.site.downloads import write_downloads
@@ -64,10 +69,11 @@ def _alone(folder: Path) -> Iterator[None]:
 def _run(names: Sequence[str], folder: Path) -> int:
     view_pages.run(names)
     entries: list[Entry] = []
+    freshness = Freshness(names)
     with progress("site", len(names), "machine") as shown:
         for name in names:
             try:
-                entries.append(_made(name, folder / name))
+                entries.append(_made(name, folder / name, freshness))
             except (UserError, OSError) as error:
                 warn("site", f"{name} is left out: {error}")
             shown.advance(note=name)
@@ -81,42 +87,70 @@ def _run(names: Sequence[str], folder: Path) -> int:
     return int(len(entries) < len(names))
 
 
-def _made(name: str, folder: Path) -> Entry:
+class _Shown:
+    """What may be shown of a machine; what is of an older version is remembered, to be named."""
+
+    def __init__(self, out: Out, freshness: Freshness) -> None:
+        self._out, self._freshness = out, freshness
+        self.older: dict[str, str] = {}
+        """Names of files, and why they are not shown."""
+
+    def is_of_now(self, path: Path) -> bool:
+        why = self._freshness.why_older(self._out, path)
+        if why:
+            self.older[path.name] = why
+        return not why
+
+    def warn(self) -> None:
+        if self.older:
+            files = "; ".join(f"{file} ({why})" for file, why in self.older.items())
+            warn(
+                "site",
+                f"{self._out.name}: left out, being of an older version: {files}; {to_run('run', self._out.name)}",
+            )
+
+
+def _made(name: str, folder: Path, freshness: Freshness) -> Entry:
     """Everything of a machine but its own page, which names the others."""
     out = Out(name)
     if not (out.motion.is_file() and out.view.is_file()):
         raise UserError("it has no page")
+    if why := freshness.why_older(out, out.view):
+        raise UserError(f"its page is of an older version: {why}")
+    shown = _Shown(out, freshness)
     entry = entry_of(name)
     folder.mkdir(parents=True, exist_ok=True)
     entry.has_sliders = write_machine_page(name, folder / "machine.html")
-    film = loops.film_of(out) or _skeleton(name)
+    film = next(filter(shown.is_of_now, loops.films_of(out)), None) or _skeleton(out)
     if film is not None:
         entry.loop = _once(film, folder / "loop.mp4", loops.write_loop)
-    whole = loops.page_film(out)
+    whole = next(filter(shown.is_of_now, loops.page_films(out)), None)
     if whole is not None:
         entry.film = _once(whole, folder / "film.mp4", _copied)
-    entry.picture = _picture(name, film, folder / "picture.jpg")
-    entry.downloads = write_downloads(name, folder / "files")
+    poster = out.poster if out.poster.is_file() and shown.is_of_now(out.poster) else None
+    entry.picture = _picture(poster, film, folder / "picture.jpg")
+    entry.downloads = write_downloads(name, folder / "files", shown.is_of_now)
+    for file in {"loop.mp4", "film.mp4"} - {entry.loop, entry.film}:
+        (folder / file).unlink(missing_ok=True)
+    shown.warn()
     return entry
 
 
-def _skeleton(name: str) -> Path | None:
-    """The skeleton in motion, made where there is no film; None where it cannot be drawn, which is reported."""
-    words = [sys.executable, "-m", "mechanisms", "animate", name, "--view", "skeleton"]
+def _skeleton(out: Out) -> Path | None:
+    """The skeleton in motion, drawn unless it is there already; None where it cannot be drawn, which is reported."""
+    words = [sys.executable, "-m", "mechanisms", "animate", out.name, "--view", "skeleton"]
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode:
         said = (done.stderr.strip() or done.stdout.strip() or f"exit code {done.returncode}").splitlines()[-1]
-        warn("site", f"{name} stands still on the wall: {said}")
-    return loops.film_of(Out(name))
+        warn("site", f"{out.name} stands still on the wall: {said}")
+        return None
+    return out.animation("skeleton", ".mp4")
 
 
-def _picture(name: str, film: Path | None, target: Path) -> str:
-    """The poster, else the one of the gallery, else a picture of the film."""
-    out, shipped = Out(name), ROOT / "docs" / "gallery" / f"{name}.jpg"
-    if out.poster.is_file():
-        return _once(out.poster, target, lambda source, path: write_bytes(path, small_poster(source)))
-    if shipped.is_file() and not in_workshop():
-        return _once(shipped, target, _copied)
+def _picture(poster: Path | None, film: Path | None, target: Path) -> str:
+    """The poster, else a picture of the film."""
+    if poster is not None:
+        return _once(poster, target, lambda source, path: write_bytes(path, small_poster(source)))
     if film is None:
         raise UserError("it has neither a poster nor a film, so there is no picture of it")
     return _once(film, target, loops.write_still)
@@ -128,7 +162,7 @@ def _copied(source: Path, target: Path) -> None:
 
 def _once(source: Path, target: Path, write: Callable[[Path, Path], object]) -> str:
     """Write ``target`` unless it was made from the source as it is; the name of the file."""
-    stage = Stage(Out(target.parent.name), f"site-{target.stem}", file_hash(source), [target])
+    stage = Stage(Out(target.parent.name), f"site-{target.stem}", key_of(source), [target])
     if not stage.is_fresh():
         write(source, target)
         stage.done()

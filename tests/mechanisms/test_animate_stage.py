@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,7 +14,7 @@ from mbsd.results.solution import Solution
 from mechanisms.stages.animate import stage as animate_stage
 from mechanisms.stages.parts import stage as parts_stage
 from shared.stage.errors import UserError
-from shared.stage.paths import Out
+from shared.stage.paths import ROOT, Out
 from tests.project.making import planned, run
 from tools.fixtures import film_fixture
 
@@ -51,6 +54,31 @@ def test_make_hands_the_view_over_as_it_is() -> None:
     assert done.returncode != 0
     assert "there is no view" in done.stderr
     assert not Path("stolen").exists()
+
+
+KILLED = """
+import os, signal
+from mbsd.drawing.animation import encoders
+from mechanisms.stages.animate import stage
+run = encoders._run
+def killed(path, command, pictures):
+    run(path, command, pictures)  # the first round is a whole film of its own
+    os.kill(os.getpid(), signal.SIGKILL)
+encoders._run = killed
+stage.run("four_bar", "skeleton")
+"""
+
+
+def test_what_a_kill_leaves_is_removed_by_the_next_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half a film stayed under a hidden name for ever, a new one after each kill."""
+    monkeypatch.setenv("MBSD_OUT", str(tmp_path))
+    done = subprocess.run([sys.executable, "-c", KILLED], cwd=ROOT, capture_output=True, check=False)
+    assert done.returncode == -signal.SIGKILL
+    folder = tmp_path / "four_bar"
+    assert [path for path in folder.iterdir() if path.suffix == ".mp4" and path.name.startswith(".")]
+    animate_stage.run("four_bar", "skeleton")
+    films = {path.name for path in folder.iterdir() if path.is_file()}
+    assert films == {"animation-skeleton.mp4", "animation-skeleton.gif"}
 
 
 def test_a_film_is_made_once(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import time
@@ -229,7 +230,73 @@ def test_the_listing_tells_what_is_made(out_root: Path) -> None:
     listed = cli("list", **environment).stdout
     assert "four-bar " in listed
     assert "Four-bar crank-rocker" in listed
-    assert "1 degree of freedom; made: motion, film (draft)" in listed
+    assert "1 degree of freedom; made: film (draft); of an older version: motion" in listed, "no stage has solved it"
+
+
+PENDULUM = """
+from dataclasses import dataclass
+from mbsd import Mechanism
+
+@dataclass(frozen=True)
+class Params:
+    length: float = 0.3
+
+DURATION = 0.1
+
+def build(p):
+    m = Mechanism("swing")
+    rod = m.bar("rod", p.length, mass=0.2)
+    m.revolute("A", m.ground.at(0, 0), rod.start)
+    m.start_near(rod=-30)
+    return m
+"""
+
+
+def test_the_listing_names_what_is_of_an_older_version(tmp_path: Path) -> None:
+    """A report beside a motion that was solved since was listed like any other."""
+    environment = {"MBSD_WORKSHOP": str(tmp_path), "MBSD_OUT": str(tmp_path / "out")}
+    model = tmp_path / "swing.py"
+
+    def listed() -> str:
+        return cli("list", **environment).stdout.splitlines()[1].strip().partition("made: ")[2]
+
+    def plotted() -> None:
+        words = [sys.executable, "-m", "render", "plots", "swing"]
+        subprocess.run(words, cwd=ROOT, env=os.environ | environment, capture_output=True, check=True)
+
+    model.write_text(PENDULUM)
+    assert cli("solve", "swing", **environment).returncode == 0
+    plotted()
+    assert listed() == "motion, plots"
+    model.write_text(PENDULUM.replace("0.3", "0.4"))
+    assert listed() == "nothing yet; of an older version: motion, plots"
+    assert cli("solve", "swing", **environment).returncode == 0
+    assert listed() == "motion; of an older version: plots"
+    plotted()
+    assert listed() == "motion, plots"
+
+
+def test_no_machine_shares_a_folder_of_results(tmp_path: Path) -> None:
+    """A machine called site had its results between the pages of the site."""
+    environment = {"MBSD_WORKSHOP": str(tmp_path), "MBSD_OUT": str(tmp_path / "out")}
+    (tmp_path / "site.py").write_text(PENDULUM)
+    (tmp_path / "films").mkdir()
+    (tmp_path / "films" / "mechanism.py").write_text(PENDULUM)
+    for name, why in (("site", "out/site holds the site"), ("films", "out/films holds the films")):
+        refused = cli("solve", name, **environment)
+        assert refused.returncode == 1
+        assert refused.stderr == f"error: '{name}' cannot name a mechanism, because {why}; give it another name\n"
+    listed = cli("list", **environment)
+    assert "'site' is left out, because that cannot name a mechanism: out/site holds the site" in listed.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_every_folder_of_results_is_reserved() -> None:
+    folders = set()
+    for room in ("shared", "render", "mechanisms", "studio", "tools"):
+        for source in (ROOT / room).rglob("*.py"):
+            folders |= set(re.findall(r'out_root\(\) / "([a-z_]+)"', source.read_text()))
+    assert {"films", "site", "night", "gallery"} <= folders <= set(paths.RESERVED)
 
 
 def test_an_unknown_mechanism_is_one_sentence() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from render import gallery
+from render import freshness, gallery
 from render.gallery.page import sentences
 from render.gallery.posters import LARGEST, ON_STRIP, small_poster, strip, unlike
 from render.report.facts import facts
@@ -18,6 +18,7 @@ from render.report.written import speed
 from shared.contract import Action, ForceMotion, write_motion
 from shared.stage.errors import UserError
 from shared.stage.paths import Out, mechanism_names
+from shared.stage.stages import Stage, key_of
 from tools.models.motions import bouncing_ball, four_bar_motion
 
 
@@ -112,7 +113,9 @@ def test_where_no_driver_works_facts_tell_the_force_that_does() -> None:
     assert not [fact for fact in said if "load" in fact or "wish" in fact]
 
 
-def test_the_page_shows_who_has_a_poster(out_root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_page_shows_who_has_a_poster(
+    out_root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     folder = tmp_path / "gallery"
     with pytest.raises(UserError, match="no mechanism has a poster"):
         gallery.run(folder)
@@ -121,6 +124,14 @@ def test_the_page_shows_who_has_a_poster(out_root: Path, tmp_path: Path, capsys:
     write_motion(out.motion, four_bar_motion())
     noise(out.poster, (640, 360))
     folder.mkdir()
+    with pytest.raises(UserError, match="no mechanism has a poster"):
+        gallery.run(folder)
+    assert "its poster is of an older version: no stage has recorded what it was made of" in capsys.readouterr().err
+    Stage(out, "poster", key_of(out.motion), [out.poster]).done()
+    with pytest.raises(UserError, match="no mechanism has a poster"):
+        gallery.run(folder)
+    assert "the machine has changed since it was solved" in capsys.readouterr().err, "it was not solved at all"
+    monkeypatch.setattr(freshness, "current_names", set)
     (folder / "gone.jpg").touch()
     assert gallery.run(folder) == int(len(mechanism_names()) > 1)
     assert {path.name for path in folder.iterdir()} == {"README.md", "four_bar.jpg", "strip.jpg"}
@@ -128,3 +139,7 @@ def test_the_page_shows_who_has_a_poster(out_root: Path, tmp_path: Path, capsys:
     assert "## Four bar\n\n![Four bar](four_bar.jpg)\n\nFour-bar crank-rocker A-B-C-D: the crank turns" in text
     assert "1 degree of freedom · repeats after 1 s ·" in text
     assert "SI units" not in text
+    out.motion.write_bytes(out.motion.read_bytes() + b"\n")
+    with pytest.raises(UserError, match="no mechanism has a poster"):
+        gallery.run(folder)
+    assert "its poster is of an older version: it is of an older data.json; make poster" in capsys.readouterr().err

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 
+from render import freshness
 from render.film.story.frame import Caption
 from render.film.story.subtitles import captions_of, srt
 from render.frames import encode, muxing
@@ -20,6 +21,8 @@ from render.showreel.card import Title
 from render.showreel.clip import read_clip
 from render.sound.wave_file import wav
 from shared.stage.errors import UserError
+from shared.stage.paths import Out
+from shared.stage.stages import Stage, key_of
 
 TINY = Preset("tiny", 128, 72, 1)
 
@@ -69,6 +72,29 @@ def test_only_some_in_their_order(out_root: Path) -> None:
     title = card.number(30)
     assert read_clip(target).packets[title : title + 7] == read_clip(second).packets
     assert read_clip(target).packets[-9:] == read_clip(first).packets
+
+
+def test_films_of_older_versions_are_left_out(
+    out_root: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """They were joined beside new ones without a word."""
+    monkeypatch.setattr(freshness, "current_names", set)
+    for name in ("four_bar", "pendulum"):
+        out, path = Out(name), film(out_root, name, 5)
+        out.folder.mkdir()
+        out.motion.write_text("as it was filmed")
+        Stage(out, "film-tiny", key_of(out.motion), [path]).done()
+    Out("pendulum").motion.write_text("solved again")
+    showreel.run(TINY)
+    said = capsys.readouterr()
+    assert "pendulum-tiny.mp4 is left out, being of an older version: it is of an older data.json" in said.err
+    assert "1 films of" in said.out
+    with pytest.raises(UserError, match="films that are asked for are older"):
+        showreel.run(TINY, "pendulum")
+    monkeypatch.setattr(freshness, "current_names", lambda names: {"pendulum"})
+    with pytest.raises(UserError, match="films that are asked for are older"):
+        showreel.run(TINY, "four-bar")
+    assert "the machine has changed since it was solved" in capsys.readouterr().err
 
 
 def test_films_are_heard_under_their_pictures(out_root: Path) -> None:

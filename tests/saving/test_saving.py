@@ -298,3 +298,10 @@ def test_tables_keep_every_digit(tmp_path: Path) -> None:
     loaded = _back(m, tmp_path)
     assert loaded.bodies["crank"].length == 0.1 + 0.2
     np.testing.assert_array_equal(pack(loaded).drives(t), pack(m).drives(t))
+
+
+def test_a_byte_order_mark_is_no_part_of_a_model(tmp_path: Path) -> None:
+    path = tmp_path / "model.json"
+    Mechanism("swing").save(path)
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert Mechanism.load(path).name == "swing"

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from mbsd.base.files import write_whole
 from shared.stage.errors import UserError
 from shared.stage.files import file_hash, sources_hash, whole_file, write_bytes
 from shared.stage.paths import ROOT
@@ -31,8 +32,19 @@ def only(target: Path) -> bool:
 def test_written_whole(target: Path) -> None:
     write_bytes(target, b"new")
     assert target.read_bytes() == b"new"
-    assert target.stat().st_mode & 0o777 == 0o644
     assert only(target)
+
+
+@pytest.mark.parametrize(("umask", "mode"), [(0o022, 0o644), (0o077, 0o600), (0o002, 0o664)])
+def test_the_umask_decides_who_may_read(target: Path, umask: int, mode: int) -> None:
+    """Results were for everyone to read."""
+    before = os.umask(umask)
+    try:
+        write_bytes(target, b"new")
+        write_whole(target.with_name("model.json"), b"new")
+    finally:
+        os.umask(before)
+    assert [path.stat().st_mode & 0o777 for path in sorted(target.parent.iterdir())] == [mode, mode]
 
 
 def test_the_temporary_file_keeps_the_suffix(tmp_path: Path) -> None:

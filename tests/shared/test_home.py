@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from render.view import bundle
+from shared.stage import jsonfile, paths
 from shared.stage.paths import ROOT
 
 PR_CAPBSET_DROP, CAP_DAC_OVERRIDE = 24, 1
@@ -86,6 +88,41 @@ def test_a_study_and_the_kernels_need_no_home(home: Path, tmp_path: Path) -> Non
     assert list(kept.rglob("*.jsonl"))
     assert Path(root).is_relative_to(temporary)
     assert Path(root).parent.stat().st_mode & 0o077 == 0, "nobody else puts code there"
+
+
+PAGE = """
+import sys
+from pathlib import Path
+from shared.stage import jsonfile, paths
+from render.view import bundle
+paths.ROOT = Path(sys.argv[1])
+print([str(folder) for folder in paths.cache_roots()])
+print(bundle.bundle().script)
+"""
+
+
+def _clone(folder: Path) -> Path:
+    """A clone of somebody else who has made a page there."""
+    kept = folder / ".cache" / "page" / f"{bundle.sources_key()[:24]}.json"
+    jsonfile.write(kept, bundle.Bundle(script="kept in the clone", style="", licences=""))
+    (folder / "Makefile").touch()
+    for place in (folder, *folder.rglob("*")):
+        place.chmod(0o555 if place.is_dir() else 0o444)
+    return folder
+
+
+def test_who_cannot_write_to_the_clone_reads_its_packed_page_and_keeps_his_own(tmp_path: Path) -> None:
+    """It was an error, with a remedy that cured nothing."""
+    clone, own = _clone(tmp_path / "clone"), tmp_path / "own"
+    roots, script = said("-c", PAGE, str(clone), HOME=str(tmp_path), XDG_CACHE_HOME=str(own)).splitlines()
+    assert roots == str([str(own / "mbsd"), str(clone / ".cache")])
+    assert script == "kept in the clone"
+
+
+def test_who_may_write_to_the_clone_keeps_the_page_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "Makefile").touch()
+    monkeypatch.setattr(paths, "ROOT", tmp_path)
+    assert paths.cache_roots() == [tmp_path / ".cache"]
 
 
 def test_a_user_without_a_home_solves(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 from shared.stage import stages
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from shared.stage.stages import Stage, key_of, versions
+from shared.stage.stages import Stage, key_of, outdated_by, versions
 
 
 @pytest.fixture
@@ -131,3 +131,69 @@ def test_versions_names_what_is_installed() -> None:
     import numpy
 
     assert versions("numpy") == {"numpy": numpy.__version__}
+
+
+def _chain(out: Out) -> None:
+    """A motion, a clearance made of it, and a report made of both."""
+    out.folder.mkdir(parents=True, exist_ok=True)
+    out.motion.write_text("motion")
+    Stage(out, "solve", "k", [out.motion]).done()
+    out.clearance.write_text("clearance")
+    Stage(out, "clearance", key_of(out.motion), [out.clearance]).done()
+    out.report.write_text("report")
+    Stage(out, "report", key_of(key_of(out.motion, out.clearance), "words"), [out.report]).done()
+
+
+def test_a_result_is_up_to_date_until_what_it_was_made_of_changes(out: Out) -> None:
+    _chain(out)
+    assert outdated_by(out, out.report) == []
+    out.motion.write_text("another motion")
+    assert outdated_by(out, out.report) == ["data.json"]
+    out.motion.write_text("motion")
+    assert outdated_by(out, out.report) == []
+
+
+def test_a_result_is_as_old_as_the_oldest_result_that_it_was_made_of(out: Out) -> None:
+    _chain(out)
+    out.motion.write_text("another motion")
+    Stage(out, "solve", "l", [out.motion]).done()
+    Stage(out, "report", key_of(out.motion, out.clearance), [out.report]).done()
+    assert outdated_by(out, out.report) == ["data.json"], "of the clearance, which is of the motion before"
+    Stage(out, "clearance", key_of(out.motion), [out.clearance]).done()
+    assert outdated_by(out, out.report) == []
+    out.motion.write_text("edited")
+    Stage(out, "report", key_of(out.motion), [out.report]).done()
+    assert outdated_by(out, out.report) == ["data.json"], "which is not as it was solved"
+
+
+@pytest.mark.parametrize(
+    "change", [lambda path: path.write_text("edited"), lambda path: path.unlink()], ids=["edited", "deleted"]
+)
+def test_a_result_that_is_not_as_its_stage_left_it_is_not_up_to_date(
+    out: Out, change: Callable[[Path], object]
+) -> None:
+    _chain(out)
+    change(out.report)
+    assert outdated_by(out, out.report) == ["report.md"]
+
+
+def test_a_file_that_no_stage_recorded_is_not_up_to_date(out: Out) -> None:
+    _chain(out)
+    out.poster.write_text("poster")
+    assert outdated_by(out, out.poster) == ["poster.png"]
+
+
+def test_a_stamp_that_does_not_say_what_it_was_made_of_is_written_again(out: Out) -> None:
+    """Those of earlier versions."""
+    _chain(out)
+    key = key_of(key_of(out.motion, out.clearance), "words")
+    assert Stage(out, "report", key, [out.report]).is_fresh()
+    assert not Stage(out, "report", str(key), [out.report]).is_fresh()
+
+
+def test_files_of_the_program_are_no_results(out: Out, tmp_path: Path) -> None:
+    outside = tmp_path / "source.py"
+    outside.write_text("1")
+    out.folder.mkdir(parents=True)
+    out.motion.write_text("motion")
+    assert list(key_of(outside, out.motion).results) == [out.motion]

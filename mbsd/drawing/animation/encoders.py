@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import io
-import os
 import shutil
 import subprocess
 import tempfile
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mbsd.base.errors import ModelError
+from mbsd.base.files import temporary_file, whole_file, write_whole
 from mbsd.drawing.animation.words import CARD, KINETIC, POTENTIAL, QUANTITIES, TAKEN
 from mbsd.drawing.look import INK, PAPER, QUIET
 
@@ -54,16 +54,14 @@ def write_mp4(path: Path, pictures: Iterable[np.ndarray], size: tuple[int, int],
     """
     program = [ffmpeg(), "-y", "-loglevel", "error"]
     raw = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{size[0]}x{size[1]}", "-framerate", f"{fps:.6g}", "-i", "-"]
-    with _whole(path) as target:
-        once = target if rounds == 1 else target.with_stem(f"{target.stem}-once")
-        try:
+    with whole_file(path) as target:
+        if rounds == 1:
+            _run(path, [*program, *raw, *H264, str(target)], pictures)
+            return
+        with temporary_file(path) as once:
             _run(path, [*program, *raw, *H264, str(once)], pictures)
-            if rounds > 1:
-                again = ["-stream_loop", str(rounds - 1), "-i", str(once), "-c", "copy"]
-                _run(path, [*program, *again, *PLAIN, str(target)], ())
-        finally:
-            if rounds > 1:
-                once.unlink(missing_ok=True)
+            again = ["-stream_loop", str(rounds - 1), "-i", str(once), "-c", "copy"]
+            _run(path, [*program, *again, *PLAIN, str(target)], ())
 
 
 def _run(path: Path, command: list[str], pictures: Iterable[np.ndarray]) -> None:
@@ -104,8 +102,6 @@ def write_gif(path: Path, pictures: Iterable[np.ndarray], count: int, fps: float
     drawn[0].save(
         buffer, format="GIF", save_all=True, append_images=drawn[1:], duration=times, loop=0, optimize=False, disposal=1
     )
-    from mbsd.base.files import write_whole
-
     write_whole(path, buffer.getvalue())
 
 
@@ -141,22 +137,3 @@ def held(pictures: Iterable[np.ndarray], still: int) -> Iterator[np.ndarray]:
         yield picture
     for _ in range(still):
         yield picture
-
-
-@contextmanager
-def _whole(path: Path) -> Iterator[Path]:
-    """A temporary file beside the target that replaces it at the end."""
-    temporary = None
-    try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
-        os.close(handle)
-        temporary = Path(name)
-        yield temporary
-        temporary.chmod(0o644)
-        os.replace(temporary, path)
-    except OSError as error:
-        why = error.strerror or error
-        raise ModelError(f"cannot write {path}: {why}; choose another place or free some disk space") from error
-    finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)

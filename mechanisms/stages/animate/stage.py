@@ -21,7 +21,7 @@ from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.body_colours import body_colours, main_material
 from shared.stage import console
 from shared.stage.errors import UserError
-from shared.stage.files import sources_hash, whole_file
+from shared.stage.files import sources_hash
 from shared.stage.paths import ROOT, Out, mechanism_file
 from shared.stage.stages import Stage, key_of, versions
 from shared.stage.suggestions import did_you_mean
@@ -125,9 +125,9 @@ def _draw(solution: Solution, path: Path, words: str, parts: Parts | None) -> No
             bar.advance()
 
         try:
-            with whole_file(path) as temporary:
-                inks = body_colours(solution.mechanism, parts)
-                film = animate(solution, temporary, show, progress=progress, inks=inks)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            inks = body_colours(solution.mechanism, parts)
+            film = animate(solution, path, show, progress=progress, inks=inks)
         except MechanismError as error:
             raise UserError(f"{name}: {path.name}: {error}") from error
     rate = "" if film.rate == 1.0 else f", {film.rate:g} of real time"

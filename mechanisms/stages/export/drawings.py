@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterable
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import numpy as np
+
+from mechanisms.stages.dxf_file import Layers, text_of, without_times
 
 MM = 1000.0
 MARGIN = 0.05
@@ -72,22 +73,22 @@ def dxf(solution: Any, time: float) -> str:
     from ezdxf.filemanagement import new
 
     strokes, paths = pose_of(solution, time)
-    document = new("R2010", units=4)
-    space = document.modelspace()
+    with without_times():
+        document = new("R2010", units=4)
+    space, layers = document.modelspace(), Layers(document)
 
     def line(layer: str, points: Iterable[Any], closed: bool) -> None:
-        if layer not in document.layers:
-            document.layers.add(layer)
         space.add_lwpolyline([(float(x), float(y)) for x, y in points], close=closed, dxfattribs={"layer": layer})
 
     for stroke in strokes:
         carrier = stroke.carrier
-        layer = stroke.ink.removeprefix("body:") if stroke.ink.startswith("body:") else "signs"
         if carrier is not None and carrier.kind == "ground":
-            layer = "ground"
+            layer = layers.named("ground")
+        elif stroke.ink.startswith("body:"):
+            layer = layers.named(stroke.ink.removeprefix("body:"), "body")
+        else:
+            layer = layers.named("signs")
         line(layer, stroke.points * MM, stroke.closed)
     for name, path in paths.items():
-        line(f"path {name}", path * MM, False)
-    text = io.StringIO()
-    document.write(text)
-    return text.getvalue()
+        line(layers.named(f"path {name}", "path"), path * MM, False)
+    return text_of(document)

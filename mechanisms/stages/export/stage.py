@@ -51,7 +51,9 @@ def _warn_of_time(name: str, time: float, first: float, last: float) -> None:
 
 
 def _csv(wanted: Wanted) -> Written:
-    return wanted.solution.to_frame().to_csv(lineterminator="\n").encode(), []
+    from mbsd.base.csv_text import frame_csv
+
+    return frame_csv(wanted.solution.to_frame()).encode(), []
 
 
 def _parquet(wanted: Wanted) -> Written:

@@ -30,12 +30,7 @@ KINDS = {
     "simulated": "a double pendulum moved by weight and a spring",
 }
 """Folders of templates, and what is in them."""
-TAKEN = {
-    **dict.fromkeys(RESERVED, "the package of the mechanisms has a module of this name"),
-    "all": f"{to_run('all')} runs every mechanism",
-    "films": "out/films holds the films",
-    "night": "out/night holds the log of the nights",
-}
+TAKEN = {**RESERVED, "all": f"{to_run('all')} runs every mechanism"}
 NEW = to_run("new", "my_linkage")
 
 

@@ -275,7 +275,7 @@ def _key(given: Any, reads: list[str], inputs: Inputs, wish: _Wish) -> str:
     values = {read: plain_text(fields[read]) for read in reads if read in fields}
     densities = {material: MATERIALS[material].density for material in sorted(MATERIALS)}
     sources = sources_hash(*(AUTOMATIC if wish.by_itself else SOURCES))
-    return key_of(sources, wish, versions(*PACKAGES), densities, values, inputs.digest())
+    return str(key_of(sources, wish, versions(*PACKAGES), densities, values, inputs.digest()))
 
 
 def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from mbsd.base.csv_text import csv_text
 from mechanisms.stages.print.flat import Sheet
 from mechanisms.stages.print.laying import Laid
 
@@ -74,29 +73,17 @@ def markdown(title: str, bed: str, made: Sequence[Made], bought: Sequence[Bought
 
 def table(made: Sequence[Made], bought: Sequence[Bought]) -> str:
     """The lists as CSV: a row for each kind of piece, ``do`` is make or buy."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(HEADER)
+    rows: list[list[object]] = []
     for part in made:
         size = [f"{length:.2f}" for length in part.piece.size]
         sheet = (f"{part.sheet.thickness:g}", f"{part.sheet.above:.2f}") if part.sheet else ("", "")
         plates = " ".join(str(plate) for plate in part.plates)
-        row = [
-            "make",
-            part.name,
-            len(part.names),
-            part.material,
-            *size,
-            _grams(part.mass),
-            plates,
-            part.bed,
-            part.outline,
-        ]
-        writer.writerow([*row, *sheet, " ".join(part.names)])
+        row = ["make", part.name, len(part.names), part.material, *size, _grams(part.mass), plates, part.bed]
+        rows.append([*row, part.outline, *sheet, " ".join(part.names)])
     for item in bought:
         row = ["buy", item.what, len(item.names), item.material]
-        writer.writerow([*row, *[""] * (len(HEADER) - len(row) - 1), " ".join(item.names)])
-    return text.getvalue()
+        rows.append([*row, *[""] * (len(HEADER) - len(row) - 1), " ".join(item.names)])
+    return csv_text(HEADER, rows)
 
 
 def _cells(part: Made) -> list[str]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import Any
 
+from mechanisms.stages.dxf_file import text_of, without_times
 from mechanisms.stages.print.laying import Laid
 from shared.stage.errors import UserError
 
@@ -33,19 +33,12 @@ def section(step: Path, piece: Laid, height: float) -> Any:
 def dxf(cut: Any, thickness: float) -> bytes:
     """The DXF (R2013) of a section; its layer says how thick the sheet is. No times and no random marks are in it."""
     from cadquery.occ_impl.exporters.dxf import DxfDocument
-    from ezdxf import options  # pyright: ignore[reportPrivateImportUsage]
 
-    before = options.write_fixed_meta_data_for_testing
-    options.write_fixed_meta_data_for_testing = True
-    try:
+    with without_times():
         document = DxfDocument(approx=None)
-        document.add_layer(layer_of(thickness))
-        document.add_shape(cut, layer_of(thickness))
-        text = io.StringIO()
-        document.document.write(text)
-    finally:
-        options.write_fixed_meta_data_for_testing = before
-    return text.getvalue().encode()
+    document.add_layer(layer_of(thickness))
+    document.add_shape(cut, layer_of(thickness))
+    return text_of(document.document).encode()
 
 
 def layer_of(thickness: float) -> str:

@@ -29,7 +29,10 @@ BED, GAP = "220x220", "5"
 """Size of a plate, and what pieces on it keep apart (mm), where nobody says."""
 PACKAGES = ("cadquery", "cadquery-ocp", "ezdxf", "lib3mf", "manifold3d", "numpy", "scipy", "trimesh")
 SOURCES = [
-    *(ROOT / "mechanisms" / "stages" / name for name in ("print", "parts_files.py", "clearance/pieces.py")),
+    *(
+        ROOT / "mechanisms" / "stages" / name
+        for name in ("print", "dxf_file.py", "parts_files.py", "clearance/pieces.py")
+    ),
     *(ROOT / "shared" / "contract" / f"{name}.py" for name in ("parts", "materials")),
 ]
 LISTED = 5

@@ -86,14 +86,8 @@ def _is_fresh(out: Out, parts: contract.Parts | None) -> bool:
 def _key(parts: contract.Parts | None, inputs: Inputs) -> str:
     """Hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
     masses = parts and {body: (solids.mass, solids.z, main_material(solids)) for body, solids in parts.bodies.items()}
-    return key_of(
-        sources_hash(*SOURCES),
-        sources_state("mbsd"),
-        sources_state("mbsd/drawing"),
-        masses,
-        versions(*PACKAGES),
-        inputs.digest(),
-    )
+    sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
+    return str(key_of(*sources, masses, versions(*PACKAGES), inputs.digest()))
 
 
 def solve(name: str, parts: contract.Parts | None) -> tuple[Solution, dict[str, Source]]:

@@ -106,15 +106,20 @@ def _built(name: str, parts: Parts | None) -> Mechanism:
 
 
 def _write(out: Out, results: Mapping[str, Tolerances]) -> list[Path]:
+    from mbsd import MechanismError
+
     folder = _folder(out)
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     for result, t in results.items():
         table, plot = (folder / f"{result}{suffix}" for suffix in SUFFIXES)
-        t.to_csv(table)
-        picture = t.plot()
-        picture.ax.set_xlabel(result.replace("_", " "))
-        picture.save(plot)
+        try:
+            t.to_csv(table)
+            picture = t.plot()
+            picture.ax.set_xlabel(result.replace("_", " "))
+            picture.save(plot)
+        except MechanismError as error:  # the disk is full
+            raise UserError(f"{out.name}: {error}") from error
         written += [table, plot]
     write_bytes(folder / "summary.md", page(out.name, results).encode())
     return [*written, folder / "summary.md"]

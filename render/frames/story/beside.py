@@ -136,4 +136,4 @@ def _key(outs: list[Out], preset: Preset) -> str:
     """What decides the pictures and the words."""
     from render.frames.story.stage import word_sources
 
-    return "".join(stage_key(out, preset, encoder_version(), KIND, word_sources()) for out in outs)
+    return key_of(*(stage_key(out, preset, encoder_version(), KIND, word_sources()) for out in outs))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from render.film.inputs import encoder_version, named, stage_key
 from render.frames.film import has_sound, sound_key, wav_of
+from render.freshness import clearance_files
 from render.presets import Preset
 from shared.stage.console import say
 from shared.stage.files import sources_hash, write_bytes
@@ -98,8 +99,8 @@ def _stage(out: Out, preset: Preset, show: str, loop: float, heard: bool) -> Sta
 
 def _key(out: Out, preset: Preset, show: str, loop: float) -> str:
     """What decides the pictures and the words."""
-    more = [path for path in (out.clearance,) if path.is_file()]
-    return stage_key(out, preset, encoder_version(), show, KIND, loop, word_sources(), _described(out), *more)
+    words = word_sources(), _described(out)
+    return stage_key(out, preset, encoder_version(), show, KIND, loop, *words, *clearance_files(out))
 
 
 def word_sources() -> str:

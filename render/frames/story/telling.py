@@ -21,13 +21,13 @@ from render.film.story.words import plain
 from render.frames.story.drawing import BETWEEN, Drawing, caption_lines
 from render.frames.story.pictures import Around, StoryPictures
 from render.frames.story.strip import Strip
+from render.freshness import current_clearance
 from render.presets import Preset
 from render.report import description
 from render.report.facts import facts
 from render.report.moments import marks
 from render.report.reasons import reasons
 from shared.contract import Motion, read_motion, read_parts
-from shared.contract.clearance import read_clearance
 from shared.contract.shot import Shot, read_shot, shown
 from shared.contract.shot import Story as Wishes
 from shared.contract.spanning import with_rods
@@ -104,7 +104,7 @@ def telling_of(
     arrows = _with_arrows(show or _shows(motion, chosen), film)
     cut = _cut_open(shot, film)
     story = planned(film, arrows, why, preset, loop, cut)
-    clearance = read_clearance(out.clearance) if out.clearance.is_file() else None
+    clearance = current_clearance(out, parts, "film")
     drawing = _drawing(out, preset, film, story, facts(motion, parts, clearance))
     refuse_long(out.name, story, preset)
     return Telling(film, arrows, story, drawing, cut)

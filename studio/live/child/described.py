@@ -80,7 +80,7 @@ def _metadata(params: Any) -> dict[str, Mapping[str, Any]]:
 def _comments(author: Author) -> dict[str, str]:
     """What stands behind the fields of Params in their lines of mechanism.py."""
     try:
-        source = mechanism_file(author.name).read_text("utf-8")
+        source = mechanism_file(author.name).read_text("utf-8-sig")
         tree = ast.parse(source)
         by_line = {
             token.start[0]: token.string.lstrip("# ")

@@ -6,8 +6,11 @@ import sys
 from collections.abc import Sequence
 from datetime import datetime, timedelta
 
+from render.freshness import Freshness
 from shared.stage.console import duration
 from shared.stage.face import to_run
+from shared.stage.paths import Out
+from shared.stage.stages import is_recorded
 from studio.night.files import record, runs
 from studio.night.files.record import FilmRecord, NightRecord
 from studio.night.files.runs import Run
@@ -34,7 +37,8 @@ def words(run: Run, recorded: NightRecord, alive: bool) -> list[str]:
     if alive and recorded.left:
         end = datetime.now() + timedelta(seconds=recorded.left)
         lines.append(f"now: {duration(recorded.left)} left, until {end:%a %H:%M}")
-    lines += table([row(name, film, alive) for name, film in recorded.films.items()])
+    older = older_films(recorded)
+    lines += table([row(name, film, alive, name in older) for name, film in recorded.films.items()])
     for name, film in recorded.films.items():
         if film.error:
             lines.append(f"{name}: {film.error}" + ("; done since then" if film.outcome == "done" else ""))
@@ -55,8 +59,17 @@ def standing(recorded: NightRecord, alive: bool) -> str:
     return f"{how[recorded.ended]}, last seen {recorded.updated}"
 
 
-def row(name: str, film: FilmRecord, alive: bool) -> tuple[str, ...]:
-    """Name, frames, seconds a frame, time left, and what it is at."""
+def older_films(recorded: NightRecord) -> set[str]:
+    """Return the mechanisms that have changed since their films of a run were made."""
+    done = {name: Out(name) for name, film in recorded.films.items() if film.outcome == "done"}
+    films = {name: out.film(recorded.preset) for name, out in done.items()}
+    known = [name for name, film in films.items() if is_recorded(done[name], film)]
+    freshness = Freshness(known)
+    return {name for name in known if freshness.why_older(done[name], films[name])}
+
+
+def row(name: str, film: FilmRecord, alive: bool, is_older: bool = False) -> tuple[str, ...]:
+    """Name, frames, seconds a frame, time left, and what it is at; ``is_older``: its film is of an older version."""
     running = [step for step, state in film.steps.items() if state == "running"]
     if film.elsewhere:
         at = film.elsewhere
@@ -65,7 +78,7 @@ def row(name: str, film: FilmRecord, alive: bool) -> tuple[str, ...]:
     elif film.outcome == "failed":
         at = "failed: " + ", ".join(step for step, state in film.steps.items() if state == "failed")
     elif film.outcome == "done":
-        at = "done"
+        at = "done, of an older version" if is_older else "done"
     else:
         at = "waits" if alive else "not finished"
     over = film.outcome == "done"

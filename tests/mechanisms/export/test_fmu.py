@@ -184,6 +184,25 @@ def test_a_state_is_kept_and_returned_to(unit: Any) -> None:
     assert there.get("rocker.theta") == pytest.approx(ahead[:1], abs=1e-8)
 
 
+def test_a_state_of_another_unit_is_refused(unit: Any) -> None:
+    """It was taken, and the unit moved with the lengths of the other."""
+    other = four_bar()
+    other.change("coupler", length=0.125)
+    there, longer = Unit(unit(four_bar())), Unit(unit(other))
+    for each in (there, longer):
+        each.step(0.05, 2)
+    state = longer.slave.getFMUState()
+    kept = longer.slave.serializeFMUState(state)
+    before = there.get("rocker.theta", "B.fx")
+    assert len(kept) == len(there.slave.serializeFMUState(there.slave.getFMUState())), "their size does not tell"
+    with pytest.raises(Exception, match="fmi3DeserializeFMUState"):
+        there.slave.deserializeFMUState(kept)
+    with pytest.raises(Exception, match="fmi3SetFMUState"):
+        there.slave.setFMUState(state)
+    assert there.get("rocker.theta", "B.fx") == before
+    longer.slave.setFMUState(longer.slave.deserializeFMUState(kept))
+
+
 def test_work_and_energy_balance(unit: Any) -> None:
     there = Unit(unit(four_bar()))
     names = "energy.kinetic", "energy.gravity", "work"

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
+from studio.command import settings
 
 CRANK = '''"""A crank of {length} m."""
 from dataclasses import dataclass
@@ -149,6 +151,32 @@ def test_unfit_settings_are_refused(folder: Path, text: str, said: str) -> None:
     assert done.returncode == 1
     assert said in done.stderr.replace(" - at `$.colour`", "")
     assert "Traceback" not in done.stderr
+
+
+def test_a_byte_order_mark_is_no_setting(tmp_path: Path) -> None:
+    """Editors on Windows write one."""
+    (tmp_path / "mbsd.toml").write_bytes(b'\xef\xbb\xbfpreset = "draft"\n')
+    assert settings.read(tmp_path).preset == "draft"
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b'preset = "dr\x00aft"', "Illegal character"),
+        (b'out = "a\\u0000b"', r"out is 'a\\x00b', with characters that cannot be printed"),
+        (b"gap = " + b"[" * 100_000, "nested too deep"),
+        (b"x = " + b"{a = " * 5000, "nested too deep"),
+        (b"gap = " + b"9" * 5000, "4300 digits"),
+        (b"\xff\xfe", "can't decode byte 0xff"),
+    ],
+    ids=["NUL", "NUL in words", "deep list", "deep table", "a long number", "UTF-16"],
+)
+def test_files_that_are_no_settings_are_refused_in_a_sentence(tmp_path: Path, content: bytes, said: str) -> None:
+    """They ended in tracebacks."""
+    (tmp_path / "mbsd.toml").write_bytes(content)
+    with pytest.raises(UserError, match=said) as refused:
+        settings.read(tmp_path)
+    assert str(refused.value).startswith(f"{tmp_path / 'mbsd.toml'}: ")
 
 
 def test_errors_name_the_users_file_and_line(folder: Path) -> None:

@@ -93,17 +93,42 @@ EXPORT Status fmi3Reset(void *instance) {
     return OK;
 }
 
+typedef struct {
+    char token[sizeof TOKEN];
+    bool exchange;
+    Kept kept;
+} State; /* a copy of what an instance is at one time, and which unit's it is: its lengths and masses are in it */
+
+static Status refuse_other_state(Instance *it, const State *state) {
+    if (memcmp(state->token, TOKEN, sizeof TOKEN) != 0)
+        return say(it, ERROR, "the state is of another unit than " MODEL_NAME " " TOKEN "; take one that this unit gave");
+    if (state->exchange != it->exchange)
+        return say(it, ERROR, "the state is of an instance for %s, this one is for %s",
+                   state->exchange ? "model exchange" : "co-simulation", it->exchange ? "model exchange" : "co-simulation");
+    return OK;
+}
+
+static Status refuse_other_size(Instance *it, size_t size) {
+    return size == sizeof(State) ? OK : say(it, ERROR, "a state has %zu bytes, not %zu", sizeof(State), size);
+}
+
 EXPORT Status fmi3GetFMUState(void *instance, void **state) {
     Instance *it = instance;
-    if (*state == NULL) *state = malloc(sizeof(Kept));
+    if (*state == NULL) *state = calloc(1, sizeof(State));
     if (*state == NULL) return say(it, ERROR, "there is no memory for a state");
-    memcpy(*state, &it->kept, sizeof(Kept));
+    State *copy = *state;
+    memcpy(copy->token, TOKEN, sizeof TOKEN);
+    copy->exchange = it->exchange;
+    memcpy(&copy->kept, &it->kept, sizeof(Kept));
     return OK;
 }
 
 EXPORT Status fmi3SetFMUState(void *instance, void *state) {
     Instance *it = instance;
-    memcpy(&it->kept, state, sizeof(Kept));
+    const State *copy = state;
+    Status status = refuse_other_state(it, copy);
+    if (status != OK) return status;
+    memcpy(&it->kept, &copy->kept, sizeof(Kept));
     relocate(it->kept.memory); /* it may come from another process */
     return OK;
 }
@@ -117,20 +142,28 @@ EXPORT Status fmi3FreeFMUState(void *instance, void **state) {
 
 EXPORT Status fmi3SerializedFMUStateSize(void *instance, void *state, size_t *size) {
     (void)instance, (void)state;
-    *size = sizeof(Kept);
+    *size = sizeof(State);
     return OK;
 }
 
 EXPORT Status fmi3SerializeFMUState(void *instance, void *state, uint8_t bytes[], size_t size) {
-    if (size != sizeof(Kept)) return say(instance, ERROR, "a state has %zu bytes, not %zu", sizeof(Kept), size);
-    memcpy(bytes, state, size);
-    return OK;
+    Status status = refuse_other_size(instance, size);
+    if (status == OK) memcpy(bytes, state, size);
+    return status;
 }
 
 EXPORT Status fmi3DeserializeFMUState(void *instance, const uint8_t bytes[], size_t size, void **state) {
-    if (size != sizeof(Kept)) return say(instance, ERROR, "a state has %zu bytes, not %zu", sizeof(Kept), size);
-    if (*state == NULL) *state = malloc(size);
-    if (*state == NULL) return say(instance, ERROR, "there is no memory for a state");
-    memcpy(*state, bytes, size);
+    Status status = refuse_other_size(instance, size);
+    if (status != OK) return status;
+    State *copy = calloc(1, sizeof(State));
+    if (copy == NULL) return say(instance, ERROR, "there is no memory for a state");
+    memcpy(copy, bytes, size);
+    status = refuse_other_state(instance, copy);
+    if (status != OK) {
+        free(copy);
+        return status;
+    }
+    free(*state);
+    *state = copy;
     return OK;
 }

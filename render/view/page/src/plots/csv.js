@@ -6,8 +6,9 @@ export function csv(time, charts, of) {
     const words = lines.length > 1 ? `${title} ${name}` : title;
     return { head: `${[of, words].filter(Boolean).join(" ")}${unit === "1" ? "" : ` [${unit}]`}`, values };
   }));
+  const plain = (text) => (/^[=+\-@\t\r\n]/.test(text) ? `'${text}` : text); // else a spreadsheet takes it for a formula
   const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
-  const rows = [["time [s]", ...columns.map((column) => column.head)].map(quoted).join(",")];
+  const rows = [["time [s]", ...columns.map((column) => column.head)].map(plain).map(quoted).join(",")];
   for (let k = 0; k < time.length; k++) rows.push([time[k], ...columns.map(({ values }) => Number(values[k].toPrecision(7)))].join(","));
   return `${rows.join("\n")}\n`;
 }

@@ -1,0 +1,98 @@
+"""Files of compiled kernels on the disk: written whole with a digest; damaged ones are removed, and that is logged.
+
+numba writes an index (.nbi) and a data file (.nbc) for each function, both pickled. It neither flushes them to the disk
+nor checks what it reads, so after a power cut every later run would end in an EOFError. Here each file ends with a
+mark and the SHA-256 of what stands before it, which unpickling passes over. A file without that mark is one of numba's
+own or of an older version; it counts if it can be unpickled.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import logging
+import os
+import pickle
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from numba.core.caching import IndexDataCacheFile
+
+LOG = logging.getLogger("mbsd")
+MARK = b"mbsd-sha256"
+"""Before the digest at the end of a file."""
+_TOLD: list[str] = []
+"""The damaged file that this process has named."""
+
+
+class KernelFiles(IndexDataCacheFile):
+    """Index and data files of one function."""
+
+    def _load_index(self) -> dict[Any, str]:
+        """The data file of each signature; empty if the index is missing, damaged or cannot be read."""
+        return self._read_or_removed(Path(self._index_path), super()._load_index) or {}
+
+    def _load_data(self, name: str) -> Any:
+        """What was kept; None if the file is damaged or cannot be read."""
+        return self._read_or_removed(Path(self._data_path(name)), lambda: super(KernelFiles, self)._load_data(name))
+
+    def _read_or_removed(self, path: Path, read: Callable[[], Any]) -> Any:
+        try:
+            refuse_damaged(path.read_bytes())
+            return read()
+        except FileNotFoundError:
+            return None
+        except Exception as error:  # unpickling raises nearly everything
+            _remove(path)
+            tell_of_damage(str(path), str(error) or type(error).__name__)
+            return None
+
+    @contextmanager
+    def _open_for_write(self, filepath: str) -> Iterator[io.BytesIO]:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Collect the content, and write it with its digest: to a temporary file, to the disk, to its name."""
+        content = io.BytesIO()
+        yield content
+        temporary = f"{filepath}.tmp.{os.getpid()}"
+        try:
+            with open(temporary, "wb") as file:
+                file.write(sealed(content.getvalue()))
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(temporary, filepath)
+        except BaseException:
+            with suppress(OSError):
+                os.unlink(temporary)
+            raise
+
+
+def sealed(content: bytes) -> bytes:
+    """Return the content with the mark and its digest behind it."""
+    return content + MARK + hashlib.sha256(content).digest()
+
+
+def refuse_damaged(content: bytes) -> None:
+    """Raise UnpicklingError if the digest at the end is not that of the content."""
+    size = len(content) - hashlib.sha256().digest_size - len(MARK)
+    if size >= 0 and content[size:].startswith(MARK) and sealed(content[:size]) != content:
+        raise pickle.UnpicklingError("its SHA-256 is wrong")
+
+
+def _remove(path: Path) -> None:
+    """Remove what stands there, if that is allowed; a folder, too, which a new file could not replace."""
+    with suppress(OSError):
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)
+        else:
+            path.unlink()
+
+
+def tell_of_damage(path: str, reason: str) -> None:
+    """Log, once in a process, that compiled code was damaged and is compiled again."""
+    if _TOLD:
+        return
+    _TOLD.append(path)
+    left = "; it cannot be removed, so install mbsd again" if os.path.lexists(path) else ""
+    LOG.warning("mbsd: %s is damaged (%s); its kernel is compiled again%s", path, reason, left)

@@ -168,6 +168,8 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
         bodies = bodies.on_stand()
     if wish.scale is not None:
         bodies = (bodies if isinstance(bodies, Bodies) else Bodies(bodies)).at_scale(wish.scale.ratio)
+    for note in getattr(bodies, "notes", ()):
+        say("parts", f"{name}: {note}")
     reads, inputs = sorted(seen.reads), seen.inputs
     if wish.by_itself or follows_gravity(bodies, wish.mount) or _more_than_values(name, given, reads):
         inputs = inputs.joined(_of_mechanism(name, before, recorder))

@@ -60,11 +60,16 @@ def force_scale(motion: Motion) -> float:
     return max(sizes, default=0.0)
 
 
-def torque_scale(motion: Motion) -> float:
-    """The largest force on an arm as long as the mechanism, and what turning parts need (N m)."""
+def length_scale(motion: Motion) -> float:
+    """The diagonal of all that joints sweep (m)."""
     x = [value for joint in motion.joints.values() for value in (min(joint.x), max(joint.x))]
     y = [value for joint in motion.joints.values() for value in (min(joint.y), max(joint.y))]
-    size = float(np.hypot(max(x) - min(x), max(y) - min(y))) if x else 0.0
+    return float(np.hypot(max(x) - min(x), max(y) - min(y))) if x else 0.0
+
+
+def torque_scale(motion: Motion) -> float:
+    """The largest force on an arm as long as the mechanism, and what turning parts need (N m)."""
+    size = length_scale(motion)
     turning = [
         body.inertia * max(float(np.abs(body.alpha).max()), float(np.abs(body.omega).max()) ** 2)
         for body in motion.bodies.values()
@@ -94,6 +99,26 @@ def power_floor(motion: Motion) -> float:
         pull = body.mass * (np.hypot(centre.ax, centre.ay) + gravity) * np.hypot(centre.vx, centre.vy)
         largest.append(float((pull + body.inertia * np.abs(np.multiply(body.alpha, body.omega))).max()))
     return NOISE * max(largest)
+
+
+def floors(motion: Motion) -> dict[str, float]:
+    """Return what is rounding in the numbers of a motion, by their SI unit; units without a scale are left out."""
+    centres = [centre_of_mass(body) for body in motion.bodies.values()]
+    ends = [float(np.hypot(np.ptp(at.x), np.ptp(at.y))) for at in centres]
+    fastest = max((float(np.hypot(at.vx, at.vy).max()) for at in centres), default=0.0)
+    hardest = max((float(np.hypot(at.ax, at.ay).max()) for at in centres), default=0.0)
+    span, power = float(motion.time[-1] - motion.time[0]), power_floor(motion)
+    return {
+        "m": NOISE * max([length_scale(motion), *ends]),
+        "rad": NOISE,
+        "m/s": NOISE * fastest,
+        "m/s²": NOISE * hardest,
+        "rad/s": NOISE * speed_scale(motion),
+        "N": effort_floor(motion, True),
+        "N m": effort_floor(motion, False),
+        "W": power,
+        "J": max(energy_floor(motion), power * span),
+    }
 
 
 def without_noise(values: np.ndarray, floor: float) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from render.plots.style import INK
+from render.plots.style import INK, PALETTE, PARTS
 from shared.contract import Motion
 
 
@@ -17,3 +17,15 @@ def ink_of(motion: Motion, bodies: Sequence[str]) -> str:
 def acting_on(motion: Motion, name: str) -> str:
     """The colour of the body that the force ``name`` acts on."""
     return ink_of(motion, [action.body for action in motion.forces[name].actions])
+
+
+def apart(inks: Sequence[str]) -> list[str]:
+    """Return these colours, each once: what comes after another of the same colour gets one that nothing has yet.
+
+    Where there are no more, colours repeat.
+    """
+    free = [ink for ink in (*PARTS, *PALETTE) if ink not in inks]
+    out: list[str] = []
+    for ink in inks:
+        out.append(free.pop(0) if ink in out and free else ink)
+    return out

@@ -9,8 +9,10 @@ from render import FRAME_SOURCES
 from render.freshness import clearance_files, current_clearance
 from render.report import sections
 from render.report.loads import load_section
+from render.report.moments import event_section
 from render.report.orders import orders_section
 from render.report.transmission_words import transmission_section
+from render.report.travel import travel_section
 from shared.contract import Motion, Parts, read_motion, read_parts
 from shared.contract.clearance import Clearance
 from shared.stage.console import say
@@ -56,6 +58,8 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
     lines += [said, ""] if said else []
     lines += sections.motion_section(motion)
     for head, body in (
+        ("Travel", travel_section(motion)),
+        ("Events", event_section(motion)),
         ("Speeds", sections.speed_section(motion)),
         ("Loads", load_section(motion)),
         ("Shaking of the frame", sections.frame_section(motion)),

@@ -6,13 +6,14 @@ import math
 
 import numpy as np
 
-from render.report.written import degrees, first_peak, moment, table, written
+from render.magnitudes import NOISE
+from render.report.written import Amounts, degrees, first_peak, moment, table, written
 from shared.contract import Motion
 
 
 def gas_section(motion: Motion) -> list[str]:
     """A row for each force that comes from gas behind a piston."""
-    rows = []
+    rows, amount = [], Amounts(motion)
     for name, force in motion.forces.items():
         gas = force.gas
         if gas is None:
@@ -23,13 +24,15 @@ def gas_section(motion: Motion) -> list[str]:
         if gas.crank_angle is not None and gas.cycle_angle is not None:
             turned = (gas.crank_angle[k] + math.pi) % gas.cycle_angle - math.pi
             at = f"{degrees(turned)} after the top, {at}"
+        rounding = NOISE * max(gas.volume)
+        low, high = (1e6 * (end if end > rounding else 0.0) for end in (min(gas.volume), max(gas.volume)))
         work = gas.indicated_work or []
         mean = float(np.mean(work)) if work else None
         rows.append([
             name, written(float(pressure[k]), "Pa"), at, written(float(pressure.min()), "Pa"),
-            f"{written(1e6 * min(gas.volume), 'cm³')} to {written(1e6 * max(gas.volume), 'cm³')}",
+            f"{written(low, 'cm³')} to {written(high, 'cm³')}",
             "" if mean is None else str(len(work)),
-            "" if mean is None else written(mean, "J"),
+            "" if mean is None else amount(mean, "J"),
             "" if mean is None or gas.displaced is None else written(mean / gas.displaced, "Pa"),
         ])  # fmt: skip
     if not rows:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from render.report.written import first_peak, moment, table, written
+from render.report.written import Amounts, first_peak, moment, table, written
 from shared.contract import Motion
 
 
 def hydraulics_section(motion: Motion) -> list[str]:
     """A row for each hydraulic cylinder."""
-    rows, time = [], np.array(motion.time)
+    rows, time, amount = [], np.array(motion.time), Amounts(motion)
     for name, force in motion.forces.items():
         cylinder = force.hydraulics
         if cylinder is None:
@@ -25,7 +25,7 @@ def hydraulics_section(motion: Motion) -> list[str]:
             float(np.trapezoid(part, time))
             for part in (cylinder.supply_power, cylinder.valve_loss, cylinder.piston_power)
         ]
-        rows.append([*cells, written(taken, "l"), *(written(energy, "J") for energy in energies)])
+        rows.append([*cells, written(taken, "l"), *(amount(energy, "J") for energy in energies)])
     if not rows:
         return []
     head = ["hydraulic cylinder", "chamber A", "at", "chamber B", "at", "oil taken", "supplied", "lost in the valve",

@@ -6,10 +6,9 @@ import math
 
 import numpy as np
 
-from render.magnitudes import effort_floor
 from render.report.gas import gas_section
 from render.report.hydraulics import hydraulics_section
-from render.report.written import first_peak, moment, table, written
+from render.report.written import Amounts, first_peak, moment, table, written
 from shared.contract import Motion
 
 NOTHING = 1e-12
@@ -20,7 +19,7 @@ ROUNDING = 1e-9
 
 def load_section(motion: Motion) -> list[str]:
     """Reactions, drivers, forces, gas, contacts."""
-    time = np.array(motion.time)
+    time, amount = np.array(motion.time), Amounts(motion)
     lines: list[str] = []
     forces = {name: np.hypot(joint.fx, joint.fy) for name, joint in motion.joints.items()}
     torques = {name: np.abs(joint.torque) for name, joint in motion.joints.items()}
@@ -33,8 +32,8 @@ def load_section(motion: Motion) -> list[str]:
             k, torque = first_peak(forces[name]), float(torques[name].max())
             rows.append([
                 f"{name} ({joint.kind.replace('_', ' ')})", f"{joint.bodies[0]}, {joint.bodies[1]}",
-                written(float(forces[name][k]), "N"), moment(time[k]),
-                written(torque, "N m") if torque > NOTHING * max(most, 1.0) else "",
+                amount(float(forces[name][k]), "N"), moment(time[k]),
+                amount(torque, "N m") if amount.without_noise(torque, "N m") else "",
             ])  # fmt: skip
         lines += ["### Reactions", ""]
         lines += [*table(["joint", "bodies", "peak force", "at", "peak torque"], rows), ""]
@@ -46,12 +45,12 @@ def load_section(motion: Motion) -> list[str]:
         for name, driver in drivers.items():
             unit = driver.effort_unit
             effort, power = np.array(driver.effort), np.array(driver.power)
-            if np.abs(effort).max() <= effort_floor(motion, unit == "N"):  # weights or springs do its work
+            if np.abs(effort).max() <= amount.floors[unit]:  # weights or springs do its work
                 effort, power = 0.0 * effort, 0.0 * power
             k = first_peak(np.abs(effort))
             rows.append([
-                name, written(float(effort[k]), unit), moment(time[k]), written(_rms(effort, time), unit),
-                *_powers(power), _work(power, time),
+                name, amount(float(effort[k]), unit), moment(time[k]), amount(_rms(effort, time), unit),
+                *_powers(power, amount), _work(power, time, amount),
             ])  # fmt: skip
         head = ["driver", "peak effort", "at", "effort, root mean square", "highest power", "lowest power", "work"]
         lines += [*table(head, rows), ""]
@@ -64,16 +63,16 @@ def load_section(motion: Motion) -> list[str]:
             k = first_peak(size if size.any() else twist)
             power = np.array(force.power)
             rows.append([
-                f"{name} ({force.kind.replace('_', ' ')})", written(float(size.max()), "N") if size.any() else "",
-                written(float(twist.max()), "N m") if twist.max() > NOTHING * size.max() else "", moment(time[k]),
-                *_powers(power), _work(power, time),
+                f"{name} ({force.kind.replace('_', ' ')})", amount(float(size.max()), "N") if size.any() else "",
+                amount(float(twist.max()), "N m") if amount.without_noise(float(twist.max()), "N m") else "",
+                moment(time[k]), *_powers(power, amount), _work(power, time, amount),
             ])  # fmt: skip
         head = ["force", "peak force", "peak torque", "at", "gives at most", "takes at most", "work"]
         lines += [*table(head, rows), ""]
-    return lines + gas_section(motion) + hydraulics_section(motion) + _contacts(motion, time)
+    return lines + gas_section(motion) + hydraulics_section(motion) + _contacts(motion, time, amount)
 
 
-def _contacts(motion: Motion, time: np.ndarray) -> list[str]:
+def _contacts(motion: Motion, time: np.ndarray, amount: Amounts) -> list[str]:
     if not motion.contacts:
         return []
     rows = []
@@ -85,7 +84,7 @@ def _contacts(motion: Motion, time: np.ndarray) -> list[str]:
         hardest = max((abs(event.impulse) for event in hits), default=0.0)
         unit = contact.effort_unit
         rows.append([
-            f"{name} ({contact.kind.replace('_', ' ')})", written(float(normal.max()), unit),
+            f"{name} ({contact.kind.replace('_', ' ')})", amount(float(normal.max()), unit),
             f"{100 * share:.0f} %", str(len(hits)), written(hardest, f"{unit} s") if hits else "",
         ])  # fmt: skip
     head = ["contact", "peak normal force", "closed", "impacts", "largest impulse"]
@@ -96,15 +95,15 @@ def _rms(values: np.ndarray, time: np.ndarray) -> float:
     return math.sqrt(float(np.trapezoid(values**2, time)) / float(time[-1] - time[0]))
 
 
-def _powers(power: np.ndarray) -> tuple[str, str]:
+def _powers(power: np.ndarray, amount: Amounts) -> tuple[str, str]:
     """The highest and the lowest; rounding beside the larger one is nothing."""
     floor = ROUNDING * float(np.abs(power).max(initial=0.0))
-    most, least = (written(value if abs(value) > floor else 0.0, "W") for value in (power.max(), power.min()))
+    most, least = (amount(value if abs(value) > floor else 0.0, "W") for value in (power.max(), power.min()))
     return most, least
 
 
-def _work(power: np.ndarray, time: np.ndarray) -> str:
+def _work(power: np.ndarray, time: np.ndarray, amount: Amounts) -> str:
     """Work over all the time; rounding counts as none."""
     work = float(np.trapezoid(power, time))
     most = float(np.abs(power).max(initial=0.0)) * float(time[-1] - time[0])
-    return written(work if abs(work) > ROUNDING * most else 0.0, "J")
+    return amount(work if abs(work) > ROUNDING * most else 0.0, "J")

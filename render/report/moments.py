@@ -1,16 +1,21 @@
-"""What happens at one moment of a motion: dead points, impacts and others. Plots and the page mark them."""
+"""What happens at one moment of a motion: dead points, impacts and others. Plots and the page mark them, the report
+lists them.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from render.report.transmission import loops
-from shared.contract import Motion
+from render.report.written import Amounts, moment, table, written
+from shared.contract import EventMark, Motion
 
 STEP = 1e-6
 """Fraction of the motion: times that are nearer are one."""
 FEW = 6
 """Dead points at most; of a crank that turns and turns they would say nothing."""
+MOST = 24
+"""Rows of the list of events; of more, those of one name and kind share a row."""
 
 
 def marks(motion: Motion) -> list[tuple[float, str]]:
@@ -26,3 +31,33 @@ def marks(motion: Motion) -> list[tuple[float, str]]:
     moments = moments if len(moments) <= FEW else []
     moments += [(event.time, f"{event.name}: {event.what}") for event in motion.events if event.what != "end"]
     return sorted(set(moments))
+
+
+def event_section(motion: Motion) -> list[str]:
+    """Return a table of all events with their times; of many, those of one name and kind are grouped."""
+    if not motion.events:
+        return []
+    amount = Amounts(motion)
+    if len(motion.events) <= MOST:
+        rows = [
+            [f"{event.name}: {event.what}", moment(event.time), _impulse(motion, [event]), amount(event.energy, "J")]
+            for event in motion.events
+        ]
+        return table(["event", "at", "impulse", "change of kinetic energy"], rows)
+    groups: dict[str, list[EventMark]] = {}
+    for event in motion.events:
+        groups.setdefault(f"{event.name}: {event.what}", []).append(event)
+    rows = [
+        [words, str(len(group)), moment(group[0].time), moment(group[-1].time), _impulse(motion, group)]
+        for words, group in groups.items()
+    ]
+    lines = [f"{len(motion.events)} events, in groups; data.json has each.", ""]
+    return [*lines, *table(["event", "how often", "first at", "last at", "largest impulse"], rows)]
+
+
+def _impulse(motion: Motion, events: list[EventMark]) -> str:
+    """Return the largest impulse of impacts, in words; empty for other events."""
+    size = max(abs(event.impulse) for event in events)
+    contact = motion.contacts.get(events[0].name)
+    unit = "N m s" if contact is not None and contact.effort_unit == "N m" else "N s"
+    return written(size, unit) if size else ""

@@ -5,15 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from render.crank import crank_of, driven_bodies
-from render.report.written import counted, first_peak, listed, moment, speed, table, turning, written
+from render.report.written import Amounts, counted, first_peak, listed, moment, speed, table, turning, written
 from render.shaking import shaking
 from shared.contract import Motion, Parts
 from shared.contract.clearance import Clearance
 from shared.contract.quantity import figures
 
 G = 9.80665
-ROUNDING = 1e-9
-"""Fraction of the fastest centre of mass: a slower one does not move."""
 
 
 def motion_section(motion: Motion) -> list[str]:
@@ -48,7 +46,7 @@ def motion_section(motion: Motion) -> list[str]:
 
 def speed_section(motion: Motion) -> list[str]:
     """Peak speeds and accelerations of centres of mass and traced points, peak turning."""
-    time, rows, centres = motion.time, [], {}
+    time, rows, centres, amount = motion.time, [], {}, Amounts(motion)
     for name, body in motion.bodies.items():
         theta, omega, alpha = (np.array(part) for part in (body.theta, body.omega, body.alpha))
         x, y = body.com
@@ -59,17 +57,16 @@ def speed_section(motion: Motion) -> list[str]:
             np.array(body.ay) + alpha * arm[0] - omega**2 * arm[1],
         )
         centres[name] = v, a, float(np.abs(omega).max())
-    fastest = max((float(v.max()) for v, _, _ in centres.values()), default=0.0)
     for name, (v, a, spin) in centres.items():
         k = first_peak(v)
-        spins = turning(spin) if spin > 1e-9 else "0"
-        moves = v[k] > ROUNDING * fastest
-        shown = (speed(float(v[k])), moment(time[k]), _acceleration(a)) if moves else ("0", "", "0")
+        spins = turning(spin) if amount.without_noise(spin, "rad/s") else "0"
+        moves = amount.without_noise(float(v[k]), "m/s")
+        shown = (speed(float(v[k])), moment(time[k]), _acceleration(a, amount)) if moves else ("0", "", "0")
         rows.append([name, *shown, spins])
     for name, point in motion.points.items():
         v, a = np.hypot(point.vx, point.vy), np.hypot(point.ax, point.ay)
         k = first_peak(v)
-        rows.append([f"point {name}", speed(float(v[k])), moment(time[k]), _acceleration(a), ""])
+        rows.append([f"point {name}", speed(float(v[k])), moment(time[k]), _acceleration(a, amount), ""])
     lines = ["Bodies by their centres of mass, and traced points.", ""]
     lines += table(["", "peak speed", "at", "peak acceleration", "peak turning"], rows)
     return lines + _last_turn(motion)
@@ -108,15 +105,16 @@ def frame_section(motion: Motion) -> list[str]:
 
 def energy_section(motion: Motion) -> list[str]:
     """Kinetic and potential energy, and how well the balance holds."""
+    amount = Amounts(motion)
     kinetic, potential = np.array(motion.energy.kinetic), np.array(motion.energy.potential)
     total = kinetic + potential
     k = first_peak(kinetic)
     lines = [
-        f"Kinetic energy is at most {written(float(kinetic[k]), 'J')} (t = {moment(motion.time[k])}); potential energy "
-        f"changes by {written(float(np.ptp(potential)), 'J')}, their sum by {written(float(np.ptp(total)), 'J')}."
+        f"Kinetic energy is at most {amount(float(kinetic[k]), 'J')} (t = {moment(motion.time[k])}); potential energy "
+        f"changes by {amount(float(np.ptp(potential)), 'J')}, their sum by {amount(float(np.ptp(total)), 'J')}."
     ]
     lost = -sum(event.energy for event in motion.events)
-    if abs(lost) > 0:
+    if amount.without_noise(lost, "J"):
         hits = sum(event.what == "impact" for event in motion.events)
         lines += ["", f"Impacts and other events ({counted(hits, 'impact')}) take {written(lost, 'J')}."]
     if motion.energy.audit is not None:
@@ -143,7 +141,7 @@ def mass_section(motion: Motion, parts: Parts | None) -> list[str]:
     """Masses and where they are from."""
     words = {"mechanism": "mechanism.py", "parts": "the parts", "estimate": "an estimate"}
     rows = [
-        [name, written(body.mass, "kg"), _place(body.com), written(1e6 * body.inertia, "kg mm²"), words[body.mass_from]]
+        [name, written(body.mass, "kg"), _place(body.com), written(body.inertia, "kg m²"), words[body.mass_from]]
         for name, body in motion.bodies.items()
     ]
     total = sum(body.mass for body in motion.bodies.values())
@@ -184,9 +182,9 @@ def _nearest(clearance: Clearance) -> str:
     )
 
 
-def _acceleration(a: np.ndarray) -> str:
-    most = float(a.max())
-    return f"{written(most, 'm/s²')} ({figures(most / G, 2)} g)" if most > 1e-9 else "0"
+def _acceleration(a: np.ndarray, amount: Amounts) -> str:
+    most = amount.without_noise(float(a.max()), "m/s²")
+    return f"{written(most, 'm/s²')} ({figures(most / G, 2)} g)" if most else "0"
 
 
 def _place(at: tuple[float, float]) -> str:

@@ -7,9 +7,26 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from render.magnitudes import floors
+from shared.contract import Motion
 from shared.contract.quantity import MINUS, figures, written
 
-__all__ = ["counted", "degrees", "first_peak", "listed", "moment", "speed", "table", "turning", "written"]
+__all__ = ["Amounts", "counted", "degrees", "first_peak", "listed", "moment", "speed", "table", "turning", "written"]
+
+
+class Amounts:
+    """Writes numbers of one motion; rounding, as :func:`render.magnitudes.floors` has it, is 0."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.floors = floors(motion)
+
+    def __call__(self, value: float, unit: str, digits: int = 3) -> str:
+        """Return ``value`` (SI) with its unit: ``12.3 mN``."""
+        return written(self.without_noise(value, unit), unit, digits)
+
+    def without_noise(self, value: float, unit: str) -> float:
+        """Return the value, or 0 where it is rounding."""
+        return 0.0 if abs(value) <= self.floors.get(unit, 0.0) else value
 
 
 def speed(value: float) -> str:

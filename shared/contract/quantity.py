@@ -12,8 +12,13 @@ from collections.abc import Callable, Iterable
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 DOWN = ("m", "m/s", "s")
 """Units that have prefixes for small numbers alone."""
-PLAIN = ("m/s²", "rad", "rad/s", "rad/s²", "°", "%", "cm³", "km/h", "rpm", "bar", "l/min", "g", "kg", "kg m²", "1", "")
-"""Units without prefixes; kilograms below one are grams."""
+PLAIN = ("m/s²", "rad", "rad/s", "rad/s²", "°", "%", "cm³", "km/h", "rpm", "bar", "l/min", "1", "")
+"""Units without prefixes."""
+STEPS = {
+    "kg": ((1e3, 1e-3, "t"), (1.0, 1.0, "kg"), (0.0, 1e3, "g")),
+    "kg m²": ((0.01, 1.0, "kg m²"), (0.0, 1e4, "kg cm²")),
+}
+"""Units that others stand for, without prefixes: from which number on (SI), the factor and the unit."""
 MINUS = "\N{MINUS SIGN}"
 DIGITS = 4
 """Significant digits, at most."""
@@ -24,11 +29,9 @@ ANGLES = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
 
 
 def written(value: float, unit: str, digits: int = 3) -> str:
-    """``value`` (SI) with an engineering prefix: ``12.3 mN``, ``0 N``, ``1.29 kN m``, ``−40 µm``, ``250 g``."""
+    """``value`` (SI) with an engineering prefix: ``12.3 mN``, ``0 N``, ``1.29 kN m``, ``−40 µm``, ``3.46 t``."""
     if not math.isfinite(value):
         return f"no number of {unit}" if math.isnan(value) else f"{MINUS if value < 0 else ''}∞ {unit}".rstrip()
-    if unit == "kg" and 0 < abs(value) < 1.0:
-        value, unit = 1000.0 * value, "g"
     factor, named = prefixed(float(f"{abs(value):.{digits}g}"), unit)  # rounded first: 999.9996 is 1 k
     digits = digits if abs(value * factor) < 1000.0 else max(digits, DIGITS)
     return f"{figures(value * factor, digits)}{'' if named in ('°', '%') else ' '}{named}".rstrip()
@@ -38,6 +41,8 @@ def prefixed(largest: float, unit: str) -> tuple[float, str]:
     """The factor from SI, and the unit with its prefix, for numbers up to ``largest``: 1290 N are 0.001, ``kN``."""
     if unit in PLAIN or not largest or not math.isfinite(largest):
         return 1.0, unit
+    if unit in STEPS:
+        return next((factor, named) for least, factor, named in STEPS[unit] if abs(largest) >= least)
     power = min(max(3 * math.floor(math.log10(abs(largest)) / 3 + 1e-9), -12), 12)
     power = min(power, 0) if unit in DOWN else power
     return 10.0**-power, f"{PREFIXES[power]}{unit}"

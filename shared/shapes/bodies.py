@@ -38,6 +38,8 @@ class Bodies(dict[str, list[Solid]]):
         """Makes the solids of ground with a stand, once all solids are there; None where ground has what it needs."""
         self.mount: tuple[str, tuple[float, float, float]] | None = None
         """Kind and up of shared/contract/mount.py: how ground stands in the world; None where nobody says."""
+        self.notes: list[str] = []
+        """Sentences for the user, which the parts stage prints."""
         self._touching: set[tuple[str, str]] = set()
         self._pieces_touching: set[tuple[str, str]] = set()
         self._left_out: set[str] = set()
@@ -128,6 +130,7 @@ class Bodies(dict[str, list[Solid]]):
                 joined._left_out |= operand.left_out
                 joined._rods |= operand.rods
                 joined.along |= operand.along
+                joined.notes = list(dict.fromkeys([*joined.notes, *operand.notes]))
                 joined.mount = joined.mount or operand.mount
                 joined.stand = joined.stand or operand.stand
         return joined

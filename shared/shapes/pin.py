@@ -11,6 +11,9 @@ from shared.shapes.build import extruded, turned
 from shared.shapes.once import built_once
 from shared.shapes.outline import circle
 
+THINNED = 0.3
+"""Part of a wall's thickness that a chamfer takes from each side at most."""
+
 
 @dataclass(frozen=True)
 class Head:
@@ -57,9 +60,20 @@ def pin(
 
 @built_once
 def washer(inner: float, outer: float, thickness: float, chamfer: float = 0.15) -> cq.Workplane:
-    """A flat washer (diameters in mm) from z = 0: one through hole."""
-    a, b, c, t = inner / 2, outer / 2, chamfer, thickness
+    """A flat washer (diameters in mm) from z = 0: one through hole. A thin wall gets a smaller chamfer.
+
+    Raises ValueError where the hole leaves no wall.
+    """
+    a, b, t = inner / 2, outer / 2, thickness
+    c = min(chamfer, _largest_chamfer(a, b))
     return turned([(a, 0), (b - c, 0), (b, c), (b, t - c), (b - c, t), (a, t)])
+
+
+def _largest_chamfer(inner: float, outer: float) -> float:
+    """Return the largest chamfer (mm) of both edges of a wall between two radii; raises ValueError without a wall."""
+    if outer <= inner:
+        raise ValueError(f"a hole of {2 * inner:.4g} mm leaves no wall of a ring of {2 * outer:.4g} mm")
+    return THINNED * (outer - inner)
 
 
 def grooved(ring: cq.Workplane, count: int, reach: float, width: float, depth: float) -> cq.Workplane:
@@ -73,8 +87,12 @@ def grooved(ring: cq.Workplane, count: int, reach: float, width: float, depth: f
 
 @built_once
 def bushing(inner: float, outer: float, flange: float, flange_thickness: float, length: float) -> cq.Workplane:
-    """A flanged bushing (diameters in mm): flange from z = 0 up, barrel down to z = -length. One through hole."""
-    a, b, f, t, c = inner / 2, outer / 2, flange / 2, flange_thickness, 0.25
+    """A flanged bushing (diameters in mm): flange from z = 0 up, barrel down to z = -length. One through hole.
+
+    A thin wall gets smaller chamfers. Raises ValueError where the hole leaves no wall.
+    """
+    a, b, f, t = inner / 2, outer / 2, flange / 2, flange_thickness
+    c = min(0.25, _largest_chamfer(a, b))
     return turned(
         [
             (a, -length + c),

@@ -14,7 +14,9 @@ from mbsd import Mechanism, ModelError, constant_rate
 from mbsd.drawing.animation import encoders
 from mbsd.drawing.animation.between import at_times
 from mbsd.drawing.animation.clip import HOLD, clip_of
+from mbsd.drawing.animation.picture.legend import BETWEEN, MARGIN, legend_rows
 from mbsd.drawing.animation.picture.page import Page
+from mbsd.drawing.animation.picture.panel import LEGEND_ROW
 from mbsd.drawing.animation.quantities.arrows import Arrow
 from mbsd.drawing.animation.scene import Scene, scene_of
 from mbsd.drawing.animation.words import EVERYTHING
@@ -123,6 +125,26 @@ def test_arrows_stay_within_their_panel() -> None:
                     tip = panel.brush.view.pixels(mark.place + panel._drawn(mark) * (0.5 if mark.middle else 1.0))[k]
                     assert left - 1 <= tip[0] <= right + 1
                     assert low - 1 <= tip[1] <= top + 1
+
+
+@pytest.mark.parametrize(("size", "most"), [((640, 360), 2), ((1280, 720), 1)])
+def test_legends_end_within_their_panel_and_below_the_machine(size: tuple[int, int], most: int) -> None:
+    """Forces, torques, weights and reactions in half of a picture: they ran into the panel beside it."""
+    model = four_bar()
+    model.gravity = (0.0, -9.81)
+    model.torsion_spring("spring", model.ground, model.bodies["rocker"], 5.0, damping=0.1)
+    sol = model.sweep()
+    page = Page(sol, scene(sol), EVERYTHING, size, True)
+    assert len(page.panels) == 4
+    longest = 0
+    for panel in page.panels:
+        px, rows = panel.dpi / 100, legend_rows(panel)
+        longest = max(longest, len(rows))
+        for row in rows:
+            wide = sum(entry.width(px) for entry in row) + BETWEEN * px * (len(row) - 1)
+            assert 2 * MARGIN * px + wide <= panel.box[2] + 1e-6
+        assert panel.room[1] - panel.box[1] >= (19 + LEGEND_ROW * (len(rows) - 1)) * px
+    assert longest == most
 
 
 # -- files -----------------------------------------------------------------------------------------------------------

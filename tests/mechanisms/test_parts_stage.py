@@ -19,11 +19,12 @@ from mechanisms.stages.parts import stage as parts_stage
 from mechanisms.stages.parts.mass_properties import mass_of
 from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
 from mechanisms.stages.parts.traced_params import traced
-from mechanisms.stages.parts_files import TOLERANCE, read_mesh, stl_bytes, volume_of
+from mechanisms.stages.parts_files import TOLERANCE, binary_stl, read_mesh, stl_bytes
 from shared.contract import read_parts
 from shared.shapes import outline
 from shared.shapes.band import loop
 from shared.shapes.build import extruded
+from shared.shapes.facets import facets, volume_of
 from shared.shapes.outline import circle
 from shared.shapes.solid import Solid, placed
 from shared.shapes.units import mm
@@ -155,6 +156,34 @@ def test_a_mesh_that_is_off_in_volume_is_refused() -> None:
     mesh.update_faces([True] * (len(mesh.faces) - 1) + [False])
     with pytest.raises(UserError, match="a: its mesh has 3 open edges"):
         check_mesh(mesh, solid.Volume(), 1, "a")
+
+
+def test_what_is_wrong_with_an_automatic_part_is_no_fault_of_its_user() -> None:
+    """Who wrote no CAD gets no advice on cones; edges at which more than two faces meet are counted, too."""
+    boxes = cq.Workplane().box(2, 2, 2).union(cq.Workplane().box(2, 2, 2).translate((2, 2, 0)))
+    solids = boxes.solids().vals()
+    mesh = read_mesh(binary_stl(np.concatenate([facets(solid, 0.1, 0.3) for solid in solids])))
+    for automatic in (True, False):
+        with pytest.raises(UserError) as error:
+            check_mesh(mesh, 16.0, 0, "anchor: roller", automatic)
+        words = str(error.value)
+        assert words.startswith("anchor: roller: its mesh has 1 edges at which more than two faces meet, it must be")
+        assert ("fault of the program" in words) == automatic == ("avoid cone" not in words)
+    with pytest.raises(UserError, match="consists of 2 separate solids, it must be one; mbsd shaped this part"):
+        only_solid(cq.Workplane().pushPoints([(0, 0), (9, 0)]).box(2, 2, 2), "rod: rod", automatic=True)
+
+
+def test_a_mesh_that_the_kernel_leaves_open_is_tried_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where it loses a face depends on where it divides the edges."""
+    solid, asked, plain = only_solid(washer("a", 0.0).shape, "a"), [], facets
+
+    def torn(shape: Any, tolerance: float, angle: float) -> np.ndarray:
+        asked.append(tolerance)
+        return plain(shape, tolerance, angle)[: -1 if len(asked) < 5 else None]
+
+    monkeypatch.setattr("mechanisms.stages.parts_files.facets", torn)
+    check_mesh(read_mesh(stl_bytes(solid)), solid.Volume(), 1, "a")
+    assert len(asked) == len(set(asked)) == 5
 
 
 def test_an_edge_shorter_than_a_file_can_tell_leaves_the_mesh_watertight() -> None:

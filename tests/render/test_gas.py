@@ -13,6 +13,8 @@ from mbsd import GasView, Mechanism, constant_rate, harmonic
 from mechanisms.stages.solve.motion_file import to_motion
 from render.plots import plots_of
 from render.plots.figures import WHOLE
+from render.plots.inks import apart
+from render.plots.pages.gas import gas
 from render.report import report
 from shared.contract import Motion, read_motion, write_motion
 from shared.stage.errors import UserError
@@ -36,6 +38,29 @@ def air_spring() -> Motion:
     m.gas("air", m.ground.at(-0.1, 0), piston.origin, area=1e-3, pressure=2e5, at=0.1)
     m.drive_coordinate("drive", m.ground.origin, piston.origin, harmonic(0.05, 10.0))
     return motion_of(m, steps=180)
+
+
+def double_acting() -> Motion:
+    """A piston with gas on both sides: two chambers that push one body."""
+    m = Mechanism("double_acting", gravity=None)
+    piston = m.body("piston", 1.0)
+    m.prismatic("rail", m.ground.origin, piston.origin)
+    m.gas("head", m.ground.at(-0.1, 0), piston.origin, area=1e-3, pressure=2e5, at=0.1)
+    m.gas("crank_side", m.ground.at(0.1, 0, math.pi), piston.origin, area=8e-4, pressure=2e5, at=0.1)
+    m.drive_coordinate("drive", m.ground.origin, piston.origin, harmonic(0.05, 10.0))
+    return motion_of(m, steps=180)
+
+
+def test_chambers_of_one_piston_have_colours_of_their_own() -> None:
+    motion = double_acting()
+    page = gas(motion)
+    for axes in page.axes:
+        inks = {line.get_label(): line.get_color() for line in axes.get_lines() if line.get_label() in motion.forces}
+        assert set(inks) == {"head", "crank_side"}
+        assert len(set(inks.values())) == 2
+        assert motion.bodies["piston"].colour in inks.values()
+    assert apart(["#111111"] * 3 + ["#222222"])[-1] == "#222222"
+    assert len(set(apart(["#111111"] * 9))) == 9
 
 
 def test_gas_comes_back_from_data_json(tmp_path: Path) -> None:

@@ -134,7 +134,8 @@ def meshed(bodies: Bodies) -> list[MeshPiece]:
     """The pieces as the clearance stage sees them. Raises UserError for what is no sound solid."""
     from mechanisms.stages.clearance.pieces import MeshPiece
     from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
-    from mechanisms.stages.parts_files import read_mesh, read_triangles, stl_bytes, volume_of
+    from mechanisms.stages.parts_files import read_mesh, read_triangles, stl_bytes
+    from shared.shapes.facets import volume_of
 
     pieces = []
     for body, solids in bodies.items():

@@ -19,14 +19,14 @@ from mechanisms.stages.automatic.assembly.looks import ROD, materials
 from mechanisms.stages.automatic.assembly.marks import Wish, place, refuse_letters
 from mechanisms.stages.automatic.decided import decided
 from mechanisms.stages.automatic.laid_out import laid_out
-from mechanisms.stages.automatic.layout.extents import extents, lengths_of
+from mechanisms.stages.automatic.layout.extents import lengths_of
 from mechanisms.stages.automatic.layout.features import build
 from mechanisms.stages.automatic.layout.items import Need
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
 from mechanisms.stages.automatic.layout.order.heights import Heights, heights
 from mechanisms.stages.automatic.layout.printed import printed_sizes
-from mechanisms.stages.automatic.layout.sizes import THINNEST, Sizes, of_pin, refuse_sizes, sizes
+from mechanisms.stages.automatic.layout.sizes import THINNEST, Sizes, of_pin, refuse_sizes, sizes, thin_pins
 from mechanisms.stages.automatic.pins.rods import places
 from mechanisms.stages.automatic.rolling.roads import runs_on_ground
 from mechanisms.stages.automatic.shafts.along import THINNEST_ALONG, Along
@@ -237,6 +237,7 @@ class Automatic:
             return self._solids_along(self.along)
         plan = self.plan()
         made = Bodies(fitted(built(plan, self.heights, engraved_too)) | self._replaced)
+        made.notes = self._notes()
         scale, plate = self.sizes.scale, back_plate(plan)
         poses = {body: pose * [scale, scale, 1.0] for body, pose in self.layout.poses.items()}
         hold(made, self.mount, plate and plate.scaled(scale), poses, self.sizes)
@@ -261,7 +262,7 @@ class Automatic:
         from shared.shapes.bodies import Bodies
 
         made = Bodies(fitted(solids(along, self._materials, self.mount, self._base_under)) | self._replaced)
-        made.along = True
+        made.along, made.notes = True, self._notes()
         plate = plate_of(along, self.mount, self._base_under)
         hold(made, self.mount, plate, along.machine.poses, self.sizes)
         for body in self._left_out.intersection(self.m.bodies):
@@ -307,12 +308,19 @@ class Automatic:
     def wishes(self) -> list[Sizes]:
         """Sizes of pins and all that goes with them, the most wanted first."""
         scale, thinnest = wished_scale(), THINNEST_ALONG if has_places(self.m) else THINNEST
-        if scale is not None:
-            lengths = lengths_of(self.m, self.solution, self._left_out)
-            return printed_sizes(self.m.name, lengths, scale, thinnest, self._pin, self._fit)
-        if self._pin is not None:
+        if scale is None and self._pin is not None:
             return [of_pin(self._pin, self._fit)]
-        return sizes(*extents(self.m, self.solution, self._left_out), self._fit, thinnest)
+        lengths = lengths_of(self.m, self.solution, self._left_out)
+        if scale is not None:
+            return printed_sizes(self.m.name, lengths, scale, thinnest, self._pin, self._fit)
+        return sizes(lengths.shortest[0], lengths.overall, self._fit, thinnest)
+
+    def _notes(self) -> list[str]:
+        """Return what the user should know of the sizes that were chosen."""
+        if wished_scale() is not None or self._pin is not None:
+            return []
+        note = thin_pins(lengths_of(self.m, self.solution, self._left_out), self.sizes.pin)
+        return [note] if note else []
 
     def _layout(
         self, size: Sizes, springs: Springs, tubes: bool = False, tall: bool = False, pointers: bool = False

@@ -56,8 +56,9 @@ def _piece(
     """Check one solid, add its files to ``files``, and describe it."""
     from mechanisms.stages.parts.kept_pieces import Kept
     from mechanisms.stages.parts.mass_properties import mass_of
-    from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
-    from mechanisms.stages.parts_files import read_mesh, step_bytes, stl_bytes, volume_of
+    from mechanisms.stages.parts.mesh_check import OF_ITSELF, check_mesh, only_solid
+    from mechanisms.stages.parts_files import read_mesh, step_bytes, stl_bytes
+    from shared.shapes.facets import volume_of
     from shared.shapes.kernel import is_of_kernel
 
     where = f"{name}: {body}: {solid.name}"
@@ -67,7 +68,7 @@ def _piece(
             "(cq.Workplane(obj=shape) makes one of a shape)"
         )
     try:
-        shape = only_solid(solid.shape, where)
+        shape = only_solid(solid.shape, where, solid.fitted)
         key = kept.key(shape, solid, along) if kept else ""
         known = kept.get(key) if kept else None
         if known is not None:
@@ -78,12 +79,13 @@ def _piece(
     except Exception as error:
         if not is_of_kernel(error):
             raise
+        remedy = "look at its last fillet, chamfer or cut: make it smaller, or apply it earlier"
         raise UserError(
-            f"{where}: the CAD kernel cannot mesh or write this solid ({type(error).__name__}: {error}); look at its "
-            "last fillet, chamfer or cut: make it smaller, or apply it earlier"
+            f"{where}: the CAD kernel cannot mesh or write this solid ({type(error).__name__}: {error}); "
+            f"{OF_ITSELF if solid.fitted else remedy}"
         ) from error
     mesh = read_mesh(stl)
-    check_mesh(mesh, volume_of(shape), solid.through_holes, where)
+    check_mesh(mesh, volume_of(shape), solid.through_holes, where, solid.fitted)
     files[f"{solid.name}.stl"] = stl
     files[f"{solid.name}.step"] = step
     piece = Piece(

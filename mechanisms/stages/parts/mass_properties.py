@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from mechanisms.stages.parts_files import SHARP, ruled
 from shared.contract import Mass
+from shared.shapes.facets import SHARP, ruled
 from shared.shapes.units import cubic_metres, inertia_metres, metres
 
 

@@ -32,6 +32,7 @@ from shared.cluster.address import address
 from shared.contract import Parts, Provenance, write_parts
 from shared.contract.materials import MATERIALS
 from shared.contract.mount import Kind
+from shared.contract.quantity import written
 from shared.stage.console import Shown, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
@@ -82,13 +83,13 @@ def run(name: str, scale: str = "", anyway: bool = False) -> None:
         remembered.refuse_again(out, lambda reads, inputs: _key(given, reads, inputs, wish))
     made = _of_cluster(out, given, wish, recorder) if address() else None
     made = made or _made_here(out, given, wish, before, recorder)
-    written = _write(out, made.files, made.document)
+    count = _write(out, made.files, made.document)
     outputs = [out.parts, *(out.parts_folder / file for file in made.files)]
     notes = {"parameters": made.reads, "inputs": made.inputs.names(), **({} if with_machine else {MACHINE: False})}
     Stage(out, "parts", made.document.provenance.inputs, outputs).done(**notes)
     _kept_pieces(out).clear()
     remembered.forget(out)
-    say("parts", _summary(out.title, made.document, written))
+    say("parts", _summary(out.title, made.document, count))
 
 
 class _Wish(NamedTuple):
@@ -168,6 +169,8 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
         bodies = bodies.on_stand()
     if wish.scale is not None:
         bodies = (bodies if isinstance(bodies, Bodies) else Bodies(bodies)).at_scale(wish.scale.ratio)
+    for note in getattr(bodies, "notes", ()):
+        say("parts", f"{name}: {note}")
     reads, inputs = sorted(seen.reads), seen.inputs
     if wish.by_itself or follows_gravity(bodies, wish.mount) or _more_than_values(name, given, reads):
         inputs = inputs.joined(_of_mechanism(name, before, recorder))
@@ -324,28 +327,27 @@ def _write(out: Out, files: Mapping[str, bytes], document: Parts) -> int:
 
     parts.json is written last, so it never names a file that is not there.
     """
-    written = 0
+    count = 0
     for file, content in files.items():
         path = out.parts_folder / file
         if not path.is_file() or path.read_bytes() != content:
             write_bytes(path, content)
-            written += 1
+            count += 1
     write_parts(out.parts, document)
     for path in _leftovers(out.parts_folder, files):
         path.unlink()
-    return written
+    return count
 
 
 def _leftovers(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
     return [path for path in sorted(folder.iterdir()) if path.suffix in (".stl", ".step") and path.name not in files]
 
 
-def _summary(name: str, document: Parts, written: int) -> str:
+def _summary(name: str, document: Parts, count: int) -> str:
     pieces = [piece for body in document.bodies.values() for piece in body.pieces.values()]
     moving = sum(body.mass.mass for key, body in document.bodies.items() if key != "ground")
     triangles = sum(piece.triangles for piece in pieces)
-    mass = f"{moving:.3f} kg" if moving >= 0.01 else f"{1000 * moving:.3g} g"
     return (
-        f"{name}: {len(pieces)} solids of {len(document.bodies)} bodies, {mass} moving, "
-        f"{triangles} triangles, {written} files written"
+        f"{name}: {len(pieces)} solids of {len(document.bodies)} bodies, {written(moving, 'kg')} moving, "
+        f"{triangles} triangles, {count} files written"
     )

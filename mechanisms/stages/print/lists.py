@@ -6,9 +6,12 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from mbsd.base.csv_text import csv_text
 from mechanisms.stages.print.flat import Sheet
 from mechanisms.stages.print.laying import Laid
+from shared.contract.quantity import written
 
 HEADER = (
     "do", "name", "count", "material", "x_mm", "y_mm", "z_mm", "mass_g", "plates", "bed_mm", "outline", "sheet_mm",
@@ -52,13 +55,13 @@ def markdown(title: str, bed: str, made: Sequence[Made], bought: Sequence[Bought
     """The lists as a page."""
     count = sum(len(part.names) for part in made)
     mass = sum(len(part.names) * part.mass for part in made)
-    lines = [f"# Pieces of {title}", "", f"## To make: {count}, {_grams(mass)} g", ""]
+    lines = [f"# Pieces of {title}", "", f"## To make: {count}, {written(mass, 'kg')}", ""]
     lines += [
         "Sizes as it lies on the bed, masses in the material that is named. Plates are "
         f"{bed} mm. Where a DXF is named, the piece can be cut from a sheet of this thickness: eased edges, pockets, "
         "counterbores and engraving are not in it, and what stands above the sheet is listed.",
         "",
-        "| piece | count | material | x x y x z (mm) | mass (g) | plate | outline |",
+        "| piece | count | material | x x y x z (mm) | mass | plate | outline |",
         "|---|--:|---|---|--:|---|---|",
     ]
     lines += [f"| {' | '.join(_cells(part))} |" for part in made]
@@ -93,7 +96,7 @@ def _cells(part: Made) -> list[str]:
         for plate, times in sorted(Counter(part.plates).items())
     )
     where = plates or f"none: needs a bed of {part.bed} mm"
-    return [part.name, str(len(part.names)), part.material, size, _grams(part.mass), where, _outline(part)]
+    return [part.name, str(len(part.names)), part.material, size, written(part.mass, "kg"), where, _outline(part)]
 
 
 def _outline(part: Made) -> str:
@@ -104,4 +107,5 @@ def _outline(part: Made) -> str:
 
 
 def _grams(mass: float) -> str:
-    return f"{1000 * mass:.4g}"
+    """Return a mass (kg) in grams with four digits and without an exponent, as tables read it."""
+    return np.format_float_positional(1000 * mass, 4, unique=False, fractional=False, trim="-")

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from render.plots.inks import acting_on
+from render.plots.inks import acting_on, apart
 from render.plots.style import QUIET, label_ends, page
 from render.report.written import written
 from shared.contract import GasMotion, Motion
@@ -22,9 +22,9 @@ FEW = 4
 
 def gas(motion: Motion) -> Figure:
     """The indicator diagram of the first chambers, and the pressure in all of them; the last cycle of each."""
-    chambers = [
-        (name, force.gas, acting_on(motion, name)) for name, force in motion.forces.items() if force.gas is not None
-    ]
+    known = [(name, force.gas) for name, force in motion.forces.items() if force.gas is not None]
+    inks = apart([acting_on(motion, name) for name, _ in known])
+    chambers = [(name, chamber, ink) for (name, chamber), ink in zip(known, inks, strict=True)]
     figure = page(motion.mechanism, "gas in the cylinders", _subtitle(chambers))
     indicated, over = figure.subplots(1, 2, width_ratios=(1.0, 1.15))
     figure.subplots_adjust(left=0.075, right=0.9, top=0.845, bottom=0.095, wspace=0.2)

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from render.plots.horizon import horizon
-from render.plots.inks import acting_on
+from render.plots.inks import acting_on, apart
 from render.plots.pages.rates import Line, draw
 from render.plots.style import PARTS, page, rows
 from render.report.written import written
@@ -21,7 +21,8 @@ def hydraulics(motion: Motion) -> Figure:
     """Pressure (bar), flow (l/min) and power (W) over the motion; chamber B is paler."""
     known = [(name, force.hydraulics) for name, force in motion.forces.items() if force.hydraulics is not None]
     known.sort(key=lambda cylinder: -float(np.max(np.abs(cylinder[1].supply_power))))
-    shown = [(name, cylinder, acting_on(motion, name)) for name, cylinder in known[:FEW]]
+    inks = apart([acting_on(motion, name) for name, _ in known[:FEW]])
+    shown = [(name, cylinder, ink) for (name, cylinder), ink in zip(known, inks, strict=False)]
     over = horizon(motion)
     figure = page(motion.mechanism, "hydraulic cylinders", _subtitle(known))
     pressures, flows, powers = rows(figure, 3)

@@ -15,7 +15,9 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.cams.cams import Cam
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
-from mechanisms.stages.parts.mesh_check import only_solid
+from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.parts_files import read_mesh, stl_bytes
+from shared.shapes.facets import volume_of
 from shared.shapes.polyline import distances
 from shared.stage.errors import UserError
 
@@ -151,18 +153,39 @@ def test_planks_of_a_bowl_end_where_they_meet() -> None:
         np.testing.assert_allclose(planks[k].feet[0], planks[k + 1].feet[1], atol=1e-6)
 
 
-def test_a_closed_curve_that_pushes_is_a_cam_with_a_roller() -> None:
+def _valve(size: float = 1.0, roller: float = 0.012) -> Mechanism:
+    """An eccentric disc of 60 mm that pushes a roller on a valve; ``size`` and ``roller`` (m) make others of it."""
     m = Mechanism("valve")
     disc, valve = m.body("disc", mass=0.2, inertia=1e-4), m.body("valve", mass=0.1, inertia=1e-5)
     m.revolute("shaft", m.ground.origin, disc.origin)
-    m.prismatic("guide", m.ground.at(0, 0.12, math.pi / 2), valve.at(0, 0.075, math.pi / 2))
+    m.prismatic("guide", m.ground.at(0, 0.12 * size, math.pi / 2), valve.at(0, 0.075 * size, math.pi / 2))
     angle = np.linspace(0, -2 * math.pi, 60, endpoint=False)
-    eccentric = [(0.03 * math.cos(a), 0.006 + 0.03 * math.sin(a)) for a in angle]
-    m.rigid_terrain("push", disc.origin, valve.origin, eccentric, 0.012, closed=True)
-    m.spring("spring", m.ground.at(0, 0.2), valve.at(0, 0.1), 2000.0, free_length=0.1)
+    eccentric = [(0.03 * size * math.cos(a), size * (0.006 + 0.03 * math.sin(a))) for a in angle]
+    m.rigid_terrain("push", disc.origin, valve.origin, eccentric, roller * size, closed=True)
+    m.spring("spring", m.ground.at(0, 0.2 * size), valve.at(0, 0.1 * size), 2000.0, free_length=0.1 * size)
     m.drive_angle("motor", disc, constant_rate(20.0))
-    m.start_near(valve=(0, 0.048, 0))
-    made, _, _ = _made(m, 0.4)
+    m.start_near(valve=(0, (0.036 + roller) * size, 0))
+    return m
+
+
+@pytest.mark.parametrize(("roller", "turns"), [(0.41, False), (0.5, False), (0.62, True), (1.0, True)])
+def test_rollers_of_clockwork_are_sound(roller: float, turns: bool) -> None:
+    """Clearances do not shrink below 0.16 mm: in a roller of 1 mm they left a wall that crossed itself."""
+    made, _, _ = _made(_valve(0.1, roller / 1e3 / 0.1), 0.4)
+    (piece,) = [solid for solid in made.plan().solids["valve"] if solid.name == "roller_push"]
+    shape = only_solid(piece.shape, "roller")
+    check_mesh(read_mesh(stl_bytes(shape)), volume_of(shape), 1, "roller")
+    assert (piece.rolls is not None) == turns
+
+
+def test_a_roller_that_a_pin_fills_is_refused() -> None:
+    m = _valve(0.1, 0.0003 / 0.1)
+    with pytest.raises(UserError, match=r"roller of 'push' is 0\.408 mm in diameter, and on a pin of 0\.5 mm"):
+        _made(m, 0.4)[0].plan()
+
+
+def test_a_closed_curve_that_pushes_is_a_cam_with_a_roller() -> None:
+    made, _, _ = _made(_valve(), 0.4)
     (cam,) = [f for f in made.layout.features if isinstance(f, Cam)]
     scale = made.sizes.of_metres(1.0)
     assert cam.roller == pytest.approx(0.012 * scale - cam.clear)

@@ -11,6 +11,9 @@ from hypothesis import strategies as st
 
 from mechanisms.stages.automatic.assembly.body_shape import body_shape
 from mechanisms.stages.automatic.layout.planar import FLAT, convex_hull
+from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.parts_files import read_mesh, stl_bytes
+from shared.shapes.facets import volume_of
 from shared.shapes.link import Eye
 from tools.hunt.case import drawn
 from tools.hunt_parts import case
@@ -18,6 +21,15 @@ from tools.hunt_parts.outcome import BUILT, REFUSED
 
 BIG, SMALL = Eye(13.0, 11.0), Eye(9.0, 4.6)
 BOSSED = Eye(12.5, 8.0, above=14.4, boss=9.2)
+
+
+@pytest.mark.parametrize("length", [121.57835546275788, 127.5])
+def test_rounded_edges_of_a_bar_with_an_eye_beside_its_end_are_sound(length: float) -> None:
+    """The kernel calls a shape valid whose fillets overlap: its mesh was open, or had another volume."""
+    end = Eye(12.5, 8.02, boss=9.2)
+    shape, holes = body_shape([(length / 5, 0.0, Eye(13.0, 11.02)), (0.0, 0.0, end), (length, 0.0, end)], 7.0)
+    solid = only_solid(shape, "beam")
+    check_mesh(read_mesh(stl_bytes(solid)), volume_of(solid), holes, "beam")
 
 
 @pytest.mark.parametrize(

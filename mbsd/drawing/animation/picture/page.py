@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.drawing.animation.picture.legend import legend_rows
 from mbsd.drawing.animation.picture.panel import Box, Panel, common_view
 from mbsd.drawing.animation.picture.still import paint_still
 from mbsd.drawing.animation.picture.trails import trails_of
@@ -56,6 +57,9 @@ class Page:
                     Panel(scene, panel.quantities, box, self.dpi, len(filled) > 1, names, trails)
                     for panel, box in zip(filled, self._boxes(len(filled)), strict=True)
                 ] or [Panel(scene, (), self._boxes(1)[0], self.dpi, False, names, trails)]
+        for panel in self.panels:
+            panel.arrange(len(legend_rows(panel)))
+        if several:
             common_view(self.panels)
         for panel in self.panels:
             panel.place_names()

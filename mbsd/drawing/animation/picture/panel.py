@@ -26,6 +26,8 @@ Box = tuple[float, float, float, float]
 """Left, low, width, height in pixels."""
 AROUND = 2.8
 """Room beside the machine, in units of its symbols."""
+LEGEND_ROW = 20.0
+"""Height of a row of the legend (pixels at 100 dots an inch)."""
 NAMED_AT = 8
 """Pictures in which the places of names are tried."""
 FEW_NAMES, MOST_NAMES = 3, 16
@@ -53,22 +55,26 @@ class Panel:
     placed: list[Placed] = field(init=False, default_factory=list)
 
     def __post_init__(self) -> None:
-        px, (left, low, width, height) = self.dpi / 100, self.box
         self.marks = self.scene.marks(self.quantities)
         self.scales = scales_of(self.marks, self.scene.floor)
         self.marks = [mark for mark in self.marks if self._seen(mark)]
+        self.colours = neutral_inks(self.scene.tracks.views) if self.quantities else self.scene.inks
+        self.brush = Brush(None, self.scene.unit, dpi=self.dpi, driver=QUIET if self.quantities else MOVED)
+        self.arrange(1)
+        self.impacts = impacts_of(self.scene)
+
+    def arrange(self, rows: int) -> None:
+        """Divide the box into machine, bars and a legend of so many rows, and look at the machine."""
+        px, (left, low, width, height) = self.dpi / 100, self.box
         top = low + height - (34 * px if self.titled else 10 * px)
-        bottom = low + (44 * px if self.marks else 30 * px)
+        bottom = low + ((44 + LEGEND_ROW * (rows - 1)) * px if self.marks else 30 * px)
         right = left + width - 12 * px
         if "energy" in self.quantities:
             wide = min(0.36 * width, 250 * px)
             self.bars = Bars(self.scene.balance, (right - wide, bottom, wide, top - bottom), self.dpi)
             right -= wide + 8 * px
         self.room = (left + 12 * px, bottom, right, top)
-        self.colours = neutral_inks(self.scene.tracks.views) if self.quantities else self.scene.inks
-        self.brush = Brush(None, self.scene.unit, dpi=self.dpi, driver=QUIET if self.quantities else MOVED)
         self._look_at(self._view())
-        self.impacts = impacts_of(self.scene)
 
     @property
     def is_empty(self) -> bool:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
+from mechanisms.stages.automatic.assembly.body_shape import EDGES, first_made
 from shared.shapes.link import Eye, link, plate_link
 
 if TYPE_CHECKING:
@@ -19,10 +21,6 @@ def rod_shape(eyes: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, in
     """A slim straight shaft between two eyes, from z = 0 up, and its number of through holes."""
     (_, _, start), (length, _, end) = sorted(eyes, key=lambda eye: eye[0])
     widths = SLIM * start.radius, SLIM * end.radius
-    for fillet in (8.0, 4.0):
-        try:
-            return link(length, thickness, start, end, widths, fillet, edge=1.2), 2
-        except ValueError:
-            continue
     straight: list[tuple[float, float, Eye]] = [(0.0, 0.0, start), (length, 0.0, end)]
-    return plate_link(straight, thickness), 2
+    ways = [partial(link, length, thickness, start, end, widths, fillet, edge=1.2) for fillet in (8.0, 4.0)]
+    return first_made([*ways, *(partial(plate_link, straight, thickness, edge=edge) for edge in EDGES)]), 2

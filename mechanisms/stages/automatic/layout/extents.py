@@ -72,19 +72,11 @@ class Lengths:
         return min(self.apart, default=(self.overall, "all that moves", self.overall))
 
 
-def extents(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) -> tuple[float, float]:
-    """The shortest distance of two pins of a body, or what is like one; the longer side of all that is swept (m).
-
-    Bodies that are ``left_out`` do not count.
-    """
-    lengths = lengths_of(m, solution, left_out)
-    return lengths.shortest[0], lengths.overall
-
-
 def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) -> Lengths:
-    """All of them, without bodies that are ``left_out``."""
+    """Lengths of a mechanism and its motion, without bodies that are ``left_out``."""
     places: dict[str, list[tuple[float, float]]] = {}
     pinned: dict[str, list[tuple[float, float]]] = {}
+    pins: dict[str, list[str]] = {}
     studs: dict[str, list[tuple[float, float]]] = {}
     least: list[tuple[float, str, float]] = []
     for joint in m.joints.values():
@@ -94,11 +86,13 @@ def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ())
             places.setdefault(marker.body.name, []).append((marker.x, marker.y))
             if joint.kind.pair == "pin" or joint.kind.name == ROD or (joint.kind.pair == "slot" and marker is joint.j):
                 pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
+                pins.setdefault(marker.body.name, []).append(joint.name)
     for force in m.forces.values():
         for marker in (force.i, force.j) if force.kind.journal is not None else ():
             if marker.body.name not in left_out:
                 places.setdefault(marker.body.name, []).append((marker.x, marker.y))
                 pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
+                pins.setdefault(marker.body.name, []).append(force.name)
     for thing in (*m.joints.values(), *m.contacts.values(), *m.forces.values()):
         if thing.kind.name in EXTENTS and not any(body in left_out for body in thing.bodies):
             own = EXTENTS[thing.kind.name](thing, solution)
@@ -120,10 +114,10 @@ def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ())
     seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
     overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0
     apart = [
-        (d := float(np.hypot(a[0] - b[0], a[1] - b[1])), f"the distance of two pins of '{body}'", d)
+        (d := math.dist(at[i], at[k]), f"the distance of '{pins[body][k]}' and '{pins[body][i]}' on '{body}'", d)
         for body, at in pinned.items()
-        for i, a in enumerate(at)
-        for b in at[:i]
+        for i in range(len(at))
+        for k in range(i)
     ]
     for body, at in studs.items():
         beside = [math.dist(a, b) for i, a in enumerate(at) for b in [*at[:i], *pinned.get(body, [])]]

@@ -7,6 +7,7 @@ So a 20 mm clockwork and a 3 m excavator have the same proportions, chamfers inc
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from mechanisms.stages.parts_files import TOLERANCE
 from shared.shapes.fit import Fit
@@ -16,6 +17,9 @@ from shared.shapes.screw import SOCKET
 from shared.shapes.standards import CIRCLIPS, shim_ring
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
+
+if TYPE_CHECKING:
+    from mechanisms.stages.automatic.layout.extents import Lengths
 
 PIN = 8.0
 """Diameter of a pin (rmm)."""
@@ -56,6 +60,8 @@ LEAST_LINK = 2.75
 OVERALL = 20.0
 """The longer side of what the joints sweep, in diameters of a pin."""
 
+MUCH_THINNER = 2.5
+"""Pins thinner by this factor than the size of the machine suggests are reported."""
 COARSEST = 0.13
 """Tolerance of meshes, at most so much of the clearance of pins."""
 THINNEST = 0.5
@@ -143,6 +149,18 @@ def sizes(shortest: float, overall: float, fit: Fit | None = None, thinnest: flo
     pin = standard(min(mm(shortest) / LEAST_LINK, mm(overall) / OVERALL))
     thinner = [d for d in reversed(STANDARD) if thinnest * pin <= d < pin]
     return [of_pin(d, fit) for d in (pin, *thinner)]
+
+
+def thin_pins(lengths: Lengths, pin: float) -> str:
+    """Return why pins of ``pin`` mm are much thinner than usual in a machine of this size; empty where they are not."""
+    shortest, words, own = lengths.shortest
+    usual = standard(mm(lengths.overall) / OVERALL)
+    if standard(mm(shortest) / LEAST_LINK) * MUCH_THINNER > usual:
+        return ""
+    return (
+        f"pins of {pin:g} mm, because {words} is {mm(own):.3g} mm; a machine of {mm(lengths.overall):.3g} mm "
+        f"would have pins of {usual:g} mm. Move the two farther apart, or put them on one place"
+    )
 
 
 def of_pin(diameter: float, fit: Fit | None = None, ratio: float = 1.0) -> Sizes:

@@ -19,10 +19,13 @@ from shared.shapes.build import eased, extruded
 from shared.shapes.link import Eye
 from shared.shapes.pin import Head, grooved, pin, washer
 from shared.shapes.solid import Roll, Solid, placed
+from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     import cadquery as cq
 
+    from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
@@ -36,6 +39,8 @@ SMALL = Head(10.4, 3.2, 1.0)
 """Head of the pin of a small roller, whose face shows round it (rmm)."""
 SMALL_GROOVE = 1.7
 """Width of the grooves of a small roller (rmm)."""
+ROLLER_WALL = 0.4
+"""Least wall of a roller (rmm)."""
 PIECES = 24
 """About so many straight pieces stand for a curved slot."""
 CHANNEL = 4.6
@@ -124,13 +129,27 @@ def _is_below(slot: InSlot, heights: Heights) -> bool:
 def _roller(slot: Slot, outer: float, large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:
     pivot, (x, y) = plan.layout.sizes.pivot, slot.pin_at
     thick = (heights.thickness if depth is None else depth - 0.4) - 0.4
+    bore = pivot.pin + pivot.fit.running
+    turns = outer - bore >= 2 * ROLLER_WALL
+    if not turns:  # of clockwork, whose clearances are wide beside its pins: it is pressed on
+        bore = pivot.held
+    if outer - bore < 2 * ROLLER_WALL:
+        raise UserError(_no_wall(slot, outer, plan.layout))
     reach, width = (outer / 2 - RIM, GROOVE) if large else (outer, SMALL_GROOVE)
-    roller = washer(pivot.pin + pivot.fit.running, outer, thick, chamfer=0.4)
-    roller = grooved(roller, GROOVES, reach, width, GROOVE_DEPTH)
-    roll = Roll(slot.name, x, y, outer / 2, GROOVES)
+    roller = grooved(washer(bore, outer, thick, chamfer=0.4), GROOVES, reach, width, GROOVE_DEPTH)
+    roll = Roll(slot.name, x, y, outer / 2, GROOVES) if turns else None
     below = _is_below(slot, heights)
     at = heights.bottom(slot.layer) + 0.2 if below else heights.top(slot.layer) - 0.2 - thick
     plan.add(slot.pin, Solid(f"roller_{slot.name}", placed(roller, x, y, at), "bronze", 1, rolls=roll))
+
+
+def _no_wall(slot: Slot, outer: float, layout: Layout) -> str:
+    scale, pin = layout.sizes.scale, layout.sizes.pivot.held
+    return (
+        f"{layout.m.name}: the roller of '{slot.name}' is {outer * scale:.3g} mm in diameter, and on a pin of "
+        f"{layout.sizes.pin:g} mm it needs {(pin + 2 * ROLLER_WALL) * scale:.3g} mm or more; make it larger, the pins "
+        f"thinner (automatic(m, pin=...)), or write {shown_file(layout.m.name, 'parts')}"
+    )
 
 
 def _pin(through: list[InSlot], large: bool, depth: float | None, plan: Plan, heights: Heights) -> None:

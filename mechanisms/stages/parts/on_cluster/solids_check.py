@@ -17,9 +17,10 @@ import numpy as np
 from mechanisms.stages.parts.mass_properties import combined, mass_of
 from mechanisms.stages.parts.mesh_check import VOLUME_TOLERANCE
 from mechanisms.stages.parts.on_cluster.answer import parts_from
-from mechanisms.stages.parts_files import read_mesh, volume_of
+from mechanisms.stages.parts_files import read_mesh
 from shared.contract import BodyParts, Mass, Piece
 from shared.contract.materials import MATERIALS
+from shared.shapes.facets import volume_of
 from shared.shapes.units import metres
 from shared.stage.errors import UserError
 

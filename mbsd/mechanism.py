@@ -71,6 +71,7 @@ class Mechanism(Building):
         steps: int = 360,
         times: Sequence[float] | np.ndarray | None = None,
         event_rows: bool = False,
+        switch_at: Sequence[float] | np.ndarray = (),
     ) -> Solution[Mechanism]:
         """Solve the driven motion: positions, velocities, accelerations, reactions, driver efforts, energy.
 
@@ -78,12 +79,16 @@ class Mechanism(Building):
         where there is none over that of the laws, with a ModelWarning; with gas over whole cycles of it. ``times`` (s),
         rising, replaces both. ``event_rows`` adds two rows where a law or gas makes forces jump, right before and
         after it, which share its time.
+
+        Change points, where two assemblies meet, are passed on the smooth continuation. At those whose times (s)
+        ``switch_at`` names the motion goes on to the other assembly instead: velocities jump there. Where efforts do
+        not exist at such a pose they are NaN, and ``notes`` of the solution name the rows.
         """
         from mbsd.analyses.suspicious_units import tell
         from mbsd.kinematics.sweep import sweep
 
         tell(self)
-        return sweep(self, duration, steps, times, event_rows)
+        return sweep(self, duration, steps, times, event_rows, switch_at=switch_at)
 
     def period(self) -> float | None:
         """The time (s) after which every body is back but for whole turns, with its velocity and acceleration.

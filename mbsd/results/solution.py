@@ -88,6 +88,8 @@ class Solution(Generic[AnyModel]):
     """What was changed of the given start of a simulation to make it consistent."""
     events: tuple[Happening, ...] = ()
     """What contacts, stops and events did during a simulation."""
+    notes: tuple[str, ...] = ()
+    """Rows at which efforts do not exist, a sentence each: there they are NaN."""
     held: np.ndarray | None = field(default=None, repr=False)
     """(T, m) which rows of J held, of a simulation; None: all."""
     span: tuple[float, float] | None = None

@@ -48,14 +48,17 @@ class Mechanism(Building):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
 
     def check(self) -> list[Finding]:
-        """What looks as if it was not meant, with remedies: mixed-up units, links that do not close at the start.
+        """Return what looks as if it was not meant, with remedies: mixed-up units, links that do not close at the start.
 
-        The first solution warns of the former (ModelWarning) and raises the latter as an error.
+        The first solution warns of the former (ModelWarning) and raises the latter as an error. Notes (``is_note``)
+        come last: closed chains of four links that have change points.
         """
+        from mbsd.analyses.change_point_chains import change_point_chains
         from mbsd.analyses.start import start_problems
         from mbsd.analyses.suspicious_units import check
 
-        return check(self) or list(start_problems(self))  # a wrong unit keeps links from closing, too
+        odd = check(self) or list(start_problems(self))  # a wrong unit keeps links from closing, too
+        return [*odd, *change_point_chains(self)]
 
     # -- what it can compute -----------------------------------------------------------------------------------
 

@@ -24,10 +24,8 @@ SUSPECT = 0.1
 """Part of the largest margin below which an output may be near a change point."""
 ODD = 30.0
 """Multiple of the usual multipliers above which it may be, too."""
-MOST_COMPARED = 100
-"""Outputs by which it is told how large D is elsewhere."""
 CLOSE = 0.1
-"""Part of the largest D below which it is looked for."""
+"""Part of the usual D below which it is looked for."""
 DOUBLE = 1e-9
 """Part of the largest D^2 beside below which it vanishes."""
 REACH = 0.05
@@ -36,26 +34,30 @@ REACH = 0.05
 Motion = Callable[[np.ndarray], Solution]
 
 
+def near_singular(solution: Solution) -> np.ndarray:
+    """(T,) whether outputs may be near a change point, by their margins and multipliers."""
+    margin, largest = solution.singularity_margin, np.abs(solution.lam).max(axis=1, initial=0.0)
+    return ~((margin >= SUSPECT * np.nanmax(margin, initial=0.0)) & (largest <= ODD * np.median(largest)))
+
+
 def with_efforts_beside(
     ready: PreparedDynamics, solution: Solution, motion: Motion, span: tuple[float, float]
 ) -> Solution:
     """The solution with reactions and efforts at outputs near change points taken from poses beside.
 
-    ``motion`` solves it at other times (T,) within ``span`` (s), efforts as they come.
+    ``motion`` solves it at other times (T,) within ``span`` (s), efforts as they come; it begins at none of these outputs.
     """
-    margin = solution.singularity_margin.copy()
-    most = np.nanmax(margin, initial=0.0)
-    largest = np.abs(solution.lam).max(axis=1, initial=0.0)
-    suspects = np.flatnonzero(~((margin >= SUSPECT * most) & (largest <= ODD * np.median(largest))))
+    suspects, margin = np.flatnonzero(near_singular(solution)), solution.singularity_margin.copy()
     if not len(suspects) or len(suspects) == len(margin) or ready.packed.states:
         return solution
     lam, wrench = solution.lam.copy(), solution.wrench.copy()
     poses = [part.copy() for part in (solution.q, solution.v, solution.a)]
     closeness = _determinants(ready, solution, suspects)
-    best = _determinants(ready, solution, np.setdiff1d(np.arange(len(margin)), suspects)[:MOST_COMPARED]).max()
+    clear = np.setdiff1d(np.arange(len(margin)), suspects)
+    usual = _determinants(ready, solution, clear[np.argsort(margin[clear])][len(clear) // 2 : len(clear) // 2 + 1])[0]
     filled = np.zeros(len(margin), bool)
     for row, own in sorted(zip(suspects.tolist(), closeness.tolist(), strict=True), key=lambda pair: pair[1]):
-        if filled[row] or not own < CLOSE * best:
+        if filled[row] or not own < CLOSE * usual:
             continue
         for side, factor, there in _beside(ready, solution, motion, span, row):
             rows = np.searchsorted(solution.t, side.rows)

@@ -17,7 +17,7 @@ from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.kinematics.change_points import APART, lagrange
-from mbsd.kinematics.efforts_beside import NEAR, Side, fill_beside, sides_beside, undefined_efforts
+from mbsd.kinematics.efforts_beside import NEAR, Side, fill_beside, sides_beside
 from mbsd.results.solution import Solution
 
 SUSPECT = 0.1
@@ -75,9 +75,8 @@ def with_efforts_beside(
                     part[rows] = np.einsum("rn,nbc->rbc", weights, other)
     if not filled.any():
         return solution
-    notes = undefined_efforts(solution.packed, solution.t, lam, wrench)
     q, v, a = poses
-    return replace(solution, q=q, v=v, a=a, lam=lam, wrench=wrench, margin=margin, notes=notes)
+    return replace(solution, q=q, v=v, a=a, lam=lam, wrench=wrench, margin=margin)
 
 
 def _beside(

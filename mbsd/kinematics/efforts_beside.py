@@ -26,12 +26,12 @@ ONE_SIDE = 0.0325 + 0.0275 * np.cos(np.pi * (np.arange(8)[::-1] + 0.5) / 8)
 """Distances of the poses where there are some on one side alone, in sizes and rad: Chebyshev's."""
 VANISHES = 1e-6
 """Part of its largest value below which the determinant of a block vanishes at the change point."""
-FINITE = 1e-8
+FINITE = 1e-7
 """Part of its largest value below which y vanishes, too."""
-NOISE = 1e-10
+NOISE = 1e-8
 """The same as a part of the largest of all y."""
-TOLD = 1e-5
-"""Error, as a part of the largest value beside, beyond which an effort is not told."""
+TOLD, LEAST = 1e-5, 1e-2
+"""Error, as a part of the largest value beside or of that part of the largest of all, beyond which none is told."""
 AT_ROOT = 1e-8
 """Part of the largest D beside below which lam = y / D is not a number."""
 
@@ -66,7 +66,7 @@ class Side:
         is_finite = np.abs(at_root) <= rounding + 10.0 * doubt
         limit, wrong = weights[:-1] @ beside, np.abs(weights[:-1] @ beside - fewer[:-1] @ beside[inner])
         most = np.abs(beside).max(axis=0)
-        limit[wrong > TOLD * most + NOISE * float((most * arms).max(initial=0.0)) / arms] = np.nan
+        limit[wrong > TOLD * np.maximum(most, LEAST * float((most * arms).max(initial=0.0)) / arms)] = np.nan
         root = scaled[count:, None]
         with np.errstate(divide="ignore", invalid="ignore"):
             unbounded = np.where(np.abs(root) > AT_ROOT, (weights[:-1] @ y) / root, np.nan)
@@ -140,22 +140,3 @@ def fill_beside(
     if len(nodes):
         values = side.efforts(factor, np.hstack([lam[nodes], flat[nodes]]), arms)
     lam[rows], wrench[rows] = values[:, : lam.shape[1]], values[:, lam.shape[1] :].reshape(len(rows), *wrench.shape[1:])
-
-
-def undefined_efforts(packed: Packed, times: np.ndarray, lam: np.ndarray, wrench: np.ndarray) -> tuple[str, ...]:
-    """A sentence for each of ``times`` (T,) (s) at which an effort is NaN, which it names."""
-    rows = np.flatnonzero(np.isnan(lam).any(axis=1) | np.isnan(wrench).any(axis=(1, 2)))
-    joints = len(packed.joints) - packed.contacts - len(packed.motions)
-    drivers = packed.driver_rows + np.arange(len(packed.motions))
-    out = []
-    for row in rows.tolist():
-        lost = {
-            "reactions of": [packed.joints[k].name for k in range(joints) if np.isnan(wrench[row, k]).any()],
-            "efforts of": [name for name, k in zip(packed.driver_names, drivers, strict=True) if np.isnan(lam[row, k])],
-        }
-        words = " and ".join(f"{what} {', '.join(names)}" for what, names in lost.items() if names)
-        out.append(
-            f"row {row}, t = {times[row]:.9g} s: the pose is a change point, at which some efforts do not exist "
-            f"(they grow without bound, or velocities jump); NaN: {words or 'multipliers'}"
-        )
-    return tuple(out)

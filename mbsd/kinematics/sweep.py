@@ -15,7 +15,7 @@ from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.shown import shown
 from mbsd.base.warn import warn
-from mbsd.kinematics.efforts_beside import determinant_of, fill_beside, sides_of, undefined_efforts
+from mbsd.kinematics.efforts_beside import determinant_of, fill_beside, sides_of
 from mbsd.kinematics.limits.closed_contacts import refuse_passed_contacts
 from mbsd.kinematics.limits.curve_jumps import refuse_jumps
 from mbsd.kinematics.limits.joints import limits_of, refuse_passed
@@ -90,7 +90,6 @@ def sweep(
         stats=Stats(*(float(r) for r in loads.residuals), steps=len(grid), inserted_steps=march.steps.inserted),
         mobility=ready.mobility,
         route=ready.route if march.closed else "Newton-Raphson",
-        notes=undefined_efforts(packed, grid, loads.lam, loads.wrench) if march.passages else (),
     )
     return sol if asked is None else asked.rows(sol)
 

@@ -48,14 +48,17 @@ class Mechanism(Building):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
 
     def check(self) -> list[Finding]:
-        """What looks as if it was not meant, with remedies: mixed-up units, links that do not close at the start.
+        """Return what looks as if it was not meant, with remedies: mixed-up units, links that do not close at the start.
 
-        The first solution warns of the former (ModelWarning) and raises the latter as an error.
+        The first solution warns of the former (ModelWarning) and raises the latter as an error. Notes (``is_note``)
+        come last: closed chains of four links that have change points.
         """
+        from mbsd.analyses.change_point_chains import change_point_chains
         from mbsd.analyses.start import start_problems
         from mbsd.analyses.suspicious_units import check
 
-        return check(self) or list(start_problems(self))  # a wrong unit keeps links from closing, too
+        odd = check(self) or list(start_problems(self))  # a wrong unit keeps links from closing, too
+        return [*odd, *change_point_chains(self)]
 
     # -- what it can compute -----------------------------------------------------------------------------------
 
@@ -71,6 +74,7 @@ class Mechanism(Building):
         steps: int = 360,
         times: Sequence[float] | np.ndarray | None = None,
         event_rows: bool = False,
+        switch_at: Sequence[float] | np.ndarray = (),
     ) -> Solution[Mechanism]:
         """Solve the driven motion: positions, velocities, accelerations, reactions, driver efforts, energy.
 
@@ -78,12 +82,16 @@ class Mechanism(Building):
         where there is none over that of the laws, with a ModelWarning; with gas over whole cycles of it. ``times`` (s),
         rising, replaces both. ``event_rows`` adds two rows where a law or gas makes forces jump, right before and
         after it, which share its time.
+
+        Change points, where two assemblies meet, are passed on the smooth continuation. At those whose times (s)
+        ``switch_at`` names the motion goes on to the other assembly instead: velocities jump there. Where efforts do
+        not exist at such a pose they are NaN, and ``notes`` of the solution name the rows.
         """
         from mbsd.analyses.suspicious_units import tell
         from mbsd.kinematics.sweep import sweep
 
         tell(self)
-        return sweep(self, duration, steps, times, event_rows)
+        return sweep(self, duration, steps, times, event_rows, switch_at=switch_at)
 
     def period(self) -> float | None:
         """The time (s) after which every body is back but for whole turns, with its velocity and acceleration.

@@ -12,6 +12,8 @@ class Finding:
     name: str
     problem: str
     remedy: str
+    is_note: bool = False
+    """Whether it is something to know of a model that may well be meant so."""
 
     def __str__(self) -> str:
         return f"{self.name}: {self.problem}. {self.remedy}"

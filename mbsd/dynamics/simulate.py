@@ -21,6 +21,7 @@ from mbsd.base.names import no_such
 from mbsd.base.progress import users_progress
 from mbsd.base.warn import warn
 from mbsd.dynamics.between import Between
+from mbsd.dynamics.change_points import near_singular, with_efforts_beside
 from mbsd.dynamics.follow import follow, resumed
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from mbsd.dynamics.phase_rows import with_phase_changes
@@ -80,13 +81,20 @@ def simulate(
     recording = follow(ready, run, grid if asked is None else asked.solved, events, event_rows, progress)
 
     def at(times: np.ndarray) -> Solution:
-        return solution(m, ready, resumed(ready, run, recording, times, events))
+        sol = solution(m, ready, resumed(ready, run, recording, times, events))
+        return with_efforts_beside(ready, sol, beside, span)
+
+    def beside(times: np.ndarray) -> Solution:
+        return solution(m, ready, resumed(ready, run, recording.only(clear), times, events))
 
     refuse_impossible(ready, recording)
     if event_rows:
         recording, asked = with_phase_changes(ready, run, recording, events, grid, asked)
     anew = partial(simulate, m, None, 1, grid, method, tolerance, step, None, options, event_rows, formulation)
+    span = float(recording.out.t[0]), float(recording.out.t[-1])
     sol = solution(m, ready, recording, Between(at, anew, recording.out.y[-1, 0]))
+    clear = ~near_singular(sol)
+    sol = with_efforts_beside(ready, sol, beside, span)
     return sol if asked is None else asked.rows(sol)
 
 

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from mbsd.base.errors import MechanismError
 from mbsd.equations.assembly import residual_and_jacobian, tabulate
 from mbsd.kinematics import impossible_motions, newton
+from mbsd.kinematics.change_points import Solver
 from mbsd.kinematics.elimination import Elimination, plan
 from mbsd.kinematics.groups.carrying.columns import COS
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.groups import Groups
-from mbsd.kinematics.groups.solve import solve_groups
+from mbsd.kinematics.groups.solve import SOLVED_CLOSE, solve_groups
+from mbsd.kinematics.passages import NEAR_END, Passage, Passages
 from mbsd.kinematics.pose.mobility import best_rows
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.sample_jacobians import sample_jacobians
@@ -23,9 +28,19 @@ ZERO_LENGTH = 1e-12
 class March:
     """A motion at the times asked for, and at all steps on the way."""
 
-    def __init__(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, steps: Steps, closed: bool) -> None:
+    def __init__(
+        self,
+        q: np.ndarray,
+        v: np.ndarray,
+        a: np.ndarray,
+        steps: Steps,
+        closed: bool,
+        passages: Sequence[Passage] = (),
+    ) -> None:
         self.steps, self.closed = steps, closed
         """``closed``: solved in closed form."""
+        self.passages = passages
+        """Past change points."""
         self._all = q, v, a
         every = slice(None) if steps.wanted.all() else steps.wanted
         self.q, self.v, self.a = q[every], v[every], a[every]
@@ -55,28 +70,48 @@ def kinematics_at(ready: Prepared, times: np.ndarray) -> tuple[np.ndarray, np.nd
     return motion.q.reshape(shape), motion.v.reshape(shape), motion.a.reshape(shape)
 
 
-def march_along(ready: Prepared, times: np.ndarray) -> March:
-    """The motion at rising times (T,) (s): closed forms where they serve, else Newton-Raphson."""
+def march_along(ready: Prepared, times: np.ndarray, switch_at: Sequence[float] | np.ndarray = ()) -> March:
+    """The motion at rising times (T,) (s): closed forms where they serve, else Newton-Raphson.
+
+    It passes change points on the smooth continuation, and goes on to the other assembly at those of ``switch_at`` (s).
+    """
+    switches = np.asarray(switch_at, float)
     steps = Steps(ready.packed, times)
-    if ready.groups is not None:
+    if ready.groups is not None and not len(switches):
         marched = _closed_form(ready, ready.groups, steps)
         if marched is not None:
-            return March(*marched, steps, True)
+            q, v, a, ends_close = marched
+            return (_near_ends(ready, times) if ends_close else None) or March(q, v, a, steps, True)
     out_of_reach = steps.out_of_reach
     steps = Steps(ready.packed, times)  # those of the closed form may be just where branches meet
-    marched = _newton(ready, steps)
+    q, v, a, passages = _newton(ready, steps, switches)
     if out_of_reach is not None:
         raise impossible_motions.out_of_reach(ready.packed, out_of_reach)
-    return March(*marched, steps, False)
+    return March(q, v, a, steps, False, passages)
 
 
-def _closed_form(ready: Prepared, groups: Groups, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-    """Positions, velocities, accelerations (T, 3 nb) at all steps; None where branches meet or a group opens."""
+def _near_ends(ready: Prepared, times: np.ndarray) -> March | None:
+    """The motion by Newton-Raphson where it begins or ends near a change point; None where it does not."""
+    steps = Steps(ready.packed, times)
+    try:
+        q, v, a, passages = _newton(ready, steps, np.zeros(0))
+    except MechanismError:
+        return None
+    return March(q, v, a, steps, False, passages) if passages else None
+
+
+def _closed_form(
+    ready: Prepared, groups: Groups, steps: Steps
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, bool] | None:
+    """Positions, velocities, accelerations (T, 3 nb) at all steps; None where branches meet or a group opens.
+
+    Last, whether the two poses of a group or block come close to each other at the first or the last step.
+    """
     n3, size, blocks = len(ready.q0), ready.packed.size, ready.blocks
     bodies = n3 // 3
     body, rate, turn, point = np.zeros((bodies, 7)), np.zeros((bodies, 6)), np.zeros((bodies, 2)), np.zeros((4, 8))
     body[0, COS] = turn[0, 0] = 1.0
-    before = np.zeros((len(groups.kind), 2))
+    before = np.zeros((len(groups.kind), 3))
     q, v, a = (np.zeros((len(steps.times), n3)) for _ in range(3))
     determinant = np.zeros((len(blocks.head), len(steps.times), 1))
     first = 0
@@ -86,8 +121,9 @@ def _closed_form(ready: Prepared, groups: Groups, steps: Steps) -> tuple[np.ndar
             q, v, a, determinant, body, rate, turn, point, before,
         )  # fmt: skip
         ready.packed.specials.check()
-        if status == SOLVED:
-            return (q, v, a) if _all_close(ready, steps, q) else None
+        if status in (SOLVED, SOLVED_CLOSE):
+            close = status == SOLVED_CLOSE or _ends_close(determinant)
+            return (q, v, a, close) if _all_close(ready, steps, q) else None
         if status == OPEN:
             steps.out_of_reach = float(steps.times[index])
         if status != DOUBTED:
@@ -104,6 +140,14 @@ def _closed_form(ready: Prepared, groups: Groups, steps: Steps) -> tuple[np.ndar
         first = index - 1
 
 
+def _ends_close(determinant: np.ndarray) -> bool:
+    """Whether a block comes close to a singular pose at the first or the last step: ``determinant`` (blocks, T, 1)."""
+    if not len(determinant):
+        return False
+    ends = np.abs(determinant[:, [0, -1], 0])
+    return bool((ends < NEAR_END * np.abs(determinant).max(axis=1)).any())
+
+
 def _all_close(ready: Prepared, steps: Steps, q: np.ndarray) -> bool:
     """Whether joints that repeat others, which the groups leave out, hold at all poses q (T, 3 nb)."""
     packed = ready.packed
@@ -115,12 +159,18 @@ def _all_close(ready: Prepared, steps: Steps, q: np.ndarray) -> bool:
     return float(np.abs(phi).max()) <= impossible_motions.REDUNDANT_GAP * max(packed.size, 1.0)
 
 
-def _newton(ready: Prepared, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Positions, velocities, accelerations (T, 3 nb) at all steps; those that the kernel refuses are divided."""
+def _newton(
+    ready: Prepared, steps: Steps, switch_at: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[Passage]]:
+    """Positions, velocities, accelerations (T, 3 nb) at all steps, and passages past change points.
+
+    Steps that the kernel refuses are divided.
+    """
     packed, sequence, factors = ready.packed, ready.sequence, ready.factors
     arrays = _arrays(ready.q0, len(steps.times), sequence)
+    passages = Passages(Solver(packed, sequence, factors), steps, switch_at)
     first = chosen = 0
-    while True:
+    while first < len(steps.times):
         q, v, a, residual, determinant = arrays
         status, index = newton.sweep(
             packed.system, sequence, factors, packed.ws, packed.size, steps.times, steps.drives, steps.stride,
@@ -131,14 +181,20 @@ def _newton(ready: Prepared, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.n
             break
         if index == 0:
             raise impossible_motions.refused(packed, status, steps.times, 0, steps.drives, q, v)
-        if steps.follow_laws():
+        if not passages.found and steps.follow_laws():
             arrays, first, chosen = _arrays(ready.q0, len(steps.times), sequence), 0, 0
+            continue
+        passage = passages.pass_ahead(index - 1, q, v)
+        if passage is not None:
+            arrays, first = _gone_on(passage, steps, arrays)
+            chosen = first
             continue
         if ready.mobility.redundant_rows and index - 1 > chosen:
             residual_and_jacobian(packed.system, q[index - 1], steps.drives[index - 1], packed.ws)
             kept = best_rows(packed, sequence.rows)
             if kept is not None:
                 sequence, factors = plan(sample_jacobians(packed), kept, packed.system.row_body)
+                passages.solver = Solver(packed, sequence, factors)
                 first = chosen = index - 1
                 arrays = *arrays[:4], np.zeros((len(steps.times), len(sequence.ends)))
                 continue
@@ -146,8 +202,24 @@ def _newton(ready: Prepared, steps: Steps) -> tuple[np.ndarray, np.ndarray, np.n
             raise impossible_motions.refused(packed, status, steps.times, index, steps.drives, q, v)
         arrays = tuple(np.insert(array, index, 0.0, axis=0) for array in arrays)
         first = index
-    impossible_motions.refuse_disagreeing(packed, steps.times, residual, q, steps.drives)
-    return q, v, a
+    q, v, a, residual, determinant = arrays
+    if len(steps.times):
+        passages.pass_ends(q, v, determinant)
+        impossible_motions.refuse_disagreeing(packed, steps.times, residual, q, steps.drives)
+    passages.refuse_missed_switches()
+    return *passages.fill(q, v, a), passages.found
+
+
+def _gone_on(passage: Passage, steps: Steps, arrays: tuple[np.ndarray, ...]) -> tuple[tuple[np.ndarray, ...], int]:
+    """The arrays (T, ...) for the steps that are left, those right beyond a passage filled, and the first to be solved."""
+    kept = int(np.searchsorted(steps.times, passage.start, side="right"))
+    out = tuple(
+        np.concatenate([array[:kept], np.zeros((len(steps.times) - kept, *array.shape[1:]))]) for array in arrays
+    )
+    first = kept + int(np.argmin(np.append(passage.is_near(steps.times[kept:]), False)))
+    for array, part in zip(out, passage.motion(steps.times[kept:first]), strict=False):
+        array[kept:first] = part
+    return out, first
 
 
 def _arrays(q0: np.ndarray, count: int, sequence: Elimination) -> tuple[np.ndarray, ...]:

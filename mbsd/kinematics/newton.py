@@ -15,8 +15,8 @@ Branch guard: a step is refused, and the caller puts a pose into it, when
 - the determinant of an irreducible block of J changes sign, shrinks fast, or would on a straight line through its last
   two values: near such a pose two assemblies come close, and steps shorter than the way to it tell them apart.
 
-Two assemblies that meet within a step of ``CROSSING`` are a change point. It is passed along the smooth motion, which
-the prediction must confirm on both sides; lengths that agree to 1e-12 or so count as equal.
+Where the two assemblies meet, steps do not tell them apart however short they are: mbsd/kinematics/change_points.py
+passes these poses.
 
 Source: Haug 1989, ch. 4 (Newton-Raphson); Hairer, Norsett, Wanner, Solving ODEs I, II.6 (Hermite interpolation).
 """
@@ -36,8 +36,6 @@ TOLERANCE = 1e-12
 ROUNDING = 1e-9
 """A correction that stops shrinking below this has met rounding in an ill-conditioned pose, and is accepted."""
 MAX_ITERATIONS = 12
-CONFIRMED = 1e-3
-"""A correction below this part of the predicted step confirms the branch, even past a change point."""
 SUSPICIOUS = 0.25
 """A correction above this part of the step may have left the branch."""
 CONTRACTS = 0.1
@@ -46,8 +44,6 @@ UNEXPLAINED = 0.02
 """Part of a step, in sizes and rad, that the rates at its ends may leave unexplained."""
 SHRINKS = 0.1
 """A determinant that falls to this part of its last value, or heads for it, may vanish in between."""
-CROSSING = 1e-5
-"""Length of a step, in sizes and rad, within which two assemblies meet at a change point."""
 
 DONE, NO_CONTRACTION, BRANCH_DOUBT, SINGULAR = 0, 1, 2, 3
 
@@ -179,11 +175,7 @@ def sweep(system, seq, fac, ws, size, times, drives, stride, q, v, a, residual, 
             if first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9:
                 return BRANCH_DOUBT, k
             refused = heads_for_zero(determinant, times, k, chosen) if k > chosen else 0
-            if 0 < refused < k:
-                for c in range(3, n3):
-                    delta[0, c] = q[refused, c] - q[refused - 1, c]
-                step = _extent(delta[0], per_metre)
-            if refused > 0 and (step > CROSSING or first > CONFIRMED * step + 1e-9):
+            if refused > 0:
                 return BRANCH_DOUBT, refused
         evaluate_gamma(system, v[k], drives[k], ws, right[0])
         solve(seq, fac, 1, right, delta)

@@ -108,6 +108,31 @@ class Steps:
         self._put(np.array([index]), np.array([middle]))
         return True
 
+    def leave_out(self, start: float, end: float, more: np.ndarray) -> np.ndarray:
+        """Take out the steps strictly between ``start`` and ``end`` (s) and put ``more`` (n,) before the last time.
+
+        Returns the times taken out that were asked for.
+        """
+        last = self.times[-1]
+        inside = (self.times > start) & (self.times < end)
+        left_out = self.times[inside & self.wanted]
+        keep = ~inside
+        self.times, self.drives = self.times[keep], self.drives[keep]
+        self.wanted, self._shortest = self.wanted[keep], self._shortest[keep]
+        more = more[(more < last) & ~np.isin(more, self.times)]
+        if len(more) and len(self.times):
+            self._put(np.searchsorted(self.times, more), more)
+        return left_out
+
+    def put_back(self, times: np.ndarray) -> np.ndarray:
+        """Put ``times`` (n,) that were asked for and left out back; returns before which steps they stand."""
+        at = np.searchsorted(self.times, times)
+        self.drives = np.insert(self.drives, at, self.packed.drives(times), axis=0)
+        self.wanted = np.insert(self.wanted, at, True)
+        self._shortest = np.insert(self._shortest, at, 0.0)
+        self.times = np.insert(self.times, at, times)
+        return at
+
     def _without_end(self, index: int) -> str:
         """Why a sweep is given up whose steps are divided over and over; the one in hand ends at ``index``."""
         packed, start, end = self.packed, self.times[index - 1], self.times[index]

@@ -11,13 +11,16 @@ from mbsd.arrays.chambers import check_pistons, phase_changes, whole_cycles
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.arrays.law_jumps import jump_times, reach_beside
 from mbsd.arrays.laws import compiled_laws
+from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError, ModelWarning
+from mbsd.base.shown import shown
 from mbsd.base.warn import warn
+from mbsd.kinematics.efforts_beside import determinant_of, fill_beside, sides_of
 from mbsd.kinematics.limits.closed_contacts import refuse_passed_contacts
 from mbsd.kinematics.limits.curve_jumps import refuse_jumps
 from mbsd.kinematics.limits.joints import limits_of, refuse_passed
 from mbsd.kinematics.march import March, march_along
-from mbsd.kinematics.multipliers import inverse_dynamics, singularity_margin
+from mbsd.kinematics.multipliers import Efforts, inverse_dynamics, singularity_margin
 from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
 from mbsd.kinematics.prepare import prepare, prepare_beside
 from mbsd.kinematics.prepared import Prepared
@@ -38,12 +41,14 @@ def sweep(
     times: Sequence[float] | np.ndarray | None,
     event_rows: bool = False,
     beside: Prepared | None = None,
+    switch_at: Sequence[float] | np.ndarray = (),
 ) -> Solution:
     """See :meth:`mbsd.mechanism.Mechanism.sweep`; ``beside``: a mechanism made ready that differs in numbers alone."""
     grid = sweep_times(m, duration, steps, times)
+    switches = switch_times(m, switch_at)
     ready = _ready(m, beside, float(grid[0]), float(grid[-1]))
-    march = march_along(ready, grid)
-    if duration is None and times is None and m.drivers:
+    march = march_along(ready, grid, switches)
+    if duration is None and times is None and m.drivers and not len(switches):
         whole = _whole_period(m, ready, march, float(grid[-1]))
         if whole is not None:
             grid = equal_times(m, whole, steps)
@@ -57,7 +62,7 @@ def sweep(
     asked = _beside_jumps(ready, grid, march) if event_rows else None
     if asked is not None:
         grid = asked.solved
-        march = march_along(ready, grid)
+        march = march_along(ready, grid, switches)
     q, v, a, packed = march.q, march.v, march.a, ready.packed
     drives = march.drives
     if m.contacts or limits_of(packed):
@@ -67,10 +72,7 @@ def sweep(
     if CurveBranches(packed).rows:
         refuse_jumps(packed, *march.closely())
     check_pistons(packed, grid, q)
-    states = states_along(packed, grid, q, v, a)
-    if states is not None:
-        check_states(packed, grid, q, states)
-    loads = inverse_dynamics(ready, grid, drives, q, v, a, states)
+    loads, states = _loads(ready, grid, march)
     shape = (len(grid), -1, 3)
     sol = Solution(
         mechanism=m,
@@ -90,6 +92,65 @@ def sweep(
         route=ready.route if march.closed else "Newton-Raphson",
     )
     return sol if asked is None else asked.rows(sol)
+
+
+def _loads(ready: Prepared, grid: np.ndarray, march: March) -> tuple[Efforts, np.ndarray | None]:
+    """Efforts, and states of forces (T, n), at the times (s) of ``grid``; those near change points from poses beside."""
+    packed = ready.packed
+    sides = [(passage, side) for passage in march.passages for side in sides_of(passage, grid)]
+    if not sides:
+        states = states_along(packed, grid, march.q, march.v, march.a)
+        if states is not None:
+            check_states(packed, grid, march.q, states)
+        return inverse_dynamics(ready, grid, march.drives, march.q, march.v, march.a, states), states
+    nodes = np.concatenate([side.nodes for _, side in sides])
+    every = np.union1d(grid, nodes)
+    parts = [np.zeros((len(every), march.q.shape[1])) for _ in range(3)]
+    known, solved = np.searchsorted(every, grid), np.ones(len(every), bool)
+    for part, source in zip(parts, (march.q, march.v, march.a), strict=True):
+        part[known] = source
+    for passage, side in sides:
+        at = np.searchsorted(every, side.nodes)
+        for part, source in zip(parts, passage.motion(side.nodes), strict=True):
+            part[at] = source
+        solved[np.searchsorted(every, side.rows)] = False
+    states = states_along(packed, every, *parts)
+    if states is not None:
+        check_states(packed, every, parts[0], states)
+    drives = packed.drives(every)
+    rows = [part[solved] for part in parts]
+    found = inverse_dynamics(ready, every[solved], drives[solved], *rows, None if states is None else states[solved])
+    whole = Efforts(
+        *(_spread(part, solved) for part in (found.lam, found.wrench)),
+        found.residuals,
+        None if found.approached is None else _spread(found.approached, solved),
+    )
+    for passage, side in sides:
+        at, to = np.searchsorted(every, side.nodes), np.searchsorted(every, side.rows)
+        factor = determinant_of(passage, np.append(side.nodes, side.rows))
+        fill_beside(packed, side, factor, whole.lam, whole.wrench, at, to)
+        if whole.approached is not None:
+            whole.approached[to] = whole.approached[at[0]]
+    approached = None if whole.approached is None else whole.approached[known]
+    efforts = Efforts(whole.lam[known], whole.wrench[known], found.residuals, approached)
+    return efforts, None if states is None else states[known]
+
+
+def _spread(values: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """(T, ...) with ``values`` at ``rows`` (T,), NaN elsewhere."""
+    out = np.full((len(rows), *values.shape[1:]), np.nan)
+    out[rows] = values
+    return out
+
+
+def switch_times(m: Model, times: Sequence[float] | np.ndarray) -> np.ndarray:
+    """(n,) times (s) at which a motion is to switch. Raises ModelError for what are no finite numbers."""
+    if isinstance(times, tuple) and not times:
+        return np.zeros(0)
+    switches = number_array(f"{m.name}: switch_at", times)
+    if switches.ndim != 1:
+        raise ModelError(f"{m.name}: switch_at is {shown(times)}; it must be a list of times (s) of change points")
+    return switches
 
 
 def _ready(m: Model, beside: Prepared | None, start: float, end: float) -> Prepared:

@@ -6,7 +6,6 @@ A motion is solved at times beside what may jump; where neither accelerations no
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +13,7 @@ import numpy as np
 from mbsd.model.event import Happening
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from mbsd.results.solution import Solution
 
@@ -112,24 +111,7 @@ class Asked:
                 keep[[first, second]] = True
                 marks += [Happening(float(shown[second]), name, "jumps") for name in names]
         events = sorted([*solution.events, *marks], key=lambda event: event.time)
-        margin, work, held, approached = solution.margin, solution.work, solution.held, solution.approached
-        return replace(
-            solution,
-            t=shown[keep],
-            law_times=t[keep],
-            q=solution.q[keep],
-            v=solution.v[keep],
-            a=solution.a[keep],
-            wrench=solution.wrench[keep],
-            lam=solution.lam[keep],
-            drives=solution.drives[keep],
-            margin=partial(_margin, margin, keep) if callable(margin) else margin[keep],
-            work=None if work is None else work[keep],
-            held=None if held is None else held[keep],
-            approached=None if approached is None else approached[keep],
-            states=None if solution.states is None else solution.states[keep],
-            events=tuple(events),
-        )
+        return replace(solution.only(keep), t=shown[keep], law_times=t[keep], events=tuple(events))
 
 
 def _differ(values: np.ndarray, first: int, second: int, arm: float) -> bool:
@@ -143,7 +125,3 @@ def _differ(values: np.ndarray, first: int, second: int, arm: float) -> bool:
         gap[:, :2].max(initial=0.0) > JUMPED * max(straight, ROUNDING * turning / arm)
         or gap[:, 2].max(initial=0.0) > JUMPED * max(turning, ROUNDING * straight * arm)
     )
-
-
-def _margin(whole: Callable[[], np.ndarray], keep: np.ndarray) -> np.ndarray:
-    return whole()[keep]

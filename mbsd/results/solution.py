@@ -18,8 +18,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Generic
 
@@ -149,6 +149,51 @@ class Solution(Suggesting, Generic[AnyModel]):
                 f"not {wanted[0]:g} .. {wanted[-1]:g} s; simulate longer"
             )
         return self.between(wanted)
+
+    def only(self, rows: np.ndarray) -> Solution[AnyModel]:
+        """Return the motion at some of its outputs alone, by a mask ``rows`` (T,) of bool."""
+        margin = self.margin
+        arrays = ("work", "held", "law_times", "approached", "states")
+        known = {name: part[rows] for name in arrays if (part := getattr(self, name)) is not None}
+        return replace(
+            self,
+            t=self.t[rows],
+            q=self.q[rows],
+            v=self.v[rows],
+            a=self.a[rows],
+            wrench=self.wrench[rows],
+            lam=self.lam[rows],
+            drives=self.drives[rows],
+            margin=partial(_rows_of, margin, rows) if callable(margin) else margin[rows],
+            efforts={name: effort[rows] for name, effort in self.efforts.items()},
+            **known,
+        )
+
+    @property
+    def is_defined(self) -> np.ndarray:
+        """(T,) of bool: whether all reactions and efforts exist; see ``notes`` for where they do not."""
+        return ~(np.isnan(self.lam).any(axis=1) | np.isnan(self.wrench).any(axis=(1, 2)))
+
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence for each output at which reactions or efforts do not exist: there they are NaN."""
+        packed, out = self.packed, []
+        joints = packed.joints[: len(packed.joints) - packed.contacts - len(packed.motions)]
+        for row in np.flatnonzero(~self.is_defined).tolist():
+            lost = {
+                "reactions of": [j.name for k, j in enumerate(joints) if np.isnan(self.wrench[row, k]).any()],
+                "efforts of": [
+                    name
+                    for k, name in enumerate(packed.driver_names)
+                    if np.isnan(self.lam[row, packed.driver_rows + k])
+                ],
+            }
+            words = " and ".join(f"{what} {', '.join(names)}" for what, names in lost.items() if names)
+            out.append(
+                f"row {row}, t = {self.t[row]:.9g} s: the pose is a change point, at which some efforts do not exist "
+                f"(they grow without bound, or velocities jump); NaN: {words or 'multipliers'}"
+            )
+        return tuple(out)
 
     def contact(self, name: str) -> ContactView:
         """Gap and forces of a contact, stop or rope of a simulation."""
@@ -342,13 +387,16 @@ class Solution(Suggesting, Generic[AnyModel]):
     def __repr__(self) -> str:
         return (
             f"<Solution {self.mechanism.name}: {len(self.t)} times, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
-            f"largest residual {self.stats.position_residual:.1e}>"
+            f"largest residual {self.stats.position_residual:.1e}{self._noted()}>"
         )
+
+    def _noted(self) -> str:
+        return f"; {len(self.notes)} with efforts that do not exist: see notes" if self.notes else ""
 
     def _repr_html_(self) -> str:
         moving = self.view()._repr_html_() if len(self.mechanism.bodies) <= SHOWN and len(self.t) > 1 else ""
         span = f"{len(self.t)} times from {self.t[0]:g} to {self.t[-1]:g} s"
-        about = f"{self.mobility}; {span}; largest residual {self.stats.position_residual:.1e}"
+        about = f"{self.mobility}; {span}; largest residual {self.stats.position_residual:.1e}{self._noted()}"
         return html_of(self.mechanism.name, about, self.columns(), moving)
 
     def _frame(self, b: int, place: tuple[float, float], turned: float = 0.0) -> FrameView:
@@ -360,3 +408,7 @@ class Solution(Suggesting, Generic[AnyModel]):
         if not isinstance(name, str) or name not in names:
             raise ModelError(f"{self.mechanism.name}: {no_such(what, name, names)}")
         return names.index(name)
+
+
+def _rows_of(whole: Callable[[], np.ndarray], rows: np.ndarray) -> np.ndarray:
+    return whole()[rows]

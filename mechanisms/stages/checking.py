@@ -11,22 +11,26 @@ from shared.stage.paths import known_name
 
 
 def run(name: str, as_json: bool = False) -> int:
-    """Build the mechanism and look at it; 1 where something looks odd. Raises UserError where it cannot be built."""
+    """Build the mechanism and look at it; 1 where something looks odd, notes apart. Raises UserError if it fails."""
     name = known_name(name)
     module, given = loading.load(name, "mechanism"), loading.params(name)
     with loading.author_code(name):
         m = module.build(given)
-        findings = [(finding.name, finding.problem, finding.remedy) for finding in m.check()]
+        found = m.check()
         try:
             mobility = m.mobility()
         except MechanismError:  # which is among the findings
             mobility = None
+    findings = [finding for finding in found if not finding.is_note]
     if as_json:
-        rows = [{"name": where, "problem": problem, "remedy": remedy} for where, problem, remedy in findings]
+        rows = [
+            {"name": finding.name, "problem": finding.problem, "remedy": finding.remedy, "note": finding.is_note}
+            for finding in found
+        ]
         print(msgspec.json.encode({"machine": name, "freedom": mobility and mobility.dof, "findings": rows}).decode())
         return int(bool(findings))
-    for where, problem, remedy in findings:
-        warn("check", f"{name}: {where}: {problem}. {remedy}")
+    for finding in found:
+        (say if finding.is_note else warn)("check", f"{name}: {finding}")
     joints, bodies = len(m.joints), len(m.bodies) - 1
     looks = f"{len(findings)} things look odd" if len(findings) > 1 else "one looks odd" if findings else "nothing odd"
     freedom = str(mobility).splitlines()[0] if mobility else "not assembled"

@@ -41,6 +41,8 @@ def motion_section(motion: Motion) -> list[str]:
                   f"{margin[k]:.2g} (0 at a toggle or change point, 1 at best)."]  # fmt: skip
     if motion.start_changes:
         lines += ["", "The given start was made consistent:", "", *(f"- {change}" for change in motion.start_changes)]
+    if motion.notes:
+        lines += ["", "Times left out because efforts do not exist there:", "", *(f"- {note}" for note in motion.notes)]
     return lines
 
 

@@ -24,7 +24,7 @@ RETURN_TOLERANCE = 1e-5
 """Largest difference between the poses at both ends of a period (m or rad, relative above 1)."""
 UNIT_TOLERANCE = 1e-9
 """Tolerance of the length of a unit vector."""
-_NO_SERIES = {"redundant", "events", "start_changes", "shape", "indicated_work", "order", "harmonics"}
+_NO_SERIES = {"redundant", "events", "start_changes", "notes", "shape", "indicated_work", "order", "harmonics"}
 """Fields with lists that are not of time."""
 _UNFIT = re.compile(r"[/\\\x00-\x1f\x7f]")
 """What the name of a body, joint, driver or point cannot hold, because files are named after it."""

@@ -212,4 +212,6 @@ class Motion(Strict, kw_only=True):
     """In the order of their times."""
     start_changes: list[str] = []
     """What was changed of the given start to make it consistent, a sentence each."""
+    notes: list[str] = []
+    """Times left out because efforts do not exist there, a sentence each."""
     diagnostics: Diagnostics

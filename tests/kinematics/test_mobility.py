@@ -156,13 +156,6 @@ def test_a_change_point_that_no_output_falls_on_is_passed_on_the_same_branch() -
     assert min(sol.singularity_margin) > 1e-5
 
 
-def test_a_change_point_that_an_output_falls_on_is_refused_with_the_reason() -> None:
-    m = parallelogram(extra=False)
-    m.drive_angle("motor", m.bodies["left"], constant_rate(1.0, math.radians(60)))
-    with pytest.raises(SingularPoseError, match=r"motor at 180 degrees\) is a change point"):
-        m.sweep(steps=360)
-
-
 def test_forty_loops_have_one_freedom_and_a_repeated_pin_is_named() -> None:
     m = n_four_bar(40)
     assert str(m.mobility()) == "1 degree of freedom (1 nominal)"

@@ -214,7 +214,7 @@ def test_one_length_in_another_unit_is_always_found(lengths: dict[str, float], w
 @pytest.mark.parametrize("name", mechanism_names())
 def test_the_mechanisms_of_the_project_pass(name: str) -> None:
     module = importlib.import_module(f"mechanisms.{name}.mechanism")
-    assert module.build(module.Params()).check() == []
+    assert [finding for finding in module.build(module.Params()).check() if not finding.is_note] == []
 
 
 def test_the_first_solution_tells_and_the_second_does_not() -> None:

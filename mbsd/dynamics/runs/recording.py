@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -37,3 +37,7 @@ class Recording:
     """How fast contacts approached; None where none asks."""
     independent: bool = False
     """Integrated in independent coordinates; multipliers and margins are still to be found."""
+
+    def only(self, outputs: np.ndarray) -> Recording:
+        """The same with some of its outputs alone, by a mask (T,): those from which a run may go on."""
+        return replace(self, out=Output(*(part[outputs] for part in self.out)), held=self.held[outputs])

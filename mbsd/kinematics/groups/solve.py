@@ -23,6 +23,10 @@ from mbsd.kinematics.groups.newton.call import call_block
 from mbsd.kinematics.groups.solve_group import solve_group
 from mbsd.kinematics.law_step import jumps
 
+CLOSE_ENDS = 2e-4
+"""Squared sine of a group at the first or last step below which a change point may be near."""
+SOLVED_CLOSE = 4
+
 
 @internal
 def give(body, rate, b, q, v, a, turn):
@@ -68,8 +72,9 @@ def solve_groups(
     the square of a length that counts as zero. The row ``first_row`` itself is not compared with the one before it.
     ``determinant`` (blocks, T, 1) is filled for the blocks (mbsd/kinematics/groups/blocks.py).
     Scratch: ``body`` (nb, 7) and ``turn`` (nb, 2) with cosine 1 for ground, ``rate`` (nb, 6), ``point`` (4, 8),
-    ``before`` (g, 2) squared sines and their rates.
-    Returns (status, index, part): where a step was DOUBTED, the part of it at which a pose is asked for.
+    ``before`` (g, 3) squared sines and their rates; the last column keeps the squared sines of the first row of all.
+    Returns (status, index, part): where a step was DOUBTED, the part of it at which a pose is asked for. The status is
+    SOLVED_CLOSE where all are solved and both poses of a group are close to each other at the first or the last.
     """
     for k in range(first_row, times.shape[0]):
         qk = q[k]
@@ -139,4 +144,10 @@ def solve_groups(
                     return DOUBTED, k, part
             before[e, 0] = n[SINE]
             before[e, 1] = n[CHANGE]
+            if k == 0:
+                before[e, 2] = n[SINE]
+    for e in range(before.shape[0]):
+        for c in range(0, 3, 2):
+            if 0.0 < before[e, c] < CLOSE_ENDS:
+                return SOLVED_CLOSE, times.shape[0], 0.0
     return SOLVED, times.shape[0], 0.0

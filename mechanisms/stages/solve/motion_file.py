@@ -32,11 +32,14 @@ def to_motion(
 ) -> contract.Motion:
     """The solution as the contract has it; bodies without solids have no height.
 
+    Times at which efforts do not exist are left out, and its notes say so.
     ``sources`` says where the mass of each body is from; if it is not given, from the parts.
     """
     import mbsd
     from mbsd.drawing.inks import on_dark
 
+    notes = list(solution.notes)
+    solution = solution.only(solution.is_defined) if notes else solution
     inks = body_colours(solution.mechanism, parts)
     m, stats, energy = solution.mechanism, solution.stats, solution.energy
     bodies = {
@@ -109,6 +112,7 @@ def to_motion(
             for event in solution.events
         ],
         start_changes=list(solution.changes),
+        notes=notes,
         diagnostics=contract.Diagnostics(
             position_residual=stats.position_residual,
             velocity_residual=stats.velocity_residual,

@@ -8,6 +8,7 @@ import numpy as np
 
 from mbsd.arrays.chambers import check_pistons
 from mbsd.arrays.driver_laws import refuse_bad_laws
+from mbsd.arrays.inertias import inertia_of, usual_inertia
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
@@ -15,6 +16,7 @@ from mbsd.arrays.states import widened, with_states
 from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.kept import Kept
 from mbsd.dynamics.prepare.dependent import refuse_singular_start
+from mbsd.dynamics.prepare.lent_inertia import lift_inertia
 from mbsd.dynamics.prepare.mass_ratio import as_heavy_as_ground, passes_for
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.prepare.pressed import refuse_pressed
@@ -36,20 +38,19 @@ from mbsd.kinematics.pose.mobility import joint_mobility, rows_at
 from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
 
-LIFT = 1e-7
-"""Inertia given to coordinates without any, as part of a usual one, and refined away."""
-REFINEMENTS = 4
-"""Passes that solve the equations of motion where inertia was lifted."""
-BALANCED = 1e-8
-"""Part of the largest load that may stay unbalanced at the start; more means a massless body that nothing holds."""
+REFINEMENTS = 3
+"""Passes at least where inertia was lifted: the second takes off the lift, the third what rounding it enlarged."""
 MOST_BLOCKS = 200
 """Up to so many pairs of rows their sequence is kept for the next simulation."""
 LOOSE = 1e-9
 """Singular values of the scaled Jacobian below this part of the largest are zero."""
 SHARE = 1e-3
 """Share of a coordinate in a motion of unit length; less is rounding."""
+BALANCED = 1e-8
+"""Part of the loads of joints on a coordinate without inertia that may stay unbalanced at the start; more means that
+nothing holds it."""
 SLIGHT = 1e-6
-"""Accelerations below this (sizes per s^2) are no load."""
+"""Accelerations of usual inertias below this (sizes or rad per s^2) are no load."""
 
 
 def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False) -> PreparedDynamics:
@@ -62,14 +63,15 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     packed = pack(m)
     packed.settle_laws(start, end)
     refuse_bad_laws(packed, start, end)
-    inertia, lifted, metric = _inertias(packed)
+    inertia, usual = inertia_of(packed), usual_inertia(packed)
     large = packed.coordinates > MANY_COORDINATES
-    initial = _initial(m, packed, start, metric)
+    initial = _initial(m, packed, start)
     kept, mobility = independent_large(packed, start, initial.q) if large else _rows(packed, initial.q)
     still = _still(packed, mobility) & (not m.events)  # their actions may release a joint
     per_size = 1.0 / np.concatenate([np.ones(3), packed.column_scale()])
     weights = as_heavy_as_ground(inertia, still, per_size)
-    lifted = np.where(still, np.maximum(metric, weights), lifted)
+    metric = np.where(still, usual, lift_inertia(packed, kept, initial.q, start, usual))
+    lifted = np.where(still, np.maximum(usual, weights), metric)
     light = (inertia == 0) & ~still
     _refuse_superfluous_drivers(packed, mobility)
     switched = [*all_contacts(m, packed, initial.q), *stuck_rows(packed)] if contacts else []
@@ -81,7 +83,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     if packed.states:
         initial = replace(initial, q=widened(packed, initial.q), v=widened(packed, initial.v))
         weight, none = widened(packed, weight), np.ones(3 * packed.states)
-        inertia, lifted, metric = (np.concatenate([part, none]) for part in (inertia, lifted, metric))
+        inertia, lifted, metric, usual = (np.concatenate([part, none]) for part in (inertia, lifted, metric, usual))
         light = np.concatenate([light, none == 0.0])
         per_size = 1.0 / np.concatenate([np.ones(3), packed.column_scale()])
     always = packed.contact_rows
@@ -123,7 +125,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     refuse_singular_start(ready, list(kept), always)
     if light[3:].any():
         check_pistons(packed, np.array([start]), initial.q[None], tell=False)
-        _refuse_unheld(ready)
+        _refuse_unheld(ready, usual)
     if packed.states:
         take_start_states(ready)
     refuse_pressed(m, start, end, prepare_dynamics)
@@ -138,12 +140,11 @@ def started(m: Model, start: float, end: float, packed: Packed | None = None) ->
     if packed is None:
         packed = pack(m)
         packed.settle_laws(start, end)
-    return packed, _initial(m, packed, start, _inertias(packed)[2])
+    return packed, _initial(m, packed, start)
 
 
-def _initial(m: Model, packed: Packed, start: float, metric: np.ndarray) -> Initial:
-    large = packed.coordinates > MANY_COORDINATES
-    return (consistent_large if large else consistent)(m, packed, start, _inverse(metric))
+def _initial(m: Model, packed: Packed, start: float) -> Initial:
+    return (consistent_large if packed.coordinates > MANY_COORDINATES else consistent)(m, packed, start)
 
 
 _SEQUENCES: Kept[Schur] = Kept()
@@ -154,17 +155,6 @@ def _sequence(row_body: np.ndarray, blocks: np.ndarray) -> Schur:
     key = row_body.tobytes(), blocks.tobytes()
     sequence = _SEQUENCES.get(key, lambda: plan_schur(row_body, blocks)[0]) if len(blocks) < MOST_BLOCKS else None
     return plan_schur(row_body, blocks)[0] if sequence is None else sequence._replace(rows=sequence.rows.copy())
-
-
-def _inertias(packed: Packed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(3 nb,) M; M lifted a little where it is zero; M with a usual inertia there."""
-    system = packed.system
-    inertia = system.mass.repeat(3)
-    inertia[2::3] = system.inertia
-    mass = float(system.mass.max()) or 1.0
-    usual = np.full(len(inertia), mass)
-    usual[2::3] = mass * packed.size**2
-    return inertia, np.where(inertia > 0, inertia, LIFT * usual), np.where(inertia > 0, inertia, usual)
 
 
 def _still(packed: Packed, mobility: Mobility) -> np.ndarray:
@@ -194,8 +184,11 @@ def _refuse_superfluous_drivers(packed: Packed, mobility: Mobility) -> None:
         )
 
 
-def _refuse_unheld(ready: PreparedDynamics) -> None:
-    """A coordinate without inertia that neither joints nor springs hold cannot balance its load."""
+def _refuse_unheld(ready: PreparedDynamics, reference: np.ndarray) -> None:
+    """A coordinate without inertia that neither joints nor springs hold cannot balance its load.
+
+    ``reference`` (3 nb,): inertias of usual size, to tell loads from rounding.
+    """
     dynamics, packed = ready.dynamics, ready.packed
     _refuse_massless(packed, ready.mobility, ready.start, ready.initial.q)
     state = np.stack([ready.initial.q, ready.initial.v])
@@ -210,13 +203,16 @@ def _refuse_unheld(ready: PreparedDynamics) -> None:
             f"{packed.name}: at t = {ready.start:.6g} s the load on body '{name}' is no finite number: look at the "
             "forces on it, and at where it starts"
         )
-    left = np.abs(scratch.force - dynamics.inertia * out[1])[3:]
-    faint = SLIGHT * (float(packed.system.mass.max()) or 1.0) * packed.size
-    largest = max(float(np.abs(dynamics.weight[3:]).max()), float(np.abs(dynamics.inertia * out[1]).max()), faint)
-    if not np.isfinite(out).all() or (left > BALANCED * largest * packed.size).any():
-        worst = int(np.nanargmax(np.where(np.isfinite(left), left, np.inf)))
+    left = np.abs(scratch.force - dynamics.inertia * out[1])
+    carried = np.zeros_like(left)
+    columns = 3 * packed.system.row_body[..., None] + np.arange(3)
+    np.add.at(carried, columns, np.abs(packed.ws.jac.reshape(-1, 2, 3) * lam[:, None, None]))
+    allowed = np.maximum(BALANCED * carried, SLIGHT * reference / dynamics.per_size)
+    over = np.where(np.isfinite(left), left, np.inf) / np.where(allowed > 0.0, allowed, np.inf)
+    if not np.isfinite(out).all() or (over[3:] > 1.0).any():
+        worst = 3 + int(np.argmax(over[3:]))
         raise MobilityError(
-            f"{packed.name}: body '{packed.body_names[1 + worst // 3]}' has no inertia in "
+            f"{packed.name}: body '{packed.body_names[worst // 3]}' has no inertia in "
             f"{('x', 'y', 'angle')[worst % 3]}, and nothing holds it there against a load of {left[worst]:.3g} "
             "(N or N m). Give it a mass and an inertia, or another joint."
         )

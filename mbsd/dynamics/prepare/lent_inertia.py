@@ -33,9 +33,7 @@ AT_ONCE = 2_000_000
 """Numbers of solutions that are held at once."""
 
 
-def lift_inertia(
-    packed: Packed, rows: Sequence[int], q: np.ndarray, time: float, usual: np.ndarray
-) -> np.ndarray:
+def lift_inertia(packed: Packed, rows: Sequence[int], q: np.ndarray, time: float, usual: np.ndarray) -> np.ndarray:
     """Return (3 nb,) M lifted where it is zero, by a part of what joints lend there at the pose q (3 nb,).
 
     ``rows``: independent rows of J; ``time`` (s); ``usual`` (3 nb,) that of :func:`mbsd.arrays.inertias.usual_inertia`.
@@ -54,9 +52,7 @@ def lift_inertia(
     return out
 
 
-def _lent(
-    packed: Packed, rows: np.ndarray, inertia: np.ndarray, usual: np.ndarray, light: np.ndarray
-) -> np.ndarray:
+def _lent(packed: Packed, rows: np.ndarray, inertia: np.ndarray, usual: np.ndarray, light: np.ndarray) -> np.ndarray:
     """(k,) lent inertia of the coordinates ``light`` (k,); infinite where joints hold one, rounding where none does."""
     count, total = len(inertia), len(inertia) + len(rows)
     diagonal = inertia.copy()

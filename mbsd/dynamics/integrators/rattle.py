@@ -180,14 +180,19 @@ def rattle_step(dyn, scratch, t, h, y, power):
             impulse[c] = 0.5 * h * load[c]
         for r in range(lam.shape[0]):
             lam[r] = 0.0
-        for _ in range(dyn.passes + 1):  # once more, for the rounding of nearly singular poses
+        last = 1e300
+        for done in range(PASSES):
             for k in range(schur.rows.shape[0]):
                 for s in range(2):
                     r = schur.rows[k, s]
                     side[k, s, 0] = (
                         times_jacobian(scratch.factors, schur, k, s, y[1]) - ws.right[1][r] if r >= 0 else 0.0
                     )
-            _correct(dyn, scratch, y[1], lam)
+            change = abs(h) * _correct(dyn, scratch, y[1], lam)
+            settled = dyn.passes == 1 or not change > CLOSED or not change < 0.3 * last
+            if done >= dyn.passes and settled:  # once more than needed, for the rounding of nearly singular poses
+                break
+            last = change
         moved = 0.0
         for c in range(3, n3):
             size = abs(h * (y[1, c] - start[c])) * dyn.per_size[c]

@@ -289,9 +289,19 @@ def agrees(patches: Patches, row: int, fresh: np.ndarray, content_of: Callable[[
 
 
 def _overwritten(base: Base) -> list[tuple[int, int]]:
-    """Where in the block what every evaluation overwrites stands, and what preparing has left of the last one."""
+    """Where in the block what every evaluation overwrites stands, and what preparing has left of the last one.
+
+    So does the lift of coordinates without inertia, of which any small one serves.
+    """
     ws = getattr(base.arguments[1], "ws", None)
     parts = [base.arguments[0].loads.law]
     if ws is not None:
         parts += [part for name, part in zip(ws._fields, ws, strict=True) if name != "relative" and part.size]
-    return [(first, first + part.size) for part in parts for first in [base.layout.place(part)]]
+    places = [(first, first + part.size) for part in parts for first in [base.layout.place(part)]]
+    dyn = base.arguments[0]
+    if not isinstance(dyn, Embedding):
+        lifted = [
+            base.layout.place(part, c) for part in (dyn.inverse, dyn.metric) for c in np.flatnonzero(dyn.inertia == 0)
+        ]
+        places += [(first, first + 1) for first in lifted]
+    return places

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mbsd.arrays.inertias import inertia_of, least_energy, usual_inertia
 from mbsd.arrays.packing import pack
 from mbsd.base.errors import ModelError
 from mbsd.base.users_function import described
@@ -62,7 +63,7 @@ class Starts:
         for k, row in enumerate(rows):
             try:
                 self.designs.put_start(self.work, row)
-                initial = consistent(self.work, self._bare, ready.start, ready.dynamics.metric)
+                initial = consistent(self.work, self._bare, ready.start)
                 q[k], v[k] = initial.q, initial.v
                 reasons.append("; ".join(initial.velocities) or None)
             except Exception as error:
@@ -175,12 +176,14 @@ class StartsAtOnce(Starts):
         sized /= np.maximum(np.linalg.norm(sized, axis=-1, keepdims=True), 1e-300)
         clear = np.linalg.svd(sized, compute_uv=False)[:, -1] > RANK_TOLERANCE
         wanted = np.concatenate([np.broadcast_to(self.nu * packed.row_scale(), jac.shape[:2]), np.array(values)], 1)
-        root = np.sqrt(self.ready.dynamics.metric[3:])
+        inertia, root = inertia_of(packed)[3:], np.sqrt(1.0 / usual_inertia(packed)[3:])
         scaled = everything * root
         square = scaled @ scaled.transpose(0, 2, 1)
         for _ in range(2):  # the second takes off what rounding left
             left = wanted - (everything @ v[:, 3:, None])[..., 0]
             v[:, 3:] += root * (scaled.transpose(0, 2, 1) @ _solved(square, left)[..., None])[..., 0]
+        if not inertia.all():
+            v[:, 3:] = least_energy(v[:, 3:], everything, inertia, packed.column_scale())
         return v, clear
 
 

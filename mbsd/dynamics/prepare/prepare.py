@@ -8,6 +8,7 @@ import numpy as np
 
 from mbsd.arrays.chambers import check_pistons
 from mbsd.arrays.driver_laws import refuse_bad_laws
+from mbsd.arrays.inertias import inertia_of, usual_inertia
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
@@ -15,12 +16,13 @@ from mbsd.arrays.states import widened, with_states
 from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.kept import Kept
 from mbsd.dynamics.prepare.dependent import refuse_singular_start
+from mbsd.dynamics.prepare.lent_inertia import lift_inertia
 from mbsd.dynamics.prepare.mass_ratio import as_heavy_as_ground, passes_for
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.prepare.pressed import refuse_pressed
 from mbsd.dynamics.prepare.start_states import take_start_states
-from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
+from mbsd.dynamics.prepare.unheld import refuse_unheld
+from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.pins import with_pins
 from mbsd.dynamics.reference.schur import Schur
 from mbsd.dynamics.reference.sequence import plan_schur
@@ -29,27 +31,16 @@ from mbsd.dynamics.rows.held import Held
 from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
 from mbsd.dynamics.rows.switches import Switches, friction_rows
 from mbsd.dynamics.start.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
-from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import Initial, consistent
 from mbsd.kinematics.pose.mobility import joint_mobility, rows_at
 from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
 
-LIFT = 1e-7
-"""Inertia given to coordinates without any, as part of a usual one, and refined away."""
-REFINEMENTS = 4
-"""Passes that solve the equations of motion where inertia was lifted."""
-BALANCED = 1e-8
-"""Part of the largest load that may stay unbalanced at the start; more means a massless body that nothing holds."""
+REFINEMENTS = 3
+"""Passes at least where inertia was lifted: the second takes off the lift, the third what rounding it enlarged."""
 MOST_BLOCKS = 200
 """Up to so many pairs of rows their sequence is kept for the next simulation."""
-LOOSE = 1e-9
-"""Singular values of the scaled Jacobian below this part of the largest are zero."""
-SHARE = 1e-3
-"""Share of a coordinate in a motion of unit length; less is rounding."""
-SLIGHT = 1e-6
-"""Accelerations below this (sizes per s^2) are no load."""
 
 
 def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False) -> PreparedDynamics:
@@ -62,14 +53,15 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     packed = pack(m)
     packed.settle_laws(start, end)
     refuse_bad_laws(packed, start, end)
-    inertia, lifted, metric = _inertias(packed)
+    inertia, usual = inertia_of(packed), usual_inertia(packed)
     large = packed.coordinates > MANY_COORDINATES
-    initial = _initial(m, packed, start, metric)
+    initial = _initial(m, packed, start)
     kept, mobility = independent_large(packed, start, initial.q) if large else _rows(packed, initial.q)
     still = _still(packed, mobility) & (not m.events)  # their actions may release a joint
     per_size = 1.0 / np.concatenate([np.ones(3), packed.column_scale()])
     weights = as_heavy_as_ground(inertia, still, per_size)
-    lifted = np.where(still, np.maximum(metric, weights), lifted)
+    metric = np.where(still, usual, lift_inertia(packed, kept, initial.q, start, usual))
+    lifted = np.where(still, np.maximum(usual, weights), metric)
     light = (inertia == 0) & ~still
     _refuse_superfluous_drivers(packed, mobility)
     switched = [*all_contacts(m, packed, initial.q), *stuck_rows(packed)] if contacts else []
@@ -81,7 +73,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     if packed.states:
         initial = replace(initial, q=widened(packed, initial.q), v=widened(packed, initial.v))
         weight, none = widened(packed, weight), np.ones(3 * packed.states)
-        inertia, lifted, metric = (np.concatenate([part, none]) for part in (inertia, lifted, metric))
+        inertia, lifted, metric, usual = (np.concatenate([part, none]) for part in (inertia, lifted, metric, usual))
         light = np.concatenate([light, none == 0.0])
         per_size = 1.0 / np.concatenate([np.ones(3), packed.column_scale()])
     always = packed.contact_rows
@@ -123,7 +115,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     refuse_singular_start(ready, list(kept), always)
     if light[3:].any():
         check_pistons(packed, np.array([start]), initial.q[None], tell=False)
-        _refuse_unheld(ready)
+        refuse_unheld(ready, usual)
     if packed.states:
         take_start_states(ready)
     refuse_pressed(m, start, end, prepare_dynamics)
@@ -138,12 +130,11 @@ def started(m: Model, start: float, end: float, packed: Packed | None = None) ->
     if packed is None:
         packed = pack(m)
         packed.settle_laws(start, end)
-    return packed, _initial(m, packed, start, _inertias(packed)[2])
+    return packed, _initial(m, packed, start)
 
 
-def _initial(m: Model, packed: Packed, start: float, metric: np.ndarray) -> Initial:
-    large = packed.coordinates > MANY_COORDINATES
-    return (consistent_large if large else consistent)(m, packed, start, _inverse(metric))
+def _initial(m: Model, packed: Packed, start: float) -> Initial:
+    return (consistent_large if packed.coordinates > MANY_COORDINATES else consistent)(m, packed, start)
 
 
 _SEQUENCES: Kept[Schur] = Kept()
@@ -154,17 +145,6 @@ def _sequence(row_body: np.ndarray, blocks: np.ndarray) -> Schur:
     key = row_body.tobytes(), blocks.tobytes()
     sequence = _SEQUENCES.get(key, lambda: plan_schur(row_body, blocks)[0]) if len(blocks) < MOST_BLOCKS else None
     return plan_schur(row_body, blocks)[0] if sequence is None else sequence._replace(rows=sequence.rows.copy())
-
-
-def _inertias(packed: Packed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(3 nb,) M; M lifted a little where it is zero; M with a usual inertia there."""
-    system = packed.system
-    inertia = system.mass.repeat(3)
-    inertia[2::3] = system.inertia
-    mass = float(system.mass.max()) or 1.0
-    usual = np.full(len(inertia), mass)
-    usual[2::3] = mass * packed.size**2
-    return inertia, np.where(inertia > 0, inertia, LIFT * usual), np.where(inertia > 0, inertia, usual)
 
 
 def _still(packed: Packed, mobility: Mobility) -> np.ndarray:
@@ -192,58 +172,3 @@ def _refuse_superfluous_drivers(packed: Packed, mobility: Mobility) -> None:
             f"{packed.name}: {drivers} drivers for {mobility.dof} degree{'s' * (mobility.dof != 1)} of freedom; "
             "remove a driver or free a joint"
         )
-
-
-def _refuse_unheld(ready: PreparedDynamics) -> None:
-    """A coordinate without inertia that neither joints nor springs hold cannot balance its load."""
-    dynamics, packed = ready.dynamics, ready.packed
-    _refuse_massless(packed, ready.mobility, ready.start, ready.initial.q)
-    state = np.stack([ready.initial.q, ready.initial.v])
-    out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
-    scratch = scratch_for(dynamics, packed.ws, len(packed.motions), 1)
-    derivative(dynamics, scratch, ready.start, state, out, lam)
-    packed.specials.check()
-    finite = np.isfinite(scratch.force[3:])
-    if not finite.all():
-        name = packed.body_names[1 + int(np.argmin(finite)) // 3]
-        raise ModelError(
-            f"{packed.name}: at t = {ready.start:.6g} s the load on body '{name}' is no finite number: look at the "
-            "forces on it, and at where it starts"
-        )
-    left = np.abs(scratch.force - dynamics.inertia * out[1])[3:]
-    faint = SLIGHT * (float(packed.system.mass.max()) or 1.0) * packed.size
-    largest = max(float(np.abs(dynamics.weight[3:]).max()), float(np.abs(dynamics.inertia * out[1]).max()), faint)
-    if not np.isfinite(out).all() or (left > BALANCED * largest * packed.size).any():
-        worst = int(np.nanargmax(np.where(np.isfinite(left), left, np.inf)))
-        raise MobilityError(
-            f"{packed.name}: body '{packed.body_names[1 + worst // 3]}' has no inertia in "
-            f"{('x', 'y', 'angle')[worst % 3]}, and nothing holds it there against a load of {left[worst]:.3g} "
-            "(N or N m). Give it a mass and an inertia, or another joint."
-        )
-
-
-def _refuse_massless(packed: Packed, mobility: Mobility, start: float, q: np.ndarray) -> None:
-    """Bodies without mass and inertia that can move while all that has any rests: no load tells how.
-
-    Rows of contacts count as if they held, and the turning of point masses is none of theirs.
-    """
-    bare = np.flatnonzero((packed.system.mass == 0) & (packed.system.inertia == 0))
-    free = [int(b) for b in bare if b > 0 and packed.body_names[b] in mobility.free_bodies]
-    if not free or packed.coordinates > MANY_COORDINATES:
-        return
-    residual_and_jacobian(packed.system, q, packed.drives(np.array([start]))[0], packed.ws)
-    scaled = packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
-    columns = np.concatenate([3 * (b - 1) + np.arange(3) for b in free])
-    _u, size, basis = np.linalg.svd(scaled[:, columns])
-    rank = int((size > LOOSE * max(1.0, float(size.max(initial=0.0)))).sum())
-    moved = np.abs(basis[rank:]).max(axis=0, initial=0.0).reshape(-1, 3)
-    loose = [packed.body_names[b] for b, most in zip(free, moved.max(axis=1), strict=True) if most > SHARE]
-    if not loose:
-        return
-    names = " and ".join(f"'{name}'" for name in loose[:3]) + (f" and {len(loose) - 3} more" if len(loose) > 3 else "")
-    has, it = ("have", "them") if len(loose) > 1 else ("has", "it")
-    raise MobilityError(
-        f"{packed.name}: {names} {has} neither mass nor inertia, and can move in {len(columns) - rank} "
-        f"way{'s' * (len(columns) - rank > 1)} while all that has any rests, so that no load tells how. Give {it} a "
-        f"mass and an inertia, m.change('{loose[0]}', mass=...), or hold {it} by a joint or a driver"
-    )

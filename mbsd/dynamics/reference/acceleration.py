@@ -3,8 +3,8 @@
     M a + J^T lam = Q                  S lam = J W^-1 Q - gamma,   S = J W^-1 J^T
     J a = gamma                        a = W^-1 (Q - J^T lam)
 
-W is M. Where bodies lack mass, W is M lifted by a small inertia, and the solution is refined: each pass solves for
-what the last one left of both equations, and shrinks the error by the lift over the inertia that the joints lend.
+W is M. Where bodies lack mass, W is M lifted by a small inertia, and the solution is refined until it balances
+(refinement.py).
 
     Baumgarte   J a = gamma - 2 alpha (J v - nu) - beta^2 Phi
 
@@ -20,7 +20,8 @@ import math
 
 from mbsd.compiling.jit import kernel, lazy, merged
 from mbsd.dynamics.reference.pins import factor_pins, solve_pins
-from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
+from mbsd.dynamics.reference.refinement import MOST_MORE, SHRINKS, refine, unbalanced
+from mbsd.dynamics.reference.schur import factor_schur, times_jacobian
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
 from mbsd.equations.joint_friction import (
@@ -65,7 +66,6 @@ def accelerate(dyn, scratch, t, state, a, lam):
     factors = scratch.factors
     drive = scratch.drive
     force = scratch.force
-    y = factors.side
     gamma = ws.right[0]
     q = state[0]
     v = state[1]
@@ -105,42 +105,41 @@ def accelerate(dyn, scratch, t, state, a, lam):
         for k in range(system.driven.shape[0]):
             gamma[system.driven[k, 0]] += 2.0 * alpha * drive[system.driven[k, 1], 1]
     first = dyn.passes
-    for done in range(dyn.passes + MOST_PASSES):
-        for c in range(3, n3):
-            ws.pose[c] = a[c] + dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
-        for k in range(schur.rows.shape[0]):
-            for s in range(2):
-                r = schur.rows[k, s]
-                y[k, s, 0] = times_jacobian(factors, schur, k, s, ws.pose) - gamma[r] if r >= 0 else 0.0
-        solve_schur(schur, factors, 1)
-        subtract_forces(factors, schur, 0, force)
-        for c in range(3, n3):
-            a[c] += dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
-        for k in range(schur.rows.shape[0]):
-            for s in range(2):
-                r = schur.rows[k, s]
-                if r >= 0:
-                    lam[r] += y[k, s, 0]
-        if done + 1 >= first:
-            if sliding:
-                if done + 1 == first:
-                    begin_sliding(dyn, scratch)
-                power += slide(dyn, scratch, v, a, lam)
-            if not with_friction:
-                break
-            follows = settle(dyn, ws, a, lam)
-            if follows == AGREES:
-                break
-            if done + 1 == dyn.passes + MOST_PASSES:
-                dyn.loads.iteration[FAILED] = 1.0
-                for c in range(3, n3):
-                    a[c] = math.nan
-                break
-            if follows == BEGINS_AGAIN:
-                power = _begin_again(dyn, scratch, t, state, a, lam)
-                first = done + 1 + dyn.passes
+    tries = 0
+    left = math.inf
+    begun = False
+    for done in range((dyn.passes + MOST_MORE) * (MOST_PASSES + 1)):
+        refine(schur, factors, dyn.inverse, dyn.inertia, force, gamma, 1.0, ws.pose, a, lam)
+        if done + 1 < first:
+            continue
+        if dyn.passes > 1:
+            last = left
+            left = unbalanced(schur, factors, dyn.inverse, dyn.inertia, force, lam, ws.pose)
+            if left > 0.0 and left < SHRINKS * last:
                 continue
-            power += apply_friction(system, dyn.loads, v, ws, dyn.loads.normal[CHANGE], 0.0, force)
+            left = math.inf
+        if sliding:
+            if not begun:
+                begin_sliding(dyn, scratch)
+                begun = True
+            power += slide(dyn, scratch, v, a, lam)
+        if not with_friction:
+            break
+        follows = settle(dyn, ws, a, lam)
+        if follows == AGREES:
+            break
+        if tries == MOST_PASSES:
+            dyn.loads.iteration[FAILED] = 1.0
+            for c in range(3, n3):
+                a[c] = math.nan
+            break
+        tries += 1
+        if follows == BEGINS_AGAIN:
+            power = _begin_again(dyn, scratch, t, state, a, lam)
+            first = done + 1 + dyn.passes
+            begun = False
+            continue
+        power += apply_friction(system, dyn.loads, v, ws, dyn.loads.normal[CHANGE], 0.0, force)
     if with_friction:
         note_friction(system, dyn.loads, v, ws, lam)
     for k in range(system.driven.shape[0]):

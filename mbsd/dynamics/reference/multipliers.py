@@ -14,7 +14,8 @@ import numpy as np
 from mbsd.arrays.approaches import stretches
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.compiling.jit import kernel
-from mbsd.dynamics.reference.schur import factor_schur, schur_factors, solve_schur, subtract_forces, times_jacobian
+from mbsd.dynamics.reference.refinement import solve_balanced
+from mbsd.dynamics.reference.schur import factor_schur, schur_factors
 from mbsd.equations.laws import tabulate_law
 from mbsd.equations.loads import tabulate_loads
 
@@ -32,30 +33,9 @@ def tabulate_multipliers(schur, factors, inverse, inertia, passes, jacobians, ga
 
     ``pose`` and ``a`` (3 nb,): scratch.
     """
-    y = factors.side
-    n3 = inertia.shape[0]
     for i in range(gamma.shape[0]):
         margin[i] = factor_schur(schur, inverse, jacobians[i], factors, 0.0)
-        for c in range(n3):
-            a[c] = 0.0
-        for r in range(lam.shape[1]):
-            lam[i, r] = 0.0
-        for _ in range(passes):
-            for c in range(3, n3):
-                pose[c] = a[c] + inverse[c] * (force[i, c] - inertia[c] * a[c])
-            for k in range(schur.rows.shape[0]):
-                for s in range(2):
-                    r = schur.rows[k, s]
-                    y[k, s, 0] = times_jacobian(factors, schur, k, s, pose) - gamma[i, r] if r >= 0 else 0.0
-            solve_schur(schur, factors, 1)
-            subtract_forces(factors, schur, 0, force[i])
-            for c in range(3, n3):
-                a[c] += inverse[c] * (force[i, c] - inertia[c] * a[c])
-            for k in range(schur.rows.shape[0]):
-                for s in range(2):
-                    r = schur.rows[k, s]
-                    if r >= 0:
-                        lam[i, r] += y[k, s, 0]
+        solve_balanced(schur, factors, inverse, inertia, passes, force[i], gamma[i], 1.0, pose, a, lam[i])
 
 
 def multipliers_along(

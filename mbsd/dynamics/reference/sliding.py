@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.compiling.jit import lazy
-from mbsd.dynamics.reference.schur import solve_schur, subtract_forces, times_jacobian
+from mbsd.dynamics.reference.refinement import respond
 from mbsd.equations.gauss import eliminate
 
 
@@ -45,10 +45,7 @@ def sliding_for(rows: np.ndarray, coordinates: int, multipliers: int) -> Sliding
 def begin_sliding(dyn, scratch):
     """Find (a_k, lam_k) of every sliding contact at the pose of the factors; the friction of none is applied yet."""
     table = dyn.sliding.table
-    schur = dyn.schur
-    factors = scratch.factors
     ws = scratch.ws
-    y = factors.side
     n3 = dyn.inertia.shape[0]
     at_a = 1 + n3
     at_lam = at_a + n3
@@ -63,28 +60,11 @@ def begin_sliding(dyn, scratch):
         way = dyn.sliding.rows[k, 1]
         for c in range(n3):
             force[c] = 0.0
-            own_a[c] = 0.0
-        for r in range(own_lam.shape[0]):
-            own_lam[r] = 0.0
         for side in range(2):
             at = 3 * dyn.system.row_body[way, side]
             for c in range(3):
                 force[at + c] -= table[k, 0] * ws.jac[way, 3 * side + c]
-        for _ in range(dyn.passes):
-            for c in range(3, n3):
-                ws.pose[c] = own_a[c] + dyn.inverse[c] * (force[c] - dyn.inertia[c] * own_a[c])
-            for b in range(schur.rows.shape[0]):
-                for s in range(2):
-                    y[b, s, 0] = times_jacobian(factors, schur, b, s, ws.pose) if schur.rows[b, s] >= 0 else 0.0
-            solve_schur(schur, factors, 1)
-            subtract_forces(factors, schur, 0, force)
-            for c in range(3, n3):
-                own_a[c] += dyn.inverse[c] * (force[c] - dyn.inertia[c] * own_a[c])
-            for b in range(schur.rows.shape[0]):
-                for s in range(2):
-                    r = schur.rows[b, s]
-                    if r >= 0:
-                        own_lam[r] += y[b, s, 0]
+        respond(dyn, scratch, force, 0.0, own_a, own_lam)
 
 
 @lazy(float)

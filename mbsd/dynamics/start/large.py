@@ -20,6 +20,7 @@ from dataclasses import replace
 import numpy as np
 
 from mbsd.arrays.force_phases import take_force_phases
+from mbsd.arrays.inertias import inertia_of, usual_inertia
 from mbsd.arrays.laws import pack_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
@@ -40,6 +41,8 @@ from mbsd.results.mobility import Mobility
 
 MANY_COORDINATES = 600
 """From here on a mechanism counts as large."""
+NEGLIGIBLE = 1e-7
+"""Part of a usual inertia that coordinates without any weigh."""
 HEAVY = 1e8
 """How much more a given coordinate weighs than a free one."""
 DEPENDENT = 1e-13
@@ -58,11 +61,11 @@ def blocks_of(packed: Packed, kept: set[int]) -> np.ndarray:
     return np.array(blocks, np.int64).reshape(-1, 2)
 
 
-def consistent_large(m: Model, packed: Packed, time: float, inverse: np.ndarray) -> Initial:
-    """As mbsd.kinematics.pose.initial.consistent. Raises AssemblyError.
-
-    ``inverse`` (3 nb,) of the inertias weighs velocities.
-    """
+def consistent_large(m: Model, packed: Packed, time: float) -> Initial:
+    """As mbsd.kinematics.pose.initial.consistent. Raises AssemblyError."""
+    inertia = inertia_of(packed)
+    inverse = 1.0 / np.where(inertia > 0.0, inertia, NEGLIGIBLE * usual_inertia(packed))
+    inverse[:3] = 0.0
     initial, _ = closed_ideally(m, packed, lambda own, whole: _consistent(own, whole, time, inverse))
     take_force_phases(packed, initial.q)
     return initial
@@ -214,7 +217,7 @@ def independent_large(packed: Packed, time: float, q: np.ndarray) -> tuple[list[
 def mobility_large(m: Model, packed: Packed) -> Mobility:
     """As mbsd.kinematics.pose.mobility.mobility: at the start, and at closed poses near it without the drivers."""
     light = np.concatenate([np.zeros(3), packed.column_scale() ** 2])
-    q = consistent_large(m, packed, 0.0, light).q
+    q = consistent_large(m, packed, 0.0).q
     free = copied(m)
     free.drivers = {}
     joints = pack(free)

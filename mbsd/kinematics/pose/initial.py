@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mbsd.arrays.force_phases import take_force_phases
+from mbsd.arrays.inertias import inertia_of, least_energy, usual_inertia
 from mbsd.arrays.packing import Packed
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
@@ -48,14 +49,11 @@ _CONSISTENT: Kept[tuple[Initial, np.ndarray]] = Kept()
 """Initial conditions, and the angle offsets that go with them."""
 
 
-def consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Initial:
-    """Initial conditions at ``time`` (s). Raises AssemblyError where the links cannot be closed.
-
-    ``metric`` (3 nb,) is the inverse of the masses that weigh velocities which were not given.
-    """
-    initial, joined = closed_ideally(m, packed, lambda own, whole: _consistent(own, whole, time, metric))
+def consistent(m: Model, packed: Packed, time: float) -> Initial:
+    """Initial conditions at ``time`` (s). Raises AssemblyError where the links cannot be closed."""
+    initial, joined = closed_ideally(m, packed, lambda own, whole: _consistent(own, whole, time))
     if joined:
-        initial = _driven(m, packed, drive_at(packed, time), metric, initial)
+        initial = _driven(m, packed, drive_at(packed, time), initial)
     take_force_phases(packed, initial.q)
     return initial
 
@@ -65,7 +63,7 @@ def drive_at(packed: Packed, time: float) -> np.ndarray:
     return packed.drives(np.array([time]))[0]
 
 
-def _driven(m: Model, packed: Packed, drive: np.ndarray, metric: np.ndarray, initial: Initial) -> Initial:
+def _driven(m: Model, packed: Packed, drive: np.ndarray, initial: Initial) -> Initial:
     """Velocities of the mechanism alone where drivers move both sides of a play otherwise than the joint could."""
     residual_and_jacobian(packed.system, initial.q, drive, packed.ws)
     nu = np.zeros(len(packed.ws.phi))
@@ -74,23 +72,23 @@ def _driven(m: Model, packed: Packed, drive: np.ndarray, metric: np.ndarray, ini
     size = np.abs(initial.v[3:] / packed.column_scale()).max(initial=0.0)  # sizes/s, rad/s
     if np.abs((jac @ initial.v[3:] - nu) * packed.row_scale()).max(initial=0.0) <= TOLD * size:
         return initial
-    v, slips = _velocities(m, packed, initial.q, drive, metric)
+    v, slips = _velocities(m, packed, initial.q, drive)
     return replace(initial, v=v, velocities=tuple(slips))
 
 
-def _consistent(m: Model, packed: Packed, time: float, metric: np.ndarray) -> Initial:
+def _consistent(m: Model, packed: Packed, time: float) -> Initial:
     """The same of a mechanism whose joints are all there."""
     drive = packed.drives(np.array([time]))[0]
 
     def started() -> tuple[Initial, np.ndarray]:
         q, deviations = start_pose(m, packed, time, drive)
-        v, slips = _velocities(m, packed, q, drive, metric)
+        v, slips = _velocities(m, packed, q, drive)
         return Initial(q, v, tuple(deviations), tuple(slips)), packed.system.angle_offset
 
     numbers = packed.numbers()
     if numbers is None:
         return started()[0]
-    given = repr(m.starts), repr(m.velocities), drive.tobytes(), metric.tobytes()
+    given = repr(m.starts), repr(m.velocities), drive.tobytes(), inertia_of(packed).tobytes()
     initial, offsets = _CONSISTENT.get((*numbers, tuple(packed.body_names), *given), started)
     if offsets is not packed.system.angle_offset:
         packed.system = packed.system.changed(angle_offset=offsets)
@@ -192,9 +190,7 @@ def _close_holding(
     return q if np.abs(packed.ws.phi * row_scale).max(initial=0.0) <= CLOSED else closed
 
 
-def _velocities(
-    m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray, metric: np.ndarray
-) -> tuple[np.ndarray, list[str]]:
+def _velocities(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
     residual_and_jacobian(packed.system, q, drive, packed.ws)
     scale = packed.row_scale()
     jac = packed.jacobian() * scale[:, None]
@@ -209,8 +205,11 @@ def _velocities(
     kept = independent_rows(np.vstack([jac * column_scale, rows * column_scale]))
     everything = np.vstack([jac, rows])[kept]
     wanted = np.concatenate([nu * scale, values])[kept]
-    root = np.sqrt(metric[3:])
+    root = np.sqrt(1.0 / usual_inertia(packed)[3:])
     v[3:] = root * np.linalg.lstsq(everything * root, wanted, rcond=1e-13)[0]
+    inertia = inertia_of(packed)[3:]
+    if not inertia.all():
+        v[3:] = least_energy(v[3:], everything, inertia, column_scale)
     fastest = max(float(np.abs(values).max(initial=0.0)), float(np.abs(nu).max(initial=0.0)), 1e-300)
     deviations = [
         f"{name} is {row @ v[3:]:.6g} {unit}, not {value:.6g}"

@@ -13,7 +13,7 @@ from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.laws.lcp import GONE, SMALL
 from mbsd.dynamics.many.contacts.arrays import ALONE, NORMAL, ROW, TAKING
 from mbsd.dynamics.many.contacts.rows import along
-from mbsd.dynamics.reference.schur import solve_schur, subtract_forces, times_jacobian
+from mbsd.dynamics.reference.refinement import respond
 
 STIFF = 1e-12
 """Compliance of a row, as part of that of its bodies alone, below which nothing gives way."""
@@ -26,17 +26,12 @@ def find_answer(dyn, scratch, contacts, k):
 
     Factors and scratch.ws.jac are those of the pose, with the rows of all contacts released.
     """
-    schur = dyn.schur
-    factors = scratch.factors
     ws = scratch.ws
-    y = factors.side
     n3 = dyn.inverse.shape[0]
     force = contacts.force
-    out = contacts.answer[k]
     row = contacts.place[k, ROW]
     for c in range(n3):
         force[c] = 0.0
-        out[c] = 0.0
     for side in range(2):
         at = 3 * dyn.system.row_body[row, side]
         for c in range(3):
@@ -45,16 +40,7 @@ def find_answer(dyn, scratch, contacts, k):
     for c in range(3, n3):
         alone += dyn.inverse[c] * force[c] ** 2
     contacts.vector[ALONE, k] = alone if alone > 0.0 else 1.0
-    for _ in range(dyn.passes):
-        for c in range(3, n3):
-            ws.pose[c] = out[c] + dyn.inverse[c] * (force[c] - dyn.inertia[c] * out[c])
-        for b in range(schur.rows.shape[0]):
-            for s in range(2):
-                y[b, s, 0] = times_jacobian(factors, schur, b, s, ws.pose) if schur.rows[b, s] >= 0 else 0.0
-        solve_schur(schur, factors, 1)
-        subtract_forces(factors, schur, 0, force)
-        for c in range(3, n3):
-            out[c] += dyn.inverse[c] * (force[c] - dyn.inertia[c] * out[c])
+    respond(dyn, scratch, force, 0.0, contacts.answer[k], scratch.multipliers)
 
 
 @internal

@@ -11,7 +11,8 @@ from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.many.contacts.arrays import ALONE, BLOCK, HELD, ROW, SIDE
 from mbsd.dynamics.many.contacts.friction.resting import gives
 from mbsd.dynamics.many.contacts.rows import along
-from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
+from mbsd.dynamics.reference.refinement import respond
+from mbsd.dynamics.reference.schur import factor_schur
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
 from mbsd.equations.laws import evaluate_laws
@@ -34,37 +35,6 @@ def stand(dyn, scratch, t, y):
 def factor(dyn, scratch):
     """Factors of the rows that hold now, at the pose of scratch.ws."""
     factor_schur(dyn.schur, dyn.inverse, scratch.ws.jac, scratch.factors, 0.0)
-
-
-@apart
-def respond(dyn, scratch, force, moving, a, lam):
-    """Fill a (3 nb,) and lam (m,) under ``force`` (3 nb,), which is overwritten; gamma is taken ``moving`` times."""
-    schur = dyn.schur
-    factors = scratch.factors
-    pose = scratch.ws.pose
-    gamma = scratch.ws.right[0]
-    y = factors.side
-    n3 = a.shape[0]
-    for c in range(n3):
-        a[c] = 0.0
-    for r in range(lam.shape[0]):
-        lam[r] = 0.0
-    for _ in range(dyn.passes):
-        for c in range(3, n3):
-            pose[c] = a[c] + dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
-        for b in range(schur.rows.shape[0]):
-            for s in range(2):
-                r = schur.rows[b, s]
-                y[b, s, 0] = times_jacobian(factors, schur, b, s, pose) - moving * gamma[r] if r >= 0 else 0.0
-        solve_schur(schur, factors, 1)
-        subtract_forces(factors, schur, 0, force)
-        for c in range(3, n3):
-            a[c] += dyn.inverse[c] * (force[c] - dyn.inertia[c] * a[c])
-        for b in range(schur.rows.shape[0]):
-            for s in range(2):
-                r = schur.rows[b, s]
-                if r >= 0:
-                    lam[r] += y[b, s, 0]
 
 
 @internal

@@ -5,7 +5,7 @@ from __future__ import annotations
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.many.contacts.arrays import BASIS, FOUND, NOW
 from mbsd.dynamics.many.contacts.rows import along
-from mbsd.dynamics.many.contacts.sticking.answers import respond
+from mbsd.dynamics.reference.refinement import respond
 from mbsd.dynamics.reference.sliding import slide
 from mbsd.equations.gauss import eliminate
 from mbsd.equations.joint_friction import apply_friction, normal_forces

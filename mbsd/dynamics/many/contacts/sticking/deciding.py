@@ -34,9 +34,10 @@ from mbsd.dynamics.many.contacts.friction.pushes import solve_with_friction
 from mbsd.dynamics.many.contacts.friction.resting import find_resting, gives, holds
 from mbsd.dynamics.many.contacts.jumps import FAINT
 from mbsd.dynamics.many.contacts.rows import along, gaps_of
-from mbsd.dynamics.many.contacts.sticking.answers import respond, stand
+from mbsd.dynamics.many.contacts.sticking.answers import stand
 from mbsd.dynamics.many.contacts.sticking.sharing import limit_of
 from mbsd.dynamics.many.contacts.sticking.together import divide_together
+from mbsd.dynamics.reference.refinement import respond
 from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import FAINT as FAINT_LOAD
 from mbsd.equations.joint_friction import MOST_PASSES, SENSE, SETTLED, X, apply_friction, normal_forces

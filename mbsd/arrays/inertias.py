@@ -1,0 +1,61 @@
+"""Inertias of all coordinates, and those that stand in for them where bodies have none."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
+
+RANK = 1e-12
+"""Part of the largest singular value, in roots of masses, below which a motion has no kinetic energy."""
+
+
+def inertia_of(packed: Packed) -> np.ndarray:
+    """Return (3 nb,) the diagonal of M: kg, kg, kg m^2 of each body, ground included."""
+    inertia = packed.system.mass.repeat(3)
+    inertia[2::3] = packed.system.inertia
+    return inertia
+
+
+def usual_inertia(packed: Packed) -> np.ndarray:
+    """Return (3 nb,) M where it is not zero, elsewhere the largest mass and the size of what joints connect."""
+    inertia, mass = inertia_of(packed), packed.system.mass
+    largest = np.zeros(len(mass))
+    if (inertia[3:] == 0.0).any():
+        group = _groups(packed.system.row_body, len(mass))
+        np.maximum.at(largest, group, mass)
+        largest = largest[group]
+    largest[largest == 0.0] = float(mass.max()) or 1.0
+    usual = largest.repeat(3)
+    usual[2::3] *= packed.size**2
+    return np.where(inertia > 0.0, inertia, usual)
+
+
+def _groups(row_body: np.ndarray, bodies: int) -> np.ndarray:
+    """(nb,) the least number among the bodies that rows of J with ``row_body`` (m, 2) connect without ground."""
+    group = np.arange(bodies)
+    pairs = row_body[(row_body > 0).all(axis=1)]
+    while True:
+        before = group.copy()
+        least = group[pairs].min(axis=1)
+        np.minimum.at(group, pairs[:, 0], least)
+        np.minimum.at(group, pairs[:, 1], least)
+        group = group[group]
+        if (group == before).all():
+            return group
+
+
+def least_energy(v: np.ndarray, rows: np.ndarray, inertia: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Return the velocities (..., n) of least kinetic energy that have the same rates of ``rows`` as v (..., n).
+
+    ``rows`` (..., m, n) are independent of each other, ``inertia`` (n,) may be zero; ``size`` (n,) of a unit step of
+    each coordinate. Of velocities with equal energy those are taken that are nearest to v.
+    """
+    free = np.linalg.svd(rows * size)[2][..., rows.shape[-2] :, :] * size
+    root = np.sqrt(inertia)
+    across = np.swapaxes(free * root, -1, -2)
+    back = np.linalg.pinv(across, rcond=RANK) @ (root * v)[..., None]
+    return v - (np.swapaxes(free, -1, -2) @ back)[..., 0]

@@ -30,7 +30,7 @@ LEAST = 1e-2
 NOTHING = 1e-12
 """Numbers below this (SI), masses below this part of the largest, count as zero."""
 LENGTHS = ("length", "free_length", "radius", "radius_i", "radius_j")
-ANGLES = ("angle", "free_angle")
+ANGLES = ("angle", "free_angle", "direction")
 LIMITS = ("at", "lower", "upper")
 """Lengths or angles."""
 LOOKS = 65

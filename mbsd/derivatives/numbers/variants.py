@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -21,6 +21,7 @@ from mbsd.derivatives.numbers.number_steps import size_of, step_of
 from mbsd.derivatives.numbers.repacked import repacked, unchanged
 from mbsd.derivatives.numbers.terms import Terms, terms_of
 from mbsd.equations.loads import Loads
+from mbsd.model.event import Event
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 from mbsd.model.numbers import Number, with_value, with_values
@@ -54,6 +55,8 @@ class Variant:
     """Whether all loads have the numbers that they have in the motion."""
     start: Any = None
     """q, v (3 nb,) at the start, where that changes."""
+    events: Mapping[str, Event] = field(default_factory=dict)
+    """Events of the user, whose markers follow the ends of bars."""
 
 
 @dataclass
@@ -146,10 +149,12 @@ class Variation:
             masses = alike(packed, first, ("mass", "inertia"))
             begins = starts and self.starts and not (places and (masses or not self.moving) and self._starts_alike(m))
             start = self._decide(m, packed, begins)
+            if packed.specials.phased:  # what rolls follows the start
+                places = places and alike(packed, self.base.packed, ("numbers",))
             known = self.base.loads if lawful and self._pushes_alike(m, packed) else None
             terms = terms_of(packed, self.span, self.base.laws if lawful else None, self.loads, known)
             same_loads = lawful and (known is not None or _same_loads(terms.loads, self.base.loads))
-            return Variant(offset, terms, dict(m.traces), places, masses, same_loads, start)
+            return Variant(offset, terms, dict(m.traces), places, masses, same_loads, start, dict(m.events))
 
     def _starts_alike(self, m: Model) -> bool:
         return repr((m.starts, m.velocities)) == self.given

@@ -58,6 +58,8 @@ class Packed:
     """Constants of meshes with play (m) by the names of their forces; see mbsd/arrays/force_phases.py."""
     states: int = 0
     """How many of the last bodies hold states of forces; see mbsd/arrays/states.py."""
+    bars: dict[str, float] = field(default_factory=dict)
+    """Lengths of the bars by their names (m)."""
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Unpickled or copied: equations and functions of the user are called by the addresses of this process."""
@@ -218,4 +220,5 @@ def pack(m: Model, contacts: Sequence[Joint] = ()) -> Packed:
         specials=specials,
         size=arrays.size,
         constant=arrays.constant,
+        bars={body.name: body.length for body in bodies if body.length is not None},
     )

@@ -115,7 +115,7 @@ def _directed(marker_body: np.ndarray, *first_markers: np.ndarray) -> np.ndarray
 
 
 def _size(marker_arm: np.ndarray, marker_body: np.ndarray, lengths: list[float]) -> float:
-    extents = [*lengths, *np.hypot(*marker_arm.T)]
+    extents = [*lengths, *np.hypot(*marker_arm[marker_body > 0].T)]  # how far away the world's origin is says nothing
     for body in np.unique(marker_body):
         extents.append(float(np.linalg.norm(np.ptp(marker_arm[marker_body == body], axis=0))))
     largest = float(max(extents, default=0.0))

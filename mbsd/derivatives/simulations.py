@@ -18,8 +18,9 @@ from mbsd.derivatives.asked import OfBodies
 from mbsd.derivatives.driven.sweeps import displaced
 from mbsd.derivatives.driven.tangents import Tangent, has_kinks
 from mbsd.derivatives.free.free_tangents import FreeTangents
+from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, unshared, ways_of
 from mbsd.derivatives.free.jumps import Jump, jumps_of
-from mbsd.derivatives.free.linear_motion import NODES
+from mbsd.derivatives.free.linear_motion import LATEST, NODES
 from mbsd.derivatives.free.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of
 from mbsd.derivatives.free.step_errors import Finish, refined_to_error
 from mbsd.derivatives.free.stretch import Stretch, Tangents, joined
@@ -46,7 +47,6 @@ from mbsd.dynamics.repeated import Outputs, Repeated
 from mbsd.kinematics.pose.initial import Initial
 from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import take_decided
-from mbsd.model.contact import ContactKind
 from mbsd.model.mechanism import Model
 from mbsd.model.numbers import Number
 from mbsd.results.solution import Solution
@@ -225,8 +225,11 @@ class SimulationTangents:
         parts: list[Tangents] = []
         errors: list[np.ndarray] = []
         self.ends, self._off = None, 0.0
-        jumps: list[Jump] = [] if whole.solution is None else jumps_of(self, whole.solution, along, edges)
         compact = self.terms.rows(along)[2]
+        shared = self._unshare(along, compact, edges)
+        jumps: list[Jump] = [] if whole.solution is None else jumps_of(self, whole.solution, along, edges)
+        if whole.solution is not None:
+            refuse_contact_at_start(self.terms, self.variants, along, q, v, whole.solution.events)
         for k, (a, b) in enumerate(pairwise(edges)):
             at = slice(a, b)
             stretch = self._stretch(along.take(at), compact[at], asked[at], known[at])
@@ -240,17 +243,33 @@ class SimulationTangents:
             errors.append(made.errors)
             self._off = max(self._off, made.off)
             parts.append(made.asked)
+            parts[-1].lam[..., shared[k]] = np.nan  # how contacts at rest share their friction changes, too
             q, v = made.q, made.v
             if k < len(jumps):
-                q, v, times_moved = jumps[k].across(q, v)
+                last = np.flatnonzero(known[at])[-NODES - 1 :] + a
+                pace = LATEST @ along.lam[last] / (along.t[last[-1]] - along.t[last[0]])
+                q, v, times_moved = jumps[k].across(End(q, v, made.lam, pace))
                 if jumps[k].ends:
                     self.ends = times_moved
         again = np.unique(rows, return_inverse=True)[1]  # two outputs may be nearer to an event than rounding
         return Tangents(*(part[:, again] for part in joined(parts).parts())), np.concatenate(errors)
 
+    def _unshare(self, along: Along, compact: np.ndarray, edges: list[int]) -> list[list[int]]:
+        """Let rows that hold carry all friction at rest; returns the rows that share it, of each stretch."""
+        out: list[list[int]] = []
+        for a, b in pairwise(edges):
+            part = along.take(slice(a, b))
+            _, ways = ways_of(self.terms.packed, part)
+            if ways:
+                along.lam[a:b] = unshared(self.terms, part, compact[a:b], ways)
+                first = self.terms.packed.first_row
+                others = [int(first[k]) + 1 for k, _ in contacts_of(self.terms.packed) if first[k + 1] > first[k] + 1]
+                ways = [row for row in others if part.held is not None and (part.held[0, row] or row in ways)]
+            out.append(ways)
+        return out
+
     def _stretch(self, along: Along, compact: np.ndarray, asked: np.ndarray, nodes: np.ndarray) -> Stretch:
-        assert along.held is not None
-        sliding = self._sliding(along.held[0], along.lam)
+        sliding, _ = ways_of(self.terms.packed, along)
         return Stretch(along, compact, self.stretch_rows(along, 0), sliding, asked, nodes)
 
     def stretch_rows(self, along: Along, k: int) -> np.ndarray:
@@ -265,16 +284,6 @@ class SimulationTangents:
         independent = rows[np.sort(np.array(independent_rows(scaled[rows]), np.int64))]
         self.redundant = self.redundant or len(independent) < len(rows)
         return independent
-
-    def _sliding(self, held: np.ndarray, lam: np.ndarray) -> list[tuple[int, int]]:
-        packed, out = self.terms.packed, []
-        for k in range(len(packed.joints) - packed.contacts, len(packed.joints)):
-            first, end = int(packed.first_row[k]), int(packed.first_row[k + 1])
-            if isinstance(packed.joints[k].kind, ContactKind) and end > first + 1:
-                way = first + 1
-                if held[first] and not held[way] and lam[:, way].any():
-                    out.append((way, first))
-        return out
 
     def ready(self) -> PreparedDynamics:
         """The mechanism itself as a simulation begins with it: for the laws of impacts."""

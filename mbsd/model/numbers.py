@@ -16,6 +16,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import partial
 from typing import Any
 
 from mbsd.base.errors import ModelError
@@ -24,6 +25,7 @@ from mbsd.base.shown import shown
 from mbsd.model.body import Marker
 from mbsd.model.change import BAR, BODY, change, given, given_body
 from mbsd.model.joint import Joint
+from mbsd.model.laws import Motion
 from mbsd.model.mechanism import Model, connections, start_given
 from mbsd.model.saved_model import SavedModel
 
@@ -61,6 +63,12 @@ class Number:
     """Where it stands, if it is a part of what ``change`` takes."""
     marker: Marker | None = None
     """The marker whose coordinate or angle it is."""
+    is_place: bool = False
+    """Whether it is a coordinate, whose origin is anywhere."""
+    vector: float = 0.0
+    """Length of the vector that it is a component of (SI); 0 of others."""
+    reach: float = 0.0
+    """How far apart the bounds are within which it varies; 0 where there are none."""
 
 
 def numbers_named(m: Model, names: Sequence[str]) -> list[Number]:
@@ -199,7 +207,10 @@ def _inner(name: str, whole: str, key: str, path: str, value: Any) -> Number | N
         given_now = None if not path else _arguments(m, whole)[key]
         change(m, whole, {key: _with_inner(path, given_now, new)})
 
-    return Number(name, at[0], put, within=within)
+    vector = isinstance(value, tuple | list) and all(map(_is_number, value))
+    return Number(
+        name, at[0], put, within=within, is_place=key == "com", vector=math.hypot(*value) if vector else 0.0
+    )
 
 
 def _splits(name: str) -> list[tuple[str, str]]:
@@ -263,7 +274,7 @@ def _of_marker(m: Model, name: str, entry: str, side: str, axis: str) -> Number:
         table[entry] = replace(table[entry], **{side: replace(marker, **{axis: float(new)})})
 
     [marker] = [getattr(table[entry], side) for table in connections(m) if entry in table]
-    return Number(name, float(getattr(marker, axis)), put, marker=marker)
+    return Number(name, float(getattr(marker, axis)), put, marker=marker, is_place=axis in AXES)
 
 
 def _of_body(m: Model, whole: str, rest: str) -> Number | None:
@@ -303,7 +314,9 @@ def _of_start(m: Model, name: str, body: str, what: str, at: int) -> Number | No
                                                                for k, value in enumerate(old.place))}  # fmt: skip
         table[body] = replace(old, **own)
 
-    return Number(name, float(getattr(given_start, first) if not at else given_start.place[at - 1]), put)
+    value = float(getattr(given_start, first) if not at else given_start.place[at - 1])
+    vector = 0.0 if what == "start" or not at else math.hypot(*given_start.place)
+    return Number(name, value, put, is_place=what == "start" and at > 0, vector=vector)
 
 
 def _of_trace(m: Model, whole: str, rest: str) -> Number | None:
@@ -313,7 +326,8 @@ def _of_trace(m: Model, whole: str, rest: str) -> Number | None:
     def put(m: Model, new: float) -> None:
         m.traces[whole] = replace(m.traces[whole], **{rest: float(new)})
 
-    return Number(f"{whole}.{rest}", float(getattr(m.traces[whole], rest)), put, marker=m.traces[whole])
+    marker = m.traces[whole]
+    return Number(f"{whole}.{rest}", float(getattr(marker, rest)), put, marker=marker, is_place=rest in AXES)
 
 
 def _gravity(m: Model, axis: int) -> Number:
@@ -321,7 +335,17 @@ def _gravity(m: Model, axis: int) -> Number:
         now = m.gravity or (0.0, 0.0)
         m.gravity = (float(new), now[1]) if axis == 0 else (now[0], float(new))
 
-    return Number(f"gravity.{'xy'[axis]}", float((m.gravity or (0.0, 0.0))[axis]), put)
+    now = m.gravity or (0.0, 0.0)
+    return Number(f"gravity.{'xy'[axis]}", float(now[axis]), put, vector=math.hypot(*now))
+
+
+def law_with(m: Model, number: Number) -> Callable[[float], Any] | None:
+    """Return what gives the law that a number of ``m`` belongs to with another value of it; None of others."""
+    at = number.within
+    if at is None or not at.path:
+        return None
+    law = _arguments(m, at.whole).get(at.key)
+    return partial(_with_inner, at.path, law) if isinstance(law, Motion) else None
 
 
 def numbers_within(law: Any) -> list[str]:

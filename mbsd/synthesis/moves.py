@@ -123,7 +123,10 @@ class Moves:
         def put(m: Model, value: float) -> None:
             raise AssertionError("it is built")
 
-        return [Number(name, float(x[k]), put, partial(beside, k)) for k, name in enumerate(self.bounds.names)]
+        return [
+            Number(name, float(x[k]), put, partial(beside, k), reach=float(self.bounds.size[k]))
+            for k, name in enumerate(self.bounds.names)
+        ]
 
     def _defaults(self, build: Callable[..., Any]) -> np.ndarray:
         """(k,) defaults of the author's function, the middle of the bounds where it has none. Raises ModelError."""

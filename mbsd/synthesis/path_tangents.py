@@ -88,7 +88,10 @@ def _numbers(family: Family, m: Model, x: np.ndarray) -> list[Number]:
         return family.model(np.where(np.arange(len(x)) == k, value, x))
 
     names = [f"{name} {k}" for k, name in enumerate(_columns(family.varied))]
-    return [Number(name, float(x[k]), put, partial(built, k)) for k, name in enumerate(names)]
+    reach = (family.varied.high - family.varied.low).tolist()
+    return [
+        Number(name, float(x[k]), put, partial(built, k), reach=reach[k]) for k, name in enumerate(names)
+    ]
 
 
 def _columns(varied: Varied) -> list[str]:

@@ -77,7 +77,7 @@ class FreeTangents:
             q, v = parts[-1].q, parts[-1].v
             first += len(inverse) - 1
         errors, off = np.concatenate([part.errors for part in parts]), max(part.off for part in parts)
-        return Carried(joined([part.asked for part in parts]), q, v, errors, off)
+        return Carried(joined([part.asked for part in parts]), q, v, parts[-1].lam, errors, off)
 
     def _basis(self, first: int) -> tuple[np.ndarray, np.ndarray]:
         """Z (f, n) at node ``first``, and inverses of [J; Z] up to the last node, whole steps on, that it serves."""
@@ -193,9 +193,8 @@ class _Piece:
         y, parts = line.at(self.along.t[at]), [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
         for out, part in zip(parts, made[2:], strict=True):
             combine(y, part, out)
-        return Carried(
-            Tangents(*(part[:, :asked] for part in parts)), parts[0][:, -1], parts[1][:, -1], line.errors, self.off
-        )
+        ends = (parts[k][:, -1] for k in (0, 1, 3))
+        return Carried(Tangents(*(part[:, :asked] for part in parts)), *ends, line.errors, self.off)
 
     def at_all(self, y: np.ndarray) -> Tangents:
         """Tangents at all times, from s and s' there: y (T, 2 f, P)."""

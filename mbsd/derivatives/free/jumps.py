@@ -1,11 +1,12 @@
 """What an event makes of a tangent: its time moves, velocities jump, and accelerations differ before and after.
 
-    t' = -(dg + g_p) / (dg/dt)                   of the scalar g that falls through zero
+    t' = -(dg + g_p) / (dg/dt)                   of the scalar g that falls through zero (guards.py)
     y_-' + f_- t'   is mapped by the event's own law, R,  to   y_+' + f_+ t'
 
-Impacts are mapped by differences of the law that the simulation itself uses, in states beside the one before. What
-opens, slips or is only noted has neither a jump of velocities nor of accelerations. Source: Bernard, Bentsman, Int. J.
-Control 63 (1996); Leine, Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004) (saltation).
+Impacts are mapped by differences of the law that the simulation itself uses, in states beside the one before. Where a
+contact begins to stick or to slide, or turns round, velocities go on and accelerations jump. What opens or is only
+noted has neither a jump of velocities nor of accelerations. Source: Bernard, Bentsman, Int. J. Control 63 (1996);
+Leine, Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (2004) (saltation).
 """
 
 from __future__ import annotations
@@ -16,12 +17,12 @@ from typing import Any, Protocol
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.driven.tangents import along_direction
+from mbsd.derivatives.driven.tangents import per_scales
+from mbsd.derivatives.free.guards import USER, End, Guard, guards_of, times_moved
 from mbsd.derivatives.numbers.terms import Along, Terms
-from mbsd.derivatives.numbers.variants import SECOND, Variant, Variants, Variation
+from mbsd.derivatives.numbers.variants import Variants, Variation
 from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.impact import impacts
-from mbsd.dynamics.events.moment import Moment
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.model.numbers import with_value
@@ -29,8 +30,6 @@ from mbsd.results.solution import Solution
 
 REACH = 1e-6
 """Reach of the differences of an impact, in sizes, rad, and parts of the fastest speed."""
-GRAZING = 1e-9
-"""Speed of the scalar of an event, as part of the fastest motion, below which it only touches zero."""
 STILL = 1e-9
 
 
@@ -75,76 +74,26 @@ class Jump:
     along: Along
     before: int
     impacts: list[str]
-    guard: tuple[str, Any]
-    """("gap", row), ("rate", row), ("user", event), or ("none", None)."""
+    guards: list[Guard]
     ends: bool
 
-    def across(self, dq: np.ndarray, dv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def across(self, tangent: End) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """q', v' (P, 3 nb) after it, and how its time changes (P,) (s by the numbers); from those before it."""
         k, along = self.before, self.along
         after = k if self.ends else k + 1
-        moved = self._times(dq, dv)[:, None]
-        total_q, total_v = dq + along.v[k] * moved, dv + along.a[k] * moved
+        moved = times_moved(self.whole.terms, self.whole.variants, along, k, self.guards, tangent)[:, None]
+        total_q, total_v = tangent.q + along.v[k] * moved, tangent.v + along.a[k] * moved
         if self.impacts:
             total_v = self._struck(total_q, total_v, moved[:, 0])
         return total_q - along.v[after] * moved, total_v - along.a[after] * moved, moved[:, 0]
-
-    def _times(self, dq: np.ndarray, dv: np.ndarray) -> np.ndarray:
-        """(P,) how the time of the event changes with each number."""
-        what, which = self.guard
-        every = self.whole.variants
-        if what == "none":
-            return np.zeros(len(every))
-        if what == "user":
-            return np.array([self._user_time(which, q, v, own) for q, v, own in zip(dq, dv, every, strict=True)])
-        terms, here = self.whole.terms, self.along.take(slice(self.before, self.before + 1))
-        row = terms.packed.spread(terms.rows(here)[2])[0, which]
-        part = "position" if what == "gap" else "velocity"
-        if what == "gap":
-            change, pace = dq[:, 3:] @ row, float(terms.left(here).velocity[0, which])
-        else:
-            pace = float(terms.left(here).acceleration[0, which])
-            change = np.array([along_direction(terms, here, q[None], v[None], SECOND, 1e-5).velocity[0, which]
-                               for q, v in zip(dq, dv, strict=True)])  # fmt: skip
-
-        def left(variant: Variant) -> np.ndarray:
-            return getattr(variant.terms.left(here), part)[0, which]
-
-        own = [0.0 if v.variants[0].same_places else float(v.slope(left)) for v in every]
-        fastest = float(np.abs(self.along.v).max()) or 1.0
-        if abs(pace) <= GRAZING * fastest:
-            raise ModelError(
-                f"{terms.packed.name}: at t = {self.along.t[self.before]:.6g} s an event is met without speed, so that "
-                "a small change may leave it out: there is no derivative beyond it"
-            )
-        return -(change + np.array(own)) / pace
-
-    def _user_time(self, event: Any, dq: np.ndarray, dv: np.ndarray, variants: Variants) -> float:
-        along, k, packed = self.along, self.before, self.whole.terms.packed
-        fastest = float(np.abs(along.v).max()) or 1.0
-        far = max(float(np.abs(dq).max()), float(np.abs(dv).max()) / fastest, 1e-300)
-
-        def value(packed: Any, t: float, q: np.ndarray, v: np.ndarray) -> float:
-            return float(event.value_at(Moment(packed, t, q, v)))
-
-        t, q, v, a = float(along.t[k]), along.q[k], along.v[k], along.a[k]
-        h, dt = 1e-5 / far, 1e-6 * max(float(along.t[-1] - along.t[0]), 1e-9)
-        change = (value(packed, t, q + h * dq, v + h * dv) - value(packed, t, q - h * dq, v - h * dv)) / (2 * h)
-        change += float(variants.slope(lambda variant: np.array(value(variant.terms.packed, t, q, v))))
-        pace = (value(packed, t + dt, q + dt * v, v + dt * a) - value(packed, t - dt, q - dt * v, v - dt * a)) / (
-            2 * dt
-        )
-        if not abs(pace) > 0.0:
-            raise ModelError(f"{packed.name}: event '{event.name}' is met without speed: there is no derivative of it")
-        return -change / pace
 
     # -- impacts -----------------------------------------------------------------------------------------------------
 
     def _struck(self, dq: np.ndarray, dv: np.ndarray, dt: np.ndarray) -> np.ndarray:
         """(P, 3 nb) how velocities after the impact change."""
         along, k, whole = self.along, self.before, self.whole
-        fastest = float(np.abs(along.v).max()) or 1.0
-        far = np.maximum(np.abs(dq).max(axis=1) / whole.terms.packed.size, np.abs(dv).max(axis=1) / fastest)
+        per_size, per_speed = per_scales(whole.terms, along)
+        far = np.maximum(np.abs(dq * per_size).max(axis=1), np.abs(dv * per_size).max(axis=1) * per_speed)
         h = (REACH / np.where(far > 0.0, far, 1.0))[:, None]
         t, q, v = along.t[k] + 0.0 * dt, along.q[k], along.v[k]
         plain = self._plain()
@@ -238,34 +187,22 @@ class Jump:
 
 def jumps_of(whole: Whole, sol: Solution, along: Along, edges: list[int]) -> list[Jump]:
     """The events between the stretches of a simulation, in order; and the one that ended it."""
-    out = []
-    gaps = sol.packed.contact_gaps()
-    users = dict(sol.mechanism.events)
-    for edge in edges[1:-1]:
-        out.append(_jump(whole, sol, along, edge - 1, gaps, users, ends=False))
+    out = [_jump(whole, sol, along, edge - 1, ends=False) for edge in edges[1:-1]]
     if sol.events and sol.events[-1].what == "end":
-        out.append(_jump(whole, sol, along, len(along.t) - 1, gaps, users, ends=True))
+        out.append(_jump(whole, sol, along, len(along.t) - 1, ends=True))
     return out
 
 
-def _jump(whole: Whole, sol: Solution, along: Along, row: int, gaps: Any, users: Any, ends: bool) -> Jump:
+def _jump(whole: Whole, sol: Solution, along: Along, row: int, ends: bool) -> Jump:
     t = float(sol.t[row])
     near = 1e-9 * float(sol.t[-1] - sol.t[0])
     here = [event for event in sol.events if abs(event.time - t) <= near]
-    struck = [event.name for event in here if event.what == "impact"]
-    guard: tuple[str, Any] = ("none", None)
+    users = dict(sol.mechanism.events)
     for event in here:
-        if event.what in ("impact", "closes") and event.name in gaps:
-            guard = ("gap", gaps[event.name])
-            break
-        if event.what == "sticks" and event.name in gaps:
-            guard = ("rate", gaps[event.name] + 1)
-        if event.what in ("event", "end") and event.name in users:
-            guard = ("user", users[event.name])
-            if users[event.name].acts:
-                raise ModelError(
-                    f"{sol.packed.name}: derivatives beyond what event '{event.name}' changes are not known"
-                )
-    if guard[0] == "rate" and struck:
-        guard = ("gap", gaps[struck[0]])
-    return Jump(whole, along, row, struck, guard, ends)
+        if event.what in ("event", "end") and event.name in users and users[event.name].acts:
+            raise ModelError(f"{sol.packed.name}: derivatives beyond what event '{event.name}' changes are not known")
+    struck = [event.name for event in here if event.what == "impact"]
+    if ends:
+        name = sol.events[-1].name
+        return Jump(whole, along, row, struck, [Guard(USER, name, event=users[name])], ends)
+    return Jump(whole, along, row, struck, guards_of(sol.packed, along, row, struck), ends)

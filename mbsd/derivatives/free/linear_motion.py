@@ -37,6 +37,9 @@ WEIGHTS = weights_at(PLACES[1:])
 HALFWAY, LAST = _COEFFICIENTS[[NODES // 2, NODES]]
 """(9,) what makes Legendre's fourth and eighth coefficients of values at the nodes."""
 
+LATEST = 2.0 * legendre.legval(1.0, legendre.legder(_COEFFICIENTS))
+"""(9,) weights of the values at the nodes in their slope at the end, for a step of length 1."""
+
 
 @dataclass
 class Carried:

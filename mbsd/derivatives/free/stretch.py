@@ -51,6 +51,8 @@ class Carried:
     q: np.ndarray
     """(P, 3 nb) q' at the last node."""
     v: np.ndarray
+    lam: np.ndarray
+    """(P, m) lam' there."""
     errors: np.ndarray
     """(d,) what each step adds, as part of the largest."""
     off: float

@@ -17,9 +17,10 @@ import numpy as np
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
+from mbsd.derivatives.numbers.number_steps import step_of
 from mbsd.derivatives.numbers.repacked import repacked, unchanged
 from mbsd.derivatives.numbers.start_tangents import StartTangents
-from mbsd.derivatives.numbers.variants import PLACES, Variation, alike, same_laws, size_of
+from mbsd.derivatives.numbers.variants import PLACES, Variation, alike, same_laws
 from mbsd.equations.loads import Loads
 from mbsd.model.body import Marker
 from mbsd.model.force import Element
@@ -27,7 +28,7 @@ from mbsd.model.mechanism import Model
 from mbsd.model.numbers import Number, with_value
 
 NEAR = 1e-7
-"""Part of a number, or of what stands for one that is zero, by which it is larger."""
+"""Part of its size by which a number is larger."""
 PLACES_OF_LOADS = ("place", "number", "given", "user_com", "friction_number")
 """Numbers of loads; the other tables must stay."""
 TABLES_OF_LOADS = ("element", "term", "interaction", "user", "user_body", "friction")
@@ -85,8 +86,9 @@ class NearNumbers:
 
     def of(self, number: Number) -> Near | None:
         """The slopes by a number; None where arrays do not go on straight, or what is given leaves the start open."""
-        size = size_of(number, self.variation.first.size)
-        for away in (NEAR * size, -NEAR * size):
+        size = self.variation.size_of(number)
+        away = step_of(NEAR, size)
+        for away in (away, -away):
             try:
                 return self._at(number, size, away)
             except (ModelError, AssemblyError):
@@ -95,7 +97,9 @@ class NearNumbers:
 
     def _at(self, number: Number, size: float, away: float) -> Near | None:
         own, first = self.variation, self.variation.first
-        with with_value(own.work, number, number.value + away, own.saved) as m:
+        value = number.value + away
+        away = value - number.value  # as far as the number itself has so many digits
+        with with_value(own.work, number, value, own.saved) as m:
             light = self._light(m, number, size, away) if self._in_place(m) else None
             if light is not None:
                 return light

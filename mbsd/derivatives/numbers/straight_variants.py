@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.derivatives.numbers.near_numbers import Near
+from mbsd.derivatives.numbers.number_steps import step_of
 from mbsd.derivatives.numbers.terms import Terms
 from mbsd.derivatives.numbers.variants import PLACES, SECOND, TINY, Variant, Variants, Variation
 from mbsd.equations.system import workspace
@@ -21,14 +22,18 @@ def variants_beside(variation: Variation, numbers: Sequence[Number], known: Sequ
         variation.of(number, SECOND, TINY, starts=False)
         if near is None
         else Variants(
-            number, TINY * near.size, SECOND[1], [_variant(variation, near, side) for side in SECOND[0]], near.size
+            number,
+            step_of(TINY, near.size),
+            SECOND[1],
+            [_variant(variation, near, side) for side in SECOND[0]],
+            near.size,
         )
         for number, near in zip(numbers, known, strict=True)
     ]
 
 
 def _variant(variation: Variation, near: Near, offset: float) -> Variant:
-    base, h = variation.base, offset * TINY * near.size
+    base, h = variation.base, offset * step_of(TINY, near.size)
     packed, system = base.packed, base.packed.system
     slopes = {"mass": near.mass, "inertia": near.moment, "gravity": near.gravity, **_slopes_of_places(variation, near)}
     changes = {name: getattr(system, name) + h * slope for name, slope in slopes.items() if slope.any()}

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -17,16 +17,20 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
+from mbsd.derivatives.numbers.number_steps import size_of, step_of
 from mbsd.derivatives.numbers.repacked import repacked, unchanged
 from mbsd.derivatives.numbers.terms import Terms, terms_of
 from mbsd.equations.loads import Loads
+from mbsd.model.event import Event
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
 from mbsd.model.numbers import Number, with_value, with_values
 from mbsd.model.saved_model import SavedModel
 
 STEP, TINY = 1e-4, 1e-5
-"""Steps of a number, as parts of itself, or of the size of the mechanism, or of 1: of fourth and of second order."""
+"""Steps of a number, as parts of its size: of fourth and of second order."""
+SHORTER = 2.0**-8
+"""Part of a step that is tried where a mechanism refuses so large a one."""
 KINKED = 1e-2
 """Part of these steps where contacts yield by less than they move them."""
 FOURTH = (np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12)
@@ -34,7 +38,6 @@ FOURTH = (np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 1
 SECOND = (np.array([-1.0, 1.0]), np.array([-0.5, 0.5]))
 AHEAD = (np.arange(5.0), np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12)
 """The same to one side."""
-LENGTHS = ("x", "y", "length", "free_length", "radius", "radius_i", "radius_j")
 
 
 @dataclass
@@ -52,6 +55,8 @@ class Variant:
     """Whether all loads have the numbers that they have in the motion."""
     start: Any = None
     """q, v (3 nb,) at the start, where that changes."""
+    events: Mapping[str, Event] = field(default_factory=dict)
+    """Events of the user, whose markers follow the ends of bars."""
 
 
 @dataclass
@@ -64,7 +69,7 @@ class Variants:
     """(k,) of the variants, for a derivative by the number: / step."""
     variants: list[Variant]
     size: float
-    """What the step is a part of: the number itself, or what stands for one that is zero."""
+    """What the step is a part of; see number_steps.py."""
 
     def slope(self, of: Callable[[Variant], np.ndarray]) -> np.ndarray:
         """The derivative by the number of what ``of`` gives of a variant."""
@@ -75,11 +80,6 @@ class Variants:
         if any(variant.start is None for variant in self.variants):
             return np.zeros_like(q), np.zeros_like(q)
         return self.slope(lambda variant: variant.start[0]), self.slope(lambda variant: variant.start[1])
-
-
-def size_of(number: Number, size: float) -> float:
-    """What steps of a number are parts of: itself, or the ``size`` (m) of its mechanism, or 1 in SI units."""
-    return abs(number.value) or (size if number.name.rpartition(".")[2] in LENGTHS else 1.0)
 
 
 def models_of(m: Model, number: Number, variants: Variants) -> list[Callable[[], Model]]:
@@ -122,16 +122,21 @@ class Variation:
         self, number: Number, order: tuple[np.ndarray, np.ndarray] = FOURTH, step: float = STEP, starts: bool = True
     ) -> Variants:
         """The variants of a number, with their ``starts`` or without. Raises ModelError where it cannot change."""
-        size = size_of(number, self.base.packed.size)
-        h = step * size
+        size = self.size_of(number)
+        usual = step_of(step, size)
         first: ModelError | None = None
-        for (offsets, weights), sign in ((order, 1.0), (AHEAD, 1.0), (AHEAD, -1.0)):
-            try:
-                made = [self._variant(number, offset * sign, h, starts) for offset in offsets]
-                return Variants(number, sign * h, weights, made, size)
-            except (ModelError, AssemblyError) as error:
-                first = first or (error if isinstance(error, ModelError) else ModelError(str(error)))
+        for h in (usual, SHORTER * usual):
+            for (offsets, weights), sign in ((order, 1.0), (AHEAD, 1.0), (AHEAD, -1.0)):
+                try:
+                    made = [self._variant(number, offset * sign, h, starts) for offset in offsets]
+                    return Variants(number, sign * h, weights, made, size)
+                except (ModelError, AssemblyError) as error:
+                    first = first or (error if isinstance(error, ModelError) else ModelError(str(error)))
         raise ModelError(f"{self.base.packed.name}: no derivative by '{number.name}': {first}") from first
+
+    def size_of(self, number: Number) -> float:
+        """What steps of a number are parts of."""
+        return size_of(number, self.work, self.base.packed, self.span)
 
     def _variant(self, number: Number, offset: float, h: float, starts: bool) -> Variant:
         with with_value(self.work, number, number.value + offset * h, self.saved) as m:
@@ -144,10 +149,12 @@ class Variation:
             masses = alike(packed, first, ("mass", "inertia"))
             begins = starts and self.starts and not (places and (masses or not self.moving) and self._starts_alike(m))
             start = self._decide(m, packed, begins)
+            if packed.specials.phased:  # what rolls follows the start
+                places = places and alike(packed, self.base.packed, ("numbers",))
             known = self.base.loads if lawful and self._pushes_alike(m, packed) else None
             terms = terms_of(packed, self.span, self.base.laws if lawful else None, self.loads, known)
             same_loads = lawful and (known is not None or _same_loads(terms.loads, self.base.loads))
-            return Variant(offset, terms, dict(m.traces), places, masses, same_loads, start)
+            return Variant(offset, terms, dict(m.traces), places, masses, same_loads, start, dict(m.events))
 
     def _starts_alike(self, m: Model) -> bool:
         return repr((m.starts, m.velocities)) == self.given

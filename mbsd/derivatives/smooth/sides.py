@@ -12,6 +12,7 @@ import numpy as np
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.packing import Packed
 from mbsd.derivatives.numbers.near_numbers import Near, NearNumbers
+from mbsd.derivatives.numbers.number_steps import step_of
 from mbsd.derivatives.numbers.start_tangents import StartTangents
 from mbsd.derivatives.numbers.variants import SECOND, TINY, Variant, Variants, Variation
 from mbsd.derivatives.smooth.forces_beside import ForcesBeside
@@ -84,7 +85,7 @@ class BothSides:
         if not every:
             return []
         system, com = self.ready.packed.system, self.ready.packed.com
-        away = np.array([near.size for near in every])[:, None] * (TINY * np.array([-1.0, 1.0]))
+        away = np.array([step_of(TINY, near.size) for near in every])[:, None] * np.array([-1.0, 1.0])
         far, weights = away[:, :, None], 0.5 / away
         mass = system.mass + far * np.array([near.mass for near in every])[:, None]
         moment = system.inertia + far * np.array([near.moment for near in every])[:, None]
@@ -219,7 +220,7 @@ def forces_beside(arrays: Embedding, gravity: np.ndarray, mass: np.ndarray, ever
     place, number = (np.broadcast_to(part, (*shape, *part.shape)).copy() for part in (loads.place, loads.number))
     per = np.zeros(len(which))
     for f, k in enumerate(which):
-        h = TINY * every[k].size
+        h = step_of(TINY, every[k].size)
         per[f] = 0.5 / h
         for part, name in ((place, "place"), (number, "number")):
             if name in every[k].loads:

@@ -12,7 +12,7 @@ import numpy as np
 from mbsd.arrays.states import own_states, states_of
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
-from mbsd.model.body import Marker, finite_number
+from mbsd.model.body import Marker, at_end, finite_number
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
@@ -49,8 +49,10 @@ class Moment:
         return self._frame(self._number(name), (0.0, 0.0), 0.0)
 
     def point(self, marker: Marker) -> Frame:
-        """A marker."""
-        return self._frame(self._number(marker.body.name), (marker.x, marker.y), marker.angle)
+        """A marker; one at the end of a bar is where the bar ends in this mechanism, a copy with another length."""
+        own, length = self.packed.bars.get(marker.body.name), marker.body.length
+        x = own if own is not None and length is not None and at_end(marker, length) else marker.x
+        return self._frame(self._number(marker.body.name), (x, marker.y), marker.angle)
 
     def numbers(self, frames: Sequence[Marker]) -> tuple[np.ndarray, np.ndarray]:
         """x, y, theta of each frame in turn (m, rad), and their rates: (3 f,) and (3 f,)."""

@@ -141,15 +141,19 @@ class EventSteps:
             self._note_rows()
             if monitor.stops:
                 self._make_valid()
-                before_it, known = self._row(), len(self.happenings)
+                before_it, known, ways = self._row(), len(self.happenings), self._ways()
                 self._happen(monitor)
-                if len(self.happenings) > known:  # a gap that only rounding closes is no event
+                if len(self.happenings) > known or self._ways() != ways:  # a gap that only rounding closes is no event
                     self.rows += [before_it] if self.ended else [before_it, self._row()]
             else:
                 self._make_valid()
                 self._turn_side(monitor)
                 self._restart()
         return False
+
+    def _ways(self) -> tuple[float, ...]:
+        """Directions of sliding of contacts and joints: where one turns round, friction jumps and nothing is told."""
+        return *self.now.sliding, *self.now.joints_sliding
 
     def _make_valid(self) -> None:
         state = self.state

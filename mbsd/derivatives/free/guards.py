@@ -1,0 +1,335 @@
+"""How the time of an event changes with numbers: that of the scalar g which falls through zero there.
+
+    gap      a contact that was open is met                        g = Phi
+    rate     a way comes to rest, a freewheel locks                g = J v - nu
+    slip     friction that held is not enough                      g = mu_s N - |T|
+    user     the value of an event of the user
+
+    t' = -(dg + g_p) / (dg/dt)
+
+Where several contacts are met at one time and a number moves one before the other, what comes after depends on which
+is first: there is no derivative by that number, nor by one that opens or closes a contact at the start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.base.errors import ModelError
+from mbsd.derivatives.driven.tangents import along_direction, per_scales
+from mbsd.derivatives.numbers.terms import Along, Terms
+from mbsd.derivatives.numbers.variants import SECOND, Variant, Variants
+from mbsd.dynamics.events.moment import Moment
+from mbsd.model.contact import ContactKind
+from mbsd.model.event import Happening
+from mbsd.model.joint import Joint
+
+GAP, RATE, SLIP, USER = "gap", "rate", "slip", "user"
+REACH = 1e-5
+"""Reach of differences along a tangent, in sizes, rad, and parts of the fastest speed."""
+INSTANT = 1e-6
+"""Part of the duration by which time goes on for the rate of an event of the user."""
+GRAZING = 1e-9
+"""Speed of a scalar, as part of the fastest motion, below which it only touches zero."""
+SLIDES = 1e-6
+"""Part of a normal force by which the friction of what slides may be other than the coefficient says."""
+ALIKE = 1e-6
+"""Part of the duration, or of the size, that numbers may move events or contacts apart by, changed by their sizes."""
+
+
+@dataclass(frozen=True)
+class Guard:
+    """One scalar that falls through zero at an event."""
+
+    what: str
+    name: str
+    """Of the contact, or the event of the user."""
+    row: int = -1
+    """Row of the gap, or of the way."""
+    joint: int = -1
+    """Place of the contact among the packed joints."""
+    others: tuple[tuple[int, float], ...] = ()
+    """Contacts that rest beside it by no friction of their own and slide with it: place, sign of the multiplier."""
+    event: Any = None
+
+
+@dataclass(frozen=True)
+class End:
+    """Tangents at the end of a stretch between events."""
+
+    q: np.ndarray
+    """(P, 3 nb) q', as v'."""
+    v: np.ndarray
+    lam: np.ndarray
+    """(P, m) lam'."""
+    pace: np.ndarray
+    """(m,) how fast multipliers of the motion itself change (1/s)."""
+
+
+def guards_of(packed: Packed, along: Along, row: int, struck: Sequence[str]) -> list[Guard]:
+    """The scalars that fell through zero between row ``row`` of a simulation and the next; ``struck``: by impacts."""
+    met: list[Guard] = []
+    others: list[Guard] = []
+    states = {k: (_state(packed, along, k, row), _state(packed, along, k, row + 1)) for k, _ in contacts_of(packed)}
+    beside = tuple(
+        (k, float(np.sign(along.lam[row + 1, packed.first_row[k] + 1])))
+        for k, (before, after) in states.items()
+        if before == RESTS and after in SLIDING
+    )
+    for k, joint in contacts_of(packed):
+        before, after = states[k]
+        gap, way = int(packed.first_row[k]), int(packed.first_row[k]) + 1
+        if before == OPEN and (joint.name in struck or after != OPEN):
+            if joint.kind.always_closed:
+                others.append(Guard(RATE, joint.name, gap, k))
+            else:
+                met.append(Guard(GAP, joint.name, gap, k))
+        elif before in SLIDING and after in {*SLIDING, STICKS} - {before}:
+            others.append(Guard(RATE, joint.name, way, k))
+        elif before == STICKS and after in SLIDING:
+            others.append(Guard(SLIP, joint.name, way, k, beside))
+    return met or others
+
+
+OPEN, RESTS, STICKS = "open", "rests", "sticks"
+SLIDING = ("slides ahead", "slides back")
+
+
+def contacts_of(packed: Packed) -> list[tuple[int, Joint]]:
+    """The contacts and their places among the joints."""
+    places = range(len(packed.joints) - packed.contacts, len(packed.joints))
+    return [(k, packed.joints[k]) for k in places if isinstance(packed.joints[k].kind, ContactKind)]
+
+
+def _state(packed: Packed, along: Along, k: int, row: int) -> str:
+    """What contact ``k`` does at a row: it rests where it needs no friction."""
+    assert along.held is not None
+    gap, end = int(packed.first_row[k]), int(packed.first_row[k + 1])
+    if not along.held[row, gap]:
+        return OPEN
+    if end == gap + 1:
+        return RESTS
+    if along.held[row, gap + 1]:
+        return STICKS
+    push = along.lam[row, gap + 1] * along.lam[row, gap]
+    return RESTS if push == 0.0 else SLIDING[0] if push > 0.0 else SLIDING[1]
+
+
+def ways_of(packed: Packed, along: Along) -> tuple[list[tuple[int, int]], list[int]]:
+    """Rows of sliding and of the gap whose force makes their friction, along a stretch; and rows of friction at rest
+    that others hold with theirs.
+    """
+    assert along.held is not None
+    sliding: list[tuple[int, int]] = []
+    shared: list[int] = []
+    for k, joint in contacts_of(packed):
+        gap, end = int(packed.first_row[k]), int(packed.first_row[k + 1])
+        if end == gap + 1 or not along.held[0, gap] or along.held[0, gap + 1] or not along.lam[:, gap + 1].any():
+            continue
+        push, normal = np.abs(along.lam[:, gap + 1]), np.abs(along.lam[:, gap])
+        if np.abs(push - joint.params["friction"] * normal).max() <= SLIDES * normal.max():
+            sliding.append((gap + 1, gap))
+        else:
+            shared.append(gap + 1)
+    return sliding, shared
+
+
+def unshared(terms: Terms, along: Along, compact: np.ndarray, ways: Sequence[int]) -> np.ndarray:
+    """(T, m) multipliers of a stretch where the rows that hold carry what friction at rest in ``ways`` shares."""
+    assert along.held is not None
+    jac, lam, held = terms.packed.spread(compact), along.lam.copy(), np.flatnonzero(along.held[0])
+    rows = list(ways)
+    force = np.einsum("twn,tw->tn", jac[:, rows], lam[:, rows])
+    lam[:, held] += np.einsum("thn,tn->th", np.linalg.pinv(jac[:, held].transpose(0, 2, 1), rcond=1e-9), force)
+    lam[:, rows] = 0.0
+    return lam
+
+
+def times_moved(
+    terms: Terms, every: Sequence[Variants], along: Along, row: int, guards: Sequence[Guard], tangent: End
+) -> np.ndarray:
+    """(P,) how the time of an event changes with each number (s by its unit), from row ``row`` of a motion, before it.
+
+    Raises ModelError where there is no derivative.
+    """
+    name, t, here = terms.packed.name, float(along.t[row]), along.take(slice(row, row + 1))
+    fastest, span = 1.0 / per_scales(terms, along)[1], float(along.t[-1] - along.t[0])
+    known: list[tuple[Guard, np.ndarray]] = []
+    for guard in guards:
+        change, pace, unit = _changes(terms, every, here, span, guard, tangent)
+        if abs(pace) > GRAZING * fastest * unit:
+            known.append((guard, -change / pace))
+        elif guard.what != GAP or len(guards) == 1:
+            raise ModelError(
+                f"{name}: at t = {t:.6g} s '{guard.name}' is met without speed, so that a small change may leave it "
+                "out: there is no derivative beyond it"
+            )
+        else:  # struck by what another contact passes on
+            for variants, moved in zip(every, change, strict=True):
+                if abs(moved) * variants.size > ALIKE * unit:
+                    raise ModelError(_apart(name, t, variants.number.name, [guard.name, guards[0].name]))
+    if not known:
+        return np.zeros(len(every))
+    times = np.array([own for _, own in known])
+    sizes = np.array([variants.size for variants in every])
+    apart = np.ptp(times, axis=0)
+    off = apart * sizes > ALIKE * np.maximum(span, np.abs(times).max(axis=0) * sizes)
+    if off.any():
+        raise ModelError(_apart(name, t, every[int(np.argmax(off))].number.name, [guard.name for guard, _ in known]))
+    return times[0]
+
+
+def _apart(mechanism: str, t: float, number: str, names: Sequence[str]) -> str:
+    several = " and ".join(f"'{name}'" for name in dict.fromkeys(names))
+    return (
+        f"{mechanism}: no derivative by '{number}' beyond t = {t:.6g} s: {several} are met at one time, and it moves one "
+        "before the other, so that what follows differs from side to side. Begin a little apart from there"
+    )
+
+
+def _changes(
+    terms: Terms, every: Sequence[Variants], here: Along, span: float, guard: Guard, tangent: End
+) -> tuple[np.ndarray, float, float]:
+    """(P,) dg + g_p of a guard, dg/dt, and what makes its values sizes, rad or parts of the forces."""
+    packed, row = terms.packed, guard.row
+    if guard.what == USER:
+        return (*_changes_of_user(terms, every, here, span, guard.event, tangent), 0.0)
+    if guard.what == SLIP:
+        return (*_changes_of_friction(terms, every, here, span, guard, tangent), 0.0)
+    unit, part = 1.0 / float(packed.row_scale()[row]), "position" if guard.what == GAP else "velocity"
+    if guard.what == GAP:
+        change = tangent.q[:, 3:] @ packed.spread(terms.rows(here)[2])[0, row]
+        pace = float(terms.left(here).velocity[0, row])
+    else:
+        change = rates_along(terms, here, tangent.q, tangent.v)[:, row]
+        pace = float(terms.left(here).acceleration[0, row])
+    return change + _by_numbers(every, here, part, row), pace, unit
+
+
+def rates_along(terms: Terms, here: Along, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(P, m) how J v - nu changes along q', v' (P, 3 nb) at one row of a motion."""
+    return np.array(
+        [
+            along_direction(terms, here, dq[None], dv[None], SECOND, REACH).velocity[0]
+            for dq, dv in zip(q, v, strict=True)
+        ]
+    )
+
+
+def _by_numbers(every: Sequence[Variants], here: Along, part: str, row: int) -> np.ndarray:
+    """(P,) how what is left over changes with each number at the held state."""
+
+    def left(variant: Variant) -> np.ndarray:
+        return getattr(variant.terms.left(here), part)[0, row]
+
+    return np.array([0.0 if v.variants[0].same_places else float(v.slope(left)) for v in every])
+
+
+def _changes_of_friction(
+    terms: Terms, every: Sequence[Variants], here: Along, span: float, guard: Guard, tangent: End
+) -> tuple[np.ndarray, float]:
+    q, v, lam, dt = here.q, here.v, here.lam, INSTANT * max(span, 1e-9)
+
+    def left(of: Terms, sign: float, dq: np.ndarray, dlam: np.ndarray) -> float:
+        return _friction_left(of, replace(here, q=q + sign * dq, lam=lam + sign * dlam), guard)
+
+    changes = np.zeros(len(every))
+    for p, (dq, dv, variants) in enumerate(zip(tangent.q, tangent.v, every, strict=True)):
+        h = _reach(terms, here, dq, dv)
+        ahead, behind = (left(terms, sign * h, dq, tangent.lam[p]) for sign in (1.0, -1.0))
+        changes[p] = (ahead - behind) / (2 * h)
+        changes[p] += float(variants.slope(lambda variant: np.array(_friction_left(variant.terms, here, guard))))
+    later, sooner = (left(terms, sign * dt, v[0], tangent.pace) for sign in (1.0, -1.0))
+    return changes, (later - sooner) / (2 * dt)
+
+
+def _friction_left(terms: Terms, here: Along, guard: Guard) -> float:
+    """mu_s N - |T| of a contact (N), where those that slide with it carry as much as they can.
+
+    One row holds them all: what another of them carries, t, takes C t off the multipliers of the rows that hold, its
+    own row being C^T of these.
+    """
+    packed, lam = terms.packed, here.lam[0]
+    assert here.held is not None
+    held = np.flatnonzero(here.held[0])
+    known = lam[held]
+    if guard.others:
+        jac = packed.spread(terms.rows(here)[2])[0]
+        places = [k for k, _ in guard.others]
+        gaps = packed.first_row[places]
+        most = np.array([sign * packed.joints[k].params["static_friction"] for k, sign in guard.others])
+        share = np.linalg.lstsq(jac[held].T, jac[gaps + 1].T, rcond=None)[0]
+        pressed = share[np.searchsorted(held, gaps)]
+        known = known - share @ np.linalg.solve(np.eye(len(most)) - most[:, None] * pressed, -most * lam[gaps])
+    way, gap = np.searchsorted(held, [guard.row, guard.row - 1])
+    return float(-packed.joints[guard.joint].params["static_friction"] * known[gap] - abs(known[way]))
+
+
+def _reach(terms: Terms, here: Along, dq: np.ndarray, dv: np.ndarray) -> float:
+    """How many times a tangent (3 nb,) goes as far as ``REACH``."""
+    per_size, per_speed = per_scales(terms, here)
+    far = max(float(np.abs(dq * per_size).max()), float(np.abs(dv * per_size).max()) * per_speed)
+    return REACH / far if far > 0.0 else REACH
+
+
+def _changes_of_user(
+    terms: Terms, every: Sequence[Variants], here: Along, span: float, event: Any, tangent: End
+) -> tuple[np.ndarray, float]:
+    packed, dt = terms.packed, INSTANT * max(span, 1e-9)
+    t, q, v, a = float(here.t[0]), here.q[0], here.v[0], here.a[0]
+
+    def value(of: Any, packed: Packed, t: float, q: np.ndarray, v: np.ndarray) -> float:
+        return float(of.value_at(Moment(packed, t, q, v)))
+
+    changes = np.zeros(len(every))
+    for p, (dq, dv, variants) in enumerate(zip(tangent.q, tangent.v, every, strict=True)):
+        h = _reach(terms, here, dq, dv)
+        ahead, behind = (value(event, packed, t, q + s * h * dq, v + s * h * dv) for s in (1.0, -1.0))
+        changes[p] = (ahead - behind) / (2 * h)
+        changes[p] += float(
+            variants.slope(
+                lambda variant: np.array(value(variant.events.get(event.name, event), variant.terms.packed, t, q, v))
+            )
+        )
+    later, sooner = (value(event, packed, t + s * dt, q + s * dt * v, v + s * dt * a) for s in (1.0, -1.0))
+    return changes, (later - sooner) / (2 * dt)
+
+
+def refuse_contact_at_start(
+    terms: Terms, every: Sequence[Variants], along: Along, q: np.ndarray, v: np.ndarray, events: Sequence[Happening]
+) -> None:
+    """Raise ModelError for a number that moves a contact which is closed at the start, and for an impact there.
+
+    ``q`` and ``v`` (P, 3 nb) are q' and v' at the start of a motion with ``events``.
+    """
+    packed, here, scale = terms.packed, along.take(slice(0, 1)), terms.packed.row_scale()
+    struck = next((event.name for event in events if event.what == "impact" and event.time <= along.t[0]), None)
+    if struck is not None:
+        raise ModelError(
+            f"{packed.name}: derivatives of a motion that begins with an impact of '{struck}' are not known: begin a "
+            "little before it, or with the velocities after it"
+        )
+    assert here.held is not None
+    rates, fastest = None, 1.0 / per_scales(terms, along)[1]
+    for k, joint in contacts_of(packed):
+        gap = int(packed.first_row[k])
+        if not here.held[0, gap]:
+            continue
+        moved = q[:, 3:] @ packed.spread(terms.rows(here)[2])[0, gap] + _by_numbers(every, here, "position", gap)
+        if rates is None:
+            rates = rates_along(terms, here, q, v)
+        faster = rates[:, gap] + _by_numbers(every, here, "velocity", gap)
+        for p, variants in enumerate(every):
+            leaves = not joint.kind.always_closed and abs(moved[p]) * scale[gap] * variants.size > ALIKE
+            hastens = abs(faster[p]) * scale[gap] * variants.size > ALIKE * fastest
+            if leaves or hastens:
+                raise ModelError(
+                    f"{packed.name}: no derivative by '{variants.number.name}': contact '{joint.name}' is closed at the "
+                    "start, and a change of this number opens it to one side and drives it in to the other. Begin a "
+                    "little apart, or change numbers together by build= so that it stays closed"
+                )

@@ -117,7 +117,8 @@ class Mechanism(Building):
 
         ``lengths``: bar names to (n,) lengths (m), which move the bar's ``end``, or rods (distance joints) to their
         lengths. ``places``: joint names to (n, 2) places (m) of the joint's marker on ground, or else of its first
-        marker, in that body's frame; or names of traced points to their places. Times are those of :meth:`sweep`.
+        marker, in that body's frame; or names of traced points to their places. A place that is given does not move
+        with a length. Times are those of :meth:`sweep`.
         Designs share the branch of the mechanism itself. Raises ModelError for a mechanism that is not made of driven
         bodies and dyads.
         """

@@ -99,6 +99,12 @@ class Packed:
             self.joints[k].name: int(self.first_row[k]) for k in places if isinstance(self.joints[k].kind, ContactKind)
         }
 
+    def holds_position(self) -> np.ndarray:
+        """(m,) whether a row of J holds a position while it holds; of what sticks by friction it holds a speed of 0."""
+        out = np.arange(len(self.ws.phi)) < self.contact_rows
+        out[list(self.contact_gaps().values())] = True
+        return out
+
     def joint_of_row(self, row: int) -> Joint:
         """The joint that owns a row of J."""
         return self.joints[int(np.searchsorted(self.first_row, row, side="right")) - 1]

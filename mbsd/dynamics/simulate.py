@@ -171,6 +171,7 @@ def solution(
     q, v = np.ascontiguousarray(out.y[:, 0]), np.ascontiguousarray(out.y[:, 1])
     approached = None if recording.approaches is None else recording.approaches.at(out.t)
     lam, wrench, residuals = np.zeros((count, rows)), np.zeros((count, len(packed.joints), 3)), np.zeros(4)
+    placed = packed.holds_position()
     chunk = max(1, JACOBIAN_NUMBERS // max(1, 6 * rows))
     for start in range(0, count, chunk):
         at = slice(start, min(start + chunk, count))
@@ -196,7 +197,7 @@ def solution(
             compact, v[at], out.a[at], lam[at], rate, bend, loads,
         )  # fmt: skip
         power = np.einsum("tc,tc->t", loads[:, 3:], v[at, 3:])
-        errors = [phi, rate, bend] if held.all() else [phi * held, rate * held, bend * held]
+        errors = [phi * (held & placed), rate * held, bend * held]
         residuals = np.maximum(residuals, [np.abs(error).max(initial=0.0) for error in (*errors, power)])
     shown = without_states(packed)
     end = 3 * len(shown.body_names)

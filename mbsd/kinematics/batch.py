@@ -14,7 +14,7 @@ from mbsd.base.names import names_in, no_such
 from mbsd.base.shown import shown
 from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.prepare import prepare
-from mbsd.model.body import at_end
+from mbsd.model.body import Marker, at_end
 from mbsd.model.mechanism import Model
 
 MOST_THREADS = 1024
@@ -60,6 +60,7 @@ def parameters(
     columns: list[np.ndarray] = []
     moved: list[Moved] = []
     traces = list(m.traces)
+    fixed = {_own_marker(m, packed, name)[1] for name in places if name in m.joints and name not in m.traces}
     for name, values in lengths.items():
         rod = _rod(m, packed, name)
         body = m.known_body(name) if rod is None else m.ground
@@ -77,12 +78,12 @@ def parameters(
             (number, 0)
             for joint, pair in zip(packed.joints, packed.markers, strict=True)
             for marker, number in zip((joint.i, joint.j), (int(pair[0]), int(pair[1])), strict=True)
-            if marker.body is body and at_end(marker, body.length)
+            if marker.body is body and at_end(marker, body.length) and number not in fixed  # its place is given
         ]
         columns.append(change - body.length)
         moved.append(Moved(ends))
         for k, trace in enumerate(traces):
-            if m.traces[trace].body is body and at_end(m.traces[trace], body.length):
+            if m.traces[trace].body is body and at_end(m.traces[trace], body.length) and trace not in places:
                 columns.append(change - body.length)
                 moved.append(Moved(trace=(k, 0)))
     for name, values in places.items():
@@ -90,10 +91,7 @@ def parameters(
         if name in m.traces:
             base, target = m.traces[name], [Moved(trace=(traces.index(name), axis)) for axis in (0, 1)]
         elif name in m.joints:
-            joint = m.joints[name]
-            first = joint.i.body is m.ground or joint.j.body is not m.ground
-            base = joint.i if first else joint.j
-            number = int(packed.markers[packed.joints.index(joint)][0 if first else 1])
+            base, number = _own_marker(m, packed, name)
             target = [Moved([(number, axis)]) for axis in (0, 1)]
         else:
             raise ModelError(f"{m.name}: batch: {no_such('joint or traced point', name, [*m.joints, *m.traces])}")
@@ -107,6 +105,13 @@ def parameters(
             f"{m.name}: batch: lists of {', '.join(map(str, sorted(sizes)))} designs; they must be equally long"
         )
     return np.column_stack(columns), moved
+
+
+def _own_marker(m: Model, packed: Packed, name: str) -> tuple[Marker, int]:
+    """The marker of a joint that ``places`` moves, and its number: that on ground, or else the first."""
+    joint = m.joints[name]
+    first = joint.i.body is m.ground or joint.j.body is not m.ground
+    return (joint.i if first else joint.j), int(packed.markers[packed.joints.index(joint)][0 if first else 1])
 
 
 def _rod(m: Model, packed: Packed, name: str) -> int | None:

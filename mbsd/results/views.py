@@ -114,7 +114,7 @@ class Stats:
     """How well the motion fulfils its equations: largest residuals over all times and rows."""
 
     position_residual: float
-    """|Phi| (m or rad)."""
+    """|Phi| of joints, drivers and closed contacts (m or rad); what sticks by friction has no position to keep."""
     velocity_residual: float
     """|J v - nu| (m/s or rad/s)."""
     acceleration_residual: float

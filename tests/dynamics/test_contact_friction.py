@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, constant_rate
+from mbsd import Mechanism, constant_rate, harmonic
 from tools.models.contact_models import G, balance, ball, box, disc, times_of
 
 
@@ -46,6 +46,25 @@ def test_a_block_pushed_uphill_stops_and_stays_or_comes_back(friction: float) ->
     top = up**2 / (2 * slow)
     assert along[-1] == pytest.approx(top - 0.5 * back * (2.0 - stop) ** 2, abs=1e-9)
     np.testing.assert_allclose(balance(sol), balance(sol)[0], atol=1e-8)
+
+
+@pytest.mark.parametrize("of_a_joint", [False, True])
+def test_how_far_a_block_has_slid_is_no_residual_of_a_joint(of_a_joint: bool) -> None:
+    """Sticking holds a speed of zero and no position; see Stats."""
+    m = Mechanism("shoved")
+    block = m.body("block", 2.0, inertia=1.0)
+    if of_a_joint:
+        m.prismatic("floor", m.ground.at(0, 0), block.origin)
+        m.friction("rub", "floor", 0.4, sticks=True)
+    else:
+        m.rigid_contact("floor", m.ground.at(0, 0), block.origin, friction=0.4)
+    m.start_near(block=(0, 0, 0))
+    m.force("shove", block.origin, harmonic(7.0, 2 * math.pi, -math.pi / 2, 7.0))  # 0 .. 14 N once a second
+    sol = m.simulate(2.0)
+    assert sol.body("block").x[-1] > 0.1
+    assert {event.what for event in sol.events} >= {"sticks", "slides"}
+    assert sol.stats.position_residual < 1e-12
+    assert sol.stats.velocity_residual < 1e-9
 
 
 def test_a_sliding_disc_ends_up_rolling() -> None:

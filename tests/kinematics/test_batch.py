@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
+from mbsd.model.numbers import number_named, with_values
 
 
 def four_bar(crank: float = 0.1, coupler: float = 0.38, rocker: float = 0.3, x: float = 0.4, y: float = 0.02):
@@ -39,6 +40,20 @@ def test_each_design_is_its_own_sweep() -> None:
             path = np.column_stack([swept.point(name).x, swept.point(name).y])
             np.testing.assert_allclose(result.points[name][k], path, atol=1e-12)
         np.testing.assert_allclose(result.angles["rocker"][k], swept.body("rocker").theta, atol=1e-12)
+
+
+def test_a_place_that_is_given_does_not_move_with_a_length() -> None:
+    lengths, ends, points = [0.38, 0.39], [(0.37, 0.01), (0.385, 0.0)], [(0.3, 0.0), (0.29, 0.01)]
+    m = four_bar()
+    result = m.batch(lengths={"coupler": lengths, "rocker": [0.3, 0.31]}, places={"C": ends, "Q": points}, steps=60)
+    for k in range(2):
+        numbers = {"coupler.length": lengths[k], "rocker.length": (0.3, 0.31)[k]}
+        numbers |= {
+            f"{name}.{axis}": at[k][c] for name, at in (("C", ends), ("Q", points)) for c, axis in enumerate("xy")
+        }
+        other = with_values(m, [number_named(m, name) for name in numbers], list(numbers.values()))
+        swept = other.sweep(steps=60).point("Q")
+        np.testing.assert_allclose(result.points["Q"][k], np.column_stack([swept.x, swept.y]), atol=1e-12)
 
 
 def test_sliders_slots_and_traced_points_are_parameters_too() -> None:

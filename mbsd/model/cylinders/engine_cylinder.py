@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from mbsd.base.errors import ModelError
 from mbsd.model.cylinders.cycle import TURN, Bore, GasCycle
 from mbsd.model.cylinders.from_joints import motion_of_joints
-from mbsd.model.cylinders.piston_motion import PistonMotion
+from mbsd.model.cylinders.piston_motion import PistonMotion, lowest
 
 if TYPE_CHECKING:
     from mbsd.model.force import Force
@@ -59,11 +59,29 @@ def cylinder_of(force: Force, joints: Sequence[Joint]) -> EngineCylinder:
             )
     else:
         motion = given_motion(what, p["stroke"], p["rod"], p["offset"], sense)
-        top, fires_at = 0.0, p["fires_at"] or 0.0
+        top, fires_at = 0.0, _top_by_joints(force, joints, sense) if p["fires_at"] is None else p["fires_at"]
     ratio = cycle.compression
     clearance = 0.0 if ratio is None else motion.stroke / (ratio - 1.0)
     bore = Bore(math.pi / 4.0 * p["bore"] ** 2, clearance, motion)
     return EngineCylinder(bore, top if p["top"] is None else p["top"], fires_at, sense)
+
+
+def _top_by_joints(force: Force, joints: Sequence[Joint], sense: float) -> float:
+    """Angle of the crank (rad) at which the piston is nearest to its head. Raises ModelError where joints do not tell.
+
+    The head may lie between the piston and the crank, as that of the second chamber of a steam engine does.
+    """
+    turned = replace(force, i=replace(force.i, angle=force.i.angle + math.pi))
+    for own, beyond in ((force, False), (turned, True)):
+        try:
+            motion, _, dead = motion_of_joints(own, joints, sense)
+        except ModelError:
+            continue
+        return dead + sense * lowest(motion) if beyond else dead
+    raise ModelError(
+        f"force '{force.name}': fires_at is missing. stroke= does not tell at which angle of '{force.params['crank']}' "
+        f"'{force.bodies[1]}' is at its top dead centre, and the joints do not either; give fires_at= (rad)"
+    )
 
 
 def given_motion(what: str, stroke: float, rod: float | None, offset: float, sense: float) -> PistonMotion:

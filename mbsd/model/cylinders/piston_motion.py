@@ -12,8 +12,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+
+LOOKS, HALVINGS = 361, 50
+"""Angles at which the lowest place is looked for, and halvings between two of them."""
 
 
 @dataclass(frozen=True)
@@ -67,3 +71,29 @@ class PistonMotion:
 
     def _reach(self, length: float) -> float:
         return math.sqrt(length**2 - self.offset**2)
+
+
+class Moves(Protocol):
+    """How a piston moves with its crank, whatever is between them."""
+
+    def below(self, phi: np.ndarray) -> np.ndarray:
+        """(T,) distance from the top dead centre (m) at angles phi (T,) (rad) of the crank since then."""
+        ...
+
+    def slope(self, phi: np.ndarray) -> np.ndarray:
+        """(T,) derivative of ``below`` by phi (m/rad)."""
+        ...
+
+
+def lowest(motion: Moves) -> float:
+    """Angle of the crank since the top dead centre at which the piston is farthest from it (rad), in 0 .. 2 pi."""
+    grid = np.linspace(0.0, 2.0 * math.pi, LOOKS)
+    k = int(motion.below(grid).argmax())
+    low, high = float(grid[k - 1]), float(grid[k + 1])
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if motion.slope(np.array([middle]))[0] > 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)

@@ -94,7 +94,7 @@ GAS_CYCLE = register(
         sign="engine cylinder",
         look="cylinder",
         example=lambda m, i, j: m.gas_cycle(
-            "example", i, j, j.body, four_stroke(8.0), bore=0.08, stroke=12.0, rod=30.0, top=-9.0
+            "example", i, j, j.body, four_stroke(8.0), bore=0.08, fires_at=0.0, stroke=12.0, rod=30.0, top=-9.0
         ),
     )
 )
@@ -129,7 +129,8 @@ def gas_cycle(
     (prismatic) and of the rod between them, or of a rod on another's master rod, or of a pin in a slot across the
     piston. Else ``stroke`` and ``rod`` (m) tell it, with the ``offset`` of the cylinder to the left of the crank's
     axis, and ``top``, where the piston's marker lies along the axis at the top dead centre (m); without ``rod`` it
-    moves as a Scotch yoke.
+    moves as a Scotch yoke. ``fires_at`` may be left out where the joints tell the top dead centre, also of a piston
+    whose head lies on the side of the crank. Else a solution raises ModelError.
     """
     what = f"force '{name}'"
     body = m.bodies.get(crank) if isinstance(crank, str) else crank

@@ -131,7 +131,7 @@ def test_a_spring_without_room_is_left_out_and_told(capsys: pytest.CaptureFixtur
 
 GASES = {
     "gas": lambda m, i, j: m.gas("gas", i, j, 1e-3, 1.1e5, 0.2),
-    "gas_cycle": lambda m, i, j: m.gas_cycle("gas", i, j, "block", four_stroke(3.0), 0.04, stroke=0.3, top=0.05),
+    "gas_cycle": lambda m, i, j: m.gas_cycle("gas", i, j, "block", four_stroke(3.0), 0.04, 0.0, stroke=0.3, top=0.05),
     "gas_strut": lambda m, i, j: m.gas_strut("gas", i, j, 30.0, 1.3, 0.25, 0.15, extension_damping=20.0),
     "hydraulic_cylinder": lambda m, i, j: m.hydraulic_cylinder(
         "gas", i, j, bore=0.02, rod=0.012, stroke=0.15, retracted=0.12, supply=2e6, valve=0.01, rated_flow=1e-4

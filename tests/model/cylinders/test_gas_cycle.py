@@ -16,6 +16,7 @@ from mbsd import (
     Mechanism,
     ModelError,
     ModelWarning,
+    constant_rate,
     four_stroke,
     harmonic,
     pressure_table,
@@ -188,6 +189,49 @@ def test_numbers_serve_as_well_as_joints() -> None:
     own = slider_crank().sweep(steps=90)
     told = slider_crank(stroke=2 * THROW, rod=ROD, fires_at=UP, top=0.01).sweep(steps=90)
     assert gas_of(told).pressure == pytest.approx(gas_of(own).pressure, rel=1e-9)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("offset", [0.0, 0.02])
+def test_a_stroke_without_an_angle_is_at_its_top_where_the_piston_is_nearest_to_its_head(
+    sense: float, offset: float
+) -> None:
+    """A steam engine with a chamber on both sides of its piston; the second head lies towards the crank."""
+    m = Mechanism("steam", gravity=None)
+    crank, rod, piston = m.bar("crank", THROW, 2.0), m.bar("rod", ROD, 0.4), m.body("piston", 0.5)
+    m.revolute("main", m.ground.origin, crank.start)
+    m.revolute("big_end", crank.end, rod.start)
+    m.revolute("wrist", rod.end, piston.origin)
+    m.prismatic("liner", m.ground.at(0, offset), piston.origin)
+    m.drive_angle("shaft", crank, constant_rate(20.0 * sense, 0.4))
+    m.start_near(crank=math.degrees(0.4), rod=0, piston=(ROD + THROW, offset, 0))
+    angles = np.linspace(-math.pi, math.pi, 73)[:-1]
+    cycle = pressure_table(angles, np.where(angles < 0.0, 1e5, 6e5), 1)
+    heads = {"outer": m.ground.at(0.3, offset, math.pi), "inner": m.ground.at(0.05, offset, 0.0)}
+    for name, head in heads.items():
+        m.gas_cycle(name, head, piston.origin, crank, cycle, BORE, clockwise=sense < 0, stroke=2 * THROW, rod=ROD)
+    sol = m.sweep(TURN / 20.0, steps=7200)
+    for name, side in (("outer", -1.0), ("inner", 1.0)):
+        view = sol.force(name)
+        assert isinstance(view, GasView)
+        assert view.crank_angle is not None
+        nearest = int((side * sol.body("piston").x).argmin())
+        assert abs(math.remainder(view.crank_angle[nearest], TURN)) < 2e-3
+
+
+def test_a_stroke_whose_top_no_joint_tells_asks_for_the_angle() -> None:
+    m = Mechanism("loose", gravity=None)
+    crank, piston = m.body("crank", 1.0, inertia=1.0), m.body("piston", 1.0, inertia=1.0)
+    m.revolute("main", m.ground.origin, crank.origin)
+    m.prismatic("liner", m.ground.origin, piston.origin)
+    m.gas_cycle("gas", m.ground.origin, piston.origin, crank, petrol(), BORE, stroke=2 * THROW, rod=ROD, top=0.05)
+    m.start_near(piston=(0.06, 0, 0))
+    with pytest.raises(
+        ModelError, match=r"loose: force 'gas': fires_at is missing.* of 'crank' 'piston'.* give fires_at="
+    ):
+        m.simulate(0.01)
+    m.change("gas", fires_at=0.0)
+    assert gas_of(m.simulate(1e-3)).volume[0] > 0.0
 
 
 def test_without_heat_gas_is_a_spring_while_its_valves_are_closed() -> None:

@@ -108,7 +108,18 @@ def _turned(lines: list[str]) -> list[str]:
 
 @pytest.mark.parametrize(
     ("text", "zero", "rate"),
-    [("2.0d*pi*time", 0.0, 2 * np.pi), ("1.5 + 3*time", 1.5, 3.0), ("-time/2", 0.0, -0.5), ("sin(2*time)", 0.0, None)],
+    [
+        ("2.0d*pi*time", 0.0, 2 * np.pi),
+        ("1.5 + 3*time", 1.5, 3.0),
+        ("-time/2", 0.0, -0.5),
+        ("sin(2*time)", 0.0, None),
+        ("sin(10*pi*time)", 0.0, None),
+        ("time + sin(20*pi*time)", 0.0, None),
+        ("time*time", 0.0, None),
+        ("sin(1.0)*2 - time*3^2/2", np.sin(1.0) * 2, -4.5),
+        ("-(time - 1)*exp(0)", 1.0, -1.0),
+        ("time^1.0", 0.0, 1.0),
+    ],
 )
 def test_functions_of_time_are_read(text: str, zero: float, rate: float | None) -> None:
     law = as_law(text, "motion")
@@ -116,7 +127,27 @@ def test_functions_of_time_are_read(text: str, zero: float, rate: float | None) 
     assert law.rate == (None if rate is None else pytest.approx(rate))
 
 
-@pytest.mark.parametrize("text", ["", "1/0", "a", "time.real", "[1]", "lambda: 1", "sin(time, 2)", "True", "(-1)**0.5"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "1/0",
+        "a",
+        "time.real",
+        "[1]",
+        "lambda: 1",
+        "sin(time, 2)",
+        "True",
+        "(-1)**0.5",
+        "1e999*time",
+        "9**9**9**9",
+        "(" * 300,
+        "-" * 5000 + "1",
+        "e" * 2000,
+        "time\0",
+        "1" + "0" * 5000,
+    ],
+)
 def test_what_is_no_function_of_time_is_refused(text: str) -> None:
     with pytest.raises(UserError, match="motion: the function of time"):
         as_law(text, "motion")

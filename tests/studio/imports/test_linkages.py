@@ -13,7 +13,7 @@ import pytest
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from studio.imports.reading import read
-from studio.imports.sketch import Link, Motor, Pin, Sketch
+from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch
 from studio.imports.writing import mechanism_py
 from tests.studio.imports.imported import SAMPLES, built
 
@@ -58,7 +58,7 @@ def test_an_actuator_of_linkage_drives_a_distance(tmp_path: Path) -> None:
 def test_pmks_is_read(name: str) -> None:
     _, m, _ = built(SAMPLES / name)
     sol = m.sweep(steps=36)
-    assert sol.body("input").omega == pytest.approx(10.0)
+    assert sol.body("link_input").omega == pytest.approx(10.0)
     assert (sol.point("E").x[0], sol.point("E").y[0]) == pytest.approx((0.5, 0.125))
     assert np.hypot(sol.body("output").x - 0.6, sol.body("output").y - 0.1) == pytest.approx(math.hypot(0.2, 0.38))
 
@@ -68,14 +68,14 @@ def test_an_address_of_pmks_plus_is_read(address: str) -> None:
     sketch, m, _ = built(address)
     assert {name: link.points for name, link in sketch.links.items()}["AB"] == {
         "A": pytest.approx((-0.03129, -0.02014)),
-        "B": pytest.approx((-0.02623, 0.00902)),
+        "B": pytest.approx((-0.02622, 0.00902)),
     }
     assert m.mobility().dof == 1
-    assert m.sweep(steps=36).body("ab").omega == pytest.approx(1.0)
+    assert m.sweep(steps=36).body("ab").omega == pytest.approx(-20 * math.tau / 60)  # clockwise
 
 
 def test_an_address_that_is_cut_off_is_refused_as_one() -> None:
-    with pytest.raises(UserError, match=r"no address of PMKS\+ that can be read .*; copy all of it, in quotes"):
+    with pytest.raises(UserError, match=r"it was changed or cut off; copy all of it, in quotes"):
         read("https://app.pmksplus.com/?0P.TY.K,0.101.MA,A,0mv")
 
 
@@ -83,6 +83,7 @@ def test_pylinkage_is_read() -> None:
     _, m, names = built(SAMPLES / "four_bar_mechanism.json")
     p = names["Params"]()
     assert (p.crank, p.coupler, p.rocker) == pytest.approx((1.0, 3.5, 3.0))
+    assert p.speed == pytest.approx(24 * 0.1)  # 0.1 rad a step, 24 steps a second
     assert m.sweep(steps=36).body("rocker").theta[0] == pytest.approx(math.atan2(2.842815, 4 - 3.0416667), abs=1e-6)
 
 
@@ -95,8 +96,8 @@ def test_pylinkage_is_read() -> None:
         (b"<linkage2></linkage2>", "the file has no links"),
         (b"ground,input,R,a,b", "is of no program"),
         (b"mech=\nground,input,R,1,2\nrubbish", "line 3 is no joint of PMKS"),
-        (b'{"joints": [], "links": [{"position": 1}]}', "no JSON of pylinkage that can be read"),
-        (b'{"TypeOfJoint"', "no .pmks file that can be read"),
+        (b'{"joints": [], "links": [{"position": 1}]}', "no file of pylinkage (JSON) (KeyError: 'id')"),
+        (b'{"TypeOfJoint"', "its JSON cannot be read"),
         (b"freeCAD\nAssembly\n", "Assembly has no Name"),
     ],
 )
@@ -112,8 +113,8 @@ def test_names_of_any_form_become_names_of_python() -> None:
     sketch = Sketch('a "quoted"\nname \\ ', "a test")
     for k, name in enumerate(['1st "link"', "class", "m", "Größe", "a b", "a-b", "pi"]):
         sketch.links[name] = Link(name, {f"P{k}": (float(k), 0.0), f"Q{k}": (k + 1.0, 0.5)})
-        sketch.joints.append(Pin(f"P{k}", "ground", name, (float(k), 0.0)))
-        sketch.motors.append(Motor(f"motor {k}", "ground", name, 1.0 + k))
+        sketch.joints.append(Pin(f"P{k}", GROUND, name, (float(k), 0.0)))
+        sketch.motors.append(Motor(f"motor {k}", GROUND, name, 1.0 + k))
     sketch.left_out = ['what says """ and \\']
     names: dict = {}
     exec(compile(mechanism_py(sketch, "odd"), "mechanism.py", "exec"), names)
@@ -135,6 +136,7 @@ def test_the_program_imports_into_a_folder(tmp_path: Path) -> None:
     again = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert again.returncode == 1
     assert "walker_2/mechanism.py is there already" in again.stderr
+    assert "--as NAME gives another" in again.stderr
     wrong = subprocess.run(
         [*command, "import", "no.txt"], cwd=tmp_path, env=environment, capture_output=True, text=True
     )

@@ -266,11 +266,11 @@ def _check_references(read: Records) -> None:
 def _whole(text: str, signed: bool = True) -> int:
     """A whole number; a leading 0 is a minus."""
     digits, sign = (text[1:], -1) if signed and text[:1] == "0" else (text, 1)
-    value = 0
-    for digit in digits:
-        value = value * len(DIGITS) + DIGITS.find(digit)
     if not text or len(digits) > MOST_DIGITS or any(digit not in DIGITS for digit in digits):
         raise UserError(f"{text[:40]!r} is no number")
+    value = 0
+    for digit in digits:
+        value = value * len(DIGITS) + DIGITS.index(digit)
     return sign * value
 
 

@@ -17,6 +17,7 @@ from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from studio.imports.limits import DEEPEST, LARGEST_FILE, MOST
 from studio.imports.names import RESERVED, Names, Titles
+from studio.imports.pmks_records import stamped
 from studio.imports.reading import read, read_text
 from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch
 from studio.imports.trial import try_out
@@ -44,6 +45,8 @@ def test_damaged_samples_are_read_or_refused(seed: int) -> None:
     [
         ("http://[", "of no program that is known here"),
         ("https://app.pmksplus.com:99999999/?[", "its check does not fit"),
+        ("https://app.pmksplus.com/?" + stamped(f"0P.TY.K,0.101.{'7' * 300_000}..YRAB...JB."), "is no joint"),
+        ("https://app.pmksplus.com/?" + stamped(f"{'7' * 300_000}.TY.K,0.101.....JB."), "is no number"),
         ("mech=\n" + PIN + "a,b,R," + "9" * 400 + ",0,0,tfff\n", "it must be a number up to 1e+09"),
         ("mech=\n" + PIN + "a,b,R,nan,0,0,tfff\n", "points of link 'a' is nan"),
         ("mech=\n" + PIN + "a,b,R,1e999,0,0,tfff\n", "it must be a number up to 1e+09"),

@@ -53,18 +53,21 @@ def difference(sketch: Sketch, m: Mechanism) -> str:
 
     Joints that repeat each other leave more than a count of joints tells, so that more is no difference.
     """
-    if sketch.freedom is None:
-        return ""
     try:
         freedom = m.mobility().dof
     except MechanismError:  # which the look at the model names
         return ""
-    if freedom >= sketch.freedom == sketch.counted_freedom():
-        return ""
-    return (
-        f"the file has {sketch.freedom} degrees of freedom, this mechanism {freedom}: "
-        "it moves otherwise until what was left out is added"
-    )
+    if sketch.freedom is not None and not freedom >= sketch.freedom == sketch.counted_freedom():
+        return (
+            f"the file has {sketch.freedom} degrees of freedom, this mechanism {freedom}: "
+            "it moves otherwise until what was left out is added"
+        )
+    if sketch.inputs and sketch.inputs != freedom:
+        return (
+            f"the file has {sketch.inputs} inputs, which move all of it there, and this mechanism {freedom} degrees of "
+            "freedom: something was misread or left out, or is loose there"
+        )
+    return ""
 
 
 def named(source: str) -> str:

@@ -233,8 +233,7 @@ class _Reader:
         if law.rate is not None:
             self.sketch.motors.append(Motor(name, first, second, sense * sign * law.rate, start))
         else:
-            moving = f"{'-' if sense * sign < 0 else ''}({law.text} - {law.at_zero!r})"
-            self.sketch.motors.append(Motor(name, first, second, 0.0, start, moving))
+            self.sketch.motors.append(Motor(name, first, second, 0.0, start, law.from_zero(sense * sign)))
 
     def _own(self, marker: _Marker) -> float:
         """The angle of a marker's x axis in the axes of its part."""

@@ -23,6 +23,13 @@ class Law:
     at_zero: float
     rate: float | None
 
+    def from_zero(self, sign: float) -> str:
+        """Return it less its value at t = 0, and with the other sign where ``sign`` is negative."""
+        tree = ast.parse(self.text, mode="eval").body
+        if self.at_zero:
+            tree = ast.BinOp(tree, ast.Sub(), ast.Constant(self.at_zero))
+        return ast.unparse(ast.UnaryOp(ast.USub(), tree) if sign < 0.0 else tree)
+
 
 def as_law(text: str, where: str) -> Law:
     """Return the law that an expression gives. Raises UserError, with ``where``, for one that is not understood.

@@ -121,6 +121,7 @@ class _Reader:
         self._slides()
         self._motors()
         self._gears()
+        self.sketch.inputs = len(self.sketch.motors) + len(self.sketch.rams)
 
     def place(self, connector: str) -> Place:
         element = self.connectors[connector]

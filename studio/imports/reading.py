@@ -49,7 +49,7 @@ def read_text(text: str, name: str) -> Sketch:
         if not is_one(text):
             continue
         try:
-            with np.errstate(all="raise"):
+            with np.errstate(over="raise", divide="raise", invalid="raise"):
                 sketch = reader(text, name)
                 sketch.check()
         except UserError as error:

@@ -143,6 +143,8 @@ class Sketch:
     """What its numbers are taken for, where the file does not say it."""
     freedom: int | None = None
     """Degrees of freedom (3 for each moving link, less what joints take) by the file's own records."""
+    inputs: int | None = None
+    """Inputs of the file, where its program moves nothing but what they drive, and does not count freedoms itself."""
     left_out: list[str] = field(default_factory=list)
 
     def link(self, name: str) -> Link:

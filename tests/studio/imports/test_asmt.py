@@ -79,6 +79,19 @@ def test_what_is_spatial_or_damaged_is_refused_by_name(tmp_path: Path, old: str,
     assert said in str(refused.value)
 
 
+def test_a_law_that_is_zero_at_each_tenth_of_a_second_moves_the_motor(tmp_path: Path) -> None:
+    """Samples at tenths take sin(10 pi t) for a motor that stands still."""
+    file = tmp_path / "a.asmt"
+    file.write_text(SPATIAL.partition("\nTimeSeries")[0].replace("2.0d*pi*time", "0.2d*sin(10.0d*pi*time)"))
+    sketch, m, _ = built(file)
+    assert sketch.motors[0].law
+    still = built(SAMPLES / "piston.asmt")[1].sweep(0.2, steps=40)
+    sol = m.sweep(0.2, steps=40)
+    turned = sol.driver("Motion1").value - sol.driver("Motion1").value[0]
+    np.testing.assert_allclose(np.abs(turned), np.abs(0.2 * np.sin(10 * np.pi * sol.t)), atol=1e-12)
+    assert still.t.shape == sol.t.shape
+
+
 def test_a_machine_in_another_plane_moves_the_same(tmp_path: Path) -> None:
     """The world's axes permuted in the whole file: what lay in x y lies in y z."""
     file = tmp_path / "turned.asmt"

@@ -12,8 +12,9 @@ import pytest
 
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from studio.imports.reading import read
-from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch
+from studio.imports.__main__ import difference
+from studio.imports.reading import read, read_text
+from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch, Slide
 from studio.imports.writing import mechanism_py
 from tests.studio.imports.imported import SAMPLES, built
 
@@ -107,6 +108,52 @@ def test_what_is_none_of_them_is_refused(tmp_path: Path, content: bytes, said: s
     with pytest.raises(UserError) as refused:
         read(str(file))
     assert said in str(refused.value)
+
+
+@pytest.mark.parametrize(("written", "metres"), [(".04", 4e-5), ("-.1", -1e-4), ("+2.5e1", 0.025), ("3.", 0.003)])
+def test_numbers_of_pmks_may_begin_with_a_point(tmp_path: Path, written: str, metres: float) -> None:
+    file = tmp_path / "a.txt"
+    file.write_text((SAMPLES / "4bar1.txt").read_text().replace("350.00,100.00", f"{written},{written}"))
+    assert read(str(file)).links["input"].points["B"] == pytest.approx((metres, metres))
+
+
+def test_a_slot_of_pmks_has_its_direction_and_carries_all_links_on_it(tmp_path: Path) -> None:
+    """The rod slides up and down the ground; the arm on the same pin hangs free."""
+    file = tmp_path / "a.txt"
+    file.write_text("ground,crank,R,0,0\ncrank,rod,R,30,40\nground,rod,arm,RP,-110,20,-90\narm,R,-200,30\n")
+    sketch, m, _ = built(file)
+    assert sketch.freedom == sketch.counted_freedom() == m.mobility().dof == 2
+    slot = sketch.joints[2]
+    assert isinstance(slot, Slide)
+    assert (slot.first, slot.second, slot.angle) == (GROUND, "rod", pytest.approx(-math.pi / 2))
+    assert sketch.joints[3] == Pin("C_pin", "rod", "arm", slot.place)
+
+
+def test_freedoms_that_differ_from_the_files_are_said(tmp_path: Path) -> None:
+    """Gears of PMKS are left out; the sliders of a Linkage file are lost where their limits are."""
+    file = tmp_path / "a.txt"
+    file.write_text("ground,a,R,0,0\nground,b,R,30,0\na,b,G,10,0\na,R,1,1\nb,R,31,1\n")
+    sketch, m, _ = built(file)
+    assert difference(sketch, m).startswith("the file has 1 degrees of freedom, this mechanism 2")
+    sketch, m, _ = built(SAMPLES / "bench.linkage2")
+    assert difference(sketch, m) == ""
+    file.write_text((SAMPLES / "bench.linkage2").read_text().replace("slidelimit", "other"))
+    sketch, m, _ = built(file)
+    assert difference(sketch, m).startswith("the file has 1 inputs, which move all of it there")
+
+
+def test_freedoms_that_differ_though_nothing_was_left_out_are_an_error() -> None:
+    text = (SAMPLES / "slider_crank_mbsd_core.json").read_text().replace('"revolute_joints": 3', '"revolute_joints": 2')
+    with pytest.raises(UserError, match="it has 3 degrees of freedom, and what was read of it 1"):
+        read_text(text, "a.json")
+
+
+def test_connectors_of_linkage_that_share_a_name_stay_apart(tmp_path: Path) -> None:
+    """A connector that is called as another one's number would be."""
+    file = tmp_path / "a.linkage2"
+    text = (SAMPLES / "bench.linkage2").read_text()
+    file.write_text(text.replace('name=""', 'name="P1"', 1))
+    assert built(file)[1].mobility().dof == built(SAMPLES / "bench.linkage2")[1].mobility().dof
 
 
 def test_names_of_any_form_become_names_of_python() -> None:

@@ -106,7 +106,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts torture check-numbers keep-numbers record-numbers schema docs docs-site site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts hunt-imports torture check-numbers keep-numbers record-numbers schema docs docs-site site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
@@ -314,6 +314,9 @@ hunt: install ## N random mechanisms (1000), each solved again in other words; S
 hunt-parts: install ## parts of N random mechanisms (1000), goes on where it stopped; SEED=1: out/hunt_parts.json
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.hunt_parts --n "$${N:-1000}" --seed "$$SEED"
+
+hunt-imports: install ## N damaged files of other programs (1000), each imported or refused; SEED=1: out/hunt_imports.json
+	@$(PYTHON) -m tools.hunt_imports --n "$${N:-1000}" --seed "$$SEED"
 
 torture: install ## N nights of postage stamps (20), killed and damaged meanwhile; SEED=1: out/torture.json
 	$(ALL_KERNELS)

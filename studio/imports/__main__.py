@@ -6,19 +6,22 @@ import argparse
 import re
 from pathlib import Path
 
+from mbsd import Mechanism, MechanismError
 from mechanisms.stages import checking
 from mechanisms.stages.new.new import file_of, mark_folder, refuse_unfit
 from shared.stage.console import run_cli, say, warn
+from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.files import write_bytes
 from shared.stage.paths import NAME, shown_file
 from studio.imports.reading import FORMATS, read
 from studio.imports.sketch import Sketch
+from studio.imports.trial import try_out
 from studio.imports.writing import mechanism_py
 
 
 def main() -> int:
-    """Read the file, write the mechanism, look at it; 1 where it is there but looks odd."""
+    """Read the file, try the mechanism, write it, look at it; 1 where it is there but looks odd, or moves otherwise."""
     parser = argparse.ArgumentParser("studio.imports", description=f"Known are: {', '.join(FORMATS)}.")
     parser.add_argument("--as", dest="name", default="", help="its name here; that of the file if not given")
     parser.add_argument(
@@ -28,14 +31,43 @@ def main() -> int:
     asked = parser.parse_args()
     sketch = read(asked.file)
     name = asked.name.replace("-", "_").lower() or named(asked.file)
-    refuse_unfit(name)
+    try:
+        refuse_unfit(name)
+    except UserError as error:
+        raise UserError(f"{error}; --as NAME gives another") from error
     file = file_of(name, asked.single)
-    write_bytes(file, mechanism_py(sketch, name).encode())
+    text = mechanism_py(sketch, name)
+    problem = difference(sketch, try_out(text, name))
+    write_bytes(file, text.encode())
     mark_folder()
     say("import", f"{shown_file(name)}: {counted(sketch)} from {sketch.program}; {to_run('live', name)} shows it")
     for words in sketch.left_out:
         warn("import", f"left out: {words}")
-    return checking.run(name)
+    if problem:
+        warn("import", problem)
+    return int(bool(problem) | bool(checking.run(name)))
+
+
+def difference(sketch: Sketch, m: Mechanism) -> str:
+    """Return how the degrees of freedom of a mechanism differ from those of the file; "" where they do not.
+
+    Joints that repeat each other leave more than a count of joints tells, so that more is no difference.
+    """
+    try:
+        freedom = m.mobility().dof
+    except MechanismError:  # which the look at the model names
+        return ""
+    if sketch.freedom is not None and not freedom >= sketch.freedom == sketch.counted_freedom():
+        return (
+            f"the file has {sketch.freedom} degrees of freedom, this mechanism {freedom}: "
+            "it moves otherwise until what was left out is added"
+        )
+    if sketch.inputs and sketch.inputs != freedom:
+        return (
+            f"the file has {sketch.inputs} inputs, which move all of it there, and this mechanism {freedom} degrees of "
+            "freedom: something was misread or left out, or is loose there"
+        )
+    return ""
 
 
 def named(source: str) -> str:
@@ -51,7 +83,7 @@ def counted(sketch: Sketch) -> str:
     counts = (
         (len(sketch.links), "link"),
         (len(sketch.joints), "joint"),
-        (len(sketch.motors) + len(sketch.rams), "motor"),
+        (len(sketch.motors) + len(sketch.pushes) + len(sketch.rams), "motor"),
     )
     first, second, third = (f"{count} {word}{'' if count == 1 else 's'}" for count, word in counts)
     return f"{first}, {second} and {third}"

@@ -14,6 +14,7 @@ import numpy as np
 from shared.stage.errors import UserError
 from studio.imports.asmt_text import Entry, parsed
 from studio.imports.expressions import as_law
+from studio.imports.limits import check_count, check_length
 from studio.imports.sketch import GROUND, Gears, Link, Motor, Pin, Place, Sketch, Slide, Weld
 
 PINS = ("RevoluteJoint", "SphericalJoint")
@@ -22,6 +23,10 @@ IDLE = ("PlanarJoint", "ParallelAxesJoint", "NoRotationJoint")
 """Joints that a mechanism in their plane keeps anyway, where their axes are normal to it."""
 ALIGNED = 1e-6
 """Sine of the angle between axes that count as one direction."""
+MOVING = 3
+"""Freedoms of a part in its plane."""
+ROWS = {"FixedJoint": 3, "TranslationalJoint": 2, "PointInPlaneJoint": 1, "PointInLineJoint": 1, "InLineJoint": 1}
+"""Freedoms that a joint takes in the plane: 2 where it is not here, 1 for gears, none for :data:`IDLE`."""
 
 
 def is_asmt(text: str) -> bool:
@@ -33,13 +38,11 @@ def is_asmt(text: str) -> bool:
 def read(text: str, name: str) -> Sketch:
     """The mechanism of such a file. Raises UserError, with joint or line, for what is spatial or cannot be read."""
     body = text.partition("\nTimeSeries")[0]
-    try:
-        assembly = parsed(body).named("Assembly")
-        if assembly is None:
-            raise UserError("the file has no Assembly")
-        return _Reader(assembly, name).sketch
-    except UserError as error:
-        raise UserError(f"{name}: {error}") from error
+    check_length(body)
+    assembly = parsed(body).named("Assembly")
+    if assembly is None:
+        raise UserError("the file has no Assembly")
+    return _Reader(assembly, name).sketch
 
 
 @dataclass
@@ -59,18 +62,24 @@ class _Reader:
         self.parts: dict[str, Entry] = {}
         self._markers_of(assembly, GROUND, np.zeros(3), np.eye(3), self.path)
         parts = assembly.named("Parts")
+        check_count(parts.below if parts else [], "parts")
         for part in parts.all_named("Part") if parts else ():
-            self.parts[part.text("Name")] = part
-            place = f"{self.path}/{part.text('Name')}"
-            self._markers_of(part, part.text("Name"), part.vector("Position3D"), part.matrix(), place)
+            name = part.text("Name")
+            if name in self.parts:
+                raise UserError(f"line {part.line}: there are two parts of the name {name}")
+            self.parts[name] = part
+            self._markers_of(part, name, part.vector("Position3D"), part.matrix(), f"{self.path}/{name}")
         constraints = assembly.named("ConstraintSets")
         joints = constraints.named("Joints") if constraints else None
         self.joints = joints.below if joints else []
+        check_count(self.joints, "joints")
+        check_count(self._motions(constraints), "motions")
         self.plane = self._plane()
         for part in self.parts:
             self._link(part)
         for joint in self.joints:
             self._joint(joint)
+        self.sketch.freedom = MOVING * len(self.parts) - sum(_taken(joint.word) for joint in self.joints)
         for motion in self._motions(constraints):
             self._motion(motion)
         for limits in constraints.all_named("Limits") if constraints else ():
@@ -224,8 +233,7 @@ class _Reader:
         if law.rate is not None:
             self.sketch.motors.append(Motor(name, first, second, sense * sign * law.rate, start))
         else:
-            moving = f"{'-' if sense * sign < 0 else ''}({law.text} - {law.at_zero!r})"
-            self.sketch.motors.append(Motor(name, first, second, 0.0, start, moving))
+            self.sketch.motors.append(Motor(name, first, second, 0.0, start, law.from_zero(sense * sign)))
 
     def _own(self, marker: _Marker) -> float:
         """The angle of a marker's x axis in the axes of its part."""
@@ -233,3 +241,8 @@ class _Reader:
         if marker.part == GROUND:
             return x
         return x - (self.sketch.links[marker.part].angle or 0.0)
+
+
+def _taken(kind: str) -> int:
+    """Freedoms that a joint of the file takes in the plane."""
+    return 0 if kind in IDLE else 1 if kind == "GearJoint" else ROWS.get(kind, 2)

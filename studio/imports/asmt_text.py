@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from shared.stage.errors import UserError
+from studio.imports.limits import check_depth
 
 
 @dataclass
@@ -42,14 +44,18 @@ class Entry:
     def vector(self, word: str) -> np.ndarray:
         """Three numbers in a line, zero where they are missing."""
         entry = self.named(word)
-        return np.zeros(3) if entry is None or not entry.below else np.array(_numbers(entry.below[0].word, entry.line))
+        if entry is None or not entry.below:
+            return np.zeros(3)
+        return np.array(_numbers(entry.below[0].word, entry.line, 3))
 
     def matrix(self) -> np.ndarray:
         """The rotation matrix; that of no turn where it is missing."""
         entry = self.named("RotationMatrix")
         if entry is None:
             return np.eye(3)
-        return np.array([_numbers(row.word, row.line) for row in entry.below[:3]])
+        if len(entry.below) < 3:
+            raise UserError(f"line {entry.line}: RotationMatrix has {len(entry.below)} rows; it needs three")
+        return np.array([_numbers(row.word, row.line, 3) for row in entry.below[:3]])
 
 
 def parsed(text: str) -> Entry:
@@ -63,6 +69,7 @@ def parsed(text: str) -> Entry:
         depth = len(line) - len(line.lstrip("\t"))
         if depth >= len(path):
             raise UserError(f"line {number} is indented by {depth} tabs below one with {len(path) - 2}")
+        check_depth(depth, f"line {number}")
         del path[depth + 1 :]
         entry = Entry(word, number)
         path[-1].below.append(entry)
@@ -70,8 +77,12 @@ def parsed(text: str) -> Entry:
     return root
 
 
-def _numbers(text: str, line: int) -> list[float]:
+def _numbers(text: str, line: int, count: int = 1) -> list[float]:
+    """Return ``count`` finite numbers or more. Raises UserError with the line."""
     try:
-        return [float(word.replace("d", "e") if word.count("d") == 1 else word) for word in text.split()]
+        numbers = [float(word.replace("d", "e") if word.count("d") == 1 else word) for word in text.split()]
     except ValueError:
         raise UserError(f"line {line}: {text.strip()[:60]!r} are no numbers") from None
+    if len(numbers) < count or not all(math.isfinite(number) for number in numbers):
+        raise UserError(f"line {line}: {text.strip()[:60]!r} should be {count} finite numbers")
+    return numbers[:count]

@@ -15,9 +15,11 @@ from itertools import pairwise
 from typing import Any
 
 from shared.stage.errors import UserError
+from studio.imports.limits import check_count, check_length
 from studio.imports.sketch import GROUND, Motor, Place, Sketch
 
-MOTOR = "motor"
+FRAME, MOTOR = "ground", "motor"
+"""Layers that say what a circle or a line is of."""
 UNITS = {0: 0.001, 1: 0.0254, 2: 0.3048, 4: 0.001, 5: 0.01, 6: 1.0, 14: 0.1}
 """m, by the number of $INSUNITS: none (taken for millimetres), inch, foot, mm, cm, m, dm."""
 SPEED = math.tau
@@ -37,7 +39,7 @@ class _Pin:
 
     @property
     def grounded(self) -> bool:
-        return self.rings > 1 or GROUND in self.layers or MOTOR in self.layers
+        return self.rings > 1 or FRAME in self.layers or MOTOR in self.layers
 
 
 @dataclass
@@ -54,27 +56,31 @@ def is_dxf(text: str) -> bool:
 
 def read(text: str, name: str) -> Sketch:
     """The mechanism of such a file. Raises UserError where it cannot be read, or has no pins or links."""
-    from ezdxf.filemanagement import read as parsed
-    from ezdxf.lldxf.const import DXFError
-
-    try:
-        document = parsed(io.StringIO(text.replace("\r\n", "\n")))
-    except (DXFError, ValueError, KeyError, OSError) as error:
-        raise UserError(f"{name}: this is no DXF that can be read ({error})") from error
+    entities, number = _drawn(text)
     sketch = Sketch(name, "a DXF sketch")
-    number = int(document.header.get("$INSUNITS", 0))
     unit = UNITS.get(number, 0.001)
     if number not in UNITS or number == 0:
         sketch.unit = "a millimetre"
-    entities = list(document.modelspace())
+    check_count([entity for entity in entities if entity.dxftype() == "CIRCLE"], "circles")
+    check_count([entity for entity in entities if _corners(entity, unit)], "lines")
     pins = _pins(entities, unit)
     links = _links(entities, pins, unit, sketch)
     if not pins or not links:
-        raise UserError(
-            f"{name}: a sketch has circles as pins, and lines from circle to circle as links; {_counted(entities)}"
-        )
+        raise UserError(f"a sketch has circles as pins, and lines from circle to circle as links; {_counted(entities)}")
     _join(sketch, pins, links)
     return sketch
+
+
+def _drawn(text: str) -> tuple[list[Any], int]:
+    """The entities of the model space, and the number of the unit. Raises UserError where ezdxf cannot read them."""
+    from ezdxf.filemanagement import read as parsed
+
+    check_length(text)
+    try:
+        document = parsed(io.StringIO(text.replace("\r\n", "\n")))
+        return list(document.modelspace()), int(document.header.get("$INSUNITS", 0))
+    except Exception as error:  # a parser of others, which raises whatever a broken file brings about
+        raise UserError(f"this is no DXF that can be read ({type(error).__name__}: {error})") from error
 
 
 def _pins(entities: Iterable[Any], unit: float) -> list[_Pin]:
@@ -145,7 +151,7 @@ def _pin_at(place: Place, pins: list[_Pin]) -> _Pin | None:
 def _join(sketch: Sketch, pins: list[_Pin], links: list[_Link]) -> None:
     names: dict[int, str] = {}
     for k, link in enumerate(links):
-        fixed = link.layer == GROUND or all(pin.grounded for pin in link.pins)
+        fixed = link.layer == FRAME or all(pin.grounded for pin in link.pins)
         names[k] = GROUND if fixed else "".join(pin.name for pin in link.pins)
         if not fixed:
             body = sketch.link(names[k])

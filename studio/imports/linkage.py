@@ -7,10 +7,13 @@ constant speed, once in 60/cpm s (David Rector's Linkage, linkageDoc.cpp and Sim
 from __future__ import annotations
 
 import math
-from html.parser import HTMLParser
+import re
+from html import unescape
 from typing import Any
 
 from shared.stage.errors import UserError
+from studio.imports.limits import check_count, check_depth, check_length
+from studio.imports.names import Titles
 from studio.imports.sketch import GROUND, Gears, Place, Ram, Sketch, Slide, Weld
 from studio.imports.sketch import Motor as Drive
 
@@ -20,7 +23,11 @@ USUAL = 15.0
 """rpm, and cycles a minute of an actuator, where the file says none."""
 DRAWING = 1
 """The layer of what is drawn alone."""
-ANY_CASE = {"link": "link", "element": "link", "connector": "connector", "ratio": "ratio", "slidelimit": "slidelimit"}
+HOLDERS = ("link", "element", "connector", "ratio")
+"""Elements that hold references."""
+TAG = re.compile(r"""<(/?)([a-z]\w*+)((?:[^<>"']|"[^"<]*+"|'[^'<]*+')*+)>""", re.IGNORECASE)
+ATTRIBUTE = re.compile(r"""\b([a-z]\w*+)\s*+=\s*+(?:"([^"]*+)"|'([^']*+)'|([^\s"'/]++))""", re.IGNORECASE)
+MOST_COMMENTS = 100
 
 
 def is_linkage(text: str) -> bool:
@@ -30,58 +37,72 @@ def is_linkage(text: str) -> bool:
 
 def read(text: str, name: str) -> Sketch:
     """The mechanism of such a file. Raises UserError for one without links."""
-    parsed = _Parsed()
-    parsed.feed(text)
-    parsed.close()
+    parsed = _Parsed(text)
     if not parsed.connectors or not parsed.links:
-        raise UserError(f"{name}: the file has no links, so there is no mechanism to import")
+        raise UserError("the file has no links, so there is no mechanism to import")
     return _Reader(parsed, name).sketch
 
 
-class _Parsed(HTMLParser):
-    """Elements by id; what is not well-formed is passed over."""
+class _Parsed:
+    """Elements by id; what is not well-formed is passed over.
 
-    def __init__(self) -> None:
-        super().__init__(convert_charrefs=True)
+    Each tag is looked for no further than the next "<", so that the time grows with the length of the text alone.
+    """
+
+    def __init__(self, text: str) -> None:
         self.connectors: dict[str, dict[str, Any]] = {}
         self.links: dict[str, dict[str, Any]] = {}
         self.ratios: list[dict[str, Any]] = []
         self.program: dict[str, str] = {}
         self._open: list[dict[str, Any]] = []
+        check_length(text)
+        for tag in TAG.finditer(_without_comments(text)):
+            closes, name, attributes = tag.groups()
+            if closes:
+                self._close(name.lower())
+                continue
+            given = {key.lower(): unescape("".join(values)) for key, *values in ATTRIBUTE.findall(attributes)}
+            self._start(name.lower(), given)
+            if attributes.rstrip().endswith("/"):
+                self._open.pop()
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
         """An element opens; inside another it is a reference."""
-        kept: dict[str, Any] = {key: value or "" for key, value in attrs} | {"tag": tag, "inside": []}
+        check_depth(len(self._open), f"element {tag}")
+        kept: dict[str, Any] = attributes | {"tag": tag, "inside": []}
         if tag == "program":
-            self.program = {key: value or "" for key, value in attrs}
-        outer = next(
-            (
-                element
-                for element in reversed(self._open)
-                if element["tag"] in ("link", "element", "connector", "ratio")
-            ),
-            None,
-        )
+            self.program = attributes
+        outer = next((element for element in reversed(self._open) if element["tag"] in HOLDERS), None)
         if outer is not None:
             outer["inside"].append(kept)
+            check_count(outer["inside"], f"things in one {outer['tag']}")
         elif tag == "connector":
             self.connectors.setdefault(kept.get("id", ""), kept)
         elif tag in ("link", "element"):
             self.links.setdefault(kept.get("id", ""), kept)
         elif tag == "ratio":
             self.ratios.append(kept)
+        for things, words in ((self.connectors, "connectors"), (self.links, "links"), (self.ratios, "ratios")):
+            check_count(things, words)
         self._open.append(kept)
 
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """An element without content."""
-        self.handle_starttag(tag, attrs)
-        self._open.pop()
-
-    def handle_endtag(self, tag: str) -> None:
+    def _close(self, tag: str) -> None:
         """Close what is open up to this tag, if it is."""
         if any(element["tag"] == tag for element in self._open):
             while self._open.pop()["tag"] != tag:
                 pass
+
+
+def _without_comments(text: str) -> str:
+    """A text without comments; one that does not end goes on to the end."""
+    parts = []
+    while text:
+        before, _, rest = text.partition("<!--")
+        parts.append(before)
+        if len(parts) > MOST_COMMENTS:
+            raise UserError(f"it has more than {MOST_COMMENTS} comments")
+        text = rest.partition("-->")[2]
+    return "".join(parts)
 
 
 class _Reader:
@@ -100,6 +121,7 @@ class _Reader:
         self._slides()
         self._motors()
         self._gears()
+        self.sketch.inputs = len(self.sketch.motors) + len(self.sketch.rams)
 
     def place(self, connector: str) -> Place:
         element = self.connectors[connector]
@@ -113,6 +135,9 @@ class _Reader:
                 continue
             inside = [ref.get("id", "") for ref in element["inside"] if ref["tag"] in ("connector", "fastenconnector")]
             members[key] = [ref for ref in dict.fromkeys(inside) if ref in self.connectors]
+            if not members[key]:
+                del members[key]
+                self.sketch.left_out.append(f"link {self.link_labels[key]}: it has no connectors")
         for key, element in self.connectors.items():
             fastened = element.get("fastenlink") or element.get("fasten")
             if fastened in members and key not in members[fastened]:
@@ -142,7 +167,7 @@ class _Reader:
             for ref in self.members[key]:
                 link.points.setdefault(self.labels[ref], self.place(ref))
             fastened = self.parsed.links[key].get("fastenlink")
-            if fastened in self.bodies and fastened != key:
+            if fastened in self.bodies and fastened != key and not _is(self.parsed.links[fastened], "actuator"):
                 place = self.place(self.members[key][0])
                 other = self.bodies[fastened]
                 self.sketch.joints.append(Weld(f"weld_{body}", other, body, place))
@@ -242,6 +267,9 @@ class _Reader:
                 continue
             centres = [self.place(self.members[key][0]) for key in keys]
             sizes = [_float(ref.get("size"), 1.0) for ref in refs]
+            if min(sizes) <= 0.0:
+                self.sketch.left_out.append(f"gears {keys[0]} and {keys[1]}: a size is not above zero")
+                continue
             apart, belt = math.dist(*centres), ratio.get("type") == "chains"
             unit = apart / sum(sizes) * (0.8 if belt else 1.0)
             if unit <= 0.0:
@@ -280,9 +308,10 @@ def _float(text: Any, usual: float = 0.0) -> float:
 
 
 def _labels(elements: dict[str, dict[str, Any]], letter: str) -> dict[str, str]:
-    """Names: the author's where they are given and differ, else a letter and the number."""
+    """Names: the author's where they are given and differ, else a letter and the number; no two are the same."""
     given = [element.get("name", "").strip() for element in elements.values()]
+    titles = Titles()
     return {
-        key: name if name and given.count(name) == 1 else f"{letter}{key}"
-        for (key, element), name in zip(elements.items(), given, strict=True)
+        key: titles.title_for(name if name and given.count(name) == 1 else f"{letter}{key}")
+        for key, name in zip(elements, given, strict=True)
     }

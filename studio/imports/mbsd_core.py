@@ -10,17 +10,19 @@ from all bodies at the origin, else from random poses.
 
 from __future__ import annotations
 
-import json
 import math
 from typing import Any
 
 import numpy as np
 
 from shared.stage.errors import UserError
+from studio.imports.limits import check_count, parsed_json
 from studio.imports.sketch import GROUND, Motor, Pin, Place, Sketch, Slide
 
 SCHEMA, VERSION = "mbsd.planar.mechanism", 1
 TRIES, PASSES = 40, 60
+LARGE, MOST_BODIES = 20, 100
+"""Bodies above which an eighth of the tries must do, and above which none is made: a try takes their third power."""
 CLOSED = 1e-11
 """Residual (m, rad) by the size of the places in the file at which a pose closes."""
 
@@ -32,41 +34,50 @@ def is_mbsd_core(text: str) -> bool:
 
 def read(text: str, name: str) -> Sketch:
     """The mechanism of such a file. Raises UserError where it cannot be read, is spatial, or closes in no pose."""
-    try:
-        data = json.loads(text)
-        _refuse_others(data, name)
-        return _read(data, name)
-    except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
-        raise UserError(
-            f"{name}: this is no mechanism of mbsd-core that can be read ({type(error).__name__}: {error})"
-        ) from error
+    data = parsed_json(text)
+    _refuse_others(data)
+    return _read(data, name)
 
 
-def _refuse_others(data: dict[str, Any], name: str) -> None:
+def _refuse_others(data: dict[str, Any]) -> None:
     schema = str(data.get("schema"))
     if schema.startswith("mbsd.spatial."):
-        raise UserError(f"{name}: it is a spatial mechanism ({schema}); planar ones can be imported")
+        raise UserError(f"it is a spatial mechanism ({schema}); planar ones can be imported")
     if schema != SCHEMA:
-        raise UserError(f"{name}: it is {schema}, not a mechanism; write one with mechanism.to_json(...)")
+        raise UserError(f"it is {schema}, not a mechanism; write one with mechanism.to_json(...)")
     if data.get("schema_version") != VERSION:
-        raise UserError(f"{name}: its schema_version is {data.get('schema_version')}; {VERSION} can be read")
+        raise UserError(f"its schema_version is {data.get('schema_version')}; {VERSION} can be read")
 
 
 def _read(data: dict[str, Any], name: str) -> Sketch:
     bodies = data["bodies"]
-    words = [GROUND, *(_unlike_ground(body["name"], k) for k, body in enumerate(bodies[1:], 1))]
+    if not 1 < len(bodies) <= MOST_BODIES:
+        raise UserError(f"it has {len(bodies)} bodies; a mechanism has 2 to {MOST_BODIES}, the ground among them")
+    words = [GROUND, *(str(body["name"]) or f"body_{k}" for k, body in enumerate(bodies[1:], 1))]
+    if len(set(words)) < len(words):
+        raise UserError("two of its bodies have one name")
     sketch = Sketch(name.rsplit(".", 1)[0], "mbsd-core", gravity=(float(data["gravity"][0]), float(data["gravity"][1])))
     motors = []
     for given in data.get("user_constraints", []):
         if given.get("kind") == "motor":
-            motors.append((int(given["body"]), float(given["omega"]), float(given["phase"])))
+            motors.append((_body(given["body"], words), float(given["omega"]), float(given["phase"])))
         else:
-            of = f" of {words[int(given['body'])]} ({given['coordinate']})" if "coordinate" in given else ""
+            driven = ""
+            if "coordinate" in given:
+                driven = f" of {words[_body(given['body'], words)] or 'the ground'} ({given['coordinate']})"
             sketch.left_out.append(
-                f"constraint {given.get('index', '?')}{of}: its function is Python, which the file has not"
+                f"constraint {given.get('index', '?')}{driven}: its function is Python, which the file has not"
             )
     pins, slides = data["joints"]["revolute"], data["joints"]["prismatic"]
-    poses = _closed(name, len(bodies), pins, slides, [(body, phase) for body, _, phase in motors])
+    check_count([*pins, *slides, *motors], "joints and motors")
+    counts = {"bodies": len(bodies), "revolute_joints": len(pins), "prismatic_joints": len(slides)} | data.get(
+        "counts", {}
+    )
+    sketch.freedom = 3 * (counts["bodies"] - 1) - 2 * (counts["revolute_joints"] + counts["prismatic_joints"])
+    for joint in (*pins, *slides):
+        for key in ("body_i", "body_j") if "body_i" in joint else ("rail_body", "slider_body"):
+            joint[key] = _body(joint[key], words)
+    poses = _closed(len(bodies), pins, slides, [(body, phase) for body, _, phase in motors])
 
     def world(body: int, point: Any) -> Place:
         x, y, angle = poses[body]
@@ -79,11 +90,11 @@ def _read(data: dict[str, Any], name: str) -> Sketch:
         link.mass, link.inertia = float(body["mass"]), float(body["inertia"])
         link.centre = world(k, body["center_of_mass"])
     for k, pin in enumerate(pins, 1):
-        first, second = sorted((int(pin["body_i"]), int(pin["body_j"])))
+        first, second = sorted((pin["body_i"], pin["body_j"]))
         place = world(int(pin["body_i"]), pin["point_i"])
         sketch.joints.append(Pin(f"pin_{k}", words[first], words[second], place))
     for k, slide in enumerate(slides, 1):
-        rail, slider = int(slide["rail_body"]), int(slide["slider_body"])
+        rail, slider = slide["rail_body"], slide["slider_body"]
         angle = math.atan2(slide["axis"][1], slide["axis"][0]) + float(poses[rail][2])
         along, place = world(rail, slide["point_rail"]), world(slider, slide["point_slider"])
         sketch.joints.append(Slide(f"slide_{k}", words[rail], words[slider], place, angle, along=along))
@@ -92,48 +103,54 @@ def _read(data: dict[str, Any], name: str) -> Sketch:
     return sketch
 
 
-def _unlike_ground(name: str, number: int) -> str:
-    return name if name and name != GROUND else f"body_{number}"
+def _body(number: Any, words: list[str]) -> int:
+    """The number of a body. Raises UserError where there is none."""
+    if not isinstance(number, int) or not 0 <= number < len(words):
+        raise UserError(f"there is no body {number}; they are numbered 0 to {len(words) - 1}")
+    return number
 
 
-def _closed(name: str, count: int, pins: Any, slides: Any, turned: list[tuple[int, float]]) -> np.ndarray:
+def _closed(count: int, pins: Any, slides: Any, turned: list[tuple[int, float]]) -> np.ndarray:
     """(count, 3) poses in which everything closes. Raises UserError where none comes out."""
     size = max([1e-9, *(abs(float(c)) for joint in (*pins, *slides) for key in joint if key.startswith("point")
                         for c in joint[key])])  # fmt: skip
 
     def gaps(q: np.ndarray) -> np.ndarray:
-        poses = np.concatenate([np.zeros((1, 3)), q.reshape(-1, 3)])
+        """Residuals (rows, k) of the coordinates (3 n, k)."""
+        poses = np.concatenate([np.zeros((1, 3, q.shape[1])), q.reshape(-1, 3, q.shape[1])])
         out: list[Any] = []
         for pin in pins:
             out += list(_at(poses[pin["body_i"]], pin["point_i"]) - _at(poses[pin["body_j"]], pin["point_j"]))
         for slide in slides:
             i, j = poses[slide["rail_body"]], poses[slide["slider_body"]]
             apart = _at(i, slide["point_rail"]) - _at(j, slide["point_slider"])
-            across = _at(np.array([0.0, 0.0, i[2]]), [-slide["axis"][1], slide["axis"][0]])
-            out += [size * (i[2] - j[2]), across @ apart]
-        return np.array(out + [size * (poses[body][2] - phase) for body, phase in turned])
+            across = _at(np.array([0.0 * i[2], 0.0 * i[2], i[2]]), [-slide["axis"][1], slide["axis"][0]])
+            out += [size * (i[2] - j[2]), (across * apart).sum(axis=0)]
+        out += [size * (poses[body][2] - phase) for body, phase in turned]
+        return np.array(out).reshape(-1, q.shape[1])
 
     random = np.random.default_rng(1)
     start = np.zeros(3 * (count - 1))
-    for _ in range(TRIES):
+    tries = TRIES if count <= LARGE else TRIES // 8
+    for _ in range(tries):
         q = _newton(gaps, start, size)
         if q is not None:
             return np.concatenate([np.zeros((1, 3)), q.reshape(-1, 3)])
         start = random.standard_normal(len(start)) * np.tile([size, size, math.pi], count - 1)
     raise UserError(
-        f"{name}: no pose was seen in {TRIES} tries in which its joints close; are the lengths those of the program?"
+        f"no pose was seen in {tries} tries in which its joints close; are the lengths those of the program?"
     )
 
 
 def _newton(gaps: Any, q: np.ndarray, size: float) -> np.ndarray | None:
     """A closed pose near q (3 n,) by steps of least length; derivatives by complex steps."""
     for _ in range(PASSES):
-        here = gaps(q)
+        here = gaps(q[:, None])[:, 0]
         if np.abs(here).max(initial=0.0) < CLOSED * size:
             q[2::3] = np.remainder(q[2::3] + math.pi, math.tau) - math.pi
             return q
-        columns = [gaps(q + 1e-30j * unit).imag / 1e-30 for unit in np.eye(len(q))]
-        step = np.linalg.lstsq(np.array(columns).T, here, rcond=1e-10)[0]
+        jacobian = gaps(q[:, None] + 1e-30j * np.eye(len(q))).imag / 1e-30
+        step = np.linalg.lstsq(jacobian, here, rcond=1e-10)[0]
         turn = np.abs(step[2::3]).max(initial=0.0)
         q = q - step * min(1.0, 0.5 / turn if turn > 0.0 else 1.0)
     return None

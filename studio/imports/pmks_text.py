@@ -6,12 +6,11 @@ where the file says nothing. R is a pin, P a slider along its angle (degrees), R
 
 from __future__ import annotations
 
-import json
 import math
-import re
 from dataclasses import dataclass
 
 from shared.stage.errors import UserError
+from studio.imports.limits import check_count, check_length, parsed_json
 from studio.imports.sketch import GROUND, Motor, Place, Sketch, Slide
 
 UNIT = 0.001
@@ -19,7 +18,10 @@ UNIT = 0.001
 SPEED = 10.0
 """rad/s"""
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-LINE = re.compile(r"^\s*([^,\n]+(?:,[^,\n]+)*?),\s*(R|P|RP|G)\s*,\s*([-+\d.][^\n]*)$", re.IGNORECASE)
+FRAME = "ground"
+"""The link that does not move; no other can have that name there."""
+TAKEN = {"R": 2, "P": 2, "RP": 1, "G": 1}
+"""Freedoms that a joint of two links takes, by its kind."""
 
 
 @dataclass
@@ -35,69 +37,103 @@ def is_pmks(text: str) -> bool:
     if text.lstrip().startswith("{"):
         return '"TypeOfJoint"' in text
     lines = [line for line in text.splitlines() if line.strip()]
-    return bool(lines) and (lines[0].startswith("mech=") or LINE.match(lines[0]) is not None)
+    return bool(lines) and (lines[0].startswith("mech=") or _joint_of(lines[0]) is not None)
 
 
 def read(text: str, name: str) -> Sketch:
     """The mechanism of such a file. Raises UserError for lines that are none."""
     sketch = Sketch(name, "PMKS", unit="a millimetre")
+    check_length(text)
     if text.lstrip().startswith("{"):
-        joints, driven, speed = _of_json(text, name)
+        joints, driven, speed = _of_json(text)
     else:
-        joints, driven, speed = _of_lines(text, name)
+        joints, driven, speed = _of_lines(text), 0, SPEED
+    check_count(joints, "joints")
+    taken = 0
     for k, joint in enumerate(joints):
         label = LETTERS[k] if k < len(LETTERS) else f"J{k}"
-        links = [GROUND if link.lower() == GROUND else link for link in joint.links]
+        links = list(dict.fromkeys(GROUND if link.lower() == FRAME else link for link in joint.links))
         for link in links:
             if link != GROUND:
                 sketch.link(link).points.setdefault(label, joint.place)
-        if len(links) == 1:
-            if links[0] != GROUND:
-                sketch.traces[label] = (links[0], joint.place)
-        elif joint.kind == "R":
-            sketch.pin_all(label, links, joint.place)
-        elif joint.kind in ("P", "RP"):
-            guide, rider = sorted(links[:2], key=lambda link: link != GROUND)
-            sketch.joints.append(Slide(label, guide, rider, joint.place, joint.angle, turns=joint.kind == "RP"))
-        else:
-            sketch.left_out.append(f"joint {label} of kind {joint.kind}: m.gear_pair says gears, with their radii")
-        if k == driven and len(links) > 1 and joint.kind == "R":
-            first, second = sorted(links[:2], key=lambda link: link != GROUND)
-            sketch.motors.append(Motor("motor", first, second, speed))
-        elif k == driven:
-            sketch.left_out.append(f"input {label}: only pins are driven here; m.drive_coordinate drives a slider")
+        _add(sketch, label, joint, links)
+        taken += TAKEN[joint.kind] + 2 * (len(links) - 2) if len(links) > 1 else 0
+        if k == driven:
+            _drive(sketch, label, joint, links, speed)
+    sketch.freedom = 3 * len(sketch.links) - taken
     return sketch
 
 
-def _of_lines(text: str, name: str) -> tuple[list[_Joint], int, float]:
+def _add(sketch: Sketch, label: str, joint: _Joint, links: list[str]) -> None:
+    """Add a joint: of one link it is a point that is followed, of more than two the rest are pinned to the second."""
+    if len(links) == 1:
+        if links[0] != GROUND:
+            sketch.traces[label] = (links[0], joint.place)
+    elif joint.kind == "R":
+        sketch.pin_all(label, links, joint.place)
+    elif joint.kind == "G":
+        sketch.left_out.append(f"joint {label} of kind G: m.gear_pair says gears, with their radii")
+    else:
+        guide, *riders = sorted(links, key=lambda link: link != GROUND)
+        sketch.joints.append(Slide(label, guide, riders[0], joint.place, joint.angle, turns=joint.kind == "RP"))
+        if len(riders) > 1:
+            sketch.pin_all(f"{label}_pin", riders, joint.place)
+
+
+def _drive(sketch: Sketch, label: str, joint: _Joint, links: list[str], speed: float) -> None:
+    if len(links) == 2 and joint.kind == "R":
+        first, second = sorted(links, key=lambda link: link != GROUND)
+        sketch.motors.append(Motor("motor", first, second, speed))
+    elif joint.kind == "R":
+        sketch.left_out.append(f"input {label}: {len(links)} links meet there, so it does not say which of them turns")
+    else:
+        sketch.left_out.append(f"input {label}: only pins are driven here; m.drive_coordinate drives a slider")
+
+
+def _joint_of(line: str) -> _Joint | None:
+    """The joint of a line ``link,link,R,x,y,angle,flags``; None where it is none."""
+    cells = [cell.strip() for cell in line.split(",")]
+    at = next((k for k, cell in enumerate(cells) if k and cell.upper() in TAKEN), 0)
+    numbers = [number for number in map(_number, " ".join(cells[at + 1 :]).split()[:3]) if number is not None]
+    if not at or len(numbers) < 2 or not all(cells[:at]):
+        return None
+    angle = math.radians(numbers[2]) if len(numbers) > 2 else 0.0
+    return _Joint(cells[:at], cells[at].upper(), (numbers[0] * UNIT, numbers[1] * UNIT), angle)
+
+
+def _number(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def _of_lines(text: str) -> list[_Joint]:
     joints: list[_Joint] = []
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.startswith("mech="):
             continue
-        matched = LINE.match(line)
-        numbers = re.findall(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?", matched[3]) if matched else []
-        if matched is None or len(numbers) < 2:
+        joint = _joint_of(line)
+        if joint is None:
+            raise UserError(f"line {number} is no joint of PMKS ({line.strip()[:60]!r}); link,link,R,x,y is one")
+        joints.append(joint)
+    return joints
+
+
+def _of_json(text: str) -> tuple[list[_Joint], int, float]:
+    data = parsed_json(text)
+    joints = [
+        _Joint(
+            [str(link).strip() for link in joint["Links"]],
+            str(joint["TypeOfJoint"]).upper(),
+            (float(joint["X"]) * UNIT, float(joint["Y"]) * UNIT),
+            math.radians(float(joint.get("Angle") or 0.0)),
+        )
+        for joint in data["Joints"]
+    ]
+    for number, joint in enumerate(joints, 1):
+        if joint.kind not in TAKEN or not joint.links:
             raise UserError(
-                f"{name}: line {number} is no joint of PMKS ({line.strip()[:60]!r}); link,link,R,x,y is one"
+                f"joint {number} is of kind {joint.kind[:20]!r} with {len(joint.links)} links; kinds are R, P, RP, G"
             )
-        angle = math.radians(float(numbers[2])) if len(numbers) > 2 else 0.0
-        place = (float(numbers[0]) * UNIT, float(numbers[1]) * UNIT)
-        joints.append(_Joint([link.strip() for link in matched[1].split(",")], matched[2].upper(), place, angle))
-    return joints, 0, SPEED
-
-
-def _of_json(text: str, name: str) -> tuple[list[_Joint], int, float]:
-    try:
-        data = json.loads(text)
-        joints = [
-            _Joint(
-                [str(link) for link in joint["Links"]],
-                str(joint["TypeOfJoint"]).upper(),
-                (float(joint["X"]) * UNIT, float(joint["Y"]) * UNIT),
-                math.radians(float(joint.get("Angle") or 0.0)),
-            )
-            for joint in data["Joints"]
-        ]
-        return joints, int(data.get("DrivingIndex") or 0), float(data.get("InputSpeed") or SPEED)
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise UserError(f"{name}: this is no .pmks file that can be read ({type(error).__name__}: {error})") from error
+    return joints, int(data.get("DrivingIndex") or 0), float(data.get("InputSpeed") or SPEED)

@@ -1,12 +1,20 @@
-"""Which program a file is of, by what is in it, and the mechanism that it holds."""
+"""Which program a file is of, by what is in it, and the mechanism that it holds.
+
+All files come in by one way: :func:`read` gets a limited number of bytes, asks which format they are, and turns what a
+damaged file brings about in its importer into a UserError. Importers raise UserError themselves where they know more.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
 from shared.stage.errors import UserError
 from studio.imports import asmt, dxf, linkage, mbsd_core, pmks_text, pmks_url, pylinkage
+from studio.imports.limits import read_bytes
+from studio.imports.names import printable
 from studio.imports.sketch import Sketch
 
 FORMATS: dict[str, tuple[Callable[[str], bool], Callable[[str, str], Sketch]]] = {
@@ -18,38 +26,49 @@ FORMATS: dict[str, tuple[Callable[[str], bool], Callable[[str, str], Sketch]]] =
     "mbsd-core (JSON)": (mbsd_core.is_mbsd_core, mbsd_core.read),
     "pylinkage (JSON)": (pylinkage.is_pylinkage, pylinkage.read),
 }
-LARGEST = 1 << 26
-"""Bytes"""
+DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError)
+"""What a file brings about that lacks something, or has something else in its place."""
+ENCODINGS = ("utf-8-sig", "cp1252", "latin-1")
 
 
 def read(source: str) -> Sketch:
-    """The mechanism of a file, or of an address of PMKS+. Raises UserError for what is neither, or cannot be read."""
-    file = Path(source)
+    """Return the mechanism of a file, or of an address of PMKS+.
+
+    Raises UserError for what is neither, for a file that cannot be read, and for one that is damaged or too large.
+    """
     if "://" in source or pmks_url.is_pmks_url(source):
-        name, text = "address", source
-    else:
-        name, text = file.name, _text(file)
-    for is_one, reader in FORMATS.values():
-        if is_one(text):
-            sketch = reader(text, name)
-            if not sketch.links:
-                raise UserError(f"{name}: nothing in it moves")
-            return sketch
+        return read_text(source, "address")
+    file = Path(source)
+    return read_text(_decoded(read_bytes(file), file), file.name)
+
+
+def read_text(text: str, name: str) -> Sketch:
+    """Return the mechanism of the content of a file, ``name`` in messages. Raises UserError as :func:`read` does."""
+    name = printable(name)
+    for program, (is_one, reader) in FORMATS.items():
+        if not is_one(text):
+            continue
+        try:
+            with np.errstate(over="raise", divide="raise", invalid="raise"):
+                sketch = reader(text, name)
+                sketch.check()
+        except UserError as error:
+            raise UserError(f"{name}: {error}") from error
+        except DAMAGE as error:
+            cause = printable(str(error))[:200]
+            raise UserError(
+                f"{name}: it is damaged, or no file of {program} ({type(error).__name__}: {cause})"
+            ) from error
+        return sketch
     raise UserError(f"{name} is of no program that is known here; known are: {', '.join(FORMATS)}")
 
 
-def _text(file: Path) -> str:
-    try:
-        if file.stat().st_size > LARGEST:
-            raise UserError(f"{file} is larger than {LARGEST >> 20} MB; that is no mechanism")
-        content = file.read_bytes()
-    except OSError as error:
-        raise UserError(f"{file} cannot be read: {error.strerror}") from error
+def _decoded(content: bytes, file: Path) -> str:
     if b"\0" in content:
-        raise UserError(f"{file} is no text")
-    for encoding in ("utf-8-sig", "cp1252", "latin-1"):
+        raise UserError(f"{printable(str(file))} is no text")
+    for encoding in ENCODINGS:
         try:
             return content.decode(encoding)
         except UnicodeDecodeError:
             continue
-    raise UserError(f"{file} is no text")
+    raise UserError(f"{printable(str(file))} is no text")

@@ -1,14 +1,20 @@
 """What a file of another program says of a mechanism in the plane: links with points, joints between them, motors.
 
-Lengths are metres, angles radians, both in the world's axes at the start; the ground is the link ``ground``.
+Lengths are metres, angles radians, both in the world's axes at the start.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+
+from shared.stage.errors import UserError
+from studio.imports.limits import LARGEST_NUMBER, check_count
 
 Place = tuple[float, float]
-GROUND = "ground"
+GROUND = ""
+"""Stands for the frame among the names of links. Links have a name, so none in a file can be taken for it."""
 
 
 @dataclass
@@ -90,6 +96,20 @@ class Motor:
 
 
 @dataclass
+class Push:
+    """Moves a place of ``second`` along a direction of ``first``, from where it stands, at ``rate`` (m/s)."""
+
+    name: str
+    first: str
+    second: str
+    place: Place
+    angle: float
+    rate: float
+    along: Place | None = None
+    """Place on ``first`` from which the way is measured, if not from ``place``."""
+
+
+@dataclass
 class Ram:
     """An actuator: the distance of two places moves to and fro by ``stroke`` (m), ``cycles`` times a second."""
 
@@ -101,6 +121,10 @@ class Ram:
     cycles: float
 
 
+ROWS = {Pin: 2, Weld: 3, Gears: 1}
+"""Freedoms that a joint takes; a slide takes one or two."""
+
+
 @dataclass
 class Sketch:
     """A whole mechanism, and what of the file could not be said."""
@@ -110,16 +134,23 @@ class Sketch:
     links: dict[str, Link] = field(default_factory=dict)
     joints: list[Pin | Slide | Weld | Gears] = field(default_factory=list)
     motors: list[Motor] = field(default_factory=list)
+    pushes: list[Push] = field(default_factory=list)
     rams: list[Ram] = field(default_factory=list)
     traces: dict[str, tuple[str, Place]] = field(default_factory=dict)
     gravity: Place | None = None
     duration: float | None = None
     unit: str = ""
     """What its numbers are taken for, where the file does not say it."""
+    freedom: int | None = None
+    """Degrees of freedom (3 for each moving link, less what joints take) by the file's own records."""
+    inputs: int | None = None
+    """Inputs of the file, where its program moves nothing but what they drive, and does not count freedoms itself."""
     left_out: list[str] = field(default_factory=list)
 
     def link(self, name: str) -> Link:
-        """The link of this name, which is added where it is not there."""
+        """Return the link of this name, which is added where it is not there. Raises UserError for an empty name."""
+        if not name:
+            raise UserError("a link has no name")
         return self.links.setdefault(name, Link(name))
 
     def pin_all(self, name: str, links: list[str], place: Place) -> None:
@@ -130,3 +161,60 @@ class Sketch:
         for link in order:
             if link != GROUND:
                 self.link(link).points.setdefault(name, place)
+
+    def counted_freedom(self) -> int:
+        """Return 3 for each link less what the joints take."""
+        taken = [ROWS.get(type(joint), 0) or (1 if getattr(joint, "turns", False) else 2) for joint in self.joints]
+        return 3 * len(self.links) - sum(taken)
+
+    def check(self) -> None:
+        """Raise UserError for what is no mechanism: no link, too many, numbers that are none, joints of no link.
+
+        Raises it also where the degrees of freedom differ from those of the file, and nothing was left out: then the
+        file was misread, and what would be written moves otherwise than its author's.
+        """
+        if not self.links:
+            raise UserError("nothing in it moves")
+        for things, words in ((self.links, "links"), (self.joints, "joints"), (self.traces, "traced points")):
+            check_count(things, words)
+        check_count([*self.motors, *self.pushes, *self.rams], "motors")
+        for thing in (self, *self.links.values(), *self.joints, *self.motors, *self.pushes, *self.rams):
+            _check_numbers(thing)
+        for thing in (*self.joints, *self.motors, *self.pushes, *self.rams):
+            for link in (thing.first, thing.second):
+                if link != GROUND and link not in self.links:
+                    raise UserError(f"{type(thing).__name__.lower()} '{thing.name}' is on '{link}', which is no link")
+            if thing.first == thing.second:
+                raise UserError(f"{type(thing).__name__.lower()} '{thing.name}' is on one link alone")
+        if any(motor.second == GROUND for motor in self.motors):
+            raise UserError("a motor turns the ground")
+        for link, _ in self.traces.values():
+            if link not in self.links:
+                raise UserError(f"a traced point is on '{link}', which is no link")
+        counted = self.counted_freedom()
+        if self.freedom is not None and counted != self.freedom and not self.left_out:
+            raise UserError(
+                f"it has {self.freedom} degrees of freedom, and what was read of it {counted}; that is a fault of this "
+                "importer: please report the file"
+            )
+
+
+def _check_numbers(thing: object) -> None:
+    """Raise UserError for a number that is none, or is too large."""
+    for given in fields(thing):  # pyright: ignore[reportArgumentType]
+        for number in _numbers_in(getattr(thing, given.name)):
+            if not math.isfinite(number) or abs(number) > LARGEST_NUMBER:
+                kind, name = type(thing).__name__.lower(), getattr(thing, "name", "")
+                raise UserError(
+                    f"{given.name} of {kind} '{name}' is {number:g}; it must be a number up to {LARGEST_NUMBER:g} (SI)"
+                )
+
+
+def _numbers_in(value: object) -> Iterator[float]:
+    if isinstance(value, int | float):
+        yield value
+    elif isinstance(value, tuple):
+        for part in value:
+            yield from _numbers_in(part)
+    elif isinstance(value, dict):
+        yield from _numbers_in(tuple(value.values()))

@@ -2,29 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import json
-import keyword
 import math
-import re
-from collections.abc import Iterable
 
-from studio.imports.sketch import GROUND, Gears, Link, Motor, Pin, Place, Ram, Sketch, Slide, Weld
+from studio.imports.names import Names, Titles, printable
+from studio.imports.sketch import GROUND, Gears, Link, Motor, Pin, Place, Push, Ram, Sketch, Slide, Weld
 
-RESERVED = {
-    "m",
-    "p",
-    "pi",
-    "self",
-    "build",
-    "Params",
-    "Mechanism",
-    "constant_rate",
-    "dataclass",
-    "ground",
-    "np",
-    "sin",
-    "cos",
-}
 NEAR = 1e-9
 """Places closer than this part of the mechanism's size are one."""
 ROUNDING = 1e-13
@@ -34,27 +18,6 @@ ROUNDING = 1e-13
 def mechanism_py(sketch: Sketch, name: str) -> str:
     """The whole file; ``name`` is the mechanism's, which the file's own folder has."""
     return _Writer(sketch, name).text()
-
-
-class Names:
-    """Names of Python that are each given once, from names of any form."""
-
-    def __init__(self, taken: Iterable[str] = ()) -> None:
-        self._taken = set(taken)
-        self._given: dict[str, str] = {}
-
-    def of(self, word: str) -> str:
-        """The name that stands for ``word``, always the same."""
-        if word not in self._given:
-            name = re.sub(r"[^0-9a-zA-Z]+", "_", word).strip("_").lower() or "link"
-            name = f"link_{name}" if name[0].isdigit() or keyword.iskeyword(name) or name in RESERVED else name
-            tried, k = name, 1
-            while tried in self._taken:
-                k += 1
-                tried = f"{name}_{k}"
-            self._taken.add(tried)
-            self._given[word] = tried
-        return self._given[word]
 
 
 class _Frame:
@@ -86,11 +49,13 @@ class _Frame:
 class _Writer:
     def __init__(self, sketch: Sketch, name: str) -> None:
         self.sketch, self.name = sketch, name
-        self.names = Names(RESERVED)
+        self.names = Names()
+        self.titles, self.points = Titles(), Titles()
         self.frames = {link.name: _Frame(link) for link in sketch.links.values()}
         self.size = max([frame.length for frame in self.frames.values()] + [self._spread()]) or 1.0
         self.params: dict[str, str] = {}
         self.fields = Names()
+        self.maths: set[str] = set()
 
     def _spread(self) -> float:
         places = [place for link in self.sketch.links.values() for place in link.points.values()]
@@ -101,9 +66,13 @@ class _Writer:
     def text(self) -> str:
         bodies = [self._body(link) for link in self.sketch.links.values()]
         joints = [line for joint in self.sketch.joints for line in self._joint(joint)]
-        motors = [self._motor(motor) for motor in self.sketch.motors] + [self._ram(ram) for ram in self.sketch.rams]
+        motors = [
+            *(self._motor(motor) for motor in self.sketch.motors),
+            *(self._push(push) for push in self.sketch.pushes),
+            *(self._ram(ram) for ram in self.sketch.rams),
+        ]
         traces = [
-            f"m.trace({_quoted(point)}, {self._marker(link, place)})"
+            f"m.trace({_quoted(self.points.title_for(point))}, {self._marker(link, place)})"
             for point, (link, place) in self.sketch.traces.items()
         ]
         lines = [self._docstring(), "", "from dataclasses import dataclass", *self._imports(motors), "", ""]
@@ -121,26 +90,29 @@ class _Writer:
 
     def _docstring(self) -> str:
         sketch = self.sketch
-        lines = [f'"""{_title(self.name)}, from {sketch.program} ({_plain(sketch.name)}). SI units.']
+        lines = [f'"""{_title(self.name)}, from {_plain(sketch.program)} ({_plain(sketch.name)}). SI units.']
         if sketch.unit:
-            lines += ["", f"A unit of the file is taken for {sketch.unit}."]
+            lines += ["", f"A unit of the file is taken for {_plain(sketch.unit)}."]
         if sketch.left_out:
             lines += ["", "Left out:", *(f"- {_plain(words)}" for words in sketch.left_out)]
         return lines[0] + '"""' if len(lines) == 1 else "\n".join([*lines, '"""'])
 
     def _imports(self, motors: list[str]) -> list[str]:
         laws = [law for law in ("constant_rate", "harmonic") if any(law in line for line in motors)]
-        maths = sorted({word for line in motors for word in re.findall(r"\b(pi|sin|cos|exp|sqrt)\b", line)})
+        maths = sorted(self.maths)
         lines = [f"from numpy import {', '.join(maths)}", ""] if maths else [""]
         return [*lines, f"from mbsd import {', '.join(['Mechanism', *laws])}"]
 
-    def _param(self, field: str, value: str, kind: str = "float") -> str:
-        field = self.fields.of(field)
-        self.params[field] = f"{kind} = {value}"
+    def _param(self, word: str, value: str, kind: str) -> str:
+        field = self.fields.name_for(word, kind)
+        self.params[field] = f"float = {value}"
         return f"p.{field}"
 
+    def _name(self, link: str) -> str:
+        return self.names.name_for(link, "link")
+
     def _body(self, link: Link) -> str:
-        frame, name = self.frames[link.name], self.names.of(link.name)
+        frame, name = self.frames[link.name], self._name(link.name)
         words = ""
         if link.mass is not None:
             words += f", mass={_number(link.mass)}"
@@ -149,7 +121,7 @@ class _Writer:
             if link.inertia is not None:
                 words += f", inertia={_number(link.inertia)}"
         if frame.length > NEAR * self.size:
-            return f'{name} = m.bar("{name}", {self._param(name, _number(frame.length))}{words})'
+            return f'{name} = m.bar("{name}", {self._param(link.name, _number(frame.length), "link")}{words})'
         return f'{name} = m.body("{name}"{words})'
 
     def _marker(self, link: str, place: Place, angle: float | None = None) -> str:
@@ -158,7 +130,7 @@ class _Writer:
             x, y = (0.0 if abs(value) < ROUNDING * self.size else value for value in place)
             words = _place((x, y))[1:-1]
             return f"m.ground.at({words}{f', {_number(turned)}' if turned else ''})"
-        frame, name = self.frames[link], self.names.of(link)
+        frame, name = self.frames[link], self._name(link)
         x, y = frame.local(place)
         turned = None if angle is None else _wrapped(angle - frame.angle)
         near = NEAR * max(self.size, 1e-12)
@@ -172,23 +144,24 @@ class _Writer:
     def _joint(self, joint: Pin | Slide | Weld | Gears) -> list[str]:
         if isinstance(joint, Gears):
             return [self._gears(joint)]
+        title = self._title(joint)
         first, second = (self._marker(link, joint.place) for link in (joint.first, joint.second))
         if isinstance(joint, Pin):
-            return [f"m.revolute({_quoted(joint.name)}, {first}, {second})"]
+            return [f"m.revolute({title}, {first}, {second})"]
         if isinstance(joint, Weld):
             angle = 0.0 if joint.first == GROUND else self.frames[joint.first].angle
-            return [f"m.weld({_quoted(joint.name)}, {first}, {self._marker(joint.second, joint.place, angle)})"]
+            return [f"m.weld({title}, {first}, {self._marker(joint.second, joint.place, angle)})"]
         guide = self._marker(joint.first, joint.along or joint.place, joint.angle)
         if joint.turns:
-            return [f"m.pin_in_slot({_quoted(joint.name)}, {guide}, {second})"]
-        return [f"m.prismatic({_quoted(joint.name)}, {guide}, {self._marker(joint.second, joint.place, joint.angle)})"]
+            return [f"m.pin_in_slot({title}, {guide}, {second})"]
+        return [f"m.prismatic({title}, {guide}, {self._marker(joint.second, joint.place, joint.angle)})"]
 
     def _gears(self, joint: Gears) -> str:
         markers = ", ".join(self._marker(link, place) for link, place in zip(
             (joint.first, joint.second), joint.places, strict=True))  # fmt: skip
         radii = ", ".join(_number(radius) for radius in joint.radii)
         kind = "belt" if joint.belt else "gear_pair"
-        return f"m.{kind}({_quoted(joint.name)}, {markers}, {radii}{', internal=True' if joint.internal else ''})"
+        return f"m.{kind}({self._title(joint)}, {markers}, {radii}{', internal=True' if joint.internal else ''})"
 
     def _motor(self, motor: Motor) -> str:
         start = motor.start
@@ -196,13 +169,30 @@ class _Writer:
             start = self._angle(motor.second) - self._angle(motor.first)
         if motor.law:
             law = f"lambda t: {_number(start)} + {motor.law}" if start else f"lambda t: {motor.law}"
+            nodes = ast.walk(ast.parse(motor.law, mode="eval"))
+            self.maths |= {node.id for node in nodes if isinstance(node, ast.Name)} - {"t"}
         else:
-            speed = self._param("speed" if len(self.sketch.motors) == 1 else f"speed_{motor.name}", _number(motor.rate))
-            law = f"constant_rate({speed}{f', {_number(start)}' if abs(start) > 1e-12 else ''})"
+            law = self._constant(motor, start)
         if motor.first == GROUND:
-            return f"m.drive_angle({_quoted(motor.name)}, {self.names.of(motor.second)}, {law})"
-        links = f"{self.names.of(motor.first)}, {self.names.of(motor.second)}"
-        return f"m.drive_relative_angle({_quoted(motor.name)}, {links}, {law})"
+            return f"m.drive_angle({self._title(motor)}, {self._name(motor.second)}, {law})"
+        links = f"{self._name(motor.first)}, {self._name(motor.second)}"
+        return f"m.drive_relative_angle({self._title(motor)}, {links}, {law})"
+
+    def _constant(self, motor: Motor | Push, start: float) -> str:
+        """A constant rate as a parameter, from ``start``."""
+        alone = len(self.sketch.motors) + len(self.sketch.pushes) == 1
+        speed = self._param("speed" if alone else f"speed_{motor.name}", _number(motor.rate), "number")
+        return f"constant_rate({speed}{f', {_number(start)}' if abs(start) > 1e-12 else ''})"
+
+    def _push(self, push: Push) -> str:
+        along = push.along or push.place
+        start = (push.place[0] - along[0]) * math.cos(push.angle) + (push.place[1] - along[1]) * math.sin(push.angle)
+        guide, rider = self._marker(push.first, along, push.angle), self._marker(push.second, push.place)
+        return f"m.drive_coordinate({self._title(push)}, {guide}, {rider}, {self._constant(push, start)})"
+
+    def _title(self, thing: Pin | Slide | Weld | Gears | Motor | Push | Ram) -> str:
+        """A new name of a joint or motor, between quotes."""
+        return _quoted(self.titles.title_for(thing.name))
 
     def _ram(self, ram: Ram) -> str:
         """From its shortest, or where it counts backwards from its longest, to the other and back."""
@@ -210,9 +200,10 @@ class _Writer:
             self._marker(link, place) for link, place in zip((ram.first, ram.second), ram.places, strict=True)
         )
         apart, half = math.dist(*ram.places), math.copysign(ram.stroke / 2, ram.cycles)
-        speed = self._param(f"speed_{ram.name}", _number(math.tau * abs(ram.cycles)))
+        speed = self._param(f"speed_{ram.name}", _number(math.tau * abs(ram.cycles)), "number")
         law = f"harmonic({_number(-half)}, {speed}, pi / 2, {_number(apart + half)})"
-        return f"m.drive_distance({_quoted(ram.name)}, {first}, {second}, {law})"
+        self.maths.add("pi")
+        return f"m.drive_distance({self._title(ram)}, {first}, {second}, {law})"
 
     def _angle(self, link: str) -> float:
         return 0.0 if link == GROUND else self.frames[link].angle
@@ -223,10 +214,10 @@ class _Writer:
         for link in self.sketch.links.values():
             frame = self.frames[link.name]
             place = (_number(frame.origin[0], 6), _number(frame.origin[1], 6), _number(math.degrees(frame.angle), 6))
-            lines.append(f"    m.start_near({self.names.of(link.name)}=({', '.join(place)}))")
+            lines.append(f"    m.start_near({self._name(link.name)}=({', '.join(place)}))")
             if link.velocity is not None and not self.sketch.motors:
                 speeds = ", ".join(_number(value) for value in link.velocity)
-                lines.append(f"    m.start_moving({self.names.of(link.name)}=({speeds}))")
+                lines.append(f"    m.start_moving({self._name(link.name)}=({speeds}))")
         return lines
 
 
@@ -250,10 +241,10 @@ def _title(name: str) -> str:
 
 
 def _quoted(name: str) -> str:
-    """A name between quotes, as ruff writes them."""
-    return json.dumps(" ".join(name.split()), ensure_ascii=False)
+    """A printable name between quotes, as ruff writes them."""
+    return json.dumps(name, ensure_ascii=False)
 
 
 def _plain(words: str) -> str:
     """Without what would end a docstring or a line."""
-    return re.sub(r"\s+", " ", words.replace("\\", "/").replace('"', "'")).strip()[:300]
+    return printable(words.replace("\\", "/").replace('"', "'"))[:300]

@@ -79,6 +79,19 @@ def test_what_is_spatial_or_damaged_is_refused_by_name(tmp_path: Path, old: str,
     assert said in str(refused.value)
 
 
+def test_a_law_that_is_zero_at_each_tenth_of_a_second_moves_the_motor(tmp_path: Path) -> None:
+    """Samples at tenths take sin(10 pi t) for a motor that stands still."""
+    file = tmp_path / "a.asmt"
+    file.write_text(SPATIAL.partition("\nTimeSeries")[0].replace("2.0d*pi*time", "0.2d*sin(10.0d*pi*time)"))
+    sketch, m, _ = built(file)
+    assert sketch.motors[0].law
+    still = built(SAMPLES / "piston.asmt")[1].sweep(0.2, steps=40)
+    sol = m.sweep(0.2, steps=40)
+    turned = sol.driver("Motion1").value - sol.driver("Motion1").value[0]
+    np.testing.assert_allclose(np.abs(turned), np.abs(0.2 * np.sin(10 * np.pi * sol.t)), atol=1e-12)
+    assert still.t.shape == sol.t.shape
+
+
 def test_a_machine_in_another_plane_moves_the_same(tmp_path: Path) -> None:
     """The world's axes permuted in the whole file: what lay in x y lies in y z."""
     file = tmp_path / "turned.asmt"
@@ -108,7 +121,18 @@ def _turned(lines: list[str]) -> list[str]:
 
 @pytest.mark.parametrize(
     ("text", "zero", "rate"),
-    [("2.0d*pi*time", 0.0, 2 * np.pi), ("1.5 + 3*time", 1.5, 3.0), ("-time/2", 0.0, -0.5), ("sin(2*time)", 0.0, None)],
+    [
+        ("2.0d*pi*time", 0.0, 2 * np.pi),
+        ("1.5 + 3*time", 1.5, 3.0),
+        ("-time/2", 0.0, -0.5),
+        ("sin(2*time)", 0.0, None),
+        ("sin(10*pi*time)", 0.0, None),
+        ("time + sin(20*pi*time)", 0.0, None),
+        ("time*time", 0.0, None),
+        ("sin(1.0)*2 - time*3^2/2", np.sin(1.0) * 2, -4.5),
+        ("-(time - 1)*exp(0)", 1.0, -1.0),
+        ("time^1.0", 0.0, 1.0),
+    ],
 )
 def test_functions_of_time_are_read(text: str, zero: float, rate: float | None) -> None:
     law = as_law(text, "motion")
@@ -116,7 +140,27 @@ def test_functions_of_time_are_read(text: str, zero: float, rate: float | None) 
     assert law.rate == (None if rate is None else pytest.approx(rate))
 
 
-@pytest.mark.parametrize("text", ["", "1/0", "a", "time.real", "[1]", "lambda: 1", "sin(time, 2)", "True", "(-1)**0.5"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "1/0",
+        "a",
+        "time.real",
+        "[1]",
+        "lambda: 1",
+        "sin(time, 2)",
+        "True",
+        "(-1)**0.5",
+        "1e999*time",
+        "9**9**9**9",
+        "(" * 300,
+        "-" * 5000 + "1",
+        "e" * 2000,
+        "time\0",
+        "1" + "0" * 5000,
+    ],
+)
 def test_what_is_no_function_of_time_is_refused(text: str) -> None:
     with pytest.raises(UserError, match="motion: the function of time"):
         as_law(text, "motion")

@@ -12,8 +12,9 @@ import pytest
 
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from studio.imports.reading import read
-from studio.imports.sketch import Link, Motor, Pin, Sketch
+from studio.imports.__main__ import difference
+from studio.imports.reading import read, read_text
+from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch, Slide
 from studio.imports.writing import mechanism_py
 from tests.studio.imports.imported import SAMPLES, built
 
@@ -58,7 +59,7 @@ def test_an_actuator_of_linkage_drives_a_distance(tmp_path: Path) -> None:
 def test_pmks_is_read(name: str) -> None:
     _, m, _ = built(SAMPLES / name)
     sol = m.sweep(steps=36)
-    assert sol.body("input").omega == pytest.approx(10.0)
+    assert sol.body("link_input").omega == pytest.approx(10.0)
     assert (sol.point("E").x[0], sol.point("E").y[0]) == pytest.approx((0.5, 0.125))
     assert np.hypot(sol.body("output").x - 0.6, sol.body("output").y - 0.1) == pytest.approx(math.hypot(0.2, 0.38))
 
@@ -68,14 +69,14 @@ def test_an_address_of_pmks_plus_is_read(address: str) -> None:
     sketch, m, _ = built(address)
     assert {name: link.points for name, link in sketch.links.items()}["AB"] == {
         "A": pytest.approx((-0.03129, -0.02014)),
-        "B": pytest.approx((-0.02623, 0.00902)),
+        "B": pytest.approx((-0.02622, 0.00902)),
     }
     assert m.mobility().dof == 1
-    assert m.sweep(steps=36).body("ab").omega == pytest.approx(1.0)
+    assert m.sweep(steps=36).body("ab").omega == pytest.approx(-20 * math.tau / 60)  # clockwise
 
 
 def test_an_address_that_is_cut_off_is_refused_as_one() -> None:
-    with pytest.raises(UserError, match=r"no address of PMKS\+ that can be read .*; copy all of it, in quotes"):
+    with pytest.raises(UserError, match=r"it was changed or cut off; copy all of it, in quotes"):
         read("https://app.pmksplus.com/?0P.TY.K,0.101.MA,A,0mv")
 
 
@@ -83,6 +84,7 @@ def test_pylinkage_is_read() -> None:
     _, m, names = built(SAMPLES / "four_bar_mechanism.json")
     p = names["Params"]()
     assert (p.crank, p.coupler, p.rocker) == pytest.approx((1.0, 3.5, 3.0))
+    assert p.speed == pytest.approx(24 * 0.1)  # 0.1 rad a step, 24 steps a second
     assert m.sweep(steps=36).body("rocker").theta[0] == pytest.approx(math.atan2(2.842815, 4 - 3.0416667), abs=1e-6)
 
 
@@ -95,8 +97,8 @@ def test_pylinkage_is_read() -> None:
         (b"<linkage2></linkage2>", "the file has no links"),
         (b"ground,input,R,a,b", "is of no program"),
         (b"mech=\nground,input,R,1,2\nrubbish", "line 3 is no joint of PMKS"),
-        (b'{"joints": [], "links": [{"position": 1}]}', "no JSON of pylinkage that can be read"),
-        (b'{"TypeOfJoint"', "no .pmks file that can be read"),
+        (b'{"joints": [], "links": [{"position": 1}]}', "no file of pylinkage (JSON) (KeyError: 'id')"),
+        (b'{"TypeOfJoint"', "its JSON cannot be read"),
         (b"freeCAD\nAssembly\n", "Assembly has no Name"),
     ],
 )
@@ -108,12 +110,58 @@ def test_what_is_none_of_them_is_refused(tmp_path: Path, content: bytes, said: s
     assert said in str(refused.value)
 
 
+@pytest.mark.parametrize(("written", "metres"), [(".04", 4e-5), ("-.1", -1e-4), ("+2.5e1", 0.025), ("3.", 0.003)])
+def test_numbers_of_pmks_may_begin_with_a_point(tmp_path: Path, written: str, metres: float) -> None:
+    file = tmp_path / "a.txt"
+    file.write_text((SAMPLES / "4bar1.txt").read_text().replace("350.00,100.00", f"{written},{written}"))
+    assert read(str(file)).links["input"].points["B"] == pytest.approx((metres, metres))
+
+
+def test_a_slot_of_pmks_has_its_direction_and_carries_all_links_on_it(tmp_path: Path) -> None:
+    """The rod slides up and down the ground; the arm on the same pin hangs free."""
+    file = tmp_path / "a.txt"
+    file.write_text("ground,crank,R,0,0\ncrank,rod,R,30,40\nground,rod,arm,RP,-110,20,-90\narm,R,-200,30\n")
+    sketch, m, _ = built(file)
+    assert sketch.freedom == sketch.counted_freedom() == m.mobility().dof == 2
+    slot = sketch.joints[2]
+    assert isinstance(slot, Slide)
+    assert (slot.first, slot.second, slot.angle) == (GROUND, "rod", pytest.approx(-math.pi / 2))
+    assert sketch.joints[3] == Pin("C_pin", "rod", "arm", slot.place)
+
+
+def test_freedoms_that_differ_from_the_files_are_said(tmp_path: Path) -> None:
+    """Gears of PMKS are left out; the sliders of a Linkage file are lost where their limits are."""
+    file = tmp_path / "a.txt"
+    file.write_text("ground,a,R,0,0\nground,b,R,30,0\na,b,G,10,0\na,R,1,1\nb,R,31,1\n")
+    sketch, m, _ = built(file)
+    assert difference(sketch, m).startswith("the file has 1 degrees of freedom, this mechanism 2")
+    sketch, m, _ = built(SAMPLES / "bench.linkage2")
+    assert difference(sketch, m) == ""
+    file.write_text((SAMPLES / "bench.linkage2").read_text().replace("slidelimit", "other"))
+    sketch, m, _ = built(file)
+    assert difference(sketch, m).startswith("the file has 1 inputs, which move all of it there")
+
+
+def test_freedoms_that_differ_though_nothing_was_left_out_are_an_error() -> None:
+    text = (SAMPLES / "slider_crank_mbsd_core.json").read_text().replace('"revolute_joints": 3', '"revolute_joints": 2')
+    with pytest.raises(UserError, match="it has 3 degrees of freedom, and what was read of it 1"):
+        read_text(text, "a.json")
+
+
+def test_connectors_of_linkage_that_share_a_name_stay_apart(tmp_path: Path) -> None:
+    """A connector that is called as another one's number would be."""
+    file = tmp_path / "a.linkage2"
+    text = (SAMPLES / "bench.linkage2").read_text()
+    file.write_text(text.replace('name=""', 'name="P1"', 1))
+    assert built(file)[1].mobility().dof == built(SAMPLES / "bench.linkage2")[1].mobility().dof
+
+
 def test_names_of_any_form_become_names_of_python() -> None:
     sketch = Sketch('a "quoted"\nname \\ ', "a test")
     for k, name in enumerate(['1st "link"', "class", "m", "Größe", "a b", "a-b", "pi"]):
         sketch.links[name] = Link(name, {f"P{k}": (float(k), 0.0), f"Q{k}": (k + 1.0, 0.5)})
-        sketch.joints.append(Pin(f"P{k}", "ground", name, (float(k), 0.0)))
-        sketch.motors.append(Motor(f"motor {k}", "ground", name, 1.0 + k))
+        sketch.joints.append(Pin(f"P{k}", GROUND, name, (float(k), 0.0)))
+        sketch.motors.append(Motor(f"motor {k}", GROUND, name, 1.0 + k))
     sketch.left_out = ['what says """ and \\']
     names: dict = {}
     exec(compile(mechanism_py(sketch, "odd"), "mechanism.py", "exec"), names)
@@ -135,6 +183,7 @@ def test_the_program_imports_into_a_folder(tmp_path: Path) -> None:
     again = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert again.returncode == 1
     assert "walker_2/mechanism.py is there already" in again.stderr
+    assert "--as NAME gives another" in again.stderr
     wrong = subprocess.run(
         [*command, "import", "no.txt"], cwd=tmp_path, env=environment, capture_output=True, text=True
     )

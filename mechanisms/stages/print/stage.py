@@ -66,7 +66,7 @@ def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
         if path.suffix in (".3mf", ".stl", ".dxf") and path.name not in files:
             path.unlink()
     stage.outputs = [out.print_folder / file for file in files]
-    stage.done()
+    stage.done(bed=bed or BED, gap=gap or GAP)
     for part in made:
         if part.bed:
             _tell_large(out.title, part, size, at.ratio if at else 1.0)

@@ -160,7 +160,7 @@ def mass_section(motion: Motion, parts: Parts | None) -> list[str]:
 def clearance_section(clearance: Clearance | None) -> list[str]:
     """The least gap between two parts, and what was not compared."""
     if clearance is None:
-        return ["It was not checked: there is no clearance.json."]
+        return ["It was not checked: there is no clearance.json of this motion."]
     lines = [_nearest(clearance)]
     if clearance.may_touch:
         pairs = "; ".join(" and ".join(pair) for pair in clearance.may_touch)

@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from render.film.inputs import read_film
+from render.glb import glb_key
 from shared.stage.console import say
 from shared.stage.errors import UserError
-from shared.stage.files import write_bytes
+from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import Out
+from shared.stage.stages import Stage, key_of
 from shared.stage.suggestions import did_you_mean
 
 FORMATS = {"usd": ".usdc", "usdz": ".usdz"}
@@ -31,12 +33,24 @@ def run(name: str, form: str = "usd") -> None:
     from render.usd.scene import stage_of
 
     film = read_film(out)
-    path = out.folder / "export" / f"{out.name}{FORMATS[form]}"
+    stage = _stage(out, form)
+    path = stage.outputs[0]
     write_bytes(path, content(stage_of(film), out.name, form))
+    stage.done()
     if said := said_of(film):
         say("export", said)
     seconds = film.motion.time[-1] - film.motion.time[0]
     say("export", f"{out.name}: {path}: {seconds:.4g} s, {path.stat().st_size / 1e6:.1f} MB")
+
+
+def is_fresh(name: str, form: str) -> bool:
+    """Whether the file that is there is of the motion, the parts and the shot that are there."""
+    return _stage(Out(name), form).is_fresh()
+
+
+def _stage(out: Out, form: str) -> Stage:
+    key = key_of(glb_key(out), form, sources_hash(Path(__file__).parent))
+    return Stage(out, f"export-{form}", key, [out.folder / "export" / f"{out.name}{FORMATS[form]}"])
 
 
 def content(stage: Any, name: str, form: str) -> bytes:

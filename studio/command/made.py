@@ -6,16 +6,22 @@ from pathlib import Path
 
 import msgspec
 
+from shared.stage.memory import remembered
 from shared.stage.paths import Out
+from shared.stage.stages import outdated_by, results_of
 from studio.command.running import Run
 from studio.command.table import Command
 
 
 def summary(command: Command, machine: str, run: Run, code: int) -> str:
-    """One line: whether it is done, its stages with their seconds, and the files that are there now."""
+    """One line: whether it is done, its stages with their seconds, the files that are there now, and which of them are
+    older than the results that they were made of.
+    """
     out = Out(machine)
-    files = sorted(path.relative_to(out.folder).as_posix() for path in out.folder.rglob("*") if _counts(path, out))
-    films = [film.as_posix() for film in sorted(out.film("*").parent.glob(f"{out.name}-*.mp4"))]
+    paths = sorted(path for path in out.folder.rglob("*") if _counts(path, out))
+    films = sorted(out.film("*").parent.glob(f"{out.name}-*.mp4"))
+    with remembered():
+        older = [path for path in (*paths, *films) if results_of(out, path) and outdated_by(out, path)]
     return msgspec.json.encode(
         {
             "command": command.name,
@@ -24,8 +30,9 @@ def summary(command: Command, machine: str, run: Run, code: int) -> str:
             "exit_code": code,
             "stages": [{"stage": done.stage, "ok": done.code == 0, "seconds": done.seconds} for done in run.done],
             "folder": out.folder.as_posix(),
-            "files": files,
-            "films": films,
+            "files": [path.relative_to(out.folder).as_posix() for path in paths],
+            "films": [film.as_posix() for film in films],
+            "older": [path.relative_to(out.folder).as_posix() if path in paths else path.as_posix() for path in older],
         }
     ).decode()
 

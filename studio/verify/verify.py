@@ -1,7 +1,7 @@
 """Everything of one mechanism made again in scratch, compared, and reported.
 
-What the author's files give (solids, motion, shot) is made by the same stages, what they give by frames and film by the
-same code, all in fresh processes; nothing that is there is touched.
+What the author's files give (solids, motion, shot), plates, outlines and files for other programs are made by the same
+stages, frames and film by the same code, all in fresh processes; nothing that is there is touched.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections import Counter
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 from render.blender.scratch import scratch_folder
@@ -22,7 +23,7 @@ from shared.stage.console import fail, say
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.paths import ROOT, Out, out_root
-from studio.verify import again, files, film, pictures
+from studio.verify import again, files, film, pictures, products
 from studio.verify.finding import Finding
 
 
@@ -61,6 +62,8 @@ def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -
     for what, path in (("motion", out.motion), ("skeleton", out.skeleton), ("shot", out.shot)):
         if path.is_file() and (solids or path != out.shot):
             findings.append(files.compared(f"{what} ({path.name})", path, made / path.name))
+    again_in = partial(_stage, root)
+    findings += [*(products.of_print(out, made, again_in) if solids else []), *products.of_exports(out, made, again_in)]
     if index is None or not solids:
         hint = f"{to_run('film', out.name)} {preset.asked} first"
         return [*findings, Finding("frames and film", "missing", f"none of {preset.name} are there; {hint}")]

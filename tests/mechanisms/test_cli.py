@@ -268,8 +268,10 @@ def test_the_listing_names_what_is_of_an_older_version(tmp_path: Path) -> None:
     assert cli("solve", "swing", **environment).returncode == 0
     plotted()
     assert listed() == "motion, plots"
+    assert cli("current", "swing", **environment).stdout == "swing\n"
     model.write_text(PENDULUM.replace("0.3", "0.4"))
     assert listed() == "nothing yet; of an older version: motion, plots"
+    assert cli("current", "swing", **environment).stdout == ""
     assert cli("solve", "swing", **environment).returncode == 0
     assert listed() == "motion; of an older version: plots"
     plotted()

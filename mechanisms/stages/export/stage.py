@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import io
+import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from mechanisms.stages.export import assembly, drawings, mjcf, urdf
 from mechanisms.stages.export.modelica.text import modelica
 from mechanisms.stages.export.wanted import Wanted
 from mechanisms.stages.loading import loading
+from mechanisms.stages.loading.inputs import Inputs, observed
+from mechanisms.stages.loading.recording import recording
 from mechanisms.stages.solve import stage as solving
 from shared import contract
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
-from shared.stage.files import write_bytes
-from shared.stage.paths import Out, known_name
+from shared.stage.files import sources_hash, write_bytes
+from shared.stage.paths import ROOT, Out, known_name, mechanism_file
+from shared.stage.stages import Stage, key_of
 from shared.stage.suggestions import did_you_mean
 
+SOURCES = [ROOT / "mechanisms" / "stages" / name for name in ("export", "dxf_file.py")]
 Written = tuple[bytes, list[str]]
 """A file, and what it leaves out."""
 
@@ -29,19 +35,49 @@ def run(name: str, form: str, time: float = 0.0) -> None:
         raise UserError(
             f"there is no format {form!r} to export; choose one of: {', '.join(FORMATS)}{did_you_mean(form, FORMATS)}"
         )
-    out = Out(name)
-    parts = contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
-    solution, _ = solving.solve(name, parts)
-    if form in POSED:
-        _warn_of_time(name, time, float(solution.t[0]), float(solution.t[-1]))
-    suffix, write = FORMATS[form]
-    with loading.author_code(name):
-        content, left_out = write(Wanted(solution, time, out, parts))
-    file = out.folder / "export" / f"{name}{suffix}"
+    from mechanisms.stages.loading.loaded_files import loaded_inputs
+
+    out, before = Out(name), set(sys.modules)
+    parts = _parts(out)
+    with recording() as recorder:
+        solution, _ = solving.solve(name, parts)
+        if form in POSED:
+            _warn_of_time(name, time, float(solution.t[0]), float(solution.t[-1]))
+        with loading.author_code(name):
+            content, left_out = FORMATS[form][1](Wanted(solution, time, out, parts))
+    loaded = loaded_inputs(mechanism_file(name), loading.package_of(name), before)
+    loaded.sources.pop("mbsd", None)  # it counts anyway
+    inputs = loaded.joined(recorder.inputs())
+    file = file_of(out, form)
     write_bytes(file, content)
+    Stage(out, f"export-{form}", _key(parts, inputs, form, time), [file]).done(inputs=inputs.names(), time=time)
     for words in left_out:
         warn("export", f"{name}: left out: {words}")
     say("export", f"{name}: {file}: {len(content) / 1000:.0f} kB")
+
+
+def is_fresh(name: str, form: str) -> bool:
+    """Whether the file that is there is of the mechanism as it is."""
+    out = Out(name)
+    notes = Stage(out, f"export-{form}", "", []).notes()
+    inputs, time = observed(notes.get("inputs")), notes.get("time", 0.0)
+    file = file_of(out, form)
+    return bool(inputs) and Stage(out, f"export-{form}", _key(_parts(out), inputs, form, time), [file]).is_fresh()
+
+
+def file_of(out: Out, form: str) -> Path:
+    """Where the file of a format is."""
+    return out.folder / "export" / f"{out.name}{FORMATS[form][0]}"
+
+
+def _parts(out: Out) -> contract.Parts | None:
+    return contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
+
+
+def _key(parts: contract.Parts | None, inputs: Inputs, form: str, time: float) -> str:
+    """Hash of all that a file follows from; that of the solids takes them whole, others their masses alone."""
+    solids = parts.provenance.inputs if parts is not None and form == "step" else ""
+    return str(key_of(solving.motion_key(parts, inputs), solids, form, time, sources_hash(*SOURCES)))
 
 
 def _warn_of_time(name: str, time: float, first: float, last: float) -> None:

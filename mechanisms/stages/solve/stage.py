@@ -60,7 +60,7 @@ def run(name: str, parts_are_outdated: bool = False) -> None:
     loaded = loaded_inputs(mechanism_file(name), loading.package_of(name), before)
     loaded.sources.pop("mbsd", None)  # it counts anyway
     inputs = loaded.joined(recorder.inputs())
-    key = _key(parts, inputs)
+    key = motion_key(parts, inputs)
     motion.provenance.inputs = key
     write_skeleton(out.skeleton, skeleton_of(solution, motion.provenance))
     contract.write_motion(out.motion, motion)
@@ -80,10 +80,10 @@ def _parts(out: Out) -> contract.Parts | None:
 
 def _is_fresh(out: Out, parts: contract.Parts | None) -> bool:
     known = observed(Stage(out, "solve", "", []).notes().get("inputs"))
-    return bool(known) and Stage(out, "solve", _key(parts, known), [out.motion, out.skeleton]).is_fresh()
+    return bool(known) and Stage(out, "solve", motion_key(parts, known), [out.motion, out.skeleton]).is_fresh()
 
 
-def _key(parts: contract.Parts | None, inputs: Inputs) -> str:
+def motion_key(parts: contract.Parts | None, inputs: Inputs) -> str:
     """Hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
     masses = parts and {body: (solids.mass, solids.z, main_material(solids)) for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")

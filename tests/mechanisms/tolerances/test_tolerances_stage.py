@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import errno
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -55,6 +57,20 @@ ASKED = """def tolerances(p):
 def rows(file: Path) -> list[dict[str, str]]:
     with file.open(newline="") as lines:
         return list(csv.DictReader(lines))
+
+
+def test_a_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It was a traceback, after all machines were solved."""
+    monkeypatch.setenv("MBSD_OUT", str(tmp_path))
+
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(UserError, match=r"slider_crank-offset: cannot write .*\.csv: No space left on device"):
+        stage.run("slider_crank-offset")
+    assert [path.name for path in (tmp_path / "slider_crank-offset").iterdir()] == ["tolerances"]
+    assert not list((tmp_path / "slider_crank-offset" / "tolerances").iterdir())
 
 
 def test_the_example_of_the_gallery_is_what_the_library_finds(

@@ -104,6 +104,7 @@ def test_a_folder_with_mechanism_py_is_the_machine_itself(tmp_path: Path) -> Non
     assert told["machine"] == "my_crank_2"
     assert [stage["stage"] for stage in told["stages"]] == ["parts", "solve"]
     assert {"data.json", "skeleton.json"} <= set(told["files"])
+    assert told["older"] == []
     assert (own / "out" / "my_crank_2" / "data.json").is_file()
 
 

@@ -36,7 +36,7 @@ def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
     Raises UserError if the kernel cannot write its file.
     """
     volume, tolerance = volume_of(solid), tolerance or TOLERANCE
-    solid = ruled(solid)
+    solid, triangles = ruled(solid), np.empty((0, 3, 3), np.float32)
     for finer in FINER + BESIDE:
         triangles = facets(solid, tolerance / finer, ANGLE / finer)
         is_fine = abs(enclosed(triangles) / volume - 1) < VOLUME_GOAL

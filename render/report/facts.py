@@ -4,33 +4,29 @@ from __future__ import annotations
 
 import numpy as np
 
-from render.report.loads import NOTHING
 from render.report.transmission import loops
-from render.report.written import counted, degrees, moment, speed, written
+from render.report.written import Amounts, counted, degrees, moment, speed, written
 from shared.contract import BodyMotion, Motion, Parts
 from shared.contract.clearance import Clearance
-
-STILL = 1e-9
-"""What is slower (m/s) stands still but for rounding."""
 
 
 def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> list[str]:
     """Freedoms, time, fastest place, largest effort and reaction, transmission angle, mass, clearance."""
-    span = motion.time[-1] - motion.time[0]
+    span, amount = motion.time[-1] - motion.time[0], Amounts(motion)
     out = [f"{counted(motion.diagnostics.dof, 'degree')} of freedom"]
     out.append(f"repeats after {moment(motion.period)}" if motion.period else f"{moment(span)} of motion")
     name, most = fastest(motion)
-    if most > STILL:
+    if amount.without_noise(most, "m/s"):
         out.append(f"{name} reaches {speed(most)}")
     forces = {name: float(np.hypot(joint.fx, joint.fy).max()) for name, joint in motion.joints.items()}
     largest = max(forces.values(), default=0.0)
     for name, driver in motion.drivers.items():
         effort = float(np.abs(driver.effort).max())
-        if effort > NOTHING * largest:
+        if amount.without_noise(effort, driver.effort_unit):
             out.append(f"{name} up to {written(effort, driver.effort_unit)}")
     if not any(np.any(driver.effort) for driver in motion.drivers.values()):
         out += [f"{name} up to {size}" for name, size in _efforts(motion)[:2]]
-    if largest > 0:
+    if amount.without_noise(largest, "N"):
         most = max(forces, key=lambda name: forces[name])
         out.append(f"largest reaction {written(largest, 'N')} at {most}")
     out += [f"transmission angle from {degrees(float(loop.transmission.min()))}" for loop in loops(motion)[:1]]

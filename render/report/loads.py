@@ -11,8 +11,6 @@ from render.report.hydraulics import hydraulics_section
 from render.report.written import Amounts, first_peak, moment, table, written
 from shared.contract import Motion
 
-NOTHING = 1e-12
-"""Fraction of the largest in a table: smaller ones get no number."""
 ROUNDING = 1e-9
 """Fraction of what power could do all the time: less is no work."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from render.report.written import table, written
+from render.report.written import Amounts, table, written
 from render.shaking import floor_of, force_floor
 from shared.contract import Motion
 from shared.contract.vibration import Harmonics
@@ -13,8 +13,6 @@ LEAST = 2e-3
 """Orders of less than this part of the largest are left out."""
 MOST = 12
 """Rows of the table."""
-STILL = 1e-9
-"""A centre of mass that moves by less (m) is at rest."""
 VECTORS = ("shaking force", "shaking couple")
 
 
@@ -76,9 +74,9 @@ def _mean(motion: Motion) -> str:
     vibration = motion.vibration
     assert vibration is not None
     force = float(np.sqrt(np.mean(np.square(vibration.fx) + np.square(vibration.fy))))
-    x, y = (way if way > STILL else 0.0 for way in (float(np.ptp(vibration.x)), float(np.ptp(vibration.y))))
+    amount = Amounts(motion)
     shown = 0.0 if force < force_floor(motion) else force
     return (
         f"The shaking force is {written(shown, 'N')} by root mean square; the centre of mass of all that moves goes "
-        f"{written(x, 'm')} along x and {written(y, 'm')} along y."
+        f"{amount(float(np.ptp(vibration.x)), 'm')} along x and {amount(float(np.ptp(vibration.y)), 'm')} along y."
     )

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from render.magnitudes import effort_floor
-from render.report.facts import STILL, fastest
-from render.report.written import written
+from render.report.facts import fastest
+from render.report.written import Amounts, written
 from shared.contract import Motion, read_motion, read_parts
 from shared.contract.clearance import read_clearance
 from shared.stage.console import duration
@@ -55,7 +55,7 @@ def _numbers(out: Out) -> list[str]:
     gap = min((pair.gap for pair in clearance.pairs), default=None)
     return [
         str(sum(len(solids.pieces) for solids in parts.bodies.values())),
-        f"{written(speed, 'm/s')} ({name})" if speed > STILL else "",
+        f"{written(speed, 'm/s')} ({name})" if Amounts(motion).without_noise(speed, "m/s") else "",
         _effort(motion),
         "" if gap is None else written(gap, "m"),
     ]

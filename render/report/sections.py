@@ -132,10 +132,10 @@ def energy_section(motion: Motion) -> list[str]:
         drift = float(np.abs(audit - audit[0]).max())
         scale = max(float(kinetic.max()), float(np.ptp(potential)), 1e-300)
         lines += ["", f"The balance of energy, with the work of all forces and what events take, drifts by "
-                  f"{written(drift, 'J', 2)}: {drift / scale:.1e} of the largest exchange."]  # fmt: skip
+                  f"{amount(drift, 'J', 2)}: {drift / scale:.1e} of the largest exchange."]  # fmt: skip
     else:
         lines += ["", f"The power of the drivers differs from the change of energy by at most "
-                  f"{written(motion.diagnostics.power_residual, 'W')}."]  # fmt: skip
+                  f"{amount(motion.diagnostics.power_residual, 'W')}."]  # fmt: skip
     return lines
 
 

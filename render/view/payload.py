@@ -34,7 +34,8 @@ A server may send the same dict again, or some of its keys alone: what is given 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import types
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -42,12 +43,21 @@ import numpy as np
 from render.film.clock import Clock
 from render.film.markers import local_place
 from render.film.tubes.trails import colour_of, trails_of
+from render.magnitudes import floors, without_noise
 from render.report.moments import marks
 from render.shaking import floor_of, shaking
 from render.view.loads import arcs_of, arrows_of
 from shared.contract import JointMotion, Motion
 from shared.contract.shot import Shot
 from shared.contract.skeleton import Carrier, Moving, Stroke
+
+UNITS = {
+    "vx": "m/s", "vy": "m/s", "omega": "rad/s", "ax": "m/s²", "ay": "m/s²", "fx": "N", "fy": "N", "torque": "N m",
+    "power": "W", "kinetic": "J", "potential": "J",
+}  # fmt: skip
+"""Units of series whose rounding is drawn as zero."""
+EFFORTS = ("effort", "normal", "friction")
+"""Series in the unit of the effort of their driver, force or contact."""
 
 
 def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bool = True) -> dict[str, Any]:
@@ -58,6 +68,7 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
     shot = shot or Shot()
     clock = Clock(motion, shot)
     size = max(float(np.ptp([moving.low, moving.high], axis=0).max()), 10 * moving.unit)
+    quiet = floors(motion)
     return {
         "mechanism": motion.mechanism,
         "title": title_of(motion.mechanism),
@@ -73,14 +84,14 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
             "fps": shot.fps,
             "turns": clock.turns,
         },
-        "bodies": {name: _body(body) for name, body in motion.bodies.items()},
-        "joints": {name: _joint(motion, joint) for name, joint in motion.joints.items()},
-        "drivers": {name: _driver(driver) for name, driver in motion.drivers.items()},
+        "bodies": {name: _body(body, quiet) for name, body in motion.bodies.items()},
+        "joints": {name: _joint(motion, joint, quiet) for name, joint in motion.joints.items()},
+        "drivers": {name: _driver(driver, quiet) for name, driver in motion.drivers.items()},
         "points": {
-            name: {"body": point.body} | _series(point, "x", "y", "vx", "vy", "ax", "ay")
+            name: {"body": point.body} | _series(point, "x", "y", "vx", "vy", "ax", "ay", quiet=quiet)
             for name, point in motion.points.items()
         },
-        "forces": {name: _force(force) for name, force in motion.forces.items()},
+        "forces": {name: _force(force, quiet) for name, force in motion.forces.items()},
         "contacts": {
             name: {
                 "kind": contact.kind,
@@ -88,12 +99,12 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
                 "unit": contact.unit,
                 "effort_unit": contact.effort_unit,
             }
-            | _series(contact, "x", "y", "fx", "fy", "torque", "gap", "normal", "friction")
+            | _series(contact, "x", "y", "fx", "fy", "torque", "gap", "normal", "friction", quiet=quiet)
             for name, contact in motion.contacts.items()
         },
         "couple": couple_of(motion),
         "frame": frame_of(motion),
-        "energy": _series(motion.energy, "kinetic", "potential", "work", "audit"),
+        "energy": _series(motion.energy, "kinetic", "potential", "work", "audit", quiet=quiet),
         "margin": floats(motion.diagnostics.singularity_margin),
         "marks": [
             {"time": time, "words": words, "kind": "dead point" if words.endswith("turns back") else "event"}
@@ -154,9 +165,18 @@ def floats(values: Any) -> np.ndarray:
     return np.asarray(values, np.float64).astype(np.float32)
 
 
-def _series(thing: Any, *names: str) -> dict[str, Any]:
+def _series(thing: Any, *names: str, quiet: Mapping[str, float] = types.MappingProxyType({})) -> dict[str, Any]:
+    """Return series of a thing by name; what is below the floor of its unit is 0."""
     series: dict[str, Sequence[float] | None] = {name: getattr(thing, name) for name in names}
-    return {name: None if values is None else floats(values) for name, values in series.items()}
+    return {
+        name: None if values is None else floats(without_noise(np.asarray(values), _floor(thing, name, quiet)))
+        for name, values in series.items()
+    }
+
+
+def _floor(thing: Any, name: str, quiet: Mapping[str, float]) -> float:
+    unit = thing.effort_unit if name in EFFORTS else UNITS.get(name, "")
+    return quiet.get(unit, 0.0)
 
 
 def couple_of(motion: Motion) -> dict[str, Any] | None:
@@ -180,8 +200,8 @@ def frame_of(motion: Motion) -> dict[str, Any] | None:
     return series | {"crank": vibration.crank, "order": floats(vibration.order), "harmonics": harmonics}
 
 
-def _body(body: Any) -> dict[str, Any]:
-    out = _series(body, "x", "y", "vx", "vy", "omega", "ax", "ay", "alpha")
+def _body(body: Any, quiet: Mapping[str, float]) -> dict[str, Any]:
+    out = _series(body, "x", "y", "vx", "vy", "omega", "ax", "ay", "alpha", quiet=quiet)
     # Whole turns at the start say nothing and cost figures.
     out["theta"] = floats(np.asarray(body.theta) - math.tau * round(body.theta[0] / math.tau))
     return out | {
@@ -192,27 +212,27 @@ def _body(body: Any) -> dict[str, Any]:
     }
 
 
-def _joint(motion: Motion, joint: JointMotion) -> dict[str, Any]:
+def _joint(motion: Motion, joint: JointMotion, quiet: Mapping[str, float]) -> dict[str, Any]:
     """``at``: the second marker in its body, from where both are at the start."""
     body, x, y = joint.bodies[1], joint.x[0], joint.y[0]
     if body in motion.bodies:
         x, y = local_place(motion.bodies[body], x, y)
     at = {"body": body, "x": x, "y": y}
     out = {"kind": joint.kind, "bodies": list(joint.bodies), "pair": joint.pair, "at": at}
-    return out | _series(joint, "x", "y", "fx", "fy", "torque")
+    return out | _series(joint, "x", "y", "fx", "fy", "torque", quiet=quiet)
 
 
-def _driver(driver: Any) -> dict[str, Any]:
+def _driver(driver: Any, quiet: Mapping[str, float]) -> dict[str, Any]:
     units = {"unit": driver.unit, "effort_unit": driver.effort_unit}
     bodies = list(driver.bodies) if driver.bodies else []
-    return {"kind": driver.kind, "bodies": bodies} | units | _series(driver, "value", "effort", "power")
+    return {"kind": driver.kind, "bodies": bodies} | units | _series(driver, "value", "effort", "power", quiet=quiet)
 
 
-def _force(force: Any) -> dict[str, Any]:
+def _force(force: Any, quiet: Mapping[str, float]) -> dict[str, Any]:
     units = {"unit": force.unit or "m", "effort_unit": force.effort_unit}
     bodies = [action.body for action in force.actions]
     out = {"kind": force.kind, "bodies": bodies} | units
-    return out | _series(force, "value", "rate", "effort", "power", "potential")
+    return out | _series(force, "value", "rate", "effort", "power", "potential", quiet=quiet)
 
 
 def _carrier(carrier: Carrier) -> dict[str, Any]:

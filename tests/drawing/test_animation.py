@@ -133,6 +133,7 @@ def test_legends_end_within_their_panel_and_below_the_machine(size: tuple[int, i
     model = four_bar()
     model.gravity = (0.0, -9.81)
     model.torsion_spring("spring", model.ground, model.bodies["rocker"], 5.0, damping=0.1)
+    model.spring("coil", model.ground.at(0.0, 0.2), model.bodies["coupler"].at(0.06, 0.0), 20.0, 0.1)
     sol = model.sweep()
     page = Page(sol, scene(sol), EVERYTHING, size, True)
     assert len(page.panels) == 4
@@ -145,6 +146,15 @@ def test_legends_end_within_their_panel_and_below_the_machine(size: tuple[int, i
             assert 2 * MARGIN * px + wide <= panel.box[2] + 1e-6
         assert panel.room[1] - panel.box[1] >= (19 + LEGEND_ROW * (len(rows) - 1)) * px
     assert longest == most
+
+
+def test_a_legend_names_weights_alone_where_no_other_force_acts() -> None:
+    model = four_bar()
+    model.gravity = (0.0, -9.81)
+    sol = model.sweep()
+    page = Page(sol, scene(sol), (("forces", "reactions"),), (640, 360), True)
+    texts = [entry.text for row in legend_rows(page.panels[0]) for entry in row]
+    assert [text.split("  ")[-1] for text in texts if "  " in text] == ["weights", "reactions"]
 
 
 # -- files -----------------------------------------------------------------------------------------------------------

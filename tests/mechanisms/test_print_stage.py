@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import lib3mf
@@ -18,6 +19,7 @@ import pytest
 
 from mechanisms.stages.parts_files import read_mesh
 from mechanisms.stages.print import stage as print_stage
+from mechanisms.stages.print.lists import Made, markdown, table
 from shared.contract import read_parts
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
@@ -59,6 +61,20 @@ def test_every_piece_is_made_or_bought_once(press: Press) -> None:
     text = files["pieces.md"].decode()
     assert f"| {SCREW} | 3 | screw_0, screw_1, screw_2 |" in text
     assert "[plate_8mm.dxf](plate_8mm.dxf)" in text
+
+
+def test_masses_of_heavy_pieces_are_written_without_exponents() -> None:
+    """pieces.md had 6.269e+04 g and 1.861e+08 g."""
+    piece = SimpleNamespace(size=(10.0, 20.0, 30.0))
+    heavy = [
+        Made(("bob", "bob_2"), "cast_iron", 62.69, piece),  # pyright: ignore[reportArgumentType]
+        Made(("base",), "concrete", 186100.0, piece),  # pyright: ignore[reportArgumentType]
+        Made(("pin",), "steel", 0.0002661, piece),  # pyright: ignore[reportArgumentType]
+    ]
+    text, rows = markdown("crane", "250 x 210", heavy, []), table(heavy, [])
+    assert "## To make: 4, 186 t" in text
+    assert [line.split(" | ")[4] for line in text.splitlines() if line.startswith("| b")] == ["62.7 kg", "186 t"]
+    assert [row.split(",")[7] for row in rows.splitlines()[1:]] == ["62690", "186100000", "0.2661"]
 
 
 def test_equal_pieces_are_one_kind_and_mirror_images_are_two(press: Press) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.quantity import written
+from mbsd.base.quantity import live
 from mbsd.drawing.animation.brush import Brush, Colour, rgba
 from mbsd.drawing.animation.picture.sprites import lay, sprite
 from mbsd.drawing.animation.quantities.flow import Balance
@@ -76,15 +76,12 @@ class Bars:
         if self.has_energy:
             values = (self.balance.kinetic[k], self.balance.potential[k], self.total[k])
             top = self.columns[1] + self.columns[3] + 12 * px
+            in_joules = live([self.largest], "J", 3)
             for number, value in enumerate(values):
-                lay(
-                    picture,
-                    sprite(_short(float(value), "J", self.largest), 8.5, INK, self.dpi),
-                    self._column(number),
-                    top,
-                )
+                lay(picture, sprite(in_joules(float(value)), 8.5, INK, self.dpi), self._column(number), top)
+        in_watts = live([self.largest_power], "W", 3)
         for number, name in enumerate(self.powers):
-            word = sprite(_short(float(self.balance.powers[name][k]), "W", self.largest_power), 8.5, INK, self.dpi)
+            word = sprite(in_watts(float(self.balance.powers[name][k])), 8.5, INK, self.dpi)
             lay(picture, word, left + width - word.shape[1] / 2 - 2 * px, self._row(number) + 15 * px)
 
     def _column(self, k: int) -> float:
@@ -113,16 +110,3 @@ def _word(figure: Any, renderer: Any, text: str, x: float, y: float, ink: str, s
     figure.text(
         x, y, text, color=ink, fontsize=size, ha=side, va="center", transform=None, parse_math=False
     ).draw(renderer)  # fmt: skip
-
-
-def _short(value: float, unit: str, largest: float) -> str:
-    """Two digits, in the prefix of the largest value, so that the words do not jump."""
-    import math
-
-    power = 3 * math.floor(math.log10(largest) / 3 + 1e-9) if largest > 0 else 0
-    scaled = value / 10.0**power
-    decimals = max(0, 2 - max(0, math.floor(math.log10(largest / 10.0**power) + 1e-9)))
-    if abs(scaled) < 0.5 * 10.0**-decimals:
-        scaled = 0.0
-    unit_word = written(10.0**power, unit).split(" ")[1]
-    return f"{scaled:.{decimals}f} {unit_word}".replace("-", chr(0x2212))

@@ -103,14 +103,20 @@ def _entries(panel: Panel) -> list[Entry]:
                 continue
             scale = panel.scales[unit]
             text, part = written(scale.reference, unit), scale.reference / scale.largest
-            text += f"  {words.title}" if kind is Arrow and several else ""
-            text += ", higher ones cut" if scale.cut else ""
-            if kind is Arrow:
-                long = part * panel.scene.length * panel.brush.view.scale
-                out.append(Entry(text, wide(text), words.colour, arrow=long, head=words.head))
-            else:
+            cut = ", higher ones cut" if scale.cut else ""
+            if kind is Arc:
+                text += cut
                 out.append(Entry(text, wide(text), words.arcs or words.colour, sweep=part * FULL_TURN))
-            if kind is Arrow and any(isinstance(mark, Arrow) and mark.weight for mark in mine):
+                continue
+            long = part * panel.scene.length * panel.brush.view.scale
+            are_weights = {isinstance(mark, Arrow) and mark.weight for mark in mine}
+            if False in are_weights:
+                text += (f"  {words.title}" if several else "") + cut
+                out.append(Entry(text, wide(text), words.colour, arrow=long, head=words.head))
+            if are_weights == {True}:
+                text += f"  weights{cut}"
+                out.append(Entry(text, wide(text), WEIGHTS, arrow=long))
+            elif True in are_weights:
                 out.append(Entry("weights", wide("weights"), WEIGHTS, arrow=26 * px))
     if not panel.marks and panel.quantities and not panel.bars:
         titles = " and ".join(QUANTITIES[quantity].title for quantity in panel.quantities)

@@ -26,6 +26,7 @@ from mbsd.model.drivers.coordinate import drive_coordinate
 from mbsd.model.drivers.distance import drive_distance
 from mbsd.model.drivers.relative_angle import drive_relative_angle
 from mbsd.model.event import Event
+from mbsd.model.force import Force
 from mbsd.model.forces.actuator import actuator
 from mbsd.model.forces.bushing import bushing
 from mbsd.model.forces.clearance_joint import clearance_joint
@@ -67,7 +68,7 @@ from mbsd.model.joints.revolute import revolute
 from mbsd.model.joints.rolling_disc import rolling_disc
 from mbsd.model.joints.rolling_on_curve import rolling_on_curve
 from mbsd.model.joints.weld import weld
-from mbsd.model.mechanism import Model, StartVelocity, new_name, number_given, own_body, start_given
+from mbsd.model.mechanism import Model, StartVelocity, name_of, new_name, number_given, own_body, start_given
 
 
 class Building(Model):
@@ -215,8 +216,10 @@ class Building(Model):
 
         return marker_in_world(self, body, x, y, angle)
 
-    def change(self, name: str, **values: Any) -> None:
-        """Change numbers or laws of a body, joint, driver, force or contact; the next solution has them.
+    def change(self, name: Body | Joint | Force | str, **values: Any) -> None:
+        """Change numbers or laws of a body, joint, driver, force or contact, given itself or by name.
+
+        The next solution has them.
 
             m.change("spring", stiffness=250.0)
             m.change("crank", mass=1.2)
@@ -230,4 +233,4 @@ class Building(Model):
         """
         from mbsd.model.change import change
 
-        change(self, name, values)
+        change(self, name_of(name), values)

@@ -25,7 +25,7 @@ from mbsd.arrays.start_state import AnyModel, copied
 from mbsd.arrays.states import own_states
 from mbsd.base.codes import CONSTANT
 from mbsd.base.errors import MobilityError, ModelError
-from mbsd.base.names import names_in, no_such
+from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.kinematics.limits.closed_contacts import refuse_pushing
 from mbsd.kinematics.pose.phases import take_decided
@@ -34,7 +34,7 @@ from mbsd.model.force import Force, ForceKind
 from mbsd.model.forces.actuator import ACTUATOR
 from mbsd.model.forces.torque import TORQUE
 from mbsd.model.joint import Joint
-from mbsd.model.mechanism import Model
+from mbsd.model.mechanism import Model, names_given
 from mbsd.results.solution import Solution
 
 UNBALANCED = 1e-6
@@ -118,7 +118,7 @@ class ActuatedMotion:
 
 def inverse_dynamics(m: Model, motion: Solution, actuators: Sequence[str]) -> ActuatedMotion:
     """See :meth:`mbsd.mechanism.Mechanism.inverse_dynamics`."""
-    actuators = names_in(f"{m.name}: inverse_dynamics: actuators", actuators)
+    actuators = names_given(f"{m.name}: inverse_dynamics: actuators", actuators)
     if not actuators or len(set(actuators)) < len(actuators):
         raise ModelError(f"{m.name}: inverse_dynamics needs the names of actuators, each once, got {actuators!r}")
     if not isinstance(motion, Solution):

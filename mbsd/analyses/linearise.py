@@ -12,15 +12,15 @@ from mbsd.analyses.state_space import Linearisation
 from mbsd.analyses.state_space import linearise as linearise_start
 from mbsd.arrays.start_state import copied, started_at
 from mbsd.base.errors import ModelError
-from mbsd.base.names import names_in, no_such
+from mbsd.base.names import no_such
 from mbsd.base.shown import shown
-from mbsd.model.mechanism import Model
+from mbsd.model.mechanism import Model, names_given
 from mbsd.results.solution import Solution
 
 
 def linearise(m: Model, at: Equilibrium | Solution | str, t: float | None, inputs: Sequence[str]) -> Linearisation:
     """See :meth:`mbsd.mechanism.Mechanism.linearise`."""
-    inputs = names_in(f"{m.name}: linearise: inputs", inputs)
+    inputs = names_given(f"{m.name}: linearise: inputs", inputs)
     for name in inputs:
         if not isinstance(name, str) or (name not in m.drivers and name not in m.forces):
             raise ModelError(f"{m.name}: {no_such('driver or force', name, [*m.drivers, *m.forces])}")

@@ -159,7 +159,7 @@ CHECKS: dict[str, Callable[[str, Any], object]] = {
     "str": text,
 }
 """By annotation; they return what the function is given. Bodies and markers enter theirs (mbsd/model/body.py)."""
-ORDERED = {"Body", "Marker"}
+ORDERED = {"Body | str", "Marker"}
 """What is easily given at the wrong place: errors of these tell the order of the arguments."""
 
 
@@ -261,12 +261,13 @@ def checked(function: F) -> F:
 
 def _check_of(annotation: str, signature: inspect.Signature) -> Callable[[str, Any], object] | None:
     words = [word.strip() for word in annotation.split("|")]
-    check = CHECKS.get(words[0])
-    if check is None or any(word != "None" for word in words[1:]):
+    wanted = " | ".join(word for word in words if word != "None")
+    check = CHECKS.get(wanted)
+    if check is None:
         return None
-    if words[0] in ORDERED:
+    if wanted in ORDERED:
         check = _telling_order(check, signature)
-    if len(words) == 1:
+    if "None" not in words:
         return check
     return lambda what, value: None if value is None else check(what, value)
 

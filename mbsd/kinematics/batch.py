@@ -10,12 +10,12 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.arguments import number_array, whole_number
 from mbsd.base.errors import ModelError
-from mbsd.base.names import names_in, no_such
+from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.prepare import prepare
 from mbsd.model.body import Marker, at_end
-from mbsd.model.mechanism import Model
+from mbsd.model.mechanism import Model, names_given
 
 MOST_THREADS = 1024
 
@@ -37,7 +37,7 @@ def batch(
             raise ModelError(
                 f"{m.name}: batch: {what} are {shown(given)}; give names and their values: {{name: [...]}}"
             )
-    angles = names_in(f"{m.name}: batch: angles", angles)
+    angles = names_given(f"{m.name}: batch: angles", angles)
     if threads is not None:
         threads = whole_number(f"{m.name}: batch: threads", threads)
         if threads > MOST_THREADS:

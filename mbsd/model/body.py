@@ -208,22 +208,18 @@ def marker_given(what: str, value: object) -> Marker:
     raise ModelError(f"{what} is the body '{value.name}'; it must be a marker, a place on it: write {places}")
 
 
-def body_given(what: str, value: object) -> Body:
-    """``value``, which must be a body. Raises ModelError."""
-    if isinstance(value, Body):
+def body_given(what: str, value: object) -> Body | str:
+    """``value``, which must be a body or the name of one. Raises ModelError."""
+    if isinstance(value, Body | str):
         return value
     if isinstance(value, Marker):
         raise ModelError(
             f"{what} is a marker on '{value.body.name}'; it must be a body: write {value.body.name}, without at(...), "
             "start or end"
         )
-    if isinstance(value, str):
-        raise ModelError(
-            f"{what} is the text {shown(value)}; it must be a body: what m.body(...) or m.bar(...) returned"
-        )
     raise ModelError(
-        f"{what} is {shown(value)}; it must be a body: m.ground, or what m.body(...) or m.bar(...) returned"
+        f"{what} is {shown(value)}; it must be a body: m.ground, what m.body(...) or m.bar(...) returned, or its name"
     )
 
 
-CHECKS.update({"Marker": marker_given, "Body": body_given})
+CHECKS.update({"Marker": marker_given, "Body | str": body_given})

@@ -11,7 +11,7 @@ from typing import Any
 
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError
-from mbsd.base.names import Named, Suggesting, no_such
+from mbsd.base.names import Named, Suggesting, names_in, no_such
 from mbsd.base.pickled import with_copied_fields
 from mbsd.base.shown import shown
 from mbsd.model.body import Body, Marker, rod_inertia
@@ -117,6 +117,11 @@ class Model(Suggesting):
     ) -> Body:
         """Add a body. Without a mass it has none here; in a mechanism's folder it then gets that of its parts.
 
+        mass (kg) at ``com`` (m, in the body's frame), ``inertia`` about it (kg m^2). With inertia 0, the default, it is
+        a point mass: turning it about its centre of mass takes no moment. Simulations then need joints that turn it
+        only together with mass, as a pin beside its centre of mass does, or nothing that acts on its turning; a
+        contact, spring or torque that turns it alone raises MobilityError. Sweeps and statics need none.
+
         ``z``: place of its centre of mass along the normal of the plane, towards the viewer (m). It moves nothing; the
         couples of ``sol.shaking()`` and the layers of the parts follow it. ``products``: integrals of x z dm and y z dm
         about the centre of mass, in the body frame (kg m^2), of a body that reaches along the normal. Raises ModelError
@@ -138,7 +143,8 @@ class Model(Suggesting):
         """Add a bar from ``start`` (0, 0) to ``end`` (length, 0).
 
         With a mass and nothing else it is a uniform slender rod: com at the middle, inertia m l^2 / 12, also after its
-        mass or length changes. ``z`` and ``products`` are those of :meth:`body`.
+        mass or length changes; ``inertia=0`` makes it a point mass at ``com``. ``z`` and ``products`` are those of
+        :meth:`body`.
         """
         return self._with(name, new_bar, length, mass, com, inertia, z=z, products=products)
 
@@ -151,7 +157,7 @@ class Model(Suggesting):
 
     def set_mass(
         self,
-        name: str,
+        name: Body | str,
         mass: float,
         com: Sequence[float],
         inertia: float,
@@ -165,12 +171,13 @@ class Model(Suggesting):
         body = self.known_body(name)
         checked: Any = com, body.products if products is None else products
         along = body.z if z is None else z
-        wanted = Body(name, self.name, mass, checked[0], inertia, z=along, products=checked[1])
+        wanted = Body(body.name, self.name, mass, checked[0], inertia, z=along, products=checked[1])
         body.mass, body.com, body.inertia = wanted.mass, wanted.com, wanted.inertia
         body.z, body.products = wanted.z, wanted.products
 
-    def known_body(self, name: str) -> Body:
-        """The body of this name; raises ModelError with the known names."""
+    def known_body(self, name: Body | str) -> Body:
+        """The body of this name, or that one itself; raises ModelError with the known names."""
+        name = name_of(name)
         if not isinstance(name, str) or name not in self.bodies:
             raise ModelError(f"{self.name}: {no_such('body', name, self.bodies)}")
         return self.bodies[name]
@@ -215,12 +222,45 @@ def connections(m: Model) -> tuple[Mapping[str, object], ...]:
     return m.joints, m.drivers, m.forces, m.contacts
 
 
-def own_body(m: Model, body: Body, what: str) -> None:
-    """Raise ModelError unless ``body`` is one of this mechanism; ``what`` uses it."""
+def own_body(m: Model, body: Body | str, what: str) -> Body:
+    """Return a body of this mechanism, which is given itself or by its name; raises ModelError. ``what`` uses it."""
+    if isinstance(body, str):
+        if body not in m.bodies:
+            raise ModelError(f"{m.name}: {what}: {no_such('body', body, m.bodies)}")
+        return m.bodies[body]
     if not isinstance(body, Body):
         raise ModelError(f"{m.name}: {what} needs a body, got {shown(body)}")
     if m.bodies.get(body.name) is not body:
         raise ModelError(f"{m.name}: {what} uses body '{body.name}' of another mechanism; take one of this one")
+    return body
+
+
+def own_joint(m: Model, joint: Joint | str, what: str) -> Joint:
+    """Return a joint of this mechanism, which is given itself or by its name; raises ModelError. ``what`` uses it.
+
+    A joint that :meth:`Mechanism.change` has replaced since counts as the one in its place.
+    """
+    if not isinstance(joint, Joint | str):
+        raise ModelError(f"{m.name}: {what} needs a joint, got {shown(joint)}")
+    known = m.joints.get(name_of(joint))
+    if known is None:
+        raise ModelError(f"{m.name}: {what}: {no_such('joint', name_of(joint), m.joints)}")
+    if isinstance(joint, Joint) and (known.i.body is not joint.i.body or known.j.body is not joint.j.body):
+        raise ModelError(f"{m.name}: {what} uses joint '{joint.name}' of another mechanism; take one of this one")
+    return known
+
+
+def name_of(thing: Any) -> Any:
+    """Return the name of a body, joint, driver, force or contact; what is none of them as it is."""
+    return thing.name if isinstance(thing, Body | Joint | Force) else thing
+
+
+def names_given(what: str, value: Any) -> list[str]:
+    """Return names of bodies, joints, drivers, forces or contacts, given themselves or by names, one or a list.
+
+    Raises ModelError, which says ``what`` they are for.
+    """
+    return names_in(what, [name_of(part) for part in value] if isinstance(value, list | tuple) else name_of(value))
 
 
 def new_name(m: Model, name: str, what: str, *taken: Mapping[str, object]) -> None:

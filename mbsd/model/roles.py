@@ -1,8 +1,8 @@
 """What the arguments of a function that adds a joint, driver, force or contact are, by their types.
 
 Marker                   one of the two markers
-Body, Body | None        a body of one of them; one that may be left out
-Body | str               another body, which the params keep by its name
+Body | str               a body of one of them, or its name; with None one that may be left out
+str | Body               another body, which the params keep by its name
 Law                      a law of time: a Motion, or a function
 Amount                   a number, or a law of time
 Curve, Curve | None      a characteristic curve
@@ -57,7 +57,7 @@ def arguments(add: Callable[..., Any]) -> tuple[Argument, ...]:
 def _role(types: tuple[Any, ...]) -> Role:
     if Marker in types:
         return Role.MARKER
-    if Body in types and str not in types:
+    if Body in types and types[0] is not str:
         return Role.OPTIONAL_BODY if type(None) in types else Role.BODY
     if Curve in types:
         return Role.CURVE

@@ -58,7 +58,7 @@ def _two_bars() -> Mechanism:
         ),
         (lambda m: m.distance("D", m.bodies["a"].end, m.bodies["b"].end, 0.0), "length 0 m"),
         (lambda m: m.drive_angle("motor", m.bodies["a"], 3.0), "needs a motion law"),
-        (lambda m: m.drive_angle("motor", "a", constant_rate(1)), "body is the text 'a'; it must be a body"),
+        (lambda m: m.drive_angle("motor", "z", constant_rate(1)), "driver 'motor': there is no body 'z'; there is"),
         (lambda m: m.trace("P", Mechanism("x").bar("q", 1).end), "another mechanism"),
         (lambda m: m.start_near(z=3), "no body 'z'"),
         (lambda m: m.start_near(a=(1, 2)), r"give degrees, or \(x, y, degrees\)"),

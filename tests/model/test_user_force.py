@@ -93,8 +93,8 @@ def test_wrong_ones_are_refused_when_built() -> None:
     for bad, words in [((3.0, a), "needs a function"), ((_late,), "needs the bodies"), ((_late, a, a), "each once")]:
         with pytest.raises(ModelError, match=words):
             m.user_force("push", *bad)
-    with pytest.raises(ModelError, match="it must be a body"):
-        m.user_force("push", _late, "a")  # pyright: ignore[reportArgumentType]
+    with pytest.raises(ModelError, match="force 'push': there is no body 'b'"):
+        m.user_force("push", _late, "b")
     assert not m.forces
 
 

@@ -62,9 +62,10 @@ def _released(m: Model, event: str, releases: Any) -> tuple[str, ...]:
 
 
 def _frames(m: Model, event: str, frames: Any) -> tuple[Marker, ...]:
-    given = (frames,) if isinstance(frames, Body | Marker) else frames
-    if not isinstance(given, Sequence) or not all(isinstance(frame, Body | Marker) for frame in given):
+    given = (frames,) if isinstance(frames, Body | Marker | str) else frames
+    if not isinstance(given, Sequence) or not all(isinstance(frame, Body | Marker | str) for frame in given):
         raise ModelError(f"{event}: frames are {shown(frames)}; give bodies and markers: frames=(arm, arm.end)")
+    what = f"event of frames ({event})"
     for frame in given:
-        own_body(m, frame if isinstance(frame, Body) else frame.body, f"event of frames ({event})")
-    return tuple(frame.origin if isinstance(frame, Body) else frame for frame in given)
+        own_body(m, frame.body if isinstance(frame, Marker) else frame, what)
+    return tuple(frame if isinstance(frame, Marker) else own_body(m, frame, what).origin for frame in given)

@@ -35,11 +35,10 @@ def add_force(
     return force
 
 
-def origins(m: Model, name: str, first: Body, second: Body) -> tuple[Marker, Marker]:
-    """The frames of two bodies of this mechanism. Raises ModelError."""
-    for body in (first, second):
-        own_body(m, body, f"force '{name}'")
-    return first.origin, second.origin
+def origins(m: Model, name: str, first: Body | str, second: Body | str) -> tuple[Marker, Marker]:
+    """The frames of two bodies of this mechanism, which are given themselves or by name. Raises ModelError."""
+    what = f"force '{name}'"
+    return own_body(m, first, what).origin, own_body(m, second, what).origin
 
 
 def amounts_given(m: Model, name: str, **values: float) -> dict[str, Any]:

@@ -25,8 +25,7 @@ ONE_WAY = register(
 
 
 @ONE_WAY.adds
-def one_way(m: Model, name: str, first: Body, second: Body, clockwise: bool = False) -> Joint:
+def one_way(m: Model, name: str, first: Body | str, second: Body | str, clockwise: bool = False) -> Joint:
     """A one-way clutch: ``second`` turns against ``first`` only counter-clockwise, or only clockwise."""
-    for body in (first, second):
-        own_body(m, body, f"contact '{name}'")
-    return add_contact(m, ONE_WAY, name, first.origin, second.origin, None, {"clockwise": bool(clockwise)})
+    i, j = (own_body(m, body, f"contact '{name}'").origin for body in (first, second))
+    return add_contact(m, ONE_WAY, name, i, j, None, {"clockwise": bool(clockwise)})

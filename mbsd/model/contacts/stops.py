@@ -14,7 +14,7 @@ from mbsd.model.adding.contacts import add_contact, stop_given
 from mbsd.model.body import Marker
 from mbsd.model.contact import ContactKind, register
 from mbsd.model.joint import Joint
-from mbsd.model.mechanism import Model, connections, new_name
+from mbsd.model.mechanism import Model, connections, new_name, own_joint
 
 
 def _side(params):
@@ -61,7 +61,7 @@ def coordinate_stop(
 def stop(
     m: Model,
     name: str,
-    joint: Joint,
+    joint: Joint | str,
     lower: float | None = None,
     upper: float | None = None,
     restitution: float = 0.0,
@@ -71,7 +71,8 @@ def stop(
         raise ModelError(f"{m.name}: stop '{name}' has no end; give lower=, upper= or both")
     if lower is not None and upper is not None and not lower < upper:
         raise ModelError(f"{m.name}: stop '{name}': lower is {lower:g}, upper {upper:g}; lower must be less")
-    if not isinstance(joint, Joint) or joint.kind.pair not in ("pin", "guide"):
+    joint = own_joint(m, joint, f"stop '{name}'")
+    if joint.kind.pair not in ("pin", "guide"):
         raise ModelError(f"{m.name}: stop '{name}' needs a revolute or prismatic joint, got {shown(joint)}")
     add = angle_stop if joint.kind.pair == "pin" else coordinate_stop
     ends = [("lower", lower, False), ("upper", upper, True)]

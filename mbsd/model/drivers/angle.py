@@ -25,7 +25,6 @@ DRIVE_ANGLE = register(
 
 
 @DRIVE_ANGLE.adds
-def drive_angle(m: Model, name: str, body: Body, law: Law) -> Joint:
+def drive_angle(m: Model, name: str, body: Body | str, law: Law) -> Joint:
     """Impose the absolute angle of a body (rad)."""
-    own_body(m, body, f"driver '{name}'")
-    return join(m, DRIVE_ANGLE, name, m.ground.origin, body.origin, law=law)
+    return join(m, DRIVE_ANGLE, name, m.ground.origin, own_body(m, body, f"driver '{name}'").origin, law=law)

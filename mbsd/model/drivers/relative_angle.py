@@ -25,8 +25,7 @@ DRIVE_RELATIVE_ANGLE = register(
 
 
 @DRIVE_RELATIVE_ANGLE.adds
-def drive_relative_angle(m: Model, name: str, first: Body, second: Body, law: Law) -> Joint:
+def drive_relative_angle(m: Model, name: str, first: Body | str, second: Body | str, law: Law) -> Joint:
     """Impose the angle of body ``second`` against body ``first`` (rad)."""
-    own_body(m, first, f"driver '{name}'")
-    own_body(m, second, f"driver '{name}'")
-    return join(m, DRIVE_RELATIVE_ANGLE, name, first.origin, second.origin, law=law)
+    i, j = (own_body(m, body, f"driver '{name}'").origin for body in (first, second))
+    return join(m, DRIVE_RELATIVE_ANGLE, name, i, j, law=law)

@@ -45,13 +45,18 @@ CURVE_OF_ANGLE = register(
 
 @CURVE_OF_ANGLE.adds
 def curve_of_angle(
-    m: Model, name: str, first: Body, second: Body, of_angle: Curve | None = None, of_rate: Curve | None = None
+    m: Model,
+    name: str,
+    first: Body | str,
+    second: Body | str,
+    of_angle: Curve | None = None,
+    of_rate: Curve | None = None,
 ) -> Force:
     """Torque (N m) on ``second`` by characteristic curves of its angle against ``first`` (rad) and of the rate."""
     laws = curves_given(m, name, of_angle=of_angle, of_rate=of_rate)
     return add_force(m, CURVE_OF_ANGLE, name, *origins(m, name, first, second), {}, laws)
 
 
-def motor(m: Model, name: str, first: Body, second: Body, torque_speed: Curve) -> Force:
+def motor(m: Model, name: str, first: Body | str, second: Body | str, torque_speed: Curve) -> Force:
     """A motor on body ``first`` that turns ``second``: its torque (N m) over their relative speed (rad/s)."""
     return curve_of_angle(m, name, first, second, of_rate=torque_speed)

@@ -49,7 +49,7 @@ def force(
     at: Marker,
     force: Amount,
     direction: Sequence[float] | float = (1.0, 0.0),
-    frame: Body | None = None,
+    frame: Body | str | None = None,
 ) -> Force:
     """Force (N) at a marker, a constant or a law of time.
 
@@ -66,6 +66,5 @@ def force(
         angle = math.atan2(y, x)
     params, laws = amount_given(m, name, "force", force)
     params["direction"] = angle
-    base = m.ground if frame is None else frame
-    own_body(m, base, f"force '{name}'")
+    base = own_body(m, m.ground if frame is None else frame, f"force '{name}'")
     return add_force(m, FORCE, name, base.at(0.0, 0.0, angle), at, params, laws, same_body=True)

@@ -22,11 +22,10 @@ from __future__ import annotations
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
 from mbsd.model.adding.forces import above_zero, add_force, amounts_given
 from mbsd.model.force import Force, ForceKind, register
 from mbsd.model.joint import Joint
-from mbsd.model.mechanism import Model
+from mbsd.model.mechanism import Model, own_joint
 
 
 def _example(m: Any, i: Any, j: Any) -> None:
@@ -61,10 +60,7 @@ def friction(
     does not: a simulation finds when the joint sticks and slides, and holds it meanwhile.
     """
     what = f"{m.name}: force '{name}'"
-    key = joint.name if isinstance(joint, Joint) else joint
-    known = m.joints.get(key) if isinstance(key, str) else None
-    if known is None or (isinstance(joint, Joint) and known.bodies != joint.bodies):
-        raise ModelError(f"{what}: {no_such('joint', key, m.joints)}")
+    known = own_joint(m, joint, f"force '{name}'")
     if known.kind.pair is None:
         raise ModelError(
             f"{what}: '{known.name}' is a {known.kind.name}; friction needs one of revolute, prismatic, pin_in_slot"

@@ -107,7 +107,7 @@ def gas_cycle(
     name: str,
     cylinder: Marker,
     piston: Marker,
-    crank: Body | str,
+    crank: str | Body,
     cycle: GasCycle,
     bore: float,
     fires_at: float | None = None,
@@ -133,10 +133,7 @@ def gas_cycle(
     whose head lies on the side of the crank. Else a solution raises ModelError.
     """
     what = f"force '{name}'"
-    body = m.bodies.get(crank) if isinstance(crank, str) else crank
-    if not isinstance(body, Body):
-        raise ModelError(f"{m.name}: {what}: crank is {shown(crank)}; it must be a body of the mechanism, or its name")
-    own_body(m, body, what)
+    body = own_body(m, crank, f"{what}: crank")
     if not isinstance(cycle, GasCycle):
         raise ModelError(
             f"{m.name}: {what}: cycle is {shown(cycle)}; it must be four_stroke(...), two_stroke(...) or "

@@ -44,8 +44,8 @@ SHAFT = register(
 def shaft(
     m: Model,
     name: str,
-    first: Body,
-    second: Body,
+    first: Body | str,
+    second: Body | str,
     length: float,
     diameter: float,
     shear_modulus: float = 79.3e9,

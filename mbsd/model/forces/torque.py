@@ -31,7 +31,7 @@ TORQUE = register(
 
 
 @TORQUE.adds
-def torque(m: Model, name: str, body: Body, torque: Amount, against: Body | None = None) -> Force:
+def torque(m: Model, name: str, body: Body | str, torque: Amount, against: Body | str | None = None) -> Force:
     """Torque (N m) on a body, a constant or a law of time; ``against`` (ground by default) takes the opposite."""
     params, laws = amount_given(m, name, "torque", torque)
     return add_force(m, TORQUE, name, *origins(m, name, m.ground if against is None else against, body), params, laws)

@@ -28,7 +28,13 @@ TORSION_SPRING = register(
 
 @TORSION_SPRING.adds
 def torsion_spring(
-    m: Model, name: str, first: Body, second: Body, stiffness: Amount, damping: Amount = 0.0, free_angle: Amount = 0.0
+    m: Model,
+    name: str,
+    first: Body | str,
+    second: Body | str,
+    stiffness: Amount,
+    damping: Amount = 0.0,
+    free_angle: Amount = 0.0,
 ) -> Force:
     """Torsion spring (N m/rad) and damper (N m s/rad); no torque where second - first is ``free_angle`` (rad).
 

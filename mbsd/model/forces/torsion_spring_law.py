@@ -40,7 +40,9 @@ TORSION_SPRING_LAW = register(
 
 
 @TORSION_SPRING_LAW.adds
-def torsion_spring_law(m: Model, name: str, first: Body, second: Body, law: Callable[[float, float], float]) -> Force:
+def torsion_spring_law(
+    m: Model, name: str, first: Body | str, second: Body | str, law: Callable[[float, float], float]
+) -> Force:
     """Torsion spring by any function ``law(angle, rate)`` (rad, rad/s) that gives the torque on ``second`` (N m).
 
     The angle is that of second against first: ``lambda angle, rate: -k * angle - c * rate`` is a linear one.

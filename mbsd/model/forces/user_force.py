@@ -41,7 +41,7 @@ def user_force(
     m: Model,
     name: str,
     function: Callable[..., Any],
-    *bodies: Body,
+    *bodies: Body | str,
     breaks: Sequence[float] = (),
     shortest: float | None = None,
 ) -> Force:
@@ -57,11 +57,10 @@ def user_force(
     what = f"force '{name}'"
     if not callable(function):
         raise ModelError(f"{m.name}: {what} needs a function of t, q and v, got {shown(function)}")
-    for body in bodies:
-        own_body(m, body, what)
-    if not bodies or len(set(map(id, bodies))) < len(bodies):
+    own = [own_body(m, body, what) for body in bodies]
+    if not own or len(set(map(id, own))) < len(own):
         raise ModelError(f"{m.name}: {what} needs the bodies it acts on, each once")
     at, least = checked_pulses(f"{m.name}: {what}", breaks, shortest)
-    params: dict[str, Any] = {"function": function, "bodies": [body.name for body in bodies]}
+    params: dict[str, Any] = {"function": function, "bodies": [body.name for body in own]}
     params |= ({"breaks": at} if at else {}) | ({"shortest": least} if least else {})
-    return add_force(m, USER_FORCE, name, m.ground.origin, bodies[0].origin, params, same_body=True)
+    return add_force(m, USER_FORCE, name, m.ground.origin, own[0].origin, params, same_body=True)

@@ -13,6 +13,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import names_in, no_such
 from mbsd.derivatives.asked import Wanted, labelled, needed, needs_models, needs_reactions, of_bodies, wanted
 from mbsd.derivatives.driven.sweeps import SweepTangents
+from mbsd.derivatives.free.indexing import watched
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.with_model import with_model
@@ -189,4 +190,4 @@ def simulation_tangents(
 ) -> SimulationTangents:
     """Simulate at output times (T,) (s), with tangents by numbers where what is asked ``of`` the motion reads them."""
     refuse_bad_steps(m, grid, tolerance, None)
-    return SimulationTangents(m, Repeated(m, grid, tolerance), grid, numbers, partial(needed, of), of_bodies(m, of))
+    return SimulationTangents(m, Repeated(watched(m), grid, tolerance), grid, numbers, partial(needed, of), of_bodies(m, of))

@@ -19,6 +19,7 @@ from mbsd.derivatives.driven.sweeps import displaced
 from mbsd.derivatives.driven.tangents import Tangent, has_kinks
 from mbsd.derivatives.free.free_tangents import FreeTangents
 from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, unshared, ways_of
+from mbsd.derivatives.free.indexing import held_between, solve_ends, unwatched
 from mbsd.derivatives.free.jumps import Jump, jumps_of
 from mbsd.derivatives.free.linear_motion import LATEST, NODES
 from mbsd.derivatives.free.mesh import ROUNDING, apart, first_edges, looked_at, nodes_of
@@ -166,7 +167,7 @@ class SimulationTangents:
 
         def finish() -> Tangents:
             assert whole.solution is not None
-            self._take(rows_of(whole.solution, rows), needed)
+            self._take(rows_of(unwatched(whole.solution, self.m), rows), needed)
             if self.redundant:
                 made.lam[:] = np.nan  # joints that repeat others share their loads in many ways
             if needed[-1] < len(rows) - 1:
@@ -227,6 +228,10 @@ class SimulationTangents:
         self.ends, self._off = None, 0.0
         compact = self.terms.rows(along)[2]
         shared = self._unshare(along, compact, edges)
+        held = [held_between(self.terms, self.variants, along.take(slice(a, b))) for a, b in pairwise(edges)]
+        for (a, b), (terms, _) in zip(pairwise(edges), held, strict=True):
+            if terms is not self.terms:
+                solve_ends(terms, along, self.stretch_rows(along, a), a, b)
         jumps: list[Jump] = [] if whole.solution is None else jumps_of(self, whole.solution, along, edges)
         if whole.solution is not None:
             refuse_contact_at_start(self.terms, self.variants, along, q, v, whole.solution.events)
@@ -239,7 +244,7 @@ class SimulationTangents:
                     f"{self.m.name}: derivatives: events from t = {whole.t[a]:.9g} s on come at other times when they "
                     "are simulated again; take a smaller tolerance"
                 )
-            made = FreeTangents(self.terms, stretch, self.variants).carry(q, v)
+            made = FreeTangents(held[k][0], stretch, held[k][1]).carry(q, v)
             errors.append(made.errors)
             self._off = max(self._off, made.off)
             parts.append(made.asked)

@@ -19,6 +19,7 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.derivatives.driven.tangents import per_scales
 from mbsd.derivatives.free.guards import USER, End, Guard, guards_of, times_moved
+from mbsd.derivatives.free.indexing import is_index
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import Variants, Variation
 from mbsd.dynamics.events.laws.compliance import Compliance
@@ -205,4 +206,7 @@ def _jump(whole: Whole, sol: Solution, along: Along, row: int, ends: bool) -> Ju
     if ends:
         name = sol.events[-1].name
         return Jump(whole, along, row, struck, [Guard(USER, name, event=users[name])], ends)
-    return Jump(whole, along, row, struck, guards_of(sol.packed, along, row, struck), ends)
+    guards = guards_of(sol.packed, along, row, struck)
+    names = dict.fromkeys(event.name for event in here if event.what == "event")
+    guards += [Guard(USER, name, event=users[name]) for name in names if is_index(users.get(name))]
+    return Jump(whole, along, row, struck, guards, ends)

@@ -21,13 +21,13 @@ from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA
 
 @equation
 def residual(numbers, relative, out):
-    """F (rad); own numbers n, r."""
+    """F (rad); own numbers n, r, and the x beyond which the pin is in its slot: r, or what holds it in or out."""
     pitch = 2.0 * math.pi / numbers[OWN]
     radius = numbers[OWN + 1]
     x = relative[X]
     y = relative[Y]
     value = relative[A] - math.pi
-    if x > radius:
+    if x > numbers[OWN + 2]:
         x -= radius
     else:
         value -= 0.5 * pitch

@@ -42,7 +42,7 @@ GENEVA = register(
         ("geneva",),
         look="captive",
         example=lambda m, i, j: m.geneva("example", i, j, slots=5, radius=0.3),
-        numbers=lambda params: [(params["slots"], params["radius"])],
+        numbers=lambda params: [(params["slots"], params["radius"], params["radius"])],
         problem=_problem,
         lengths=("radius",),
         touching="place",

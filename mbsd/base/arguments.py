@@ -30,6 +30,8 @@ C = TypeVar("C", bound=type)
 NUMBERS = (int, float, np.floating, np.integer)
 LARGEST = 1e100
 """Largest size of any number: squares and products of a few such numbers can still be represented."""
+SMALLEST = 1e-100
+"""Smallest mass and moment of inertia that is not zero, likewise."""
 
 
 def finite_number(what: str, value: object) -> float:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import threading
+import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor, Future
 from contextlib import suppress
@@ -13,6 +15,8 @@ from mbsd.dealing.report import refuse_large
 
 FETCH = 60.0
 """Seconds that a finished result may be on its way."""
+WATCH = 0.5
+"""Seconds between two looks at the process that started this one."""
 SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 """Each process works on one core."""
 
@@ -58,14 +62,15 @@ class Here:
 class Processes(Here):
     """Processes of this machine, each begun with ``begin(*arguments)``. One that is killed has a successor.
 
-    They import nothing of the script that started them. Raises ImportError where loky is not installed.
+    They import nothing of the script that started them, and end with the process that did, however it ends. Raises
+    ImportError where loky is not installed.
     """
 
     def __init__(self, count: int, begin: Callable[..., None], *arguments: Any) -> None:
         from loky import ProcessPoolExecutor
 
         def start() -> Any:
-            executor = ProcessPoolExecutor(1, initializer=begin, initargs=arguments, env=SINGLE)
+            executor = ProcessPoolExecutor(1, initializer=_begin, initargs=(os.getpid(), begin, arguments), env=SINGLE)
             executor.submit(bool)  # it loads what it needs now
             return executor
 
@@ -100,6 +105,18 @@ class Processes(Here):
         """End all processes."""
         for executor in (*self._running.values(), *self._ended):
             executor.shutdown(wait=True, kill_workers=True)
+
+
+def _begin(starter: int, begin: Callable[..., None], arguments: tuple[Any, ...]) -> None:
+    """Begin a process that ends with the one that started it, which a SIGKILL leaves no time to tell it."""
+    threading.Thread(target=_end_with, args=(starter,), daemon=True).start()
+    begin(*arguments)
+
+
+def _end_with(starter: int) -> None:
+    while os.getppid() == starter:
+        time.sleep(WATCH)
+    os._exit(1)
 
 
 class Dask(Here):

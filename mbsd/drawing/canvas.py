@@ -55,14 +55,29 @@ class Canvas:
     sign: str | None = None
     """What is being drawn, where it is shown on demand: a canvas that records keeps it."""
 
+    anew: bool = False
+    """Whether nothing carries what is being drawn, whatever its symbol says."""
+
     @contextmanager
     def on(self, carrier: Carrier | None) -> Iterator[None]:
         """While this lasts, what is drawn is carried so."""
-        before, self.carrier = self.carrier, carrier
+        before, self.carrier = self.carrier, None if self.anew else carrier
         try:
             yield
         finally:
             self.carrier = before
+
+    @contextmanager
+    def uncarried(self, anew: bool) -> Iterator[None]:
+        """While this lasts, nothing carries what is drawn, if ``anew``: it is not there in every pose."""
+        self.anew = anew
+        try:
+            yield
+        finally:
+            self.anew = False
+
+    def leave_out(self, name: str, anchor: Point, driver: bool) -> None:
+        """A joint or driver that is not drawn in this pose, since an event has released it."""
 
     def line(
         self, points: Sequence[Point] | Point, colour: str = INK, width: float = 1.4, order: float = 4, **more: Any

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -31,9 +32,16 @@ class Pose:
     paths: dict[str, np.ndarray] = field(default_factory=dict)
     """(T, 2) of traced points."""
     travel: dict[str, np.ndarray] = field(default_factory=dict)
-    """(T,) place of a joint's second marker along the axis of the first (m); ``force spring``, ``contact floor``."""
+    """(T,) place of a joint's second marker along the axis of the first (m); ``force spring``, ``contact floor``. Of a
+    joint that is released it ends there."""
     aside: dict[str, np.ndarray] = field(default_factory=dict)
     """(T,) the same across that axis, to its left (m)."""
+    released: Mapping[str, bool] = field(default_factory=dict)
+    """Joints and drivers that an event releases, and whether that has happened."""
+
+    def gone(self, joint: str) -> bool:
+        """Whether a joint or driver has been released."""
+        return self.released.get(joint, False)
 
     def place(self, marker: Marker) -> np.ndarray:
         """(2,) of a marker in the world (m)."""
@@ -102,18 +110,21 @@ class Tracks:
     """See :class:`Pose`."""
     aside: dict[str, np.ndarray]
     """See :class:`Pose`."""
+    released: dict[str, np.ndarray]
+    """(T,) of each joint and driver that an event releases: whether that has happened."""
 
     def pose(self, step: int) -> Pose:
         """At one of the times."""
         frames = {n: (float(v.x[step]), float(v.y[step]), float(v.theta[step])) for n, v in self.views.items()}
-        return Pose(frames, f"t = {self.times[step]:.4g} s", True, self.paths, self.travel, self.aside)
+        released = {name: bool(gone[step]) for name, gone in self.released.items()}
+        return Pose(frames, f"t = {self.times[step]:.4g} s", True, self.paths, self.travel, self.aside, released)
 
 
 def tracks_of(sol: Solution) -> Tracks:
     """Tracks of a whole solution."""
     m = sol.mechanism
     views = {name: sol.body(name) for name in m.bodies}
-    travel, aside = {}, {}
+    travel, aside, released = {}, {}, _released(sol)
     for name, joint in _markers_of(m).items():
         first, second = views[joint.i.body.name], views[joint.j.body.name]
         gap = _path(second, joint.j) - _path(first, joint.i)
@@ -121,9 +132,21 @@ def tracks_of(sol: Solution) -> Tracks:
         c, s = np.cos(angle), np.sin(angle)
         travel[name] = gap[:, 0] * c + gap[:, 1] * s
         aside[name] = gap[:, 1] * c - gap[:, 0] * s
+        if name in released and not released[name].all():
+            travel[name], aside[name] = (along[name][~released[name]] for along in (travel, aside))
     points = {name: sol.point(name) for name in m.traces}
     paths = {name: np.stack([view.x, view.y], axis=1) for name, view in points.items()}
-    return Tracks(sol.t, views, paths, travel, aside)
+    return Tracks(sol.t, views, paths, travel, aside, released)
+
+
+def _released(sol: Solution) -> dict[str, np.ndarray]:
+    """(T,) of each joint and driver that an event releases: whether that has happened."""
+    if sol.held is None:
+        return {}
+    count = len(sol.packed.joints) - sol.packed.contacts
+    joints = zip(sol.packed.joints[:count], sol.packed.first_row, strict=False)
+    gone = {joint.name: ~sol.held[:, first] for joint, first in joints}
+    return {name: since for name, since in gone.items() if since.any()}
 
 
 def _markers_of(m: Model) -> dict[str, Joint | Force]:

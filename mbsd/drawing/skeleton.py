@@ -75,7 +75,7 @@ def draw(m: Model, pose: Pose, ax: Axes | None, frames: bool, names: bool) -> Pi
 def measure(m: Model, pose: Pose) -> tuple[np.ndarray, np.ndarray, float]:
     """Lowest and highest x, y (m) of all that is drawn, and the unit of the symbols (m)."""
     points = {name: _points(m, pose, name) for name in m.bodies}
-    wide = [reach(joint, pose) for joint in m.joints.values()]
+    wide = [reach(joint, pose) for joint in m.joints.values() if not pose.gone(joint.name)]
     loads = [force_reach(force, pose, list(m.joints.values())) for force in m.forces.values()]
     loads += [contact_reach(joint, pose) for joint in m.contacts.values()]
     everything = np.concatenate([*points.values(), *pose.paths.values(), *wide, *loads])
@@ -114,7 +114,11 @@ def draw_on(
             _frame(canvas, pose, "ground", 2.6)
     for joint in (*m.joints.values(), *m.drivers.values()):
         side = free_side(_directions(m, pose, points, joint, unit)) if sides is None else sides[joint.name]
-        draw_joint(canvas, Place(joint, pose, colours, side))
+        if pose.gone(joint.name):
+            canvas.leave_out(joint.name, pose.place(joint.j), joint.kind.driven)
+            continue
+        with canvas.uncarried(joint.name in pose.released):
+            draw_joint(canvas, Place(joint, pose, colours, side))
     for force in m.forces.values():
         draw_force(canvas, force, pose, list(m.joints.values()))
     draw_contacts(canvas, list(m.contacts.values()), pose, colours)
@@ -160,7 +164,7 @@ def _points(m: Model, pose: Pose, name: str) -> np.ndarray:
         if joint.i.body.name == name:
             start, axis = pose.place(joint.i), pose.axis(joint.i)
             reached = pose.place(joint.j) - start
-            out += [start + float(reached @ axis) * axis] if slides else []
+            out += [start + float(reached @ axis) * axis] if slides and not pose.gone(joint.name) else []
             out += [] if slides and name == "ground" else [start]
             if slides and joint.name in pose.travel:
                 out += [start + s * axis for s in (pose.travel[joint.name].min(), pose.travel[joint.name].max())]

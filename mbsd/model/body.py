@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
-from mbsd.base.arguments import CHECKS, finite_number, number_pair
+from mbsd.base.arguments import CHECKS, SMALLEST, finite_number, number_pair
 from mbsd.base.errors import ModelError
 from mbsd.base.pickled import with_copied_fields
 from mbsd.base.shown import shown
@@ -119,6 +119,11 @@ class Body:
             if number < 0:
                 raise ModelError(
                     f"{self.owner}: body '{self.name}' has {name} {number:g} {unit}; it cannot be negative"
+                )
+            if 0.0 < number < SMALLEST:
+                raise ModelError(
+                    f"{self.owner}: body '{self.name}' has {name} {number:g} {unit}; give 0, or {SMALLEST:g} {unit} or "
+                    "more: products of smaller numbers cannot be represented"
                 )
             return number
         if name in ("name", "owner", "length") and self.__dict__.get(name) not in (None, value):

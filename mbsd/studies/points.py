@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterable, Mapping
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sized
 from typing import Any
 
 from mbsd.base.errors import ModelError
@@ -30,7 +31,15 @@ def points_of(grid: Any) -> list[Point]:
             f"study: grid is {shown(grid)}; give names and their values {{name: [...]}}, a list of points "
             "[{name: value}, ...] or a DataFrame"
         )
-    return [_point(number, row) for number, row in enumerate(rows)]
+    points = [_point(number, row) for number, row in enumerate(itertools.islice(rows, MOST + 1))]
+    refuse_too_many(len(points), "or more ")
+    return points
+
+
+def refuse_too_many(count: int, more: str = "") -> None:
+    """Raise ModelError for more points than a study may have."""
+    if count > MOST:
+        raise ModelError(f"study: a grid of {count} {more}points; take {MOST} at most, in several studies")
 
 
 def refuse_names(build: Callable[..., Any], points: Iterable[Point]) -> None:
@@ -45,23 +54,34 @@ def refuse_names(build: Callable[..., Any], points: Iterable[Point]) -> None:
 
 
 def _product(grid: Mapping[str, Any]) -> list[Point]:
-    names, lists = [], []
-    for name, values in grid.items():
-        names.append(_name(name))
-        lists.append([_value(name, value) for value in _listed(name, values)])
-    count = math.prod(map(len, lists))
-    if count > MOST:
-        raise ModelError(f"study: a grid of {count} points; take {MOST} at most, in several studies")
+    listed = {_name(name): _listed(name, values) for name, values in grid.items()}
+    refuse_too_many(math.prod(map(_length, listed.values())))  # before any list is written out
+    names, lists, count = [], [], 1
+    for name, values in listed.items():
+        names.append(name)
+        lists.append([_value(name, value) for value in itertools.islice(values, MOST + 1)])
+        count *= len(lists[-1])
+        refuse_too_many(count, "or more ")
     return [dict(zip(names, values, strict=True)) for values in itertools.product(*lists)] if names else []
 
 
-def _listed(name: str, values: Any) -> list[Any]:
+def _listed(name: str, values: Any) -> Iterable[Any]:
     """A number or a text is one value."""
     if isinstance(values, str | bool | int | float) or values is None or getattr(values, "shape", None) == ():
         return [values]
     if isinstance(values, Mapping) or not isinstance(values, Iterable):
         raise ModelError(f"study: values of '{name}' are {shown(values)}; give a list of values")
-    return list(values)
+    return values
+
+
+def _length(values: Iterable[Any]) -> int:
+    """How many there are, at least."""
+    if not isinstance(values, Sized):
+        return 1
+    try:
+        return len(values)
+    except OverflowError:  # a range may have more
+        return sys.maxsize
 
 
 def _point(number: int, row: Any) -> Point:

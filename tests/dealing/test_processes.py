@@ -5,8 +5,12 @@ from __future__ import annotations
 import logging
 import os
 import signal
+import subprocess
+import sys
+import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -62,6 +66,64 @@ def test_an_order_that_ends_its_process_is_found_and_the_others_are_done(deadly:
     assert os.getpid() not in processes
     assert len(processes) > 1
     assert "worker process" in SAID[-1]
+
+
+STUDY = """
+import os, sys, time
+from pathlib import Path
+from mbsd.dealing.pools import Processes
+
+def begin(folder):
+    (Path(folder) / str(os.getpid())).touch()
+
+def work(seconds):
+    time.sleep(seconds)
+    return b""
+
+if __name__ == "__main__":
+    pool = Processes(2, begin, sys.argv[1])
+    for name in pool.there():
+        pool.submit(name, work, (60.0,), 1, print)
+    time.sleep(60.0)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks at /proc")
+def test_processes_end_with_the_one_that_started_them_though_it_is_killed(tmp_path: Path) -> None:
+    (tmp_path / "begun").mkdir()
+    script = tmp_path / "killed_study.py"
+    script.write_text(STUDY)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), os.getcwd()])}
+    starter = subprocess.Popen(
+        [sys.executable, "-c", "import killed_study, runpy; runpy.run_module('killed_study', run_name='__main__')",
+         str(tmp_path / "begun")],
+        env=environment,
+    )  # fmt: skip
+    try:
+        until(lambda: len(os.listdir(tmp_path / "begun")) == 2, 60.0)
+        workers = [int(name) for name in os.listdir(tmp_path / "begun")]
+        assert all(is_alive(worker) for worker in workers)
+        starter.kill()
+        starter.wait()
+        until(lambda: not any(is_alive(worker) for worker in workers), 20.0)
+    finally:
+        starter.kill()
+
+
+def until(is_so: Callable[[], bool], seconds: float) -> None:
+    """Wait until something is so. Raises AssertionError after so many seconds."""
+    end = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < end
+        time.sleep(0.1)
+
+
+def is_alive(process: int) -> bool:
+    """Whether a process runs; one that has ended and waits for its parent does not."""
+    try:
+        return ") Z " not in Path(f"/proc/{process}/stat").read_text()
+    except OSError:
+        return False
 
 
 def test_a_wrong_answer_of_this_process_is_no_endless_loop() -> None:

@@ -25,6 +25,8 @@ def _two_bars() -> Mechanism:
         (lambda m: m.bar("c", math.nan), "length is nan"),
         (lambda m: m.bar("c", "long"), "must be a number"),
         (lambda m: m.body("c", mass=-1.0), "'c' has mass -1 kg; it cannot be negative"),
+        (lambda m: m.body("c", mass=1e-170), "'c' has mass 1e-170 kg; give 0, or 1e-100 kg or more"),
+        (lambda m: m.body("c", mass=1.0, inertia=1e-120), r"'c' has inertia 1e-120 kg m\^2; give 0, or 1e-100"),
         (lambda m: m.body("c", inertia=-1.0), "inertia -1 kg m"),
         (lambda m: m.body("c", com=(math.inf, 0)), r"com of body 'c' \(m\) is inf; it must be finite"),
         (lambda m: m.body("c", com=(1, 2, 3)), r"com of body 'c' \(m\) is \(1, 2, 3\); it must be two numbers"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import os
@@ -203,6 +204,9 @@ def test_progress_is_told_in_lines_where_no_terminal_listens(capsys: pytest.Capt
         ({"grid": {"crnk": [1.0]}}, "build: there is no argument 'crnk', did you mean 'crank'"),
         ({"grid": [{"crank": 0.03, "rocker": 0.09}, {"rokcer": 0.09}]}, "build: there is no argument 'rokcer'"),
         ({"grid": {"a": range(10_000), "b": range(10_000)}}, "100000000 points"),
+        ({"grid": {"a": range(10**9)}}, "1000000000 points"),
+        ({"grid": {"a": range(10**30), "b": [1, 2]}}, "points; take 10000000 at most"),
+        ({"grid": {"a": itertools.count(), "b": [1]}}, "10000001 or more points"),
         ({"measure": lambda m: {"crank": 1.0}}, "measure gives 'crank'"),
         ({"save": "table.xlsx"}, ".parquet or .csv"),
         ({"processes": 0}, "processes is 0"),

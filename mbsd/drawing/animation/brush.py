@@ -112,6 +112,11 @@ class Brush(Canvas):
         if colour != MOVED:
             self.labels.append(Label(text, anchor, clearance, colour, size))
 
+    def leave_out(self, name: str, anchor: Point, driver: bool) -> None:
+        """Keep its number among the names, which come in the same order in all pictures."""
+        if not driver:
+            self.labels.append(Label(name, anchor, 0.0, INK, 0.0))
+
     def keep(self, path: Point) -> None:
         """Only while places for names are looked for: a point every half unit."""
         if not self.remembers or len(path) < 2:

@@ -50,10 +50,9 @@ def first_crossing(
 
         dip = first_dip(parts[:before], values[:before], monitor.still, quintic, truth)
         if dip is not None:
-            crosses = quintic(dip.above) > 0.0 > quintic(dip.below)
-            from scipy.optimize import brentq
-
-            where = float(brentq(quintic, *dip, xtol=1e-14)) if crosses else 0.5 * sum(dip)  # pyright: ignore[reportArgumentType]
+            above, below = quintic(dip.above), quintic(dip.below)
+            crosses = above > 0.0 > below
+            where = _root_between(quintic, *dip, above, below) if crosses else 0.5 * sum(dip)
             met = where, dip.below
         if met is not None and (earliest is None or met[0] < earliest[1]):
             earliest = monitor, *met
@@ -78,38 +77,51 @@ def _falls(
     zero = monitor.still
     if k == 0 and monitor.event is not None and values[0] > zero:
         zero = rounding(monitor.event)  # it may have begun here: a root beside it is none
-    where, negative = _root(monitor, samples, parts, k, float(values[k]), zero)
+    where, negative = _root(monitor, samples, parts, values, k, zero)
     if where == 0.0 and monitor.leaves is not None and monitor.leaves(samples(PARTS[[0, -1]])):
         opened = np.flatnonzero(values > monitor.still)
         below = below[below >= opened[0]] if len(opened) else below[:0]
         if not len(below):
             return None
-        where, negative = _root(monitor, samples, parts, int(below[0]), float(values[below[0]]), monitor.still)
+        where, negative = _root(monitor, samples, parts, values, int(below[0]), monitor.still)
     return where, negative
 
 
 def _root(
-    monitor: Monitor, samples: Callable[[np.ndarray], Samples], parts: np.ndarray, k: int, at_left: float, zero: float
+    monitor: Monitor,
+    samples: Callable[[np.ndarray], Samples],
+    parts: np.ndarray,
+    values: np.ndarray,
+    k: int,
+    zero: float,
 ) -> tuple[float, float]:
-    """Between two parts of the step; a value up to ``zero`` at the first of them is taken to begin there."""
-    from scipy.optimize import brentq
-
+    """Between parts k and k + 1 of the step; a value up to ``zero`` at the first of them is taken to begin there."""
     left, right = float(parts[k]), float(parts[k + 1])
+    at_left, at_right = float(values[k]), float(values[k + 1])
     level = min(0.0, max(at_left, -monitor.still))  # within rounding it counts as zero
 
     def value(x: float) -> float:
         return float(monitor.value(samples(np.array([x])))[0]) - level
 
-    negative = right
+    negative, above, below = right, at_left - level, at_right - level
     if at_left <= zero:
         start, positive = left, None
         for _ in range(HALVINGS):
             middle = 0.5 * (start + right)
-            if value(middle) > 0.0:
-                positive = middle
+            there = value(middle)
+            if there > 0.0:
+                positive, above = middle, there
                 break
-            right = middle
+            right, below = middle, there
         if positive is None:
             return start, negative
         left = positive
-    return float(brentq(value, left, right, xtol=1e-14)), negative  # pyright: ignore[reportArgumentType]
+    return _root_between(value, left, right, above, below), negative
+
+
+def _root_between(value: Callable[[float], float], left: float, right: float, at_left: float, at_right: float) -> float:
+    """A root between two parts where the value is known; to look again may give another sign of what is rounding."""
+    from scipy.optimize import brentq
+
+    known = {left: at_left, right: at_right}
+    return float(brentq(lambda x: known[x] if x in known else value(x), left, right, xtol=1e-14))  # pyright: ignore[reportArgumentType]

@@ -32,7 +32,7 @@ from mbsd.dynamics.events.monitors import (
     stick_monitors,
 )
 from mbsd.dynamics.events.resolution import resolved
-from mbsd.dynamics.events.sides import rounding_of, side_ahead, value_of
+from mbsd.dynamics.events.sides import refuse_chance, rounding_of, side_ahead, value_of
 from mbsd.dynamics.events.start_inside import refuse_inside
 from mbsd.dynamics.prepare.exchange import exchange_rows
 from mbsd.dynamics.reference.acceleration import derivative
@@ -107,6 +107,7 @@ class EventSteps:
             )
         self.jumps.resolve(None)
         self._restart()
+        self._meet_reached()
 
     def resume(self, snapshot: Snapshot, work: float) -> None:
         """Go on from where another run was, with its contacts as they were."""
@@ -139,21 +140,37 @@ class EventSteps:
             monitor, first, last = crossing
             self._find(monitor, before, first, last)
             self._note_rows()
-            if monitor.stops:
-                self._make_valid()
-                before_it, known, ways = self._row(), len(self.happenings), self._ways()
-                self._happen(monitor)
-                if len(self.happenings) > known or self._ways() != ways:  # a gap that only rounding closes is no event
-                    self.rows += [before_it] if self.ended else [before_it, self._row()]
-            else:
-                self._make_valid()
-                self._turn_side(monitor)
-                self._restart()
+            self._meet(monitor)
+            self._meet_reached()
         return False
 
-    def _ways(self) -> tuple[float, ...]:
-        """Directions of sliding of contacts and joints: where one turns round, friction jumps and nothing is told."""
+    def _meet(self, monitor: Monitor) -> None:
+        """Let what ``monitor`` says happen at the state, whose scalar passes zero there."""
+        self._make_valid()
+        if not monitor.stops:
+            self._turn_side(monitor)
+            self._restart()
+            return
+        before_it, known, senses = self._row(), len(self.happenings), self._senses()
+        self._happen(monitor)
+        if len(self.happenings) > known or self._senses() != senses:  # a gap that only rounding closes is no event
+            self.rows += [before_it] if self.ended else [before_it, self._row()]
+
+    def _senses(self) -> tuple[float, ...]:
+        """Return the directions of sliding of contacts and joints; where one reverses, friction jumps."""
         return *self.now.sliding, *self.now.joints_sliding
+
+    def _meet_reached(self) -> None:
+        """Let events happen whose value has come to zero by what has just happened, and stays there.
+
+        From then on it passes zero by rounding alone, as the speed of a body that a contact now holds does.
+        """
+        while not self.ended:
+            watched = (monitor for monitor in self.monitors if monitor.event is not None)
+            reached = next((monitor for monitor in watched if self._side_ahead(monitor.event) == 0.0), None)
+            if reached is None:
+                return
+            self._meet(reached)
 
     def _make_valid(self) -> None:
         state = self.state
@@ -223,6 +240,8 @@ class EventSteps:
             monitor, where, negative = crossing
             times = quintic.times(np.array([where, negative]))
             if where == 0.0 or self._true(monitor, before, float(times[1])) < -monitor.still:
+                if monitor.event is not None:
+                    refuse_chance(self.packed, monitor.event, self._later(before, float(times[1])))
                 return monitor, float(times[0]), float(times[1])
             monitors.remove(monitor)  # the quintic dips below zero, the motion does not
         return None
@@ -246,14 +265,19 @@ class EventSteps:
 
     def _true(self, monitor: Monitor, before: State, time: float) -> float:
         """The monitored scalar of the motion itself at a time (s) within the step; the state is left before it."""
+        trial = self._later(before, time)
+        at = np.array([trial.clock[TIME]])
+        sample = Samples(self.packed, self.dynamics, self.run.scratch, at, trial.y[0][None], trial.y[1][None])
+        return float(monitor.value(sample)[0])
+
+    def _later(self, before: State, time: float) -> State:
+        """The motion itself at a time (s) within the step."""
         trial = copied(before)
         if time > before.clock[TIME]:
             nowhere = self.run.nowhere
             trial.count[NEXT] = len(nowhere.t)
             advance(self.run, trial, nowhere, time)
-        at = np.array([trial.clock[TIME]])
-        sample = Samples(self.packed, self.dynamics, self.run.scratch, at, trial.y[0][None], trial.y[1][None])
-        return float(monitor.value(sample)[0])
+        return trial
 
     def _find(self, monitor: Monitor, before: State, first: float, last: float) -> None:
         """Bring the state to the root, which the quintic puts at ``first`` (s) and ``last`` is beyond."""
@@ -275,11 +299,9 @@ class EventSteps:
                 low = first - reach
             if first + reach < high and value(first + reach) < 0.0:
                 high = first + reach
-            above = value(low)
-            if above > 0.0:
+            if value(low) > 0.0 > value(high):
                 root = float(brentq(value, low, high, xtol=1e-15))  # pyright: ignore[reportArgumentType]
-            elif low == start:
-                root = first  # it left zero at the start of the step: the quintic's root stands
+            # else it left zero at the start of the step: the quintic's root stands
         for target, source in zip(self.state, before, strict=True):
             target[...] = source
         if root > start:

@@ -51,6 +51,13 @@ class Designs:
         """A mechanism of its own that becomes that of one row after another."""
         return RowByRow(self)
 
+    def extremes(self) -> set[int]:
+        """Rows in which a number is the least or the largest of its column: one row may differ from all others."""
+        columns = [*self.starts.values(), *self.velocities.values(), *(each.values for each in self.numbers)]
+        columns += [column for values in self.changes.values() for column in values.values()]
+        wide = [column.reshape(self.count, -1) for column in columns]
+        return {int(row) for column in wide for found in (column.argmin(0), column.argmax(0)) for row in found}
+
     def put_numbers(self, work: Any, row: int) -> None:
         """Give ``work``, which is as it was copied, all numbers of a row but its start. Raises ModelError."""
         changes = {

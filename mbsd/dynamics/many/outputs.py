@@ -99,10 +99,16 @@ class Reacting:
             each = zip(which.tolist(), jacobians, q, own, strict=True)
             made = [wrenches(self.packed[k], *parts, joints=self.joints) for k, *parts in each]
             wrench = np.array(made)
+        return Reactive(self.joints.tolist(), wrench, self.lam[some, :, packed.driver_rows :], self._drives(which))
+
+    def _drives(self, which: np.ndarray) -> np.ndarray:
+        """Laws of the drivers (T, drivers + 1, 3), or (R, T, drivers + 1, 3) of rows ``which`` that differ in them."""
         own_times = self.times if self.times.ndim == 1 else self.times[which]
-        drives = packed.drives(own_times.ravel())
-        drives = drives.reshape(*own_times.shape, *drives.shape[1:])
-        return Reactive(self.joints.tolist(), wrench, self.lam[some, :, packed.driver_rows :], drives)
+        if len(self.packed) > 1:
+            each = np.broadcast_to(own_times, (len(which), own_times.shape[-1]))
+            return np.array([self.packed[k].drives(t) for k, t in zip(which.tolist(), each, strict=True)])
+        drives = self.packed[0].drives(own_times.ravel())
+        return drives.reshape(*own_times.shape, *drives.shape[1:])
 
 
 class MotionsOf:
@@ -120,7 +126,7 @@ class MotionsOf:
             name: (
                 names.index(marker.body.name),
                 np.array([(run.traces[name].x, run.traces[name].y) for run in runs]),
-                marker.angle,
+                np.array([run.traces[name].angle for run in runs]),
             )
             for name, marker in runs[0].traces.items()
         }
@@ -136,7 +142,7 @@ class MotionsOf:
         def some(part: np.ndarray) -> np.ndarray:
             return part[own] if len(part) > 1 else part
 
-        traces = {name: (body, some(places), angle) for name, (body, places, angle) in self.traces.items()}
+        traces = {name: (body, some(place), some(angle)) for name, (body, place, angle) in self.traces.items()}
         return Motions(
             self.names, q, v, a, out.work[own], some(self.com), some(self.mass), some(self.inertia), traces,
             until(out.t, out.over[own]), None if reacting is None else reacting.of(which),

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.base.arguments import SMALLEST
 from mbsd.base.errors import MechanismError
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE
@@ -169,8 +170,8 @@ class Patches:
             self.inertia = np.repeat(packed.system.inertia[None], count, axis=0)
         assert self.inertia is not None
         b = packed.body_names.index(name)
-        if any((column <= 0.0).any() or column.ndim > 1 for column in values.values()):
-            raise NotPatched(f"some {' or '.join(values)} of '{name}' are not above zero")
+        if any((column < SMALLEST).any() or column.ndim > 1 for column in values.values()):
+            raise NotPatched(f"some {' or '.join(values)} of '{name}' are not above zero, or too small")
         if "mass" in values:
             self.mass[:, b] = values["mass"]
             if "inertia" in body.derived:

@@ -58,33 +58,33 @@ class Motions:
     mass: np.ndarray
     """(R or 1, nb), as ``inertia``."""
     inertia: np.ndarray
-    traces: dict[str, tuple[int, np.ndarray, float]]
-    """For each traced point its body, its places (R or 1, 2) in the author's frame (m), and its angle (rad)."""
+    traces: dict[str, tuple[int, np.ndarray, np.ndarray]]
+    """For each traced point its body, its places (R or 1, 2) in the author's frame (m), and angles (R or 1,) (rad)."""
     t: np.ndarray
     """(T,) s, or (R, T) where events of the user ended some before."""
     reactive: Reactive | None = None
     """If any measure reads it."""
     kept: dict[Any, Any] = field(default_factory=dict)
 
-    def frame(self, body: int, place: np.ndarray, turned: float) -> Any:
-        """Motion of a frame at places (R or 1, 2) of a body, as (R T,) arrays."""
+    def frame(self, body: int, place: np.ndarray) -> Any:
+        """Motion of places (R or 1, 2) of a body, as (R T,) arrays."""
         count, times = self.q.shape[:2]
         local = np.broadcast_to(place - self.com[:, body], (count, 2)).repeat(times, axis=0)
         q, v, a = (np.ascontiguousarray(part[:, :, body]).reshape(-1, 3) for part in (self.q, self.v, self.a))
-        return moved_frame(q, v, a, local.T, turned)
+        return moved_frame(q, v, a, local.T)
 
     def of_frame(self, name: str, kind: str, component: str) -> np.ndarray:
         """(R, T) of one component of a body or a traced point."""
         if kind == "body":
-            body, place, turned = self.body_names.index(name), np.zeros((1, 2)), 0.0
+            body, place, angle = self.body_names.index(name), np.zeros((1, 2)), np.zeros(1)
         else:
-            body, place, turned = self.traces[name]
+            body, place, angle = self.traces[name]
         shape = self.q.shape[:2]
         direct = {"theta": self.q, "omega": self.v, "alpha": self.a}.get(component)
         if direct is not None:
-            return direct[:, :, body, 2] + turned if component == "theta" else direct[:, :, body, 2]
+            return direct[:, :, body, 2] + angle[:, None] if component == "theta" else direct[:, :, body, 2]
         if (kind, name) not in self.kept:
-            self.kept[kind, name] = self.frame(body, place, turned)
+            self.kept[kind, name] = self.frame(body, place)
         return getattr(self.kept[kind, name], component).reshape(shape)
 
     def of_joint(self, number: int, component: int) -> np.ndarray:

@@ -270,19 +270,14 @@ def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mappi
     slow = [name for name, quantity in quantities.items() if quantity.of_motions is None]
     if slow:
         return f"'{slow[0]}' is that of a single solution"
-    models = designs.row_by_row()
+    models, reactive = designs.row_by_row(), any(quantity.reactive for quantity in quantities.values())
     for row in {0, designs.count // 2, designs.count - 1}:
         try:
-            run = single_run(models.of(row), asked)
+            single_run(models.of(row), asked, reactive)
         except NotCompiled as why:
             return str(why)
         except Exception:
             continue  # a row may fail
-        reactive = any(quantity.reactive for quantity in quantities.values())
-        if run.ready.approaches and reactive:
-            return "reactions where the damping of a contact remembers how fast it approached"
-        if run.ready.following.rows and reactive:
-            return "reactions where points are on curves that cross themselves"
         return None
     return None
 

@@ -77,8 +77,17 @@ class SingleRun:
     @cached_property
     def kind(self) -> tuple[Any, ...]:
         """What runs that share a block have in common."""
-        stops = self.ready.stops
-        return kind_of(self.arguments), stops.before.tobytes(), stops.after.tobytes(), self.steps_at_once, self.near
+        stops, dynamics = self.ready.stops, (self.ready.dynamics,)
+        return (
+            kind_of(self.arguments),
+            None if self.independent is None else kind_of(dynamics),  # multipliers are found from it
+            self.ready.mobility.redundant_rows,
+            tuple((name, marker.body.name) for name, marker in self.traces.items()),
+            stops.before.tobytes(),
+            stops.after.tobytes(),
+            self.steps_at_once,
+            self.near,
+        )
 
     @property
     def counts_turns(self) -> bool:
@@ -142,8 +151,11 @@ class SingleRun:
         return genevas_of(self.ready, state, self.independent)
 
 
-def single_run(m: Model, asked: Asked) -> SingleRun:
-    """Prepare it as ``simulate`` does. Raises what ``simulate`` raises, and NotCompiled."""
+def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:
+    """Prepare it as ``simulate`` does; ``reactive``: measures read reactions, too.
+
+    Raises what ``simulate`` raises, and NotCompiled.
+    """
     if number_of(asked.integrator) is None:
         raise NotCompiled(f"method '{asked.integrator.name}' has no loop over many")
     times, events = asked.times, list(m.events.values())
@@ -151,6 +163,10 @@ def single_run(m: Model, asked: Asked) -> SingleRun:
         raise NotCompiled("formulation='independent' does not know events")
     ready = prepare_dynamics(m, float(times[0]), float(times[-1]), contacts=True)
     _refuse(ready, events)
+    if reactive and ready.approaches:
+        raise NotCompiled("reactions where the damping of a contact remembers how fast it approached")
+    if reactive and ready.following.rows:
+        raise NotCompiled("reactions where points are on curves that cross themselves")
     if number_of(asked.integrator) != USUAL and (ready.switches.contacts or ready.sticks or ready.following or events):
         raise NotCompiled(
             "events, stops, contacts, joints that stick and wheels that may meet are met by 'dop853' alone, not by "

@@ -78,7 +78,7 @@ class StartsAtOnce(Starts):
         super().__init__(designs, base)
         ready, packed = self.ready, self.ready.packed
         next(row for row in range(designs.count) if self._refused(row) is None)  # of it, what is given
-        self.wanted = np.array([c for c, _ in given_coordinates(self.work, packed)])
+        self.wanted = np.array([c for c, _ in given_coordinates(self.work, packed)], np.int64)
         self.drive = packed.drives(np.array([ready.start]))[0]
         jac = self._jacobians(ready.initial.q[None])[1][0] * packed.column_scale()
         units = np.eye(packed.coordinates)[self.wanted - 3]

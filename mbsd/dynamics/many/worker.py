@@ -32,7 +32,7 @@ from mbsd.results.solution import Solution
 TRIED = 64
 """Rows of which the first that can be prepared is what others go by."""
 COMPARED = 6
-"""Rows that are prepared for comparison."""
+"""Rows that are prepared for comparison, beside those with the least and the largest of each number."""
 GRAMS_AT_ONCE = 1_000_000
 """Products of rows of J, where joints repeat others, that prepared rows hold together: a third of 24 MB."""
 NEAR = 1e-9
@@ -97,7 +97,7 @@ class Worker:
         return None
 
     def _run_of(self, row: int) -> SingleRun:
-        return single_run(self.models.of(row), self.work.asked)
+        return single_run(self.models.of(row), self.work.asked, self.work.reactive)
 
     def _patches(self) -> Patches | None:
         """Numbers of rows that need not be prepared, if none need; some are prepared for comparison."""
@@ -115,7 +115,8 @@ class Worker:
         except NotPatched as why:
             self.work.note = f"each is prepared anew: {why}"
             return None
-        for row in sorted({0, count - 1, *np.linspace(0, count - 1, COMPARED, dtype=int).tolist()}):
+        even = np.linspace(0, count - 1, COMPARED, dtype=int).tolist()
+        for row in sorted({0, count - 1, *even, *self.designs.extremes()}):
             try:
                 run = self._run_of(row)
             except Exception:

@@ -26,18 +26,28 @@ def grid_of(name: str, words: str, p: Any) -> dict[str, list[Any]]:
             )
         if field in grid:
             raise UserError(f"{name}: the grid has '{field}' twice")
-        grid[field] = _values(name, field, said, getattr(p, field))
+        grid[field] = _values(name, field, said, getattr(p, field), math.prod(map(len, grid.values())))
     if not grid:
         raise UserError(f"{name}: say what to vary: {FORM}")
     return grid
 
 
-def _values(name: str, field: str, said: str, usual: Any) -> list[Any]:
+def _values(name: str, field: str, said: str, usual: Any, others: int) -> list[Any]:
+    """Values of one field; ``others``: how many points those before it make."""
     if ":" in said:
         first, last, count = _range(name, field, said)
+        refuse_too_many(name, others * count)
         step = (last - first) / (count - 1)
         return [first + step * k for k in range(count - 1)] + [last]
     return [_value(name, field, word.strip(), usual) for word in said.split(",")]
+
+
+def refuse_too_many(name: str, count: int) -> None:
+    """Raise UserError for more points than a study may have, before they are listed."""
+    from mbsd.studies.points import MOST
+
+    if count > MOST:
+        raise UserError(f"{name}: a grid of {count} points; take {MOST} at most, in several studies")
 
 
 def _range(name: str, field: str, said: str) -> tuple[float, float, int]:

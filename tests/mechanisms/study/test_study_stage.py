@@ -42,6 +42,8 @@ def test_ranges_and_lists_by_the_kind_of_the_field() -> None:
         ("closed=2", "true or false"),
         ("place=1", "place is tuple"),
         ("length=1;length=2", "twice"),
+        ("length=0:1:1000000000", "a grid of 1000000000 points; take 10000000 at most"),
+        ("length=0:1:5000;teeth=1,2;place=0:1:5000", "a grid of 50000000 points"),
     ],
 )
 def test_bad_grids_are_refused_in_words(words: str, said: str) -> None:

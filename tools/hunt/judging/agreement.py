@@ -31,6 +31,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mbsd import Mechanism
+from mbsd.model.joint import Joint
 from mbsd.results.solution import Solution
 from tools.hunt.judging.law_error import LawError, law_error
 from tools.hunt.words.described import BASE, NOWHERE, Pose
@@ -46,11 +47,25 @@ Numbers = dict[str, np.ndarray]
 @dataclass
 class Words:
     """How a description differs from the first: frames of bodies and ground as in ``seen_from``; efforts with the
-    other sign; joints whose bodies are exchanged show by their names."""
+    other sign; joints whose bodies are exchanged show by their names; a mirror image; other units."""
 
     frames: Mapping[str, Pose] = field(default_factory=dict)
     turned_round: frozenset[str] = frozenset()
     """Drivers whose value and effort have the other sign."""
+    mirrored: bool = False
+    """Whether it is the mirror image about the x axis."""
+    length: float = 1.0
+    mass: float = 1.0
+    """How many times as large numbers of length and mass are."""
+
+    @property
+    def sense(self) -> float:
+        """-1 where angles and moments have the other sign."""
+        return -1.0 if self.mirrored else 1.0
+
+    def vector(self, array: np.ndarray, unit: float) -> np.ndarray:
+        """Complex places or forces in the first description; ``unit`` of their numbers."""
+        return np.conj(array / unit) if self.mirrored else array / unit
 
 
 SAME = Words()
@@ -75,11 +90,11 @@ def numbers(sol: Solution, first: Solution, words: Words, rows: np.ndarray, firs
         b = sol.packed.body_names.index(name)
         own = words.frames.get(name, NOWHERE)[2] - turn
         at, velocity, acceleration = (array[rows, b] for array in (sol.q, sol.v, sol.a))
-        far = (at[:, 0] + 1j * at[:, 1]) * back_to_first + complex(ground[0], ground[1])
-        places += [far.real, far.imag, at[:, 2] - own]
+        far = words.vector((at[:, 0] + 1j * at[:, 1]) * back_to_first + complex(ground[0], ground[1]), words.length)
+        places += [far.real, far.imag, words.sense * (at[:, 2] - own)]
         for array, out in ((velocity, rates), (acceleration, bends)):
-            carried = (array[:, 0] + 1j * array[:, 1]) * back_to_first
-            out += [carried.real, carried.imag, array[:, 2]]
+            carried = words.vector((array[:, 0] + 1j * array[:, 1]) * back_to_first, words.length)
+            out += [carried.real, carried.imag, words.sense * array[:, 2]]
     out = {"q": np.stack(places, 1), "v": np.stack(rates, 1), "a": np.stack(bends, 1)}
     if not first.mobility.redundant_rows and not sol.mobility.redundant_rows:
         forces = []
@@ -87,23 +102,30 @@ def numbers(sol: Solution, first: Solution, words: Words, rows: np.ndarray, firs
             view, other = sol.joint(name), first.joint(name)
             second = sol.mechanism.joints[name].j.body.name
             sign = 1.0 if joint.j.body.name in (second, "ground" if second == BASE else second) else -1.0
-            force = sign * (view.fx + 1j * view.fy)[rows] * back_to_first
+            force = sign * words.vector((view.fx + 1j * view.fy)[rows] * back_to_first, words.mass * words.length)
             at = (view.x + 1j * view.y)[rows] * back_to_first + complex(ground[0], ground[1])
-            arm = at - (other.x + 1j * other.y)[first_rows]
-            moment = sign * view.torque[rows] + (np.conj(arm) * force).imag
+            arm = words.vector(at, words.length) - (other.x + 1j * other.y)[first_rows]
+            turning = words.sense * view.torque[rows] / (words.mass * words.length**2)
+            moment = sign * turning + (np.conj(arm) * force).imag
             forces += [force.real, force.imag, moment]
         if forces:
             out["reactions"] = np.stack(forces, 1)
     efforts = [
-        sol.driver(name).effort[rows] * (-1.0 if name in words.turned_round else 1.0)
-        for name in first.mechanism.drivers
+        sol.driver(name).effort[rows] * (-1.0 if name in words.turned_round else 1.0) / _unit_of_effort(driver, words)
+        for name, driver in first.mechanism.drivers.items()
     ]
     if efforts:
         out["efforts"] = np.stack(efforts, 1)
     energy = sol.energy
     potential = energy.potential - energy.potential[0]
-    out["energies"] = np.stack([energy.kinetic[rows], potential[rows]], 1)
+    out["energies"] = np.stack([energy.kinetic[rows], potential[rows]], 1) / (words.mass * words.length**2)
     return out
+
+
+def _unit_of_effort(driver: Joint, words: Words) -> float:
+    """What a torque or a force of 1 is in other words."""
+    angular = "angle" in driver.kind.name
+    return words.sense * words.mass * words.length**2 if angular else words.mass * words.length
 
 
 def common(first: Solution, other: Solution) -> tuple[np.ndarray, np.ndarray]:
@@ -211,14 +233,15 @@ def compare_driven(first: Solution, other: Solution, words: Words = SAME, loosen
     here = numbers(first, first, SAME, first_rows, first_rows)
     there = numbers(other, first, words, rows, first_rows)
     shared = {key: here[key] for key in here if key in there}
-    size = sizes(shared, _extent(first, other), first)
+    size = sizes(shared, _extent(first, other, words), first)
     laws = law_error(first) + law_error(other)
     return judge(first, there, shared, driven_limits(first, first_rows, size, loosened, laws), first.t[first_rows])
 
 
-def _extent(first: Solution, other: Solution) -> float:
+def _extent(first: Solution, other: Solution, words: Words) -> float:
     """Size with the way the world was moved (m): rounding goes with it."""
-    return max(first.packed.size, *(float(np.abs(sol.q[..., :2]).max()) for sol in (first, other)))
+    reached = [float(np.abs(sol.q[..., :2]).max()) / unit for sol, unit in ((first, 1.0), (other, words.length))]
+    return max(first.packed.size, *reached)
 
 
 @dataclass
@@ -255,7 +278,7 @@ def compare_free(
     here = numbers(first, first, SAME, first_rows, first_rows)
     there = numbers(other, first, words, rows, first_rows)
     shared = {key: here[key] for key in here if key in there and key in growth.of}
-    size = sizes(shared, _extent(first, other), first)
+    size = sizes(shared, _extent(first, other, words), first)
     limits = {}
     for key, largest in size.items():
         grown = growth.of[key][first_rows]

@@ -32,6 +32,11 @@ class Free:
     refused: MechanismError | None = None
     growth: Growth | None = None
     notes: list[str] = field(default_factory=list)
+    built: Mechanism = field(init=False)
+    """As built."""
+
+    def __post_init__(self) -> None:
+        self.built = self.subject.m
 
     @property
     def m(self) -> Mechanism:

@@ -16,13 +16,15 @@ from tools.hunt.judging.agreement import Words, turned_drivers
 from tools.hunt.judging.checks import balanced, closed, finite
 from tools.hunt.judging.refusals import cannot_be_saved
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
-from tools.hunt.solving.free_case import OUTPUTS, TOLERANCE, Free
+from tools.hunt.solving.free_case import OUTPUTS, TOLERANCE, Free, nudged
+from tools.hunt.solving.mixed_rows import beside_single_ones, mixed_rows
 from tools.hunt.solving.sweeping import HEALTHY, random_frames, random_pose
 from tools.hunt.solving.variations import Variations
 from tools.hunt.words.changed import there_and_back
 from tools.hunt.words.described import back, duplicate, on_a_base, restarted, seen_from, turnable
 from tools.hunt.words.reordered import exchanged, shuffled
-from tools.hunt.words.same_bits import changed, pickled
+from tools.hunt.words.same_bits import changed, pickled, renamed_differs
+from tools.hunt.words.similar import in_units, mirrored, renamed
 
 STEPS = (1, 2, 3, 5, 12, 30, 360, 1440)
 FIXED_STEPS = 400
@@ -60,6 +62,36 @@ def _base(case: Free) -> Outcome:
 @variation("another order")
 def _order(case: Free) -> Outcome:
     return case.compared("another order", shuffled(case.m, case.rng), Words({}))
+
+
+@variation("mirror image")
+def _mirror(case: Free) -> Outcome:
+    name, other = "mirror image", mirrored(case.m)
+    if other is None:
+        return Outcome(name, UNCLEAR, "a kind has a side of its own")
+    return case.compared(name, other, Words(mirrored=True))
+
+
+@variation("other units")
+def _units(case: Free) -> Outcome:
+    name, (length, mass) = "other units", 10.0 ** case.rng.uniform(-2.0, 3.0, 2)
+    other = in_units(case.m, float(length), float(mass))
+    if other is None:
+        return Outcome(name, UNCLEAR, "numbers of a kind whose units are not known")
+    return case.compared(name, other, Words(length=float(length), mass=float(mass)))
+
+
+@variation("other names")
+def _names(case: Free) -> Outcome:
+    name, other = "other names", renamed(case.m)
+    if other is None or case.first is None:
+        return Outcome(name, UNCLEAR, "no file could hold the model, or it was refused as built")
+    sol, error = case.run(other)
+    if error is not None:
+        return case.refusal(name, error)
+    assert sol is not None
+    differs = renamed_differs(case.first, sol)
+    return Outcome(name, WRONG, "differs", differs) if differs else Outcome(name, AGREED)
 
 
 @variation("ends exchanged")
@@ -131,6 +163,14 @@ def _changed_to(case: Free) -> Outcome:
 @variation("pickled and back")
 def _pickled(case: Free) -> Outcome:
     return pickled("pickled and back", case.first)
+
+
+@variation("mixed rows at once")
+def _rows(case: Free) -> Outcome:
+    name, rows = "mixed rows at once", mixed_rows(case.built, case.rng)
+    if rows is None or case.first is None:
+        return Outcome(name, UNCLEAR, "nothing to vary, or refused as built")
+    return beside_single_ones(name, rows, case.subject.duration, TOLERANCE, nudged)
 
 
 @variation("from the middle on")

@@ -21,7 +21,8 @@ from tools.hunt.subject import Subject
 from tools.hunt.words.changed import there_and_back
 from tools.hunt.words.described import Pose, back, duplicate, on_a_base, restarted, seen_from, turnable
 from tools.hunt.words.reordered import exchanged, shuffled
-from tools.hunt.words.same_bits import changed, pickled
+from tools.hunt.words.same_bits import changed, pickled, renamed_differs
+from tools.hunt.words.similar import in_units, mirrored, renamed
 
 A_TURN = 360
 STEPS = (1, 2, 3, 5, 8, 12, 18, 36, 90, 1440)
@@ -150,6 +151,36 @@ def _base(case: Driven) -> Outcome:
 @variation("another order")
 def _order(case: Driven) -> Outcome:
     return case.against_first("another order", shuffled(case.m, case.rng), case.grid, Words({}))
+
+
+@variation("mirror image")
+def _mirror(case: Driven) -> Outcome:
+    name, other = "mirror image", mirrored(case.m)
+    if other is None:
+        return Outcome(name, UNCLEAR, "a kind has a side of its own")
+    return case.against_first(name, other, case.grid, Words(mirrored=True))
+
+
+@variation("other units")
+def _units(case: Driven) -> Outcome:
+    name, (length, mass) = "other units", 10.0 ** case.rng.uniform(-2.0, 3.0, 2)
+    other = in_units(case.m, float(length), float(mass))
+    if other is None:
+        return Outcome(name, UNCLEAR, "numbers of a kind whose units are not known")
+    return case.against_first(name, other, case.grid, Words(length=float(length), mass=float(mass)))
+
+
+@variation("other names")
+def _names(case: Driven) -> Outcome:
+    name, other = "other names", renamed(case.m)
+    if other is None or case.first is None:
+        return Outcome(name, UNCLEAR, "no file could hold the model, or it was refused as built")
+    sol, error = attempt(lambda: other.sweep(times=case.grid))
+    if error is not None:
+        return case.refusal(name, error)
+    assert sol is not None
+    differs = renamed_differs(case.first, sol)
+    return Outcome(name, WRONG, "differs", differs) if differs else Outcome(name, AGREED)
 
 
 @variation("ends exchanged")

@@ -106,6 +106,14 @@ def bits(m: Mechanism) -> tuple[Any, ...]:
     return document(m), [np.asarray(array).tobytes() for array in packed.system], loads
 
 
+def renamed_differs(first: Solution, other: Solution) -> str:
+    """What a solution of the same mechanism with other names has otherwise; "" if nothing."""
+    parts = ("t", "q", "v", "a", "wrench", "lam", "drives", "singularity_margin")
+    return next(
+        (key for key in parts if not np.array_equal(getattr(first, key), getattr(other, key), equal_nan=True)), ""
+    )
+
+
 def pickled_differs(sol: Solution) -> str:
     """The first quantity that a solution has otherwise after pickling; "" if there is none."""
     other: Solution = pickle.loads(pickle.dumps(sol))

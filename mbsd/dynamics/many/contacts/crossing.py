@@ -39,7 +39,9 @@ from mbsd.dynamics.many.contacts.within import (
     sample,
     stand_at,
 )
+from mbsd.dynamics.many.events.sides import rounding_of
 from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.state import TIME
 
 ROUNDING = 1e-10
 """Rounding of forces, as part of the largest."""
@@ -170,6 +172,9 @@ def first_met(dyn, scratch, state, settings, contacts, out, before, after):
             t = beyond_time(contacts)
             value = of_motion(dyn, scratch, settings, contacts, out, before, after, best, t)
         if value < -still_of(contacts, best):
+            if best >= count and _chance(contacts, state, best - count, value):
+                contacts.clock[FAILURE] = 1.0  # a single simulation says what is wrong
+                return -1
             return best
         if contacts.clock[FAILURE] != 0.0:
             return -1
@@ -178,6 +183,15 @@ def first_met(dyn, scratch, state, settings, contacts, out, before, after):
         else:
             contacts.events.skipped[best - count] = 1
     return -1
+
+
+@apart
+def _chance(contacts, state, e, value):
+    """Whether rounding may decide the sign of event e, whose value beyond the root this is: refuse_chance."""
+    if contacts.clock[BEYOND] == 1.0:
+        return abs(value) <= rounding_of(contacts.events, e, state.clock[TIME], state.y)
+    trial = contacts.trial
+    return abs(value) <= rounding_of(contacts.events, e, trial.clock[TIME], trial.y)
 
 
 @apart

@@ -35,7 +35,7 @@ from mbsd.dynamics.many.contacts.sticking.jumps import resolve_friction
 from mbsd.dynamics.many.contacts.sticking.ways import share_outputs
 from mbsd.dynamics.many.contacts.wheels import advance_to
 from mbsd.dynamics.many.contacts.within import fit
-from mbsd.dynamics.many.events.sides import begin_sides, find_sides
+from mbsd.dynamics.many.events.sides import begin_sides, find_sides, first_reached
 from mbsd.dynamics.many.repeated.exchange import hold_independent, look
 from mbsd.dynamics.many.rows_at import measure
 from mbsd.dynamics.many.through import NO_LIMIT, copy_state, cross
@@ -93,7 +93,7 @@ def _close_at_start(dyn, scratch, contacts, state):
     if not _resolve(dyn, scratch, contacts, state, -1):
         return False
     _restart(dyn, scratch, contacts, state)
-    return True
+    return contacts.events.table.shape[0] == 0 or first_reached(contacts.events, state) < 0
 
 
 @internal
@@ -172,18 +172,23 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
             continue
         begin(own, scratch, state)
         count = contacts.place.shape[0]
-        passed = HAPPENED
-        if met >= count:
-            passed = happen(dyn, scratch, contacts, state, met - count)
-            if passed == ENDED:
-                if contacts.clock[SHARING] > 0.0:
-                    return NOT_SOLVED
-                _end(scratch, state, out)
-                return OVER
+        while met >= 0:
+            passed = HAPPENED
+            if met >= count:
+                passed = happen(dyn, scratch, contacts, state, met - count)
+                if passed == ENDED:
+                    if contacts.clock[SHARING] > 0.0:
+                        return NOT_SOLVED
+                    _end(scratch, state, out)
+                    return OVER
+                met = -1
+            if passed == HAPPENED and not _jump(dyn, scratch, contacts, state, met):
+                return NOT_SOLVED
+            _restart(dyn, scratch, contacts, state)
             met = -1
-        if passed == HAPPENED and not _jump(dyn, scratch, contacts, state, met):
-            return NOT_SOLVED
-        _restart(dyn, scratch, contacts, state)
+            if contacts.events.table.shape[0] > 0:
+                reached = first_reached(contacts.events, state)
+                met = -1 if reached < 0 else count + reached
     return PAUSED
 
 

@@ -53,6 +53,17 @@ def _side_ahead(events, e, t, y, a):
     return 0.0
 
 
+@lazy(int)
+def first_reached(events, state):
+    """The first event that is watched and whose value has come to zero and stays there, as _meet_reached; -1: none."""
+    for e in range(events.table.shape[0]):
+        if events.number[e, SIDE] == 0.0:
+            continue
+        if _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1]) == 0.0:
+            return e
+    return -1
+
+
 @internal
 def turn_side(events, e, state):
     """The side of an event that has just passed zero: none where its value stays there."""

@@ -36,7 +36,7 @@ def is_pmks(text: str) -> bool:
     """Whether a text is such a file."""
     if text.lstrip().startswith("{"):
         return '"TypeOfJoint"' in text
-    lines = [line for line in text.splitlines() if line.strip()]
+    lines = [line for line in text[:4000].splitlines() if line.strip()]
     return bool(lines) and (lines[0].startswith("mech=") or _joint_of(lines[0]) is not None)
 
 

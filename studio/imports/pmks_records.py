@@ -252,6 +252,8 @@ def _take_in(read: Records, mark: str) -> None:
 def _check_references(read: Records) -> None:
     """Raise UserError for a link of joints, or a slot in a link, that are not there."""
     for link in read.links.values():
+        if not link.joints:
+            raise UserError(f"link {link.id} has no joints")
         for joint in link.joints:
             if joint not in read.joints:
                 raise UserError(f"link {link.id} has a joint {joint}, which is not there")

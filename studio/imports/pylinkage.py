@@ -68,6 +68,8 @@ def _bodies(data: dict[str, Any]) -> list[str]:
         name = GROUND if fixed else str(link["id"]) or f"link_{k}"
         if name != GROUND and name in names:
             raise UserError(f"there are two links '{name}'")
+        if name != GROUND and not link["joints"]:
+            raise UserError(f"link '{name}' has no joints")
         names.append(name)
     return names
 

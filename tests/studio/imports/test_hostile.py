@@ -56,6 +56,8 @@ def test_damaged_samples_are_read_or_refused(seed: int) -> None:
         ('{"TypeOfJoint": NaN}', "NaN is no finite number"),
         ('{"TypeOfJoint": 1, "Joints": [{"Links": ["a"], "TypeOfJoint": "R", "X": null, "Y": 0}]}', "it is damaged"),
         ('{"joints": [], "links": [], "position": 0}', "nothing in it moves"),
+        ('{"joints": [], "links": [{"id": "a", "joints": []}], "position": 0}', "link 'a' has no joints"),
+        (stamped("0P.TY.K,0.101.MA,A,0,0,0..YRAB,AB,0,0,0,0,,,.YRB,B,0,0,0,0,,A,,...JB."), "link AB has no joints"),
         ("<linkage2>" + "<a>" * DEEP, f"it is nested deeper than {DEEPEST} levels"),
         ("<linkage2>" + "<a " * DEEP, "the file has no links"),
         ("<linkage2>" + "<!--" * DEEP, "the file has no links"),

@@ -53,12 +53,13 @@ def read_text(text: str, name: str) -> Sketch:
                 sketch = reader(text, name)
                 sketch.check()
         except UserError as error:
-            raise UserError(f"{name}: {error}") from error
+            raise UserError(f"{name}: {printable(str(error))}") from error
         except DAMAGE as error:
             cause = printable(str(error))[:200]
             raise UserError(
                 f"{name}: it is damaged, or no file of {program} ({type(error).__name__}: {cause})"
             ) from error
+        sketch.left_out = [printable(words) for words in sketch.left_out]
         return sketch
     raise UserError(f"{name} is of no program that is known here; known are: {', '.join(FORMATS)}")
 

@@ -91,6 +91,18 @@ def test_a_file_that_is_too_large_is_an_error(tmp_path: Path) -> None:
         read(str(file))
 
 
+def test_what_is_said_of_a_file_is_printable() -> None:
+    """Names of a file end up on a terminal: neither escape codes nor half a surrogate may."""
+    said = read_text("mech=\nground,a,R,0,0\na,\x1b[31mb,G,1,1\n", "\udcff\x1b.txt").left_out
+    assert said == [words for words in said if words.isprintable()]
+    with pytest.raises(UserError) as refused:
+        read_text('{"TypeOfJoint": 1, "Joints": [{"Links": [], "TypeOfJoint": "\x1b", "X": 0, "Y": 0}]}', "\udcff")
+    assert str(refused.value).isprintable()
+    with pytest.raises(UserError) as refused:
+        read_text((SAMPLES / "piston.asmt").read_text().replace("CylindricalJoint", "\x1b[2J"), "\x1b")
+    assert str(refused.value).isprintable()
+
+
 def test_a_link_that_is_called_ground_or_speed_stays_what_it_is(tmp_path: Path) -> None:
     """Neither the frame nor the motor's rate takes its place."""
     data = json.loads((SAMPLES / "four_bar_mechanism.json").read_text().replace("rocker", "speed"))

@@ -72,13 +72,13 @@ class _Link:
 
 
 def is_dxf(text: str) -> bool:
-    """Whether a text is such a file."""
+    """True if a text is such a file."""
     lines = [line.strip() for line in text[:2000].splitlines()[:400]]
     return any(a == "0" and b == "SECTION" for a, b in pairwise(lines))
 
 
 def read(text: str, name: str) -> Sketch:
-    """The mechanism of such a file. Raises UserError where it cannot be read, or has no pins or links."""
+    """Return the mechanism of such a file. Raises UserError where it cannot be read, or has no pins or links."""
     drawn = _drawn(text)
     check_count(drawn.circles, "circles")
     if sum(len(line.corners) for line in drawn.lines) > MOST_CORNERS:

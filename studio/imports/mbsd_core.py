@@ -28,12 +28,12 @@ CLOSED = 1e-11
 
 
 def is_mbsd_core(text: str) -> bool:
-    """Whether a text is such a file, or a spatial mechanism or a result of the same program."""
+    """True if a text is such a file, or a spatial mechanism or a result of the same program."""
     return text.lstrip().startswith("{") and ('"mbsd.planar.' in text or '"mbsd.spatial.' in text)
 
 
 def read(text: str, name: str) -> Sketch:
-    """The mechanism of such a file. Raises UserError where it cannot be read, is spatial, or closes in no pose."""
+    """Return the mechanism of such a file. Raises UserError where it cannot be read, is spatial, or closes in no pose."""
     data = parsed_json(text)
     _refuse_others(data)
     return _read(data, name)

@@ -36,7 +36,7 @@ def is_asmt(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """Return the mechanism of such a file. Raises UserError, with joint or line, for what is spatial or cannot be read."""
+    """Return the mechanism of such a file. Raises UserError, with joint or line, where it is spatial or damaged."""
     body = text.partition("\nTimeSeries")[0]
     check_length(body)
     assembly = parsed(body).named("Assembly")

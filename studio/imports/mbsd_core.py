@@ -33,7 +33,7 @@ def is_mbsd_core(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """Return the mechanism of such a file. Raises UserError where it cannot be read, is spatial, or closes in no pose."""
+    """Return the mechanism of such a file. Raises UserError where it is damaged, spatial, or closes in no pose."""
     data = parsed_json(text)
     _refuse_others(data)
     return _read(data, name)

@@ -214,7 +214,11 @@ class _Reader:
             return (guide, riders[0]) if guide is not None and riders else "nothing slides there"
         if bodies == [GROUND]:
             return "its link is of the ground, as it is pinned to it twice"
-        return (bodies[0], bodies[1]) if len(bodies) == 2 else f"{len(bodies)} bodies meet there, and two are needed"
+        return (
+            (bodies[0], bodies[1])
+            if len(bodies) == 2
+            else f"it needs two links that meet there, and there are {len(bodies)}"
+        )
 
     def _drive(self, joint: JointRecord, first: str, second: str) -> None:
         label, records = self.labels[joint.id], self.records

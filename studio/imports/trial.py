@@ -43,12 +43,12 @@ def difference(sketch: Sketch, m: Mechanism) -> str:
         return ""
     if sketch.freedom is not None and not freedom >= sketch.freedom == sketch.counted_freedom():
         return (
-            f"the file has {sketch.freedom} degrees of freedom, this mechanism {freedom}: "
+            f"the degrees of freedom differ: {sketch.freedom} in the file, {freedom} in this mechanism; "
             "it moves otherwise until what was left out is added"
         )
     if sketch.inputs and sketch.inputs != freedom:
         return (
-            f"the file has {sketch.inputs} inputs, which move all of it there, and this mechanism {freedom} degrees of "
-            "freedom: something was misread or left out, or is loose there"
+            f"the inputs of the file ({sketch.inputs}) move all of it there, and this mechanism has {freedom} degrees of "
+            "freedom: something was left out or misread, or is loose in the file"
         )
     return ""

@@ -6,7 +6,6 @@ import argparse
 import re
 from pathlib import Path
 
-from mbsd import Mechanism, MechanismError
 from mechanisms.stages import checking
 from mechanisms.stages.new.new import file_of, mark_folder, refuse_unfit
 from shared.stage.console import run_cli, say, warn
@@ -16,7 +15,7 @@ from shared.stage.files import write_bytes
 from shared.stage.paths import NAME, shown_file
 from studio.imports.reading import FORMATS, read
 from studio.imports.sketch import Sketch
-from studio.imports.trial import try_out
+from studio.imports.trial import difference, try_out
 from studio.imports.writing import mechanism_py
 
 
@@ -46,28 +45,6 @@ def main() -> int:
     if problem:
         warn("import", problem)
     return int(bool(problem) | bool(checking.run(name)))
-
-
-def difference(sketch: Sketch, m: Mechanism) -> str:
-    """Return how the degrees of freedom of a mechanism differ from those of the file; "" where they do not.
-
-    Joints that repeat each other leave more than a count of joints tells, so that more is no difference.
-    """
-    try:
-        freedom = m.mobility().dof
-    except MechanismError:  # which the look at the model names
-        return ""
-    if sketch.freedom is not None and not freedom >= sketch.freedom == sketch.counted_freedom():
-        return (
-            f"the file has {sketch.freedom} degrees of freedom, this mechanism {freedom}: "
-            "it moves otherwise until what was left out is added"
-        )
-    if sketch.inputs and sketch.inputs != freedom:
-        return (
-            f"the file has {sketch.inputs} inputs, which move all of it there, and this mechanism {freedom} degrees of "
-            "freedom: something was misread or left out, or is loose there"
-        )
-    return ""
 
 
 def named(source: str) -> str:

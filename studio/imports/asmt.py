@@ -30,13 +30,13 @@ ROWS = {"FixedJoint": 3, "TranslationalJoint": 2, "PointInPlaneJoint": 1, "Point
 
 
 def is_asmt(text: str) -> bool:
-    """Whether a text is such a file."""
+    """True if a text is such a file."""
     lines = [line for line in text[:4000].splitlines() if line.strip()]
     return any(line.strip() == "Assembly" for line in lines[:3])
 
 
 def read(text: str, name: str) -> Sketch:
-    """The mechanism of such a file. Raises UserError, with joint or line, for what is spatial or cannot be read."""
+    """Return the mechanism of such a file. Raises UserError, with joint or line, where it is spatial or damaged."""
     body = text.partition("\nTimeSeries")[0]
     check_length(body)
     assembly = parsed(body).named("Assembly")

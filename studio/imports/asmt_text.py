@@ -21,7 +21,7 @@ class Entry:
     below: list[Entry] = field(default_factory=list)
 
     def all_named(self, word: str) -> Iterator[Entry]:
-        """Those below that are called so."""
+        """Return the entries below that are called so."""
         return (entry for entry in self.below if entry.word == word)
 
     def named(self, word: str) -> Entry | None:

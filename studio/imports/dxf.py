@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
@@ -27,6 +26,30 @@ SPEED = math.tau
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 SAME = 1e-6
 """Circles whose centres are closer than this part of their radius are of one pin."""
+MOST_CORNERS = 20_000
+
+
+@dataclass
+class _Circle:
+    place: Place
+    radius: float
+    layer: str
+
+
+@dataclass
+class _Line:
+    corners: list[Place]
+    layer: str
+
+
+@dataclass
+class _Drawing:
+    """Entities of a file (m); ``unit`` is the number of its unit, ``kinds`` the types of all entities."""
+
+    unit: int
+    circles: list[_Circle] = field(default_factory=list)
+    lines: list[_Line] = field(default_factory=list)
+    kinds: list[str] = field(default_factory=list)
 
 
 @dataclass
@@ -49,98 +72,107 @@ class _Link:
 
 
 def is_dxf(text: str) -> bool:
-    """Whether a text is such a file."""
+    """True if a text is such a file."""
     lines = [line.strip() for line in text[:2000].splitlines()[:400]]
     return any(a == "0" and b == "SECTION" for a, b in pairwise(lines))
 
 
 def read(text: str, name: str) -> Sketch:
-    """The mechanism of such a file. Raises UserError where it cannot be read, or has no pins or links."""
-    entities, number = _drawn(text)
+    """Return the mechanism of such a file. Raises UserError where it cannot be read, or has no pins or links."""
+    drawn = _drawn(text)
+    check_count(drawn.circles, "circles")
+    if sum(len(line.corners) for line in drawn.lines) > MOST_CORNERS:
+        raise UserError(f"its lines have more than {MOST_CORNERS} corners; no sketch of a mechanism has so many")
     sketch = Sketch(name, "a DXF sketch")
-    unit = UNITS.get(number, 0.001)
-    if number not in UNITS or number == 0:
+    if drawn.unit not in UNITS or drawn.unit == 0:
         sketch.unit = "a millimetre"
-    check_count([entity for entity in entities if entity.dxftype() == "CIRCLE"], "circles")
-    check_count([entity for entity in entities if _corners(entity, unit)], "lines")
-    pins = _pins(entities, unit)
-    links = _links(entities, pins, unit, sketch)
+    pins = _pins(drawn.circles)
+    links = _links(drawn.lines, pins, sketch)
     if not pins or not links:
-        raise UserError(f"a sketch has circles as pins, and lines from circle to circle as links; {_counted(entities)}")
+        there = ", ".join(f"{drawn.kinds.count(kind)} {kind}" for kind in sorted(set(drawn.kinds)))
+        raise UserError(
+            f"a sketch has circles as pins, and lines from circle to circle as links; this one has {there or 'nothing'}"
+        )
     _join(sketch, pins, links)
     return sketch
 
 
-def _drawn(text: str) -> tuple[list[Any], int]:
-    """The entities of the model space, and the number of the unit. Raises UserError where ezdxf cannot read them."""
+def _drawn(text: str) -> _Drawing:
+    """Return what is drawn in the model space (m). Raises UserError where ezdxf cannot read it."""
     from ezdxf.filemanagement import read as parsed
 
     check_length(text)
     try:
         document = parsed(io.StringIO(text.replace("\r\n", "\n")))
-        return list(document.modelspace()), int(document.header.get("$INSUNITS", 0))
+        number = int(document.header.get("$INSUNITS", 0))
+        unit, drawn = UNITS.get(number, 0.001), _Drawing(number)
+        for entity in document.modelspace():
+            drawn.kinds.append(entity.dxftype())
+            layer, corners = str(entity.dxf.get("layer", "0")).lower(), _corners(entity, unit)
+            if entity.dxftype() == "CIRCLE":
+                drawn.circles.append(_Circle(_flat(entity.dxf.center, unit), float(entity.dxf.radius) * unit, layer))
+            elif corners:
+                drawn.lines.append(_Line(corners, layer))
     except Exception as error:  # a parser of others, which raises whatever a broken file brings about
         raise UserError(f"this is no DXF that can be read ({type(error).__name__}: {error})") from error
-
-
-def _pins(entities: Iterable[Any], unit: float) -> list[_Pin]:
-    pins: list[_Pin] = []
-    for entity in entities:
-        if entity.dxftype() != "CIRCLE":
-            continue
-        place = (float(entity.dxf.center.x) * unit, float(entity.dxf.center.y) * unit)
-        radius = float(entity.dxf.radius) * unit
-        layer = str(entity.dxf.layer).lower()
-        known = next((pin for pin in pins if math.dist(pin.place, place) <= SAME * max(radius, pin.radius)), None)
-        if known is None:
-            pins.append(_Pin(place, radius, {layer}))
-        else:
-            known.rings += 1
-            known.radius = max(known.radius, radius)
-            known.layers.add(layer)
-    for k, pin in enumerate(pins):
-        pin.name = LETTERS[k] if k < len(LETTERS) else f"P{k}"
-    return pins
-
-
-def _links(entities: Iterable[Any], pins: list[_Pin], unit: float, sketch: Sketch) -> list[_Link]:
-    links: list[_Link] = []
-    astray = 0
-    for entity in entities:
-        corners = _corners(entity, unit)
-        if not corners:
-            continue
-        hit = [pin for corner in corners if (pin := _pin_at(corner, pins)) is not None]
-        hit = [pin for k, pin in enumerate(hit) if pin not in hit[:k]]
-        if len(hit) < 2:
-            astray += 1
-            continue
-        layer = str(entity.dxf.layer).lower()
-        shared = [
-            link for link in links if layer != "0" and link.layer == layer and any(pin in link.pins for pin in hit)
-        ]
-        merged = _Link(layer, [])
-        for link in shared:
-            links.remove(link)
-            merged.pins += [pin for pin in link.pins if pin not in merged.pins]
-        merged.pins += [pin for pin in hit if pin not in merged.pins]
-        links.append(merged)
-    if astray:
-        sketch.left_out.append(f"{astray} lines that do not run from pin to pin")
-    return links
+    return drawn
 
 
 def _corners(entity: Any, unit: float) -> list[Place]:
     match entity.dxftype():
         case "LINE":
-            points = [entity.dxf.start, entity.dxf.end]
+            return [_flat(entity.dxf.start, unit), _flat(entity.dxf.end, unit)]
         case "LWPOLYLINE":
             return [(float(x) * unit, float(y) * unit) for x, y in entity.get_points("xy")]
         case "POLYLINE":
-            points = [vertex.dxf.location for vertex in entity.vertices]
-        case _:
-            return []
-    return [(float(point.x) * unit, float(point.y) * unit) for point in points]
+            return [_flat(vertex.dxf.location, unit) for vertex in entity.vertices]
+    return []
+
+
+def _flat(point: Any, unit: float) -> Place:
+    return float(point.x) * unit, float(point.y) * unit
+
+
+def _pins(circles: list[_Circle]) -> list[_Pin]:
+    pins: list[_Pin] = []
+    for circle in circles:
+        known = next(
+            (pin for pin in pins if math.dist(pin.place, circle.place) <= SAME * max(circle.radius, pin.radius)), None
+        )
+        if known is None:
+            pins.append(_Pin(circle.place, circle.radius, {circle.layer}))
+        else:
+            known.rings += 1
+            known.radius = max(known.radius, circle.radius)
+            known.layers.add(circle.layer)
+    for k, pin in enumerate(pins):
+        pin.name = LETTERS[k] if k < len(LETTERS) else f"P{k}"
+    return pins
+
+
+def _links(lines: list[_Line], pins: list[_Pin], sketch: Sketch) -> list[_Link]:
+    links: list[_Link] = []
+    astray = 0
+    for line in lines:
+        hit = list({pin.name: pin for corner in line.corners if (pin := _pin_at(corner, pins)) is not None}.values())
+        if len(hit) < 2:
+            astray += 1
+            continue
+        shared = [
+            link
+            for link in links
+            if line.layer != "0" and link.layer == line.layer and any(pin in link.pins for pin in hit)
+        ]
+        merged = _Link(line.layer, [])
+        for link in shared:
+            links.remove(link)
+            merged.pins += [pin for pin in link.pins if pin not in merged.pins]
+        merged.pins += [pin for pin in hit if pin not in merged.pins]
+        links.append(merged)
+        check_count(links, "links")
+    if astray:
+        sketch.left_out.append(f"{astray} lines that do not run from pin to pin")
+    return links
 
 
 def _pin_at(place: Place, pins: list[_Pin]) -> _Pin | None:
@@ -168,9 +200,3 @@ def _join(sketch: Sketch, pins: list[_Pin], links: list[_Link]) -> None:
             sketch.traces[pin.name] = (moving[0], pin.place)
         if MOTOR in pin.layers and moving:
             sketch.motors.append(Motor("motor" if not sketch.motors else f"motor_{pin.name}", GROUND, moving[0], SPEED))
-
-
-def _counted(entities: Iterable[Any]) -> str:
-    kinds = [entity.dxftype() for entity in entities]
-    there = ", ".join(f"{kinds.count(kind)} {kind}" for kind in sorted(set(kinds)))
-    return f"this one has {there or 'nothing'}"

@@ -31,12 +31,12 @@ MOST_COMMENTS = 100
 
 
 def is_linkage(text: str) -> bool:
-    """Whether a text is such a file."""
+    """True if a text is such a file."""
     return "<linkage2" in text[:2000].lower()
 
 
 def read(text: str, name: str) -> Sketch:
-    """The mechanism of such a file. Raises UserError for one without links."""
+    """Return the mechanism of such a file. Raises UserError for one without links."""
     parsed = _Parsed(text)
     if not parsed.connectors or not parsed.links:
         raise UserError("the file has no links, so there is no mechanism to import")
@@ -290,7 +290,7 @@ class _Reader:
 
 
 def _counts(element: dict[str, Any]) -> bool:
-    """Whether it is of the mechanism: no drawing, no measurement."""
+    """True if it is of the mechanism: no drawing, no measurement."""
     layer = int(_float(element.get("layer"), 16.0)) or 16
     return layer != DRAWING and not _is(element, "measurementelement")
 

@@ -28,12 +28,12 @@ CLOSED = 1e-11
 
 
 def is_mbsd_core(text: str) -> bool:
-    """Whether a text is such a file, or a spatial mechanism or a result of the same program."""
+    """True if a text is such a file, or a spatial mechanism or a result of the same program."""
     return text.lstrip().startswith("{") and ('"mbsd.planar.' in text or '"mbsd.spatial.' in text)
 
 
 def read(text: str, name: str) -> Sketch:
-    """The mechanism of such a file. Raises UserError where it cannot be read, is spatial, or closes in no pose."""
+    """Return the mechanism of such a file. Raises UserError where it is damaged, spatial, or closes in no pose."""
     data = parsed_json(text)
     _refuse_others(data)
     return _read(data, name)
@@ -70,10 +70,11 @@ def _read(data: dict[str, Any], name: str) -> Sketch:
             )
     pins, slides = data["joints"]["revolute"], data["joints"]["prismatic"]
     check_count([*pins, *slides, *motors], "joints and motors")
-    counts = {"bodies": len(bodies), "revolute_joints": len(pins), "prismatic_joints": len(slides)} | data.get(
-        "counts", {}
-    )
-    sketch.freedom = 3 * (counts["bodies"] - 1) - 2 * (counts["revolute_joints"] + counts["prismatic_joints"])
+    counts = {"bodies": len(bodies), "revolute_joints": len(pins), "prismatic_joints": len(slides)}
+    for key, number in counts.items():
+        if data.get("counts", {}).get(key, number) != number:
+            raise UserError(f"its counts say {data['counts'][key]} {key.replace('_', ' ')}, and it has {number}")
+    sketch.freedom = 3 * (len(bodies) - 1) - 2 * (len(pins) + len(slides))
     for joint in (*pins, *slides):
         for key in ("body_i", "body_j") if "body_i" in joint else ("rail_body", "slider_body"):
             joint[key] = _body(joint[key], words)

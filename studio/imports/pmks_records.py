@@ -29,7 +29,7 @@ CHECKS = DIGITS[:62]
 ROOTS, PARTS = "YAMG0123", "Namg4567"
 """First characters of links that stand for themselves, and of those that are parts of a welded one."""
 INERTIA_GIVEN, CENTRE_GIVEN = "YG03Ng47", "YM02Nm46"
-"""Those whose inertia, or centre of mass, its author gave; else PMKS+ takes it from the shape."""
+"""First characters of links whose author gave the inertia, or the centre of mass; else they follow from the shape."""
 MOST_DIGITS = 12
 """Digits of a number; ten hold all that PMKS+ can write exactly."""
 JOINT_NUMBERS, LINK_NUMBERS = ("x", "y", "angle", "speed", "mass"), ("mass", "inertia", "x", "y")
@@ -252,6 +252,8 @@ def _take_in(read: Records, mark: str) -> None:
 def _check_references(read: Records) -> None:
     """Raise UserError for a link of joints, or a slot in a link, that are not there."""
     for link in read.links.values():
+        if not link.joints:
+            raise UserError(f"link {link.id} has no joints")
         for joint in link.joints:
             if joint not in read.joints:
                 raise UserError(f"link {link.id} has a joint {joint}, which is not there")

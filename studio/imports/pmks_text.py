@@ -33,15 +33,15 @@ class _Joint:
 
 
 def is_pmks(text: str) -> bool:
-    """Whether a text is such a file."""
+    """True if a text is such a file."""
     if text.lstrip().startswith("{"):
         return '"TypeOfJoint"' in text
-    lines = [line for line in text.splitlines() if line.strip()]
+    lines = [line for line in text[:4000].splitlines() if line.strip()]
     return bool(lines) and (lines[0].startswith("mech=") or _joint_of(lines[0]) is not None)
 
 
 def read(text: str, name: str) -> Sketch:
-    """The mechanism of such a file. Raises UserError for lines that are none."""
+    """Return the mechanism of such a file. Raises UserError for lines that are none."""
     sketch = Sketch(name, "PMKS", unit="a millimetre")
     check_length(text)
     if text.lstrip().startswith("{"):

@@ -31,7 +31,7 @@ USUAL_RATE = 5.0
 
 
 def is_pmks_url(text: str) -> bool:
-    """Whether a text is such an address, if only the beginning of one, or its query alone."""
+    """True if a text is such an address, if only the beginning of one, or its query alone."""
     first = text.strip()
     if "\n" in first:
         return False
@@ -45,7 +45,7 @@ def is_pmks_url(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """The mechanism of such an address. Raises UserError where it cannot be read."""
+    """Return the mechanism of such an address. Raises UserError where it cannot be read."""
     return _Reader(records_of(query_of(text)), name).sketch
 
 
@@ -63,8 +63,7 @@ class _Reader:
             link.id: GROUND if self._is_frame(link) else names.title_for(link.name or link.id) for link in roots
         }
         for link in roots:
-            for part in link.parts:
-                self.bodies.setdefault(part, self.bodies[link.id])
+            self._weld(link)
         self.on = {joint: self._carriers(joint, roots) for joint in self.joints}
         for link in roots:
             if self.bodies[link.id] != GROUND:
@@ -79,6 +78,15 @@ class _Reader:
         if any(link.mass for link in self.sketch.links.values()) and records.has_gravity:
             self.sketch.gravity = GRAVITY
         self._name_left_out()
+
+    def _weld(self, root: LinkRecord) -> None:
+        """All parts of a welded link are its body, those of its parts as well."""
+        parts = list(root.parts)
+        while parts:
+            part = parts.pop()
+            if part not in self.bodies:
+                self.bodies[part] = self.bodies[root.id]
+                parts += self.records.links[part].parts
 
     def _folded(self) -> tuple[dict[str, JointRecord], dict[str, LinkRecord]]:
         """Joints where a slot and its pin are one, by the pin's id, and the blocks that made them so."""
@@ -100,7 +108,7 @@ class _Reader:
         return joints, blocks
 
     def _is_frame(self, link: LinkRecord) -> bool:
-        """Whether it is pinned to the ground at two places."""
+        """True if it is pinned to the ground at two places."""
         pins = (self.joints[joint] for joint in link.joints if joint in self.joints)
         return len({pin.place for pin in pins if pin.is_grounded and not pin.is_slider}) > 1
 
@@ -206,7 +214,11 @@ class _Reader:
             return (guide, riders[0]) if guide is not None and riders else "nothing slides there"
         if bodies == [GROUND]:
             return "its link is of the ground, as it is pinned to it twice"
-        return (bodies[0], bodies[1]) if len(bodies) == 2 else f"{len(bodies)} bodies meet there, and two are needed"
+        return (
+            (bodies[0], bodies[1])
+            if len(bodies) == 2
+            else f"it needs two links that meet there, and there are {len(bodies)}"
+        )
 
     def _drive(self, joint: JointRecord, first: str, second: str) -> None:
         label, records = self.labels[joint.id], self.records

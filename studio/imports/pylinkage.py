@@ -21,12 +21,12 @@ USUAL = math.tau / 360.0
 
 
 def is_pylinkage(text: str) -> bool:
-    """Whether a text is such a file."""
+    """True if a text is such a file."""
     return text.lstrip().startswith("{") and '"joints"' in text and '"links"' in text and '"position"' in text
 
 
 def read(text: str, name: str) -> Sketch:
-    """The mechanism of such a file. Raises UserError where it cannot be read."""
+    """Return the mechanism of such a file. Raises UserError where it cannot be read."""
     data = parsed_json(text)
     sketch = Sketch(str(data.get("name") or name), "pylinkage", unit="a metre")
     for key in ("joints", "links"):
@@ -68,6 +68,8 @@ def _bodies(data: dict[str, Any]) -> list[str]:
         name = GROUND if fixed else str(link["id"]) or f"link_{k}"
         if name != GROUND and name in names:
             raise UserError(f"there are two links '{name}'")
+        if name != GROUND and not link["joints"]:
+            raise UserError(f"link '{name}' has no joints")
         names.append(name)
     return names
 

@@ -1,4 +1,4 @@
-"""Which program a file is of, by what is in it, and the mechanism that it holds.
+"""The mechanism in a file of another program, which is known by its content.
 
 All files come in by one way: :func:`read` gets a limited number of bytes, asks which format they are, and turns what a
 damaged file brings about in its importer into a UserError. Importers raise UserError themselves where they know more.
@@ -27,7 +27,7 @@ FORMATS: dict[str, tuple[Callable[[str], bool], Callable[[str, str], Sketch]]] =
     "pylinkage (JSON)": (pylinkage.is_pylinkage, pylinkage.read),
 }
 DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError)
-"""What a file brings about that lacks something, or has something else in its place."""
+"""Errors that importers meet in a file that lacks something, or has something else in its place."""
 ENCODINGS = ("utf-8-sig", "cp1252", "latin-1")
 
 
@@ -53,12 +53,13 @@ def read_text(text: str, name: str) -> Sketch:
                 sketch = reader(text, name)
                 sketch.check()
         except UserError as error:
-            raise UserError(f"{name}: {error}") from error
+            raise UserError(f"{name}: {printable(str(error))}") from error
         except DAMAGE as error:
             cause = printable(str(error))[:200]
             raise UserError(
                 f"{name}: it is damaged, or no file of {program} ({type(error).__name__}: {cause})"
             ) from error
+        sketch.left_out = [printable(words) for words in sketch.left_out]
         return sketch
     raise UserError(f"{name} is of no program that is known here; known are: {', '.join(FORMATS)}")
 

@@ -1,4 +1,4 @@
-"""What a file of another program says of a mechanism in the plane: links with points, joints between them, motors.
+"""A mechanism in the plane as a file of another program describes it: links with points, joints between them, motors.
 
 Lengths are metres, angles radians, both in the world's axes at the start.
 """
@@ -140,7 +140,7 @@ class Sketch:
     gravity: Place | None = None
     duration: float | None = None
     unit: str = ""
-    """What its numbers are taken for, where the file does not say it."""
+    """Unit of its numbers, where it is not SI."""
     freedom: int | None = None
     """Degrees of freedom (3 for each moving link, less what joints take) by the file's own records."""
     inputs: int | None = None
@@ -194,7 +194,7 @@ class Sketch:
         counted = self.counted_freedom()
         if self.freedom is not None and counted != self.freedom and not self.left_out:
             raise UserError(
-                f"it has {self.freedom} degrees of freedom, and what was read of it {counted}; that is a fault of this "
+                f"its degrees of freedom are {self.freedom}, and {counted} of what was read of it; that is a fault of this "
                 "importer: please report the file"
             )
 

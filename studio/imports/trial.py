@@ -1,4 +1,7 @@
-"""A written mechanism.py, loaded and built in memory before it is put into anyone's folder."""
+"""A written mechanism.py before it is saved: loaded and built in memory, and compared with the file that it comes from.
+
+So no file that cannot be loaded is ever in a user's folder, where it would be in the way of the next import.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from types import ModuleType
 from mbsd import Mechanism, MechanismError
 from shared.stage.errors import UserError
 from studio.imports.names import printable
+from studio.imports.sketch import Sketch
 
 
 def try_out(text: str, name: str) -> Mechanism:
@@ -26,3 +30,25 @@ def try_out(text: str, name: str) -> Mechanism:
             f"what was read makes no file that can be loaded ({cause}); that is a fault of this importer: "
             "please report it"
         ) from error
+
+
+def difference(sketch: Sketch, m: Mechanism) -> str:
+    """Return how the degrees of freedom of a mechanism differ from those of the file; "" where they do not.
+
+    Joints that repeat each other leave more than a count of joints tells, so that more is no difference.
+    """
+    try:
+        freedom = m.mobility().dof
+    except MechanismError:  # which the look at the model names
+        return ""
+    if sketch.freedom is not None and not freedom >= sketch.freedom == sketch.counted_freedom():
+        return (
+            f"the degrees of freedom differ: {sketch.freedom} in the file, {freedom} in this mechanism; "
+            "it moves otherwise until what was left out is added"
+        )
+    if sketch.inputs and sketch.inputs != freedom:
+        return (
+            f"the inputs of the file ({sketch.inputs}) move all of it there, and this mechanism has {freedom} degrees of "
+            "freedom: something was left out or misread, or is loose in the file"
+        )
+    return ""

@@ -48,7 +48,7 @@ SKETCH = (("motor", 0, 0), ("0", 0, 40), ("0", 110, 90), ("ground", 120, 0))
 
 @dataclass(frozen=True)
 class Damaged:
-    """What is imported: the bytes of a file of this name, or an address."""
+    """The bytes of a file of this name, or an address."""
 
     kind: str
     mutation: str

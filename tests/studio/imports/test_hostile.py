@@ -19,7 +19,7 @@ from studio.imports.limits import DEEPEST, LARGEST_FILE, MOST
 from studio.imports.names import RESERVED, Names, Titles
 from studio.imports.pmks_records import stamped
 from studio.imports.reading import read, read_text
-from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch
+from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch, Slide
 from studio.imports.trial import try_out
 from studio.imports.writing import mechanism_py
 from tests.studio.imports.imported import SAMPLES, built
@@ -56,6 +56,8 @@ def test_damaged_samples_are_read_or_refused(seed: int) -> None:
         ('{"TypeOfJoint": NaN}', "NaN is no finite number"),
         ('{"TypeOfJoint": 1, "Joints": [{"Links": ["a"], "TypeOfJoint": "R", "X": null, "Y": 0}]}', "it is damaged"),
         ('{"joints": [], "links": [], "position": 0}', "nothing in it moves"),
+        ('{"joints": [], "links": [{"id": "a", "joints": []}], "position": 0}', "link 'a' has no joints"),
+        (stamped("0P.TY.K,0.101.MA,A,0,0,0..YRAB,AB,0,0,0,0,,,.YRB,B,0,0,0,0,,A,,...JB."), "link AB has no joints"),
         ("<linkage2>" + "<a>" * DEEP, f"it is nested deeper than {DEEPEST} levels"),
         ("<linkage2>" + "<a " * DEEP, "the file has no links"),
         ("<linkage2>" + "<!--" * DEEP, "the file has no links"),
@@ -87,6 +89,18 @@ def test_a_file_that_is_too_large_is_an_error(tmp_path: Path) -> None:
         opened.truncate(LARGEST_FILE + 1)
     with pytest.raises(UserError, match="larger than 64 MB"):
         read(str(file))
+
+
+def test_what_is_said_of_a_file_is_printable() -> None:
+    """Names of a file end up on a terminal: neither escape codes nor half a surrogate may."""
+    said = read_text("mech=\nground,a,R,0,0\na,\x1b[31mb,G,1,1\n", "\udcff\x1b.txt").left_out
+    assert said == [words for words in said if words.isprintable()]
+    with pytest.raises(UserError) as refused:
+        read_text('{"TypeOfJoint": 1, "Joints": [{"Links": [], "TypeOfJoint": "\x1b", "X": 0, "Y": 0}]}', "\udcff")
+    assert str(refused.value).isprintable()
+    with pytest.raises(UserError) as refused:
+        read_text((SAMPLES / "piston.asmt").read_text().replace("CylindricalJoint", "\x1b[2J"), "\x1b")
+    assert str(refused.value).isprintable()
 
 
 def test_a_link_that_is_called_ground_or_speed_stays_what_it_is(tmp_path: Path) -> None:
@@ -154,6 +168,36 @@ def test_titles_are_printable_and_differ(words: list[str]) -> None:
     titled = [titles.title_for(word) for word in words]
     assert len(set(titled)) == len(titled)
     assert all(title.isprintable() and title == title.strip() and title for title in titled)
+
+
+PLACES = st.tuples(st.floats(-10, 10), st.floats(-10, 10))
+LINKS = st.sampled_from([GROUND, "a", "speed", "\u2028"])
+
+
+@given(
+    st.lists(
+        st.tuples(st.text(max_size=5), LINKS, LINKS, PLACES, st.floats(-7, 7), st.booleans()), min_size=1, max_size=6
+    ),
+    st.lists(st.tuples(LINKS, st.floats(), st.sampled_from(["", "t", "e**t", "sqrt(t)"])), max_size=3),
+)
+@settings(max_examples=60, deadline=None)
+def test_a_sketch_that_is_sound_makes_a_file_that_loads(joints: list[tuple], motors: list[tuple]) -> None:
+    """Or a mechanism that mbsd refuses, but never a fault of the written text."""
+    sketch = Sketch("a sketch", "a test")
+    for name, first, second, place, angle, turns in joints:
+        sketch.joints.append(
+            Slide(name, first, second, place, angle, turns) if turns else Pin(name, first, second, place)
+        )
+        for link in {first, second} - {GROUND}:
+            sketch.link(link).points[name] = place
+    sketch.motors += [Motor("m", GROUND, link, rate, law=law) for link, rate, law in motors]
+    said = ""
+    try:
+        sketch.check()
+        try_out(mechanism_py(sketch, "odd"), "odd")
+    except UserError as error:
+        said = str(error)
+    assert "fault of this importer" not in said
 
 
 def test_a_file_that_does_not_load_is_never_left(tmp_path: Path) -> None:

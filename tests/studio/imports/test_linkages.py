@@ -12,9 +12,9 @@ import pytest
 
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from studio.imports.__main__ import difference
 from studio.imports.reading import read, read_text
 from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch, Slide
+from studio.imports.trial import difference
 from studio.imports.writing import mechanism_py
 from tests.studio.imports.imported import SAMPLES, built
 
@@ -134,18 +134,24 @@ def test_freedoms_that_differ_from_the_files_are_said(tmp_path: Path) -> None:
     file = tmp_path / "a.txt"
     file.write_text("ground,a,R,0,0\nground,b,R,30,0\na,b,G,10,0\na,R,1,1\nb,R,31,1\n")
     sketch, m, _ = built(file)
-    assert difference(sketch, m).startswith("the file has 1 degrees of freedom, this mechanism 2")
+    assert difference(sketch, m).startswith("the degrees of freedom differ: 1 in the file, 2 in this mechanism")
     sketch, m, _ = built(SAMPLES / "bench.linkage2")
     assert difference(sketch, m) == ""
     file.write_text((SAMPLES / "bench.linkage2").read_text().replace("slidelimit", "other"))
     sketch, m, _ = built(file)
-    assert difference(sketch, m).startswith("the file has 1 inputs, which move all of it there")
+    assert difference(sketch, m).startswith("the inputs of the file (1) move all of it there")
 
 
 def test_freedoms_that_differ_though_nothing_was_left_out_are_an_error() -> None:
     text = (SAMPLES / "slider_crank_mbsd_core.json").read_text().replace('"revolute_joints": 3', '"revolute_joints": 2')
-    with pytest.raises(UserError, match="it has 3 degrees of freedom, and what was read of it 1"):
+    with pytest.raises(UserError, match="its counts say 2 revolute joints, and it has 3"):
         read_text(text, "a.json")
+    sketch = read(str(SAMPLES / "4bar1.txt"))
+    del sketch.joints[1]
+    with pytest.raises(UserError, match="its degrees of freedom are 1, and 3 of what was read of it; that is a fault"):
+        sketch.check()
+    sketch.left_out.append("joint B")
+    sketch.check()
 
 
 def test_connectors_of_linkage_that_share_a_name_stay_apart(tmp_path: Path) -> None:

@@ -118,7 +118,7 @@ def test_what_cannot_be_said_is_named() -> None:
     lone = stamped(
         ADDRESSES["four_bar"].replace(".GC,C,l1,WW,0.", ".GC,C,l1,WW,0.2X,X,1,1,0.").replace("B,C,,.", "B,C,X,,.")
     )
-    assert read(lone).left_out == ["input X: 1 bodies meet there, and two are needed"]
+    assert read(lone).left_out == ["input X: it needs two links that meet there, and there are 1"]
     geared = stamped(ADDRESSES["four_bar"][:-1] + ".G1~eyJ9q")
     assert read(geared).left_out == ["its gears; m.gear_pair says them"]
 

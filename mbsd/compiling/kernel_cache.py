@@ -198,8 +198,8 @@ class _LocatorToRead:
 
     def from_function(self, py_func: Callable[..., Any], py_file: str) -> _Locator | None:
         """Return the locator; None where the folder has nothing of that file as it is."""
-        found = _Locator(py_func, py_file, self.root) if os.path.isfile(py_file) else None
-        return found if found is not None and os.path.isdir(found.get_cache_path()) else None
+        locator = _Locator(py_func, py_file, self.root) if os.path.isfile(py_file) else None
+        return locator if locator is not None and os.path.isdir(locator.get_cache_path()) else None
 
 
 def _forget_old(folder: Path) -> None:
@@ -304,11 +304,11 @@ class KernelCache(_Cache):
 
     @cached_property
     def _to_read(self) -> list[_Files]:
-        found = []
+        caches = []
         for folder in _folders_to_read():
             with suppress(RuntimeError, OSError):
-                found.append(_Files(self._py_func, folder))
-        return found
+                caches.append(_Files(self._py_func, folder))
+        return caches
 
     @property
     def cache_path(self) -> str | None:  # pyright: ignore[reportIncompatibleMethodOverride, reportIncompatibleVariableOverride]

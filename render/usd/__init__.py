@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import io
+import struct
 import tempfile
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +20,8 @@ from shared.stage.suggestions import did_you_mean
 
 FORMATS = {"usd": ".usdc", "usdz": ".usdz"}
 """By name: the ending of the file."""
+FIRST_TIME = struct.pack("<HH", 0, 0x21)
+"""Midnight, and 1 January 1980, as ZIP has them."""
 
 
 def run(name: str, form: str = "usd") -> None:
@@ -62,7 +67,24 @@ def content(stage: Any, name: str, form: str) -> bytes:
         stage.Export(str(layer), addSourceFileComment=False)
         if form == "usdz":
             UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(layer)), str(packed))
-        return (packed if form == "usdz" else layer).read_bytes()
+            return without_times(packed.read_bytes())
+        return layer.read_bytes()
+
+
+def without_times(archive: bytes) -> bytes:
+    """Return a ZIP archive with the times of its files set to the first that the format knows, 1 January 1980.
+
+    They stand in the header of each file (bytes 10 to 13) and in the central directory (12 to 15).
+    """
+    content = bytearray(archive)
+    with zipfile.ZipFile(io.BytesIO(archive)) as packed:
+        place, files = packed.start_dir, packed.infolist()
+    for file in files:
+        content[file.header_offset + 10 : file.header_offset + 14] = FIRST_TIME
+        content[place + 12 : place + 16] = FIRST_TIME
+        lengths = struct.unpack("<3H", content[place + 28 : place + 34])  # of name, extra field and comment
+        place += 46 + sum(lengths)
+    return bytes(content)
 
 
 def _refuse_without_usd(name: str) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import math
 import sys
+import zipfile
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -203,6 +205,25 @@ def test_the_same_scene_has_the_same_bytes(out: Out) -> None:
 
     first, second = (usd.content(stage_of(read_film(out)), out.name, "usd") for _ in range(2))
     assert first == second
+
+
+def test_a_package_knows_no_time() -> None:
+    """OpenUSD writes when the file was packed."""
+    archives = []
+    for year in (1999, 2026):
+        content = io.BytesIO()
+        with zipfile.ZipFile(content, "w") as archive:
+            for name in ("scene.usdc", "picture.png"):
+                archive.writestr(zipfile.ZipInfo(name, (year, 7, 9, 12, 30, 2)), name)
+        archives.append(content.getvalue())
+    assert archives[0] != archives[1]
+    first, second = map(usd.without_times, archives)
+    assert first == second
+    with zipfile.ZipFile(io.BytesIO(first)) as archive:
+        assert archive.testzip() is None
+        assert [(file.date_time, archive.read(file).decode()) for file in archive.infolist()] == [
+            ((1980, 1, 1, 0, 0, 0), "scene.usdc"), ((1980, 1, 1, 0, 0, 0), "picture.png"),
+        ]  # fmt: skip
 
 
 def test_a_short_motion_has_pictures_enough() -> None:

@@ -24,12 +24,15 @@ from shared.stage.face import to_run
 MM = 1000.0
 GROUND = "ground"
 _TIMESTAMP = re.compile(rb"(FILE_NAME\([^)]*?,)'\d{4}-\d\d-\d\dT[^']*'")
+_STYLED = b"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION("
+_ENTITY = re.compile(rb"#(\d+) = (.*?);\n", re.DOTALL)
+_REFERENCE = re.compile(rb"#(\d+)")
 _DRAWN = ("band", "coil", "cylinder", "spiral", "cord")
 """Looks of what films draw between parts; see mbsd/model/looks.py."""
 
 
 def step(wanted: Wanted) -> tuple[bytes, list[str]]:
-    """The file's bytes, in which only the order of the colours may change, and what has no solid.
+    """The file's bytes, and what has no solid.
 
     Raises UserError where parts or their files are missing.
     """
@@ -144,7 +147,48 @@ class _Document:
             content = path.read_bytes() if path.exists() else b""
         if not content.rstrip().endswith(b"END-ISO-10303-21;"):
             raise UserError("the CAD kernel could not write the STEP file; is the disk full?")
-        return _in_letters_of_step(_TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1))
+        content = _TIMESTAMP.sub(rb"\1'1970-01-01T00:00:00'", content, count=1)
+        return with_ordered_styles(_in_letters_of_step(content))
+
+
+def with_ordered_styles(content: bytes) -> bytes:
+    """Return a STEP file with its styles, which stand last, in the order of the solids that they colour.
+
+    The kernel writes them in the order of a map of addresses, which differs from run to run.
+    """
+    first = content.find(_STYLED)
+    if first < 0:
+        return content
+    first = content.rfind(b"#", 0, first)
+    end = content.rfind(b"ENDSEC;")
+    styles = {int(number): text for number, text in _ENTITY.findall(content[first:end])}
+    lowest = min(styles)
+
+    def within(number: int) -> list[int]:
+        return [int(other) for other in _REFERENCE.findall(styles[number])]
+
+    def solids(number: int) -> list[int]:
+        """The numbers before the styles that one of them leads to."""
+        return sorted(solid for other in within(number) for solid in ([other] if other < lowest else solids(other)))
+
+    numbers: dict[int, int] = {}
+
+    def count(number: int) -> None:
+        if number >= lowest and number not in numbers:
+            numbers[number] = lowest + len(numbers)
+            for other in within(number):
+                count(other)
+
+    roots = sorted((number for number, text in styles.items() if text.startswith(_STYLED)), key=solids)
+    for number in (*roots, *styles):
+        count(number)
+
+    def renamed(reference: re.Match[bytes]) -> bytes:
+        number = int(reference[1])
+        return b"#%d" % numbers.get(number, number)
+
+    lines = [b"#%d = %s;\n" % (numbers[number], _REFERENCE.sub(renamed, styles[number])) for number in numbers]
+    return content[:first] + b"".join(lines) + content[end:]
 
 
 def _in_letters_of_step(content: bytes) -> bytes:

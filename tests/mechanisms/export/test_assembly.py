@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
-from mechanisms.stages.export.assembly import step
+from mechanisms.stages.export.assembly import step, with_ordered_styles
 from mechanisms.stages.export.wanted import Wanted
 from mechanisms.stages.parts.described_body import described_body
 from mechanisms.stages.solve.motion_file import to_motion
@@ -101,6 +102,37 @@ def test_names_and_colours_are_those_of_all_pictures(solution: Any, out: Out, pa
     }
     assert left_out == ["force 'pull' (spring, no solid)"]
     assert content.isascii()
+
+
+def _styled(solids: list[int]) -> bytes:
+    """A STEP file that colours these solids in this order, those with even numbers black; a colour stands where it is
+    first used.
+    """
+    lines, colours = ["#1 = SOLID();", "#2 = SOLID();", "#3 = SOLID();", "#4 = SOLID();"], dict[int, int]()
+    for solid in solids:
+        number = len(lines) + 1
+        red = 1 - solid % 2
+        shown = colours.setdefault(red, number + 2)
+        lines += [
+            f"#{number} = MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(\n    #{number + 1}),#{solid});"
+        ]
+        lines += [f"#{number + 1} = STYLED_ITEM('color',(#{shown}),#{solid});"]
+        lines += [f"#{shown} = COLOUR_RGB('',{red}.,0.,0.);"] * (shown == number + 2)
+    return "\n".join(["DATA;", *lines, "ENDSEC;", "END-ISO-10303-21;", ""]).encode()
+
+
+@pytest.mark.parametrize("order", [[1, 2, 3, 4], [4, 3, 2, 1], [2, 4, 1, 3], [3, 1, 4, 2]])
+def test_styles_are_in_the_order_of_their_solids(order: list[int]) -> None:
+    """The kernel writes them in the order of addresses."""
+    assert with_ordered_styles(_styled(order)) == _styled([1, 2, 3, 4])
+
+
+def test_the_styles_of_a_file_are_all_there_in_their_order(solution: Any, out: Out, parts: Parts) -> None:
+    content, _ = step(Wanted(solution, 0.0, out, parts))
+    coloured = [int(solid) for solid in re.findall(rb"STYLED_ITEM\('color',\([^)]*\),#(\d+)\)", content)]
+    assert len(coloured) == sum(map(len, BOXES.values()))
+    assert coloured == sorted(coloured)
+    assert with_ordered_styles(content) == content
 
 
 def test_lengths_are_millimetres(solution: Any, out: Out, parts: Parts) -> None:

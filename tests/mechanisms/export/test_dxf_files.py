@@ -65,8 +65,8 @@ def test_bodies_with_names_that_no_layer_can_have_are_drawn() -> None:
 def test_every_name_has_a_layer_of_its_own(names: list[str]) -> None:
     document = new("R2010")
     layers = Layers(document)
-    found = [layers.named(name) for name in names]
-    assert [layers.named(name) for name in names] == found
-    assert len({name.casefold() for name in found}) == len(names)
-    assert all(is_valid_table_name(name) and 0 < len(name) <= LONGEST and name.isprintable() for name in found)
-    assert all(document.layers.has_entry(name) for name in found)
+    allowed = [layers.named(name) for name in names]
+    assert [layers.named(name) for name in names] == allowed
+    assert len({name.casefold() for name in allowed}) == len(names)
+    assert all(is_valid_table_name(name) and 0 < len(name) <= LONGEST and name.isprintable() for name in allowed)
+    assert all(document.layers.has_entry(name) for name in allowed)

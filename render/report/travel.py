@@ -100,9 +100,10 @@ def _flights(motion: Motion, amount: Amounts) -> list[str]:
             others = f" with {listed(sorted(group - {name}))}" if 1 < len(group) <= LISTED else ""
             since = f"From {event} on (t = {moment(motion.time[row])}) no" if row else "No"
             along, across, up = (amount(float(part), "m", 4) for part in (x[-1], y[-1], y.max()))
+            rises = f", and {up} up at most" if y.max() > max(y[-1], amount.floors["m"]) else ""
             lines += [
                 f"{since} joint holds {name}{others} on ground: to the end it goes {along} along x and {across} along "
-                f"y, and {up} up at most.",
+                f"y{rises}.",
                 "",
             ]
     return lines

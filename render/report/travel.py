@@ -86,7 +86,7 @@ def _turned(theta: np.ndarray, floor: float) -> str:
 
 def _flights(motion: Motion, amount: Amounts) -> list[str]:
     """Return a sentence for each group of bodies that no joint holds on ground, from the start or from a release on."""
-    released, told = releases(motion), set[str]()
+    released, known = releases(motion), set[str]()
     lines = []
     for row, event in [(0, ""), *sorted(set(released.values()))]:
         held = [joint for name, joint in motion.joints.items() if name not in released or released[name][0] > row]
@@ -94,15 +94,16 @@ def _flights(motion: Motion, amount: Amounts) -> list[str]:
             name = max(group, key=lambda body: motion.bodies[body].mass)
             at = centre_of_mass(motion.bodies[name])
             x, y = at.x[row:] - at.x[row], at.y[row:] - at.y[row]
-            if group <= told or max(np.ptp(x), np.ptp(y)) <= amount.floors["m"]:
+            if group <= known or max(np.ptp(x), np.ptp(y)) <= amount.floors["m"]:
                 continue
-            told |= group
+            known |= group
             others = f" with {listed(sorted(group - {name}))}" if 1 < len(group) <= LISTED else ""
             since = f"From {event} on (t = {moment(motion.time[row])}) no" if row else "No"
             along, across, up = (amount(float(part), "m", 4) for part in (x[-1], y[-1], y.max()))
+            rises = f", and {up} up at most" if y.max() > max(y[-1], amount.floors["m"]) else ""
             lines += [
                 f"{since} joint holds {name}{others} on ground: to the end it goes {along} along x and {across} along "
-                f"y, and {up} up at most.",
+                f"y{rises}.",
                 "",
             ]
     return lines

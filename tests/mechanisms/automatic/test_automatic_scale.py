@@ -80,7 +80,7 @@ def test_of_smaller_models_pins_are_thicker_in_proportion() -> None:
 
 
 def test_links_that_are_too_short_are_named_with_the_scale_that_would_do() -> None:
-    with pytest.raises(UserError, match=r"pins of 'crank' becomes 6 mm, .* need 8\.25 mm; SCALE=1:14 is"):
+    with pytest.raises(UserError, match=r"'A' and 'B' on 'crank' becomes 6 mm, .* need 8\.25 mm; SCALE=1:14 is"):
         at(Scale(1, 20))
     assert at(Scale(1, 14)).levels
     with pytest.raises(UserError, match=r"SCALE=3:1 is the smallest"):

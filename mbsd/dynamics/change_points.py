@@ -3,7 +3,7 @@
     D^2 = det(J J^T)     D: the product of the singular values of the rows that hold, with a sign
 
 is a smooth function of the time, with a double root where the motion passes such a pose. With the root known, D changes
-its sign there, and the efforts follow as mbsd/kinematics/efforts_beside.py says.
+its sign there, and the efforts follow as mbsd/arrays/efforts_beside.py says.
 """
 
 from __future__ import annotations
@@ -14,11 +14,12 @@ from dataclasses import replace
 import numpy as np
 
 from mbsd.arrays.curve_branches import tabulate_along
+from mbsd.arrays.efforts_beside import fill_beside, lagrange
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.kinematics.change_points import APART, lagrange
-from mbsd.kinematics.efforts_beside import NEAR, Side, fill_beside, sides_beside
-from mbsd.results.solution import Solution
+from mbsd.kinematics.change_points.assemblies import APART
+from mbsd.kinematics.change_points.sides import NEAR, sides_beside
+from mbsd.results.solution import Beside, Solution
 
 SUSPECT = 0.1
 """Part of the largest margin below which an output may be near a change point."""
@@ -45,7 +46,7 @@ def with_efforts_beside(
 ) -> Solution:
     """The solution with reactions and efforts at outputs near change points taken from poses beside.
 
-    ``motion`` solves it at other times (T,) within ``span`` (s), efforts as they come; it begins at none of these outputs.
+    ``motion`` solves it at other times (T,) within ``span`` (s), efforts as they come, and begins at no output near.
     """
     suspects, margin = np.flatnonzero(near_singular(solution)), solution.singularity_margin.copy()
     if not len(suspects) or len(suspects) == len(margin) or ready.packed.states:
@@ -55,15 +56,17 @@ def with_efforts_beside(
     closeness = _determinants(ready, solution, suspects)
     clear = np.setdiff1d(np.arange(len(margin)), suspects)
     usual = _determinants(ready, solution, clear[np.argsort(margin[clear])][len(clear) // 2 : len(clear) // 2 + 1])[0]
-    filled = np.zeros(len(margin), bool)
+    filled, beside = np.zeros(len(margin), bool), []
     for row, own in sorted(zip(suspects.tolist(), closeness.tolist(), strict=True), key=lambda pair: pair[1]):
         if filled[row] or not own < CLOSE * usual:
             continue
-        for side, factor, there in _beside(ready, solution, motion, span, row):
+        for known in _beside(ready, solution, motion, span, row):
+            side, there = known.side, known.motion
+            beside.append(known)
             rows = np.searchsorted(solution.t, side.rows)
             alone = np.arange(len(side.nodes))
             both = [np.concatenate([there.lam, lam[rows]]), np.concatenate([there.wrench, wrench[rows]])]
-            fill_beside(solution.packed, side, factor, *both, alone, len(alone) + np.arange(len(rows)))
+            fill_beside(solution.packed, side, known.factor, both[0], both[1], alone, len(alone) + np.arange(len(rows)))
             lam[rows], wrench[rows] = (part[len(alone) :] for part in both)
             filled[rows] = True
             margin[rows] = np.abs(
@@ -76,12 +79,12 @@ def with_efforts_beside(
     if not filled.any():
         return solution
     q, v, a = poses
-    return replace(solution, q=q, v=v, a=a, lam=lam, wrench=wrench, margin=margin)
+    return replace(solution, q=q, v=v, a=a, lam=lam, wrench=wrench, margin=margin, beside=tuple(beside))
 
 
 def _beside(
     ready: PreparedDynamics, solution: Solution, motion: Motion, span: tuple[float, float], row: int
-) -> list[tuple[Side, np.ndarray, Solution]]:
+) -> list[Beside]:
     """Poses beside the change point near output ``row``, D there and at the outputs near it, and the motion there."""
     scale = ready.packed.column_scale()[: 3 * (solution.v.shape[1] - 1)]
     speed = float(np.abs(solution.v[row, 1:].ravel() / scale).max())
@@ -101,7 +104,7 @@ def _beside(
             there = motion(side.nodes)
             factor = _determinants(ready, there, np.arange(len(side.nodes))) * np.sign(side.nodes - time)
             at_rows = lagrange(side.nodes, side.rows) @ factor
-            out.append((side, np.append(factor, at_rows), there))
+            out.append(Beside(side, np.append(factor, at_rows), there))
         return out
     except SimulationError:
         return []

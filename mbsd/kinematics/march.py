@@ -9,13 +9,13 @@ import numpy as np
 from mbsd.base.errors import MechanismError
 from mbsd.equations.assembly import residual_and_jacobian, tabulate
 from mbsd.kinematics import impossible_motions, newton
-from mbsd.kinematics.change_points import Solver
+from mbsd.kinematics.change_points.assemblies import Solver
+from mbsd.kinematics.change_points.passages import NEAR_END, Passage, Passages
 from mbsd.kinematics.elimination import Elimination, plan
 from mbsd.kinematics.groups.carrying.columns import COS
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.groups import Groups
 from mbsd.kinematics.groups.solve import SOLVED_CLOSE, solve_groups
-from mbsd.kinematics.passages import NEAR_END, Passage, Passages
 from mbsd.kinematics.pose.mobility import best_rows
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.sample_jacobians import sample_jacobians
@@ -211,7 +211,7 @@ def _newton(
 
 
 def _gone_on(passage: Passage, steps: Steps, arrays: tuple[np.ndarray, ...]) -> tuple[tuple[np.ndarray, ...], int]:
-    """The arrays (T, ...) for the steps that are left, those right beyond a passage filled, and the first to be solved."""
+    """The arrays (T, ...) for the steps left, filled right beyond a passage, and the first step to be solved."""
     kept = int(np.searchsorted(steps.times, passage.start, side="right"))
     out = tuple(
         np.concatenate([array[:kept], np.zeros((len(steps.times) - kept, *array.shape[1:]))]) for array in arrays

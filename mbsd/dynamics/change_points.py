@@ -1,6 +1,7 @@
 """Reactions and efforts of a simulation at and near change points, where J loses rank: from poses beside, as of sweeps.
 
-    D^2 = det(J J^T)     D: the product of the singular values of the rows that hold, with a sign
+    D^2 = det(J J^T)     D: the product of the singular values of the rows that hold, with a sign;
+                         where rows repeat others, of as many values as there are without these
 
 is a smooth function of the time, with a double root where the motion passes such a pose. With the root known, D changes
 its sign there, and the efforts follow as mbsd/arrays/efforts_beside.py says.
@@ -14,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from mbsd.arrays.curve_branches import tabulate_along
-from mbsd.arrays.efforts_beside import fill_beside, lagrange
+from mbsd.arrays.efforts_beside import Side, fill_beside, lagrange
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.kinematics.change_points.assemblies import APART
@@ -31,6 +32,10 @@ DOUBLE = 1e-9
 """Part of the largest D^2 beside below which it vanishes."""
 REACH = 0.05
 """Distance of the furthest pose from which the root is found, in sizes and rad."""
+FURTHEST = 0.3
+"""How far the poses beside may be from each other, in sizes and rad."""
+OFF = 1e-3
+"""By how much an output may miss the polynomials through them, in sizes and rad."""
 
 Motion = Callable[[np.ndarray], Solution]
 
@@ -56,10 +61,11 @@ def with_efforts_beside(
     closeness = _determinants(ready, solution, suspects)
     clear = np.setdiff1d(np.arange(len(margin)), suspects)
     usual = _determinants(ready, solution, clear[np.argsort(margin[clear])][len(clear) // 2 : len(clear) // 2 + 1])[0]
-    filled, beside = np.zeros(len(margin), bool), []
+    filled, looked, beside = np.zeros(len(margin), bool), np.zeros(len(margin), bool), []
     for row, own in sorted(zip(suspects.tolist(), closeness.tolist(), strict=True), key=lambda pair: pair[1]):
-        if filled[row] or not own < CLOSE * usual:
+        if looked[row] or not own < CLOSE * usual:
             continue
+        looked |= np.abs(solution.t - solution.t[row]) <= NEAR * _pace(ready, solution, row)
         for known in _beside(ready, solution, motion, span, row):
             side, there = known.side, known.motion
             beside.append(known)
@@ -68,7 +74,7 @@ def with_efforts_beside(
             both = [np.concatenate([there.lam, lam[rows]]), np.concatenate([there.wrench, wrench[rows]])]
             fill_beside(solution.packed, side, known.factor, both[0], both[1], alone, len(alone) + np.arange(len(rows)))
             lam[rows], wrench[rows] = (part[len(alone) :] for part in both)
-            filled[rows] = True
+            filled[rows] = looked[rows] = True
             margin[rows] = np.abs(
                 lagrange(side.nodes, side.rows) @ (there.singularity_margin * np.sign(side.nodes - side.time))
             )
@@ -86,22 +92,24 @@ def _beside(
     ready: PreparedDynamics, solution: Solution, motion: Motion, span: tuple[float, float], row: int
 ) -> list[Beside]:
     """Poses beside the change point near output ``row``, D there and at the outputs near it, and the motion there."""
-    scale = ready.packed.column_scale()[: 3 * (solution.v.shape[1] - 1)]
-    speed = float(np.abs(solution.v[row, 1:].ravel() / scale).max())
-    if not speed > 0.0:
+    pace, (start, end) = _pace(ready, solution, row), span
+    if not pace > 0.0:
         return []
-    pace, (start, end) = 1.0 / speed, span
     try:
         time = _root(ready, motion, float(solution.t[row]), pace, span)
         if time is None:
             return []
         near = np.abs(solution.t - time) < NEAR * pace
         near[1:] &= np.diff(solution.t, prepend=-np.inf)[1:] > 0.0
+        if not near.any():
+            return []
         out = []
         for side in sides_beside(time, solution.t[near], pace, start, end):
             if side.nodes[0] < start or side.nodes[-1] > end:
                 continue
             there = motion(side.nodes)
+            if not _is_plain(ready, solution, side, there):
+                continue
             factor = _determinants(ready, there, np.arange(len(side.nodes))) * np.sign(side.nodes - time)
             at_rows = lagrange(side.nodes, side.rows) @ factor
             out.append(Beside(side, np.append(factor, at_rows), there))
@@ -130,7 +138,28 @@ def _root(ready: PreparedDynamics, motion: Motion, time: float, pace: float, spa
         if abs(low) < 1e-4 * reach:
             return time + low if abs(polynomial(low)) <= DOUBLE * squares.max() else None
         time += low
-    return time
+    return None
+
+
+def _pace(ready: PreparedDynamics, solution: Solution, row: int) -> float:
+    """The time in which the motion goes on by 1 size or rad at an output (s); 0 where it rests."""
+    speed = float(np.abs(_scaled(ready, solution.v[row])).max())
+    return 1.0 / speed if speed > 0.0 else 0.0
+
+
+def _scaled(ready: PreparedDynamics, change: np.ndarray) -> np.ndarray:
+    """(..., n) of changes (..., nb, 3), in sizes and rad."""
+    size = 3 * (change.shape[-2] - 1)
+    return change[..., 1:, :].reshape(*change.shape[:-2], size) / ready.packed.column_scale()[:size]
+
+
+def _is_plain(ready: PreparedDynamics, solution: Solution, side: Side, there: Solution) -> bool:
+    """Whether the poses beside are near each other, and the outputs on the polynomials through them."""
+    if np.abs(_scaled(ready, np.ptp(there.q, axis=0))).max() > FURTHEST:
+        return False
+    rows = np.searchsorted(solution.t, side.rows)
+    missed = np.einsum("rn,nbc->rbc", lagrange(side.nodes, side.rows), there.q) - solution.q[rows]
+    return bool(np.abs(_scaled(ready, missed)).max(initial=0.0) <= OFF)
 
 
 def _determinants(ready: PreparedDynamics, solution: Solution, rows: np.ndarray) -> np.ndarray:
@@ -142,6 +171,8 @@ def _determinants(ready: PreparedDynamics, solution: Solution, rows: np.ndarray)
     compact = np.zeros((*phi.shape, 6))
     tabulate_along(packed, solution.drives[rows], q, v, phi, compact, gamma)
     held = np.ones(len(packed.ws.phi), bool) if solution.held is None else solution.held[rows[0]].astype(bool)
-    held[list(ready.dropped)] = False
     jac = packed.spread(compact)[:, held] * packed.row_scale()[held, None] * packed.column_scale()
+    if ready.dropped:
+        rank = jac.shape[1] - len(ready.dropped)
+        return np.prod(np.linalg.svd(jac, compute_uv=False)[:, :rank], axis=1)
     return np.sqrt(np.maximum(np.linalg.det(jac @ jac.transpose(0, 2, 1)), 0.0))

@@ -184,11 +184,6 @@ def _newton(
         if not passages.found and steps.follow_laws():
             arrays, first, chosen = _arrays(ready.q0, len(steps.times), sequence), 0, 0
             continue
-        passage = passages.pass_ahead(index - 1, q, v)
-        if passage is not None:
-            arrays, first = _gone_on(passage, steps, arrays)
-            chosen = first
-            continue
         if ready.mobility.redundant_rows and index - 1 > chosen:
             residual_and_jacobian(packed.system, q[index - 1], steps.drives[index - 1], packed.ws)
             kept = best_rows(packed, sequence.rows)
@@ -198,6 +193,11 @@ def _newton(
                 first = chosen = index - 1
                 arrays = *arrays[:4], np.zeros((len(steps.times), len(sequence.ends)))
                 continue
+        passage = passages.pass_ahead(index - 1, q, v)
+        if passage is not None:
+            arrays, first = _gone_on(passage, steps, arrays)
+            chosen = first
+            continue
         if not steps.divide(index):
             raise impossible_motions.refused(packed, status, steps.times, index, steps.drives, q, v)
         arrays = tuple(np.insert(array, index, 0.0, axis=0) for array in arrays)

@@ -48,7 +48,7 @@ class Mechanism(Building):
     """Bodies, joints, drivers and traced points, by name. ``gravity`` in m/s^2; None turns it off."""
 
     def check(self) -> list[Finding]:
-        """Return what looks as if it was not meant, with remedies: mixed-up units, links that do not close at the start.
+        """Return what looks as if it was not meant, with remedies: mixed-up units, links that do not close.
 
         The first solution warns of the former (ModelWarning) and raises the latter as an error. Notes (``is_note``)
         come last: closed chains of four links that have change points.

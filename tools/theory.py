@@ -47,6 +47,7 @@ SECTIONS = (
         "",
         (
             "mbsd/kinematics/newton.py",
+            "mbsd/kinematics/change_points",
             "mbsd/kinematics/elimination.py",
             "mbsd/kinematics/groups",
             "mbsd/kinematics/groups/carrying",
@@ -55,7 +56,7 @@ SECTIONS = (
         ),
     ),
     ("Mobility", "", ("mbsd/kinematics/pose/mobility.py",)),
-    ("Inverse dynamics", "", ("mbsd/kinematics/multipliers.py",)),
+    ("Inverse dynamics", "", ("mbsd/kinematics/multipliers.py", "mbsd/arrays/efforts_beside.py")),
     ("Forces", "", FORCES),
     (
         "Forward dynamics",

@@ -15,6 +15,7 @@ import numpy as np
 
 from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.curve_branches import tabulate_along
+from mbsd.arrays.efforts_beside import fill_beside
 from mbsd.arrays.friction_along import with_friction
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
@@ -126,6 +127,41 @@ def inverse_dynamics(m: Model, motion: Solution, actuators: Sequence[str]) -> Ac
     if motion.mechanism is not m:
         raise ModelError(f"{m.name}: the motion is one of '{motion.mechanism.name}', not of this mechanism")
     refuse_pushing(m, motion)
+    return _past_change_points(m, motion, actuators) if motion.beside else _actuated(m, motion, actuators)
+
+
+def _past_change_points(m: Model, motion: Solution, actuators: Sequence[str]) -> ActuatedMotion:
+    """The same where the motion passes change points: efforts near these follow from poses beside."""
+    times = motion.t if motion.law_times is None else motion.law_times
+    known = [(beside, np.isin(times, beside.side.rows)) for beside in motion.beside]
+    clear = ~np.any([rows for _, rows in known], axis=0)
+    rest = _actuated(m, replace(motion.only(clear), beside=()), actuators)
+    lam, wrench = np.full(motion.lam.shape, np.nan), np.full(motion.wrench.shape, np.nan)
+    lam[clear], wrench[clear] = rest.solution.lam, rest.solution.wrench
+    efforts = {name: np.full(len(times), np.nan) for name in actuators}
+    for name, effort in rest.efforts.items():
+        efforts[name][clear] = effort
+    for beside, rows in known:
+        if not len(beside.side.nodes):
+            continue
+        there = _actuated(m, replace(beside.motion, beside=()), actuators)
+        at = np.searchsorted(beside.side.rows, times[rows])
+        nodes, count = np.arange(len(beside.side.nodes)), len(beside.side.rows)
+        both = [
+            np.concatenate([part, np.zeros((count, *part.shape[1:]))])
+            for part in (there.solution.lam, there.solution.wrench)
+        ]
+        fill_beside(motion.packed, beside.side, beside.factor, both[0], both[1], nodes, len(nodes) + np.arange(count))
+        lam[rows], wrench[rows] = (part[len(nodes) :][at] for part in both)
+        values = np.stack([there.efforts[name] for name in actuators], axis=1)
+        found = beside.side.efforts(beside.factor, values, np.ones(len(actuators)))
+        for name, effort in zip(actuators, found.T, strict=True):
+            efforts[name][rows] = effort[at]
+    solution = replace(motion, lam=lam, wrench=wrench, work=None, route=rest.solution.route, efforts=efforts)
+    return ActuatedMotion(solution, efforts, rest.residual)
+
+
+def _actuated(m: Model, motion: Solution, actuators: Sequence[str]) -> ActuatedMotion:
     others: dict[str, Amount | None] = {name: None for name in m.drivers if name not in actuators}
     bare = with_efforts(m, others | dict.fromkeys(actuators, 0.0))
     packed = pack(bare)

@@ -1,9 +1,10 @@
 """Reactions and efforts of a simulation at and near change points, where J loses rank: from poses beside, as of sweeps.
 
-    D^2 = det(J J^T)     D: the product of the singular values of the rows that hold, with a sign
+    D^2 = det(J J^T)     D: the product of the singular values of the rows that hold, with a sign;
+                         where rows repeat others, of as many values as there are without these
 
 is a smooth function of the time, with a double root where the motion passes such a pose. With the root known, D changes
-its sign there, and the efforts follow as mbsd/kinematics/efforts_beside.py says.
+its sign there, and the efforts follow as mbsd/arrays/efforts_beside.py says.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ from dataclasses import replace
 import numpy as np
 
 from mbsd.arrays.curve_branches import tabulate_along
+from mbsd.arrays.efforts_beside import Side, fill_beside, lagrange
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.kinematics.change_points import APART, lagrange
-from mbsd.kinematics.efforts_beside import NEAR, Side, fill_beside, sides_beside
-from mbsd.results.solution import Solution
+from mbsd.kinematics.change_points.assemblies import APART
+from mbsd.kinematics.change_points.sides import NEAR, sides_beside
+from mbsd.results.solution import Beside, Solution
 
 SUSPECT = 0.1
 """Part of the largest margin below which an output may be near a change point."""
@@ -30,6 +32,10 @@ DOUBLE = 1e-9
 """Part of the largest D^2 beside below which it vanishes."""
 REACH = 0.05
 """Distance of the furthest pose from which the root is found, in sizes and rad."""
+FURTHEST = 0.3
+"""How far the poses beside may be from each other, in sizes and rad."""
+OFF = 1e-3
+"""By how much an output may miss the polynomials through them, in sizes and rad."""
 
 Motion = Callable[[np.ndarray], Solution]
 
@@ -45,7 +51,7 @@ def with_efforts_beside(
 ) -> Solution:
     """The solution with reactions and efforts at outputs near change points taken from poses beside.
 
-    ``motion`` solves it at other times (T,) within ``span`` (s), efforts as they come; it begins at none of these outputs.
+    ``motion`` solves it at other times (T,) within ``span`` (s), efforts as they come, and begins at no output near.
     """
     suspects, margin = np.flatnonzero(near_singular(solution)), solution.singularity_margin.copy()
     if not len(suspects) or len(suspects) == len(margin) or ready.packed.states:
@@ -55,17 +61,20 @@ def with_efforts_beside(
     closeness = _determinants(ready, solution, suspects)
     clear = np.setdiff1d(np.arange(len(margin)), suspects)
     usual = _determinants(ready, solution, clear[np.argsort(margin[clear])][len(clear) // 2 : len(clear) // 2 + 1])[0]
-    filled = np.zeros(len(margin), bool)
+    filled, looked, beside = np.zeros(len(margin), bool), np.zeros(len(margin), bool), []
     for row, own in sorted(zip(suspects.tolist(), closeness.tolist(), strict=True), key=lambda pair: pair[1]):
-        if filled[row] or not own < CLOSE * usual:
+        if looked[row] or not own < CLOSE * usual:
             continue
-        for side, factor, there in _beside(ready, solution, motion, span, row):
+        looked |= np.abs(solution.t - solution.t[row]) <= NEAR * _pace(ready, solution, row)
+        for known in _beside(ready, solution, motion, span, row):
+            side, there = known.side, known.motion
+            beside.append(known)
             rows = np.searchsorted(solution.t, side.rows)
             alone = np.arange(len(side.nodes))
             both = [np.concatenate([there.lam, lam[rows]]), np.concatenate([there.wrench, wrench[rows]])]
-            fill_beside(solution.packed, side, factor, *both, alone, len(alone) + np.arange(len(rows)))
+            fill_beside(solution.packed, side, known.factor, both[0], both[1], alone, len(alone) + np.arange(len(rows)))
             lam[rows], wrench[rows] = (part[len(alone) :] for part in both)
-            filled[rows] = True
+            filled[rows] = looked[rows] = True
             margin[rows] = np.abs(
                 lagrange(side.nodes, side.rows) @ (there.singularity_margin * np.sign(side.nodes - side.time))
             )
@@ -76,32 +85,34 @@ def with_efforts_beside(
     if not filled.any():
         return solution
     q, v, a = poses
-    return replace(solution, q=q, v=v, a=a, lam=lam, wrench=wrench, margin=margin)
+    return replace(solution, q=q, v=v, a=a, lam=lam, wrench=wrench, margin=margin, beside=tuple(beside))
 
 
 def _beside(
     ready: PreparedDynamics, solution: Solution, motion: Motion, span: tuple[float, float], row: int
-) -> list[tuple[Side, np.ndarray, Solution]]:
+) -> list[Beside]:
     """Poses beside the change point near output ``row``, D there and at the outputs near it, and the motion there."""
-    scale = ready.packed.column_scale()[: 3 * (solution.v.shape[1] - 1)]
-    speed = float(np.abs(solution.v[row, 1:].ravel() / scale).max())
-    if not speed > 0.0:
+    pace, (start, end) = _pace(ready, solution, row), span
+    if not pace > 0.0:
         return []
-    pace, (start, end) = 1.0 / speed, span
     try:
         time = _root(ready, motion, float(solution.t[row]), pace, span)
         if time is None:
             return []
         near = np.abs(solution.t - time) < NEAR * pace
         near[1:] &= np.diff(solution.t, prepend=-np.inf)[1:] > 0.0
+        if not near.any():
+            return []
         out = []
         for side in sides_beside(time, solution.t[near], pace, start, end):
             if side.nodes[0] < start or side.nodes[-1] > end:
                 continue
             there = motion(side.nodes)
+            if not _is_plain(ready, solution, side, there):
+                continue
             factor = _determinants(ready, there, np.arange(len(side.nodes))) * np.sign(side.nodes - time)
             at_rows = lagrange(side.nodes, side.rows) @ factor
-            out.append((side, np.append(factor, at_rows), there))
+            out.append(Beside(side, np.append(factor, at_rows), there))
         return out
     except SimulationError:
         return []
@@ -127,7 +138,28 @@ def _root(ready: PreparedDynamics, motion: Motion, time: float, pace: float, spa
         if abs(low) < 1e-4 * reach:
             return time + low if abs(polynomial(low)) <= DOUBLE * squares.max() else None
         time += low
-    return time
+    return None
+
+
+def _pace(ready: PreparedDynamics, solution: Solution, row: int) -> float:
+    """The time in which the motion goes on by 1 size or rad at an output (s); 0 where it rests."""
+    speed = float(np.abs(_scaled(ready, solution.v[row])).max())
+    return 1.0 / speed if speed > 0.0 else 0.0
+
+
+def _scaled(ready: PreparedDynamics, change: np.ndarray) -> np.ndarray:
+    """(..., n) of changes (..., nb, 3), in sizes and rad."""
+    size = 3 * (change.shape[-2] - 1)
+    return change[..., 1:, :].reshape(*change.shape[:-2], size) / ready.packed.column_scale()[:size]
+
+
+def _is_plain(ready: PreparedDynamics, solution: Solution, side: Side, there: Solution) -> bool:
+    """Whether the poses beside are near each other, and the outputs on the polynomials through them."""
+    if np.abs(_scaled(ready, np.ptp(there.q, axis=0))).max() > FURTHEST:
+        return False
+    rows = np.searchsorted(solution.t, side.rows)
+    missed = np.einsum("rn,nbc->rbc", lagrange(side.nodes, side.rows), there.q) - solution.q[rows]
+    return bool(np.abs(_scaled(ready, missed)).max(initial=0.0) <= OFF)
 
 
 def _determinants(ready: PreparedDynamics, solution: Solution, rows: np.ndarray) -> np.ndarray:
@@ -139,6 +171,8 @@ def _determinants(ready: PreparedDynamics, solution: Solution, rows: np.ndarray)
     compact = np.zeros((*phi.shape, 6))
     tabulate_along(packed, solution.drives[rows], q, v, phi, compact, gamma)
     held = np.ones(len(packed.ws.phi), bool) if solution.held is None else solution.held[rows[0]].astype(bool)
-    held[list(ready.dropped)] = False
     jac = packed.spread(compact)[:, held] * packed.row_scale()[held, None] * packed.column_scale()
+    if ready.dropped:
+        rank = jac.shape[1] - len(ready.dropped)
+        return np.prod(np.linalg.svd(jac, compute_uv=False)[:, :rank], axis=1)
     return np.sqrt(np.maximum(np.linalg.det(jac @ jac.transpose(0, 2, 1)), 0.0))

@@ -67,13 +67,12 @@ def refused(
     if status == kinematics.BRANCH_DOUBT:
         return BranchError(
             f"{packed.name}: after {where} the motion would jump to the other assembly, and steps down to "
-            f"{grid[index] - grid[last]:.1e} s do not cure it. A law jumps there, or the pose is a change point; "
-            "end the motion before it."
+            f"{grid[index] - grid[last]:.1e} s do not cure it. A law jumps there, or the drivers rest where two "
+            "assemblies meet; end the motion before it."
         )
     return SingularPoseError(
-        f"{packed.name}: the pose at {where} is a change point: the linkage can go on in two ways and the "
-        "drivers do not decide which. End the motion before it, choose times that do not fall on it, or add a link "
-        "that decides."
+        f"{packed.name}: the pose at {where} is singular, and no smooth motion through it was found: the drivers do "
+        "not decide how the links go on. End the motion before it, or add a link that decides."
     )
 
 

@@ -9,13 +9,13 @@ import numpy as np
 from mbsd.base.errors import MechanismError
 from mbsd.equations.assembly import residual_and_jacobian, tabulate
 from mbsd.kinematics import impossible_motions, newton
-from mbsd.kinematics.change_points import Solver
+from mbsd.kinematics.change_points.assemblies import Solver
+from mbsd.kinematics.change_points.passages import NEAR_END, Passage, Passages
 from mbsd.kinematics.elimination import Elimination, plan
 from mbsd.kinematics.groups.carrying.columns import COS
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.groups import Groups
 from mbsd.kinematics.groups.solve import SOLVED_CLOSE, solve_groups
-from mbsd.kinematics.passages import NEAR_END, Passage, Passages
 from mbsd.kinematics.pose.mobility import best_rows
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.sample_jacobians import sample_jacobians
@@ -184,11 +184,6 @@ def _newton(
         if not passages.found and steps.follow_laws():
             arrays, first, chosen = _arrays(ready.q0, len(steps.times), sequence), 0, 0
             continue
-        passage = passages.pass_ahead(index - 1, q, v)
-        if passage is not None:
-            arrays, first = _gone_on(passage, steps, arrays)
-            chosen = first
-            continue
         if ready.mobility.redundant_rows and index - 1 > chosen:
             residual_and_jacobian(packed.system, q[index - 1], steps.drives[index - 1], packed.ws)
             kept = best_rows(packed, sequence.rows)
@@ -198,6 +193,11 @@ def _newton(
                 first = chosen = index - 1
                 arrays = *arrays[:4], np.zeros((len(steps.times), len(sequence.ends)))
                 continue
+        passage = passages.pass_ahead(index - 1, q, v)
+        if passage is not None:
+            arrays, first = _gone_on(passage, steps, arrays)
+            chosen = first
+            continue
         if not steps.divide(index):
             raise impossible_motions.refused(packed, status, steps.times, index, steps.drives, q, v)
         arrays = tuple(np.insert(array, index, 0.0, axis=0) for array in arrays)
@@ -211,7 +211,7 @@ def _newton(
 
 
 def _gone_on(passage: Passage, steps: Steps, arrays: tuple[np.ndarray, ...]) -> tuple[tuple[np.ndarray, ...], int]:
-    """The arrays (T, ...) for the steps that are left, those right beyond a passage filled, and the first to be solved."""
+    """The arrays (T, ...) for the steps left, filled right beyond a passage, and the first step to be solved."""
     kept = int(np.searchsorted(steps.times, passage.start, side="right"))
     out = tuple(
         np.concatenate([array[:kept], np.zeros((len(steps.times) - kept, *array.shape[1:]))]) for array in arrays

@@ -15,7 +15,7 @@ Branch guard: a step is refused, and the caller puts a pose into it, when
 - the determinant of an irreducible block of J changes sign, shrinks fast, or would on a straight line through its last
   two values: near such a pose two assemblies come close, and steps shorter than the way to it tell them apart.
 
-Where the two assemblies meet, steps do not tell them apart however short they are: mbsd/kinematics/change_points.py
+Where the two assemblies meet, steps do not tell them apart however short they are: mbsd/kinematics/change_points/
 passes these poses.
 
 Source: Haug 1989, ch. 4 (Newton-Raphson); Hairer, Norsett, Wanner, Solving ODEs I, II.6 (Hermite interpolation).

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from mbsd.arrays.chambers import check_pistons, phase_changes, whole_cycles
 from mbsd.arrays.curve_branches import CurveBranches
+from mbsd.arrays.efforts_beside import fill_beside
 from mbsd.arrays.law_jumps import jump_times, reach_beside
 from mbsd.arrays.laws import compiled_laws
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.shown import shown
 from mbsd.base.warn import warn
-from mbsd.kinematics.efforts_beside import determinant_of, fill_beside, sides_of
+from mbsd.kinematics.change_points.sides import determinant_of, sides_of
 from mbsd.kinematics.limits.closed_contacts import refuse_passed_contacts
 from mbsd.kinematics.limits.curve_jumps import refuse_jumps
 from mbsd.kinematics.limits.joints import limits_of, refuse_passed
@@ -29,7 +31,7 @@ from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
 from mbsd.results.jump_rows import Asked, jumps_of
 from mbsd.results.returned import returned
-from mbsd.results.solution import Solution
+from mbsd.results.solution import Beside, Solution
 from mbsd.results.states import check_states
 from mbsd.results.views import Stats
 
@@ -63,20 +65,70 @@ def sweep(
     if asked is not None:
         grid = asked.solved
         march = march_along(ready, grid, switches)
-    q, v, a, packed = march.q, march.v, march.a, ready.packed
-    drives = march.drives
+    packed = ready.packed
     if m.contacts or limits_of(packed):
         inner, poses = march.closely()
         refuse_passed(packed, inner, poses, smooth=True)
         refuse_passed_contacts(m, packed, inner, poses)
     if CurveBranches(packed).rows:
         refuse_jumps(packed, *march.closely())
-    check_pistons(packed, grid, q)
-    loads, states = _loads(ready, grid, march)
+    check_pistons(packed, grid, march.q)
+    sol = _solution(m, ready, grid, march)
+    return sol if asked is None else asked.rows(sol)
+
+
+def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solution:
+    """The motion at the times (s) of ``grid`` (T,) with its efforts; those near change points from poses beside."""
+    sides = [(passage, side) for passage in march.passages for side in sides_of(passage, grid)]
+    if not sides:
+        q, v, a, drives = march.q, march.v, march.a, march.drives
+        states = _states(ready, grid, q, v, a)
+        loads = inverse_dynamics(ready, grid, drives, q, v, a, states)
+        return _named(m, ready, march, (grid, drives, q, v, a), loads, states)
+    every = np.union1d(grid, np.concatenate([side.nodes for _, side in sides]))
+    parts = [np.zeros((len(every), march.q.shape[1])) for _ in range(3)]
+    asked, solved = np.isin(every, grid), np.ones(len(every), bool)
+    for part, source in zip(parts, (march.q, march.v, march.a), strict=True):
+        part[asked] = source
+    for passage, side in sides:
+        new = np.setdiff1d(side.nodes, grid)
+        for part, source in zip(parts, passage.motion(new), strict=True):
+            part[np.searchsorted(every, new)] = source
+        solved[np.searchsorted(every, side.rows)] = False
+    drives, states = ready.packed.drives(every), _states(ready, every, *parts)
+    q, v, a = (part[solved] for part in parts)
+    known = None if states is None else states[solved]
+    found = inverse_dynamics(ready, every[solved], drives[solved], q, v, a, known)
+    lam, wrench = _spread(found.lam, solved), _spread(found.wrench, solved)
+    approached = None if found.approached is None else _spread(found.approached, solved)
+    beside = []
+    for passage, side in sides:
+        nodes, rows = np.searchsorted(every, side.nodes), np.searchsorted(every, side.rows)
+        factor = determinant_of(passage, np.append(side.nodes, side.rows))
+        fill_beside(ready.packed, side, factor, lam, wrench, nodes, rows)
+        if approached is not None and len(nodes):
+            approached[rows] = approached[nodes[0]]
+        beside.append((side, factor))
+    efforts = Efforts(lam, wrench, found.residuals, approached)
+    whole = _named(m, ready, march, (every, drives, *parts), efforts, states)
+    motions = [Beside(side, factor, whole.only(np.isin(every, side.nodes))) for side, factor in beside]
+    return replace(whole.only(asked), beside=tuple(motions))
+
+
+def _named(
+    m: Model,
+    ready: Prepared,
+    march: March,
+    motion: tuple[np.ndarray, ...],
+    loads: Efforts,
+    states: np.ndarray | None,
+) -> Solution:
+    """The results by name of a ``motion``: times (T,), drives, q, v and a (T, 3 nb)."""
+    grid, drives, q, v, a = motion
     shape = (len(grid), -1, 3)
-    sol = Solution(
+    return Solution(
         mechanism=m,
-        packed=packed,
+        packed=ready.packed,
         t=grid,
         q=q.reshape(shape),
         v=v.reshape(shape),
@@ -86,54 +138,19 @@ def sweep(
         approached=loads.approached,
         states=states,
         drives=drives,
-        margin=partial(singularity_margin, packed, ready.sequence.rows, drives, q),
-        stats=Stats(*(float(r) for r in loads.residuals), steps=len(grid), inserted_steps=march.steps.inserted),
+        margin=partial(singularity_margin, ready.packed, ready.sequence.rows, drives, q),
+        stats=Stats(*(float(r) for r in loads.residuals), steps=len(march.q), inserted_steps=march.steps.inserted),
         mobility=ready.mobility,
         route=ready.route if march.closed else "Newton-Raphson",
     )
-    return sol if asked is None else asked.rows(sol)
 
 
-def _loads(ready: Prepared, grid: np.ndarray, march: March) -> tuple[Efforts, np.ndarray | None]:
-    """Efforts, and states of forces (T, n), at the times (s) of ``grid``; those near change points from poses beside."""
-    packed = ready.packed
-    sides = [(passage, side) for passage in march.passages for side in sides_of(passage, grid)]
-    if not sides:
-        states = states_along(packed, grid, march.q, march.v, march.a)
-        if states is not None:
-            check_states(packed, grid, march.q, states)
-        return inverse_dynamics(ready, grid, march.drives, march.q, march.v, march.a, states), states
-    nodes = np.concatenate([side.nodes for _, side in sides])
-    every = np.union1d(grid, nodes)
-    parts = [np.zeros((len(every), march.q.shape[1])) for _ in range(3)]
-    known, solved = np.searchsorted(every, grid), np.ones(len(every), bool)
-    for part, source in zip(parts, (march.q, march.v, march.a), strict=True):
-        part[known] = source
-    for passage, side in sides:
-        at = np.searchsorted(every, side.nodes)
-        for part, source in zip(parts, passage.motion(side.nodes), strict=True):
-            part[at] = source
-        solved[np.searchsorted(every, side.rows)] = False
-    states = states_along(packed, every, *parts)
+def _states(ready: Prepared, times: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray | None:
+    """(T, n) states of forces (SI) along the motion, None where no force has any. Raises SimulationError."""
+    states = states_along(ready.packed, times, q, v, a)
     if states is not None:
-        check_states(packed, every, parts[0], states)
-    drives = packed.drives(every)
-    rows = [part[solved] for part in parts]
-    found = inverse_dynamics(ready, every[solved], drives[solved], *rows, None if states is None else states[solved])
-    whole = Efforts(
-        *(_spread(part, solved) for part in (found.lam, found.wrench)),
-        found.residuals,
-        None if found.approached is None else _spread(found.approached, solved),
-    )
-    for passage, side in sides:
-        at, to = np.searchsorted(every, side.nodes), np.searchsorted(every, side.rows)
-        factor = determinant_of(passage, np.append(side.nodes, side.rows))
-        fill_beside(packed, side, factor, whole.lam, whole.wrench, at, to)
-        if whole.approached is not None:
-            whole.approached[to] = whole.approached[at[0]]
-    approached = None if whole.approached is None else whole.approached[known]
-    efforts = Efforts(whole.lam[known], whole.wrench[known], found.residuals, approached)
-    return efforts, None if states is None else states[known]
+        check_states(ready.packed, times, q, states)
+    return states
 
 
 def _spread(values: np.ndarray, rows: np.ndarray) -> np.ndarray:

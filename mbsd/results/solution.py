@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.axes import Axes
 
+    from mbsd.arrays.efforts_beside import Side
     from mbsd.arrays.packing import Packed
     from mbsd.model.body import Marker
     from mbsd.pictures.animation import Animation
@@ -117,6 +118,8 @@ class Solution(Suggesting, Generic[AnyModel]):
     """(T,) of forces that act by these instead of by their own laws (inverse dynamics)."""
     between: Callable[[np.ndarray], Solution] | None = field(default=None, repr=False)
     """Motion of a simulation at other times; see :meth:`at`."""
+    beside: tuple[Beside, ...] = field(default=(), repr=False)
+    """Motions beside change points, from which efforts at outputs near these follow."""
     traces: Mapping[str, Marker] | None = field(default=None, repr=False)
     """Traced points as they were when this was solved."""
     planes: Planes | None = field(default=None, repr=False)
@@ -408,6 +411,16 @@ class Solution(Suggesting, Generic[AnyModel]):
         if not isinstance(name, str) or name not in names:
             raise ModelError(f"{self.mechanism.name}: {no_such(what, name, names)}")
         return names.index(name)
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """A motion at poses beside a change point."""
+
+    side: Side
+    factor: np.ndarray
+    """(N + R,) the determinant of J there, then at the outputs near the change point."""
+    motion: Solution
 
 
 def _rows_of(whole: Callable[[], np.ndarray], rows: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Change points of driven motions: passed on the smooth continuation, or on the other assembly, with efforts that are right.
+"""Change points of driven motions: passed on the smooth continuation or on the other assembly, with right efforts.
 
 Exact answers: the coupler of a parallelogram stays parallel; closed forms of the places of pins; virtual work,
 motor torque = dV/dtheta + d(T)/dt / omega, on the exact path.

@@ -15,7 +15,7 @@ assembly. Polynomials of degree 11 through q, dq/dp, d2q/dp2 give what lies betw
     q' = dq/dp p',    q'' = d2q/dp2 p'^2 + dq/dp p''
 
 The proof that two assemblies do meet there: these poses, between the twelve, meet the constraints to ``CLOSES``, and
-det J has a root. Lengths that nearly agree keep the assemblies apart and leave a gap that is as large as what they miss.
+det J has a root. Lengths that nearly agree keep the assemblies apart, and leave gaps as large as what they miss.
 
 The other assembly. With w^T J u = sigma the smallest singular value at the smooth pose at p,
 
@@ -32,6 +32,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mbsd.arrays.efforts_beside import lagrange
 from mbsd.arrays.packing import Packed
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics import newton
@@ -55,15 +56,6 @@ EXACT = 1e-9
 """Error of d2q/dp2 with which the polynomials are taken as they are."""
 ROUGH = 1e-5
 """Error of d2q/dp2 beyond which they do not describe the motion."""
-
-
-def lagrange(nodes: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """(P, N) weights of values at ``nodes`` (N,) in the value at each of ``places`` (P,) of the polynomial through them."""
-    out = np.ones((len(places), len(nodes)))
-    for i, node in enumerate(nodes):
-        others = np.delete(nodes, i)
-        out[:, i] = np.prod((places[:, None] - others) / (node - others), axis=1)
-    return out
 
 
 @dataclass
@@ -263,7 +255,7 @@ def _around(solver: Solver, way: Way, pose: np.ndarray, p: float, side: float, r
 
 
 def _ladder(first: float, last: float, more: np.ndarray) -> np.ndarray:
-    """Rising distances from ``first`` to ``last``, ``more`` among them, each at most ``LADDER`` times the one before."""
+    """Rising distances from ``first`` to ``last``, ``more`` among them, at most ``LADDER`` times the one before."""
     steps = max(1, int(np.ceil(np.log(last / first) / np.log(LADDER))))
     inner = np.geomspace(first, last, steps + 1)
     inner[-1] = last

@@ -1,7 +1,7 @@
 """Passages of a march along a driven motion past change points: which poses they give, and where it goes on.
 
 The march comes to a pose where steps, however short, do not tell two assemblies apart. If they meet there
-(change_points.py), the steps nearby are left out, and it goes on beyond, on the smooth continuation or, where asked
+(assemblies.py), the steps nearby are left out, and it goes on beyond, on the smooth continuation or, where asked
 for, on the other assembly. Poses near the change point are those of the passage.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mbsd.base.errors import ModelError, SingularPoseError
-from mbsd.kinematics.change_points import (
+from mbsd.kinematics.change_points.assemblies import (
     GAP,
     Assembly,
     Solver,
@@ -222,7 +222,7 @@ class Passages:
         return self.steps.leave_out(passage.start, passage.end, beyond)
 
     def _looks(self, way: Way, start: float) -> np.ndarray:
-        """Times from ``start`` to the end at which a motion near a change point is looked at, close together at first (s)."""
+        """Times from ``start`` to the end (s) at which a motion near a change point is looked at, dense at first."""
         end = float(self.steps.times[-1])
         _, rate, second = way.at(np.array([start]))[0]
         step = FINEST * GAP / max(abs(rate), np.sqrt(GAP * abs(second)), GAP / max(end - start, 1e-300))
@@ -238,7 +238,7 @@ def _meeting_time(way: Way, time: float) -> float:
 
 
 def _crossing_time(way: Way, looks: np.ndarray) -> float:
-    """The time at which p is 0 or, where it never is, nearest to it; beyond the ends of ``looks`` (T,) if it leads there."""
+    """The time at which p is 0 or, where it never is, nearest to it; beyond ``looks`` (T,) if it leads there (s)."""
     ends = float(looks[0]), float(looks[-1])
     for _ in range(8):
         p = way.at(looks)[:, 0]

@@ -59,7 +59,7 @@ class Balance:
 def look(ready: Statics, q: np.ndarray) -> Balance:
     """Tangent, loads and multipliers at q (3 nb,). Raises EquilibriumError where a load is not finite."""
     jacobian = ready.jacobian(q)
-    basis = tangent(ready.packed, jacobian)
+    basis = tangent(ready.packed, jacobian, ready.among)
     load = ready.load(q)
     ready.packed.specials.check()
     if not np.isfinite(load).all():

@@ -17,6 +17,7 @@ from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.efforts_beside import fill_beside
 from mbsd.arrays.friction_along import with_friction
+from mbsd.arrays.inertias import coupled
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
@@ -194,8 +195,12 @@ def _actuated(m: Model, motion: Solution, actuators: Sequence[str]) -> ActuatedM
     applied += friction
     columns = packed.column_scale()
     terms = (weight.ravel()[3:], applied[:, 3:], inertia[3:] * a[:, 3:])
-    largest = max(float(np.abs(term * columns).max(initial=0.0)) for term in terms)
-    residual = np.abs(left * columns).max(axis=1, initial=0.0) / (largest or 1.0)
+    largest = np.max([np.abs(term * columns).reshape(-1, len(columns)).max(axis=0) for term in terms], axis=0)
+    group = coupled(packed)[1:].repeat(3)  # bodies that nothing connects are not measured by each other's loads
+    of_group = np.zeros(group.max(initial=0) + 1)
+    np.maximum.at(of_group, group, largest)
+    allowed = of_group[group]
+    residual = (np.abs(left * columns) / np.where(allowed > 0.0, allowed, 1.0)).max(axis=1, initial=0.0)
     worst = int(np.argmax(residual))
     if residual[worst] > UNBALANCED:
         raise MobilityError(

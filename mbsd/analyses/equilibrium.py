@@ -117,8 +117,11 @@ def equilibrium(m: Model, time: float, nearest: bool) -> Equilibrium:
     refuse_bad_laws(packed, time, time)
     start = assemble(resting, packed, time)
     ready = statics(packed, time)
+    q, steps = start, 0
     try:
-        q, steps = (newton if nearest else descend)(ready, start)
+        for part in ready.groups:
+            q, more = (newton if nearest else descend)(part, q)
+            steps += more
     except NoneFound as error:
         refuse_resting(resting, packed, start, error.pose, f"{error.said} It went")
         raise
@@ -142,7 +145,7 @@ def _result(m: Model, resting: Model, ready: Statics, q: np.ndarray, steps: int)
     change = np.linalg.lstsq(here.basis * packed.column_scale()[:, None], independent.basis, rcond=None)[0]
     return Equilibrium(
         solution=_solution(m, ready, q, here.lam, mobility),
-        stability=_stability(stiffness, here.largest),
+        stability=_stability(ready, q, stiffness, here.largest),
         independent=independent,
         stiffness=change.T @ stiffness @ change,
         model=started_at(resting, packed, q, np.zeros_like(q)),
@@ -150,7 +153,19 @@ def _result(m: Model, resting: Model, ready: Statics, q: np.ndarray, steps: int)
     )
 
 
-def _stability(stiffness: np.ndarray, load: float) -> str:
+def _stability(ready: Statics, q: np.ndarray, stiffness: np.ndarray, load: float) -> str:
+    """That of the least stable group; ``stiffness`` (f, f) and largest load are those of all."""
+    if len(ready.groups) == 1:
+        return _stability_of(stiffness, load)
+    words = set()
+    for part in ready.groups:
+        here = look(part, q)
+        own = part.stiffness(q, here.lam, here.basis, pose_step(ready.packed, q, STEP))
+        words.add(_stability_of(own, here.largest))
+    return next(word for word in ("unstable", "neutral", "stable", "fixed") if word in words)
+
+
+def _stability_of(stiffness: np.ndarray, load: float) -> str:
     if not len(stiffness):
         return "fixed"
     value = np.linalg.eigvalsh(0.5 * (stiffness + stiffness.T))

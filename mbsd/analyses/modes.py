@@ -19,6 +19,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from mbsd.arrays.inertias import connected
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 
@@ -111,10 +112,41 @@ class Mode:
 
 
 def modes_of(linear: Linear) -> tuple[Mode, ...]:
-    """All modes, by rising frequency; one for each pair of eigenvalues, one for each real eigenvalue."""
+    """All modes, by rising frequency; one for each pair of eigenvalues, one for each real eigenvalue.
+
+    Coordinates that do not pull at each other have modes of their own, so that none is measured by others' stiffness.
+    """
     f = len(linear.coordinates)
-    values, vectors = np.linalg.eig(linear.a)
-    pull, slow = linear.a[f : 2 * f, :f], linear.a[f : 2 * f, f : 2 * f]
+    free: list[np.ndarray] = []
+    moving: list[tuple[complex, np.ndarray]] = []
+    for at in _groups(linear.a, f):
+        whole = np.concatenate([at, f + at, np.arange(2 * f, len(linear.a))])
+        still, own = _modes_among(linear.a[np.ix_(whole, whole)], len(at))
+        free += [_spread(z, at, f) for z in still]
+        moving += [(value, _spread(z, at, f)) for value, z in own]
+    moving.sort(key=lambda mode: abs(mode[0]))
+    return (*(_mode(linear, 0.0, z) for z in free), *(_mode(linear, value, z) for value, z in moving))
+
+
+def _groups(a: np.ndarray, f: int) -> list[np.ndarray]:
+    """Coordinates that pull at each other; all of them where there are states beside them."""
+    if len(a) > 2 * f:
+        return [np.arange(f)]
+    pairs = np.argwhere((a[f:, :f] != 0.0) | (a[f:, f:] != 0.0)) + 1
+    group = connected(pairs, f + 1)[1:]
+    return [np.flatnonzero(group == number) for number in np.unique(group)]
+
+
+def _spread(z: np.ndarray, at: np.ndarray, f: int) -> np.ndarray:
+    out = np.zeros(f, z.dtype)
+    out[at] = z
+    return out
+
+
+def _modes_among(a: np.ndarray, f: int) -> tuple[np.ndarray, list[tuple[complex, np.ndarray]]]:
+    """(k, f) displacements that nothing pulls back, and eigenvalues that are not zero with their shapes (f,)."""
+    values, vectors = np.linalg.eig(a)
+    pull, slow = a[f : 2 * f, :f], a[f : 2 * f, f : 2 * f]
     largest = float(np.abs(pull).max()) + float(np.abs(slow).max()) ** 2
     if len(values) > 2 * f:  # states are large beside places, and what they do to these is none of the two
         largest = float(np.abs(values).max()) ** 2
@@ -123,11 +155,8 @@ def modes_of(linear: Linear) -> tuple[Mode, ...]:
     values = np.where(np.abs(values) ** 2 <= ZERO * largest, 0.0, values)
     straight = np.abs(values.imag) <= 1e-9 * np.abs(values)
     values = np.where(straight, values.real, values)
-    modes = [_mode(linear, 0.0, z) for z in _free(pull)]
-    for k in np.argsort(np.abs(values), kind="stable"):
-        if values[k].imag >= 0.0 and values[k] != 0.0 and vectors[:f, k].any():
-            modes.append(_mode(linear, complex(values[k]), vectors[:f, k]))
-    return tuple(modes)
+    chosen = [k for k in np.argsort(np.abs(values), kind="stable") if values[k].imag >= 0.0 and values[k] != 0.0]
+    return _free(pull), [(complex(values[k]), vectors[:f, k]) for k in chosen if vectors[:f, k].any()]
 
 
 def _free(pull: np.ndarray) -> np.ndarray:

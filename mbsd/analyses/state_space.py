@@ -24,6 +24,7 @@ from mbsd.analyses.modes import Mode, modes_of
 from mbsd.analyses.pose_step import pose_step
 from mbsd.analyses.statics import DIFFERENCES, OFFSETS
 from mbsd.analyses.tangent import Independent, independent_coordinates, tangent
+from mbsd.arrays.inertias import coupled
 from mbsd.arrays.loads import SHARP
 from mbsd.arrays.states import columns_of, ones_of, without_states
 from mbsd.base.errors import MobilityError, ModelError, SingularPoseError
@@ -121,6 +122,23 @@ class Linearisation:
         return "\n".join([repr(self), *(f"  {mode}" for mode in self.modes)])
 
 
+def _drop_rounding(slopes: np.ndarray, group: np.ndarray, fall: float) -> None:
+    """Make entries of slopes (f, 2 f) zero that are rounding beside those of their group (f,), or between groups.
+
+    Where there are several groups, one that nothing pulls at has rounding of the weight, ``fall`` (1/s^2), alone.
+    """
+    f = len(group)
+    least = fall if (group != group[0]).any() else 0.0
+    slopes[:, :f][group[:, None] != group] = slopes[:, f:][group[:, None] != group] = 0.0
+    for number in np.unique(group):
+        at = np.flatnonzero(group == number)
+        pull = max(float(np.abs(slopes[np.ix_(at, at)]).max()), least)
+        for first, usual in ((0, pull), (f, math.sqrt(pull))):
+            block = slopes[np.ix_(at, first + at)]
+            block[np.abs(block) < ROUNDING * max(usual, float(np.abs(block).max()))] = 0.0
+            slopes[np.ix_(at, first + at)] = block
+
+
 def _refuse_massless(model: str, names: tuple[str, ...], mass: np.ndarray) -> None:
     """Raise MobilityError for a motion (f, f) that moves no mass: it has no equation of motion."""
     size = np.sqrt(np.maximum(np.diag(mass), 0.0))
@@ -163,9 +181,8 @@ def linearise(m: Model, time: float, inputs: Sequence[str]) -> Linearisation:
     state[f:, :f], state[f:, f : 2 * f], state[f:, 2 * f :] = (flow.slopes(part) for part in range(3))
     state[2 * f :] *= flow.ones[:, None]
     state[:, 2 * f :] /= flow.ones
-    pull = float(np.abs(state[f : 2 * f, :f]).max())
-    for block, usual in ((state[f : 2 * f, :f], pull), (state[f : 2 * f, f : 2 * f], math.sqrt(pull))):
-        block[np.abs(block) < ROUNDING * max(usual, float(np.abs(block).max()))] = 0.0
+    fall = float(np.hypot(*ready.packed.system.gravity)) / ready.packed.size
+    _drop_rounding(state[f : 2 * f, : 2 * f], coupled(ready.packed)[1 + flow.independent.indices // 3], fall)
     push = np.array([basis.T @ _direction(ready, name, time)[: len(basis)] for name in inputs]).reshape(len(inputs), f)
     b = np.zeros((count, len(inputs)))
     b[f : 2 * f] = np.linalg.solve(mass, push.T)

@@ -9,10 +9,12 @@ on the tangent space).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from mbsd.arrays.inertias import coupled
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
@@ -40,6 +42,15 @@ class Statics:
     laws: Laws
     weight: np.ndarray
     """(3 nb,) N."""
+    among: np.ndarray | None = None
+    """(n,) coordinates that move, the loads of others left out; None: all."""
+
+    @cached_property
+    def groups(self) -> list[Statics]:
+        """The same of each set of bodies that joints and forces connect: no set is measured by another's loads."""
+        group = coupled(self.packed)[1:].repeat(3)
+        numbers = np.unique(group)
+        return [self] if len(numbers) < 2 else [replace(self, among=group == number) for number in numbers]
 
     def jacobian(self, q: np.ndarray) -> np.ndarray:
         """(m, n)"""
@@ -53,7 +64,8 @@ class Statics:
 
     def load(self, q: np.ndarray) -> np.ndarray:
         """(n,) all loads Q at q (3 nb,), weight included."""
-        return self.applied(q[None])[0] + self.weight[3:]
+        load = self.applied(q[None])[0] + self.weight[3:]
+        return load if self.among is None else np.where(self.among, load, 0.0)
 
     def multipliers(self, jacobian: np.ndarray, load: np.ndarray) -> np.ndarray:
         """(m,) of least norm with J^T lam = Q as nearly as can be."""
@@ -80,6 +92,8 @@ class Statics:
     def size_of_load(self, q: np.ndarray) -> float:
         """The largest load (N, N m over the size) that balances at q, before anything cancels."""
         columns = self.packed.column_scale()
+        if self.among is not None:
+            columns = np.where(self.among, columns, 0.0)
         largest = float(np.abs(self.weight[3:] * columns).max(initial=0.0))
         return max(largest, float(np.abs(self.applied(q[None])[0] * columns).max(initial=0.0)))
 

@@ -35,11 +35,22 @@ class Independent:
     """(n, f) B: dq = B dz, units of the coordinates."""
 
 
-def tangent(packed: Packed, jacobian: np.ndarray) -> np.ndarray:
-    """(n, f) orthonormal null space of J (m, n), dimensionless: dq = column_scale * (T dz)."""
+def tangent(packed: Packed, jacobian: np.ndarray, among: np.ndarray | None = None) -> np.ndarray:
+    """(n, f) orthonormal null space of J (m, n), dimensionless: dq = column_scale * (T dz).
+
+    ``among`` (n,): the only coordinates that move; None: all.
+    """
     scaled = jacobian * packed.row_scale()[:, None] * packed.column_scale()
+    if among is not None:
+        out = np.eye(packed.coordinates)[:, among]
+        return out @ _null_space(scaled[:, among])
+    return _null_space(scaled)
+
+
+def _null_space(scaled: np.ndarray) -> np.ndarray:
+    """(n, f) orthonormal."""
     if not len(scaled):
-        return np.eye(packed.coordinates)
+        return np.eye(scaled.shape[1])
     _, singular, right = np.linalg.svd(scaled, full_matrices=True)
     rank = int((singular > RANK * singular.max(initial=0.0)).sum())
     return right[rank:].T

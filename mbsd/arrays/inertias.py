@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,7 +26,7 @@ def usual_inertia(packed: Packed) -> np.ndarray:
     inertia, mass = inertia_of(packed), packed.system.mass
     largest = np.zeros(len(mass))
     if (inertia[3:] == 0.0).any():
-        group = _groups(packed.system.row_body, len(mass))
+        group = connected(packed.system.row_body, len(mass))
         np.maximum.at(largest, group, mass)
         largest = largest[group]
     largest[largest == 0.0] = float(mass.max()) or 1.0
@@ -34,10 +35,10 @@ def usual_inertia(packed: Packed) -> np.ndarray:
     return np.where(inertia > 0.0, inertia, usual)
 
 
-def _groups(row_body: np.ndarray, bodies: int) -> np.ndarray:
-    """(nb,) the least number among the bodies that rows of J with ``row_body`` (m, 2) connect without ground."""
+def connected(pairs: np.ndarray, bodies: int) -> np.ndarray:
+    """Return (nb,) the least number among the bodies that ``pairs`` (k, 2) connect without ground, body 0."""
     group = np.arange(bodies)
-    pairs = row_body[(row_body > 0).all(axis=1)]
+    pairs = pairs[(pairs > 0).all(axis=1)]
     while True:
         before = group.copy()
         least = group[pairs].min(axis=1)
@@ -46,6 +47,18 @@ def _groups(row_body: np.ndarray, bodies: int) -> np.ndarray:
         group = group[group]
         if (group == before).all():
             return group
+
+
+def coupled(packed: Packed) -> np.ndarray:
+    """Return (nb,) the least number among the bodies that joints, drivers and forces connect without ground."""
+    number = {name: b for b, name in enumerate(packed.body_names)}
+    pairs = packed.system.row_body.tolist()
+    for force in packed.forces:
+        values = [part for value in force.params.values() for part in (value if isinstance(value, list) else [value])]
+        named = [number[part] for part in values if isinstance(part, str) and part in number]
+        members = [body for body in (number[force.i.body.name], number[force.j.body.name], *named) if body > 0]
+        pairs += pairwise(members)
+    return connected(np.array(pairs, np.int64).reshape(-1, 2), len(packed.body_names))
 
 
 def least_energy(v: np.ndarray, rows: np.ndarray, inertia: np.ndarray, size: np.ndarray) -> np.ndarray:

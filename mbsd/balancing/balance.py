@@ -17,6 +17,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from mbsd.arrays.inertias import inertia_of
 from mbsd.balancing.effects import QUANTITIES, effect_of_shaft, effect_of_weight
 from mbsd.balancing.least import least_mean_square, least_peak
 from mbsd.balancing.means import BalanceShaft, Counterweight
@@ -26,6 +27,10 @@ from mbsd.base.names import no_such
 from mbsd.base.quantity import written
 from mbsd.model.body import Body
 from mbsd.results.vibration.crank import crank_of
+from mbsd.results.vibration.shaking import planes_of
+
+ROUNDING = 1e-9
+"""Part of the sum of all shares below which a quantity is rounding."""
 
 
 @dataclass(frozen=True)
@@ -98,9 +103,10 @@ def balance(
 
     ``of``: "force", "moment", "couple" (what inertia does to the frame, as in ``sol.shaking(about, z)``) or "torque"
     (the unevenness of the driver's effort); several by a mapping to their weights, each counted in parts of what it is
-    without them. ``norm``: root mean square over time, or peak. ``crank`` turns the balance shafts; by default that
-    of ``sol.orders``. Raises ModelError for what is no such thing, for a simulation, where the motion would change, and
-    for a torque without exactly one driver.
+    without them. One that is zero without them, but for rounding, counts in parts of what it would be if the shares of
+    all bodies pointed the same way. ``norm``: root mean square over time, or peak. ``crank`` turns the balance shafts;
+    by default that of ``sol.orders``. Raises ModelError for what is no such thing, for a simulation, where the motion
+    would change, and for a torque without exactly one driver.
     """
     m = sol.mechanism
     wanted = _wanted(m.name, of)
@@ -128,7 +134,12 @@ def balance(
     if "torque" in wanted:
         added["torque"] = added["torque"] - added["torque"].mean(axis=0)
     shares = _shares(sol.t)
-    u = _search(given, added, wanted, norm, np.array([mass.largest for mass in means]), shares)
+    parts = {name: _measure(_unbalanced(sol, name, place, z0), norm, shares) for name in wanted}
+    scales = {}
+    for name, weight in wanted.items():
+        own = _measure(given[name], norm, shares)
+        scales[name] = weight / ((own if own > ROUNDING * parts[name] else parts[name]) or 1.0)
+    u = _search(given, added, scales, norm, np.array([mass.largest for mass in means]), shares)
     full = np.concatenate([u, np.hypot(*u.T)[:, None]], axis=1)
     series = {name: given[name] + np.einsum("tckj,kj->tc", added[name], full) for name in wanted}
     return Balance(
@@ -163,6 +174,25 @@ def _given(sol: Any, quantity: str, about: tuple[float, float], z0: float) -> np
     return values[quantity]
 
 
+def _unbalanced(sol: Any, quantity: str, about: tuple[float, float], z0: float) -> np.ndarray:
+    """(T, 1) what it would be if the shares of all bodies added up."""
+    inertia, planes = inertia_of(sol.packed).reshape(-1, 3)[1:], planes_of(sol.mechanism.bodies.values())
+    q, v, push = sol.q[:, 1:], sol.v[:, 1:], np.abs(inertia * sol.a[:, 1:])
+    force = np.hypot(push[..., 0], push[..., 1])
+    if quantity == "force":
+        each = force
+    elif quantity == "moment":
+        each = np.hypot(*np.moveaxis(q[..., :2] - np.asarray(about), -1, 0)) * force + push[..., 2]
+    elif quantity == "couple":
+        turning = v[..., 2] ** 2 + np.abs(sol.a[:, 1:, 2])
+        each = np.abs(planes.z - z0) * force + np.hypot(*planes.products.T) * turning
+    else:
+        weight = inertia[:, :2] * np.asarray(sol.packed.system.gravity)
+        power = (push * np.abs(v)).sum(axis=-1) + (np.abs(weight) * np.abs(v[..., :2])).sum(axis=-1)
+        each = power / np.abs(sol.driver(_driver(sol)).rate)[:, None]
+    return each.sum(axis=1)[:, None]
+
+
 def _driver(sol: Any) -> str:
     names = list(sol.mechanism.drivers)
     if len(names) != 1:
@@ -188,23 +218,22 @@ def _rate(sol: Any, wanted: Mapping[str, float]) -> np.ndarray:
 def _search(
     given: Mapping[str, np.ndarray],
     added: Mapping[str, np.ndarray],
-    wanted: Mapping[str, float],
+    scales: Mapping[str, float],
     norm: str,
     bounds: np.ndarray,
     shares: np.ndarray,
 ) -> np.ndarray:
-    """(K, 2) vectors of the means."""
-    scales = {name: weight / (_measure(given[name], norm, shares) or 1.0) for name, weight in wanted.items()}
-    b = np.concatenate([(scales[name] * given[name]).ravel() for name in wanted])
+    """(K, 2) vectors of the means; ``scales`` weigh the quantities."""
+    b = np.concatenate([(scale * given[name]).ravel() for name, scale in scales.items()])
     count = len(bounds)
-    columns = np.concatenate([scales[name] * added[name].reshape(-1, count, 3) for name in wanted])
-    root = np.sqrt(np.concatenate([np.repeat(shares, given[name].shape[1]) for name in wanted]))
+    columns = np.concatenate([scale * added[name].reshape(-1, count, 3) for name, scale in scales.items()])
+    root = np.sqrt(np.concatenate([np.repeat(shares, given[name].shape[1]) for name in scales]))
     u = least_mean_square(root * b, root[:, None, None] * columns, bounds)
     if norm == "rms":
         return u
     # A time of a vector's components is one group; quantities are compared by their own peaks.
     groups, first = [], 0
-    for name in wanted:
+    for name in scales:
         rows, width = given[name].shape
         groups.append(first + np.repeat(np.arange(rows), width))
         first += rows

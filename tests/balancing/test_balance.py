@@ -90,6 +90,24 @@ def measured(values: np.ndarray, norm: str) -> float:
     return math.sqrt(squares[:-1].mean() if norm == "rms" else squares.max())  # the last row is the first
 
 
+@pytest.mark.parametrize("norm", ["rms", "peak"])
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_a_quantity_that_is_rounding_leaves_the_others_their_weight(norm: Any, scale: float) -> None:
+    """A fan out of balance has no moment about its axis, nor one with a counterweight: the force goes to zero."""
+    m = Mechanism("fan")
+    fan = m.body("fan", 1.0, (0.05 * scale, 0.02 * scale), 0.01 * scale**2)
+    m.revolute("O", m.ground.at(0.3 * scale, 0.1 * scale), fan.origin)
+    m.drive_angle("motor", fan, constant_rate(50.0))
+    m.start_near(fan=0)
+    found = balance(
+        m.sweep(steps=45), [Counterweight(fan.origin, 0.1 * scale)], {"force": 1.0, "moment": 1e-3}, norm,
+        about=(0.3 * scale, 0.1 * scale),
+    )  # fmt: skip
+    assert 0.0 < found.before["moment"] < 1e-9 * scale * found.before["force"]
+    assert found.after["force"] < 1e-7 * found.before["force"]
+    assert found.weights[0].mass == pytest.approx(math.hypot(0.05, 0.02) / 0.1, rel=1e-6)
+
+
 def test_half_the_oscillating_mass_is_least_at_the_peak_of_a_single_cylinder() -> None:
     """With a long rod F = m r w^2 cos phi along the bore; half of it against the throw leaves half, turning back."""
     m = engine("I1", bore=0.08, stroke=0.08, rod=8.0, piston_mass=1.0, rod_mass=0.0, counterweight="none", speed=10.0)

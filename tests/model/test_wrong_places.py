@@ -36,7 +36,7 @@ WRONG: list[tuple[Callable[[Any, Any, Any], object], str]] = [
     (lambda m, a, b: m.spring("S", a.end, 100.0), r"stiffness is missing; the arguments are spring\(name, i, j, stiff"),
     (lambda m, a, b: m.torque("T", a.end, 1.0), r"body is a marker on 'bar'; .*\(name, body, torque, against\)"),
     (lambda m, a, b: m.drive_angle("d", m.joints["A"], constant_rate(1.0)), "body is <revolute 'A' .* m.ground"),
-    (lambda m, a, b: m.drive_angle("d", "bat", constant_rate(1.0)), "driver 'd': there is no body 'bat', did you mean 'bar'"),
+    (lambda m, a, b: m.drive_angle("d", "bat", constant_rate(1.0)), "no body 'bat', did you mean 'bar'"),
     (lambda m, a, b: m.motor("M", a.end, b.end, curve([0, 1], [1, 0])), "first is a marker on 'bar'"),
     (lambda m, a, b: m.user_force("u", lambda t, q, v: 0.0, a.end), "argument 3 is a marker on 'bar'"),
     (lambda m, a, b: m.trace("P", a), "marker is the body 'bar'"),

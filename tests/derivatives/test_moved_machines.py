@@ -1,4 +1,4 @@
-"""Derivatives of a machine that is elsewhere, turned, mirrored, larger or under other names are those of the machine."""
+"""Derivatives of a machine that is elsewhere, turned, mirrored, larger or renamed are those of the machine itself."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsd import Mechanism, constant_rate, harmonic, optimise
-from mbsd.measures import final
+from mbsd import Mechanism, constant_rate, harmonic, optimise, tolerances
+from mbsd.measures import final, largest
 from mbsd.model.body import Marker
 
 DURATION = 0.3
@@ -24,7 +24,12 @@ GALLERY = ("four_bar", "slider_crank", "quick_return", "windshield_wiper", "v_tw
 
 
 def four_bar(
-    at: complex = 0.0, turn: float = 0.0, scale: float = 1.0, mirrored: bool = False, prefix: str = "", driven: bool = True
+    at: complex = 0.0,
+    turn: float = 0.0,
+    scale: float = 1.0,
+    mirrored: bool = False,
+    prefix: str = "",
+    driven: bool = True,
 ) -> Mechanism:
     """One whose second pin is at 0.12 + 3.7e-17 i m before it is moved."""
     sign = -1.0 if mirrored else 1.0
@@ -118,7 +123,9 @@ def test_machines_of_the_gallery_have_the_same_derivatives_a_kilometre_away(name
     m = module.build(module.Params())
     body = next(key for key in list(m.bodies)[::-1] if key != "ground")
     of = [f"{body}.x", f"{body}.y", f"{body}.omega"]
-    numbers = [f"{name}.{axis}" for name, joint in m.joints.items() if joint.kind.name == "revolute" for axis in "xy"][:6]
+    numbers = [f"{name}.{axis}" for name, joint in m.joints.items() if joint.kind.name == "revolute" for axis in "xy"][
+        :6
+    ]
     here = m.sensitivities(of, numbers, steps=12)
     there = elsewhere(m, 1000.0, -2000.0).sensitivities(of, numbers, times=here.t)
     for label in of:
@@ -152,3 +159,13 @@ def test_an_argument_of_the_author_that_begins_at_nothing_is_moved_within_its_bo
     best = optimise(build(), final("P.y"), {"rise": (-0.05, 0.05)}, build=build, duration=1.0, steps=10)
     assert best.gradient["rise"] == pytest.approx(1.0, abs=1e-9)
     assert best.values["rise"] == pytest.approx(-0.05)
+
+
+def test_tolerances_of_a_picometre_a_kilometre_away_have_the_slopes_of_wider_ones_here() -> None:
+    module = importlib.import_module("mechanisms.four_bar.mechanism")
+    m = module.build(module.Params())
+    here, there = (
+        tolerances(machine, {"crank": size, "D": {"x": size, "y": size}}, largest("P.y"), n=50)
+        for machine, size in ((m, 1e-5), (elsewhere(m, 1000.0, -2000.0), 1e-12))
+    )
+    assert np.abs(there.slopes - here.slopes).max() < 1e-5

@@ -48,7 +48,7 @@ class Guard:
 
     what: str
     name: str
-    """Of the contact, or the event of the user."""
+    """The contact's, or that of the event of the user."""
     row: int = -1
     """Row of the gap, or of the way."""
     joint: int = -1

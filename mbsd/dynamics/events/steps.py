@@ -152,7 +152,7 @@ class EventSteps:
         return False
 
     def _ways(self) -> tuple[float, ...]:
-        """Directions of sliding of contacts and joints: where one turns round, friction jumps and nothing is told."""
+        """Directions of sliding of contacts and joints: where one turns round, friction jumps without a report."""
         return *self.now.sliding, *self.now.joints_sliding
 
     def _make_valid(self) -> None:

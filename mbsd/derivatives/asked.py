@@ -158,7 +158,7 @@ def _function(m: Model, label: str, given: Any, sol: Solution) -> Callable[[Solu
             return given.of(label, sol.t, along)[label][0]
 
         return measured
-    return lambda sol: _numbers(m, label, given, sol)
+    return lambda other: _numbers(m, label, given, other, finite=other is sol)
 
 
 def _quantity(m: Model, name: str, sol: Solution) -> Callable[[Solution], np.ndarray]:
@@ -186,7 +186,11 @@ def _quantity(m: Model, name: str, sol: Solution) -> Callable[[Solution], np.nda
     return quantity.of_solution
 
 
-def _numbers(m: Model, label: str, given: Callable[[Solution], Any], sol: Solution) -> np.ndarray:
+def _numbers(m: Model, label: str, given: Callable[[Solution], Any], sol: Solution, finite: bool) -> np.ndarray:
+    """What a function of the user gives. Raises ModelError for no numbers, and where they must be finite and are not.
+
+    Beside the motion itself NaN stands for what has no derivative.
+    """
     try:
         value = given(sol)
     except Exception as error:
@@ -195,6 +199,6 @@ def _numbers(m: Model, label: str, given: Callable[[Solution], Any], sol: Soluti
         out = np.asarray(value)
     except (TypeError, ValueError):  # rows of several lengths
         out = np.asarray(None)
-    if out.dtype.kind not in "fiu" or not out.size or not np.isfinite(out).all():
+    if out.dtype.kind not in "fiu" or not out.size or (finite and not np.isfinite(out).all()):
         raise ModelError(f"{m.name}: '{label}' gives {shown(value)}; it must give a number, or an array of them")
     return out.astype(float)

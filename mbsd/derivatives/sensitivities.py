@@ -123,8 +123,9 @@ def values_and_slopes(
     for label, slope in slopes.items():
         if not np.isfinite(slope).all() and np.isfinite(values[label]).all():
             raise ModelError(
-                f"{m.name}: '{label}' has no derivative: reactions of joints that repeat others are not known along a "
-                "simulation. Free a joint, m.mobility() says which, or ask for the motion alone"
+                f"{m.name}: '{label}' has no derivative: reactions of joints that repeat others, and friction that "
+                "contacts at rest share, are not known along a simulation. Free a joint, m.mobility() says which, or "
+                "ask for the motion alone"
             )
     return values, slopes
 
@@ -190,4 +191,6 @@ def simulation_tangents(
 ) -> SimulationTangents:
     """Simulate at output times (T,) (s), with tangents by numbers where what is asked ``of`` the motion reads them."""
     refuse_bad_steps(m, grid, tolerance, None)
-    return SimulationTangents(m, Repeated(watched(m), grid, tolerance), grid, numbers, partial(needed, of), of_bodies(m, of))
+    return SimulationTangents(
+        m, Repeated(watched(m), grid, tolerance), grid, numbers, partial(needed, of), of_bodies(m, of)
+    )

@@ -208,9 +208,7 @@ def _inner(name: str, whole: str, key: str, path: str, value: Any) -> Number | N
         change(m, whole, {key: _with_inner(path, given_now, new)})
 
     vector = isinstance(value, tuple | list) and all(map(_is_number, value))
-    return Number(
-        name, at[0], put, within=within, is_place=key == "com", vector=math.hypot(*value) if vector else 0.0
-    )
+    return Number(name, at[0], put, within=within, is_place=key == "com", vector=math.hypot(*value) if vector else 0.0)
 
 
 def _splits(name: str) -> list[tuple[str, str]]:

@@ -89,9 +89,7 @@ def _numbers(family: Family, m: Model, x: np.ndarray) -> list[Number]:
 
     names = [f"{name} {k}" for k, name in enumerate(_columns(family.varied))]
     reach = (family.varied.high - family.varied.low).tolist()
-    return [
-        Number(name, float(x[k]), put, partial(built, k), reach=reach[k]) for k, name in enumerate(names)
-    ]
+    return [Number(name, float(x[k]), put, partial(built, k), reach=reach[k]) for k, name in enumerate(names)]
 
 
 def _columns(varied: Varied) -> list[str]:

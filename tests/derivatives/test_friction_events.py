@@ -63,7 +63,7 @@ def test_feet_that_give_way_together_agree_with_differences(left: float, right: 
     check_derivatives(m, ["box.x", "box.vx"], numbers, 1.0, 20, tolerance=1e-8, confirmed=True)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=3, deadline=None)
 @given(amplitude=st.floats(13.0, 40.0), rate=st.floats(3.0, 9.0), static=st.floats(0.31, 0.6))
 def test_a_box_that_is_pushed_to_and_fro_agrees_with_differences(amplitude: float, rate: float, static: float) -> None:
     m = box(static, harmonic(amplitude, rate), feet=1)
@@ -76,9 +76,10 @@ def test_a_box_that_is_pushed_to_and_fro_agrees_with_differences(amplitude: floa
 
 def test_how_friction_at_rest_is_shared_has_no_derivative_and_says_so() -> None:
     m = box(0.5, polynomial(0.0, 5.0))
-    friction = {"share": lambda sol: sol.contact("left").friction}
-    with pytest.raises(ModelError, match="has no derivative|must give a number"):
-        m.sensitivities(friction, "box.mass", 0.5, 10)
+    with pytest.raises(ModelError, match=r"'share' has no derivative: .* friction that contacts at rest share"):
+        m.sensitivities({"share": lambda sol: sol.contact("left").friction}, "box.mass", 0.5, 10)
+    s = m.sensitivities({"press": lambda sol: sol.contact("left").normal}, "box.mass", 0.5, 10)
+    assert np.abs(s["press"] - GRAVITY * (0.2 - 0.03) / 0.4)[1:].max() < 1e-6
 
 
 def freewheel(clockwise: bool = False) -> Mechanism:
@@ -173,7 +174,7 @@ def test_a_row_of_balls_that_touch_passes_derivatives_on() -> None:
     s = m.sensitivities("b2.x", ["b0.moving.vx", "b0.start.x"], 0.45, 3)
     assert s.of("b2.x", "b0.moving.vx")[-1] == pytest.approx(0.45, abs=1e-8)  # x = 0.2 + v (t - 0.1 / v)
     assert s.of("b2.x", "b0.start.x")[-1] == pytest.approx(1.0, abs=1e-8)
-    with pytest.raises(ModelError, match="no derivative by 'b1.start.x' beyond t = 0.1 s"):
+    with pytest.raises(ModelError, match=r"no derivative by 'b1.start.x' beyond t = 0\.1 s"):
         m.sensitivities("b2.x", "b1.start.x", 0.45, 3)
 
 

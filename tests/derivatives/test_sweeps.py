@@ -200,3 +200,29 @@ def test_a_number_at_its_end_is_differentiated_to_one_side() -> None:
     ahead = m.sweep(steps=20).driver("motor").effort
     m.change("spring", damping=0.0)
     assert np.abs(s["motor.effort"][:, 0] - (ahead - m.sweep(steps=20).driver("motor").effort)).max() < 1e-8
+
+
+def rolling(kind: str) -> Mechanism:
+    m = Mechanism(kind)
+    first, second = m.body("first", 1.0, inertia=0.01), m.body("second", 2.0, inertia=0.05)
+    if kind == "disc":
+        m.prismatic("rail", m.ground.at(0, 0.1), first.origin)
+        m.revolute("hub", first.origin, second.origin)
+        m.rolling_disc("roll", m.ground.at(0, 0), second.origin, radius=0.1)
+        m.drive_coordinate("motor", m.ground.at(0, 0.1), first.origin, constant_rate(0.3))
+        m.start_near(first=(0, 0.1, 0), second=(0, 0.1, 20))
+        return m
+    m.revolute("A", m.ground.at(0, 0), first.origin)
+    m.revolute("B", m.ground.at(0.5 if kind == "gears" else 0.7, 0), second.origin)
+    add = m.gear_pair if kind == "gears" else m.belt
+    add("mesh", first.origin, second.origin, radius_i=0.2, radius_j=0.3)
+    m.drive_angle("motor", first, constant_rate(3.0))
+    m.start_near(first=0, second=20)
+    return m
+
+
+@pytest.mark.parametrize("kind", ["gears", "belt", "disc"])
+def test_what_rolls_turns_with_its_start_angle(kind: str) -> None:
+    s = rolling(kind).sensitivities(["second.theta", "second.omega"], ["second.start.angle"], 1.0, 10)
+    assert np.abs(s["second.theta"] - 1.0).max() < 1e-10
+    assert np.abs(s["second.omega"]).max() < 1e-10

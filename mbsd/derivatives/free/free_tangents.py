@@ -193,8 +193,8 @@ class _Piece:
         y, parts = line.at(self.along.t[at]), [np.zeros((len(self.every), *part.shape[1:])) for part in made[2:]]
         for out, part in zip(parts, made[2:], strict=True):
             combine(y, part, out)
-        ends = (parts[k][:, -1] for k in (0, 1, 3))
-        return Carried(Tangents(*(part[:, :asked] for part in parts)), *ends, line.errors, self.off)
+        q, v, _, lam = (part[:, -1] for part in parts)
+        return Carried(Tangents(*(part[:, :asked] for part in parts)), q, v, lam, line.errors, self.off)
 
     def at_all(self, y: np.ndarray) -> Tangents:
         """Tangents at all times, from s and s' there: y (T, 2 f, P)."""

@@ -48,7 +48,7 @@ class Guard:
 
     what: str
     name: str
-    """Of the contact, or the event of the user."""
+    """The contact's, or that of the event of the user."""
     row: int = -1
     """Row of the gap, or of the way."""
     joint: int = -1
@@ -187,8 +187,8 @@ def times_moved(
 def _apart(mechanism: str, t: float, number: str, names: Sequence[str]) -> str:
     several = " and ".join(f"'{name}'" for name in dict.fromkeys(names))
     return (
-        f"{mechanism}: no derivative by '{number}' beyond t = {t:.6g} s: {several} are met at one time, and it moves one "
-        "before the other, so that what follows differs from side to side. Begin a little apart from there"
+        f"{mechanism}: no derivative by '{number}' beyond t = {t:.6g} s: {several} are met at one time, and it moves "
+        "one before the other, so that what follows differs from side to side. Begin a little apart from there"
     )
 
 
@@ -329,7 +329,7 @@ def refuse_contact_at_start(
             hastens = abs(faster[p]) * scale[gap] * variants.size > ALIKE * fastest
             if leaves or hastens:
                 raise ModelError(
-                    f"{packed.name}: no derivative by '{variants.number.name}': contact '{joint.name}' is closed at the "
-                    "start, and a change of this number opens it to one side and drives it in to the other. Begin a "
-                    "little apart, or change numbers together by build= so that it stays closed"
+                    f"{packed.name}: no derivative by '{variants.number.name}': contact '{joint.name}' is closed at "
+                    "the start, and a change of this number opens it to one side and drives it in to the other. Begin "
+                    "a little apart, or change numbers together by build= so that it stays closed"
                 )

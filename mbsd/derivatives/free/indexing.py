@@ -45,7 +45,7 @@ class PinAtSlot:
 
 
 def watched(m: Model) -> Model:
-    """Return a copy with an event wherever a pin enters or leaves its slot; the mechanism itself if it has no Geneva."""
+    """Return a copy with an event wherever a pin meets or leaves its slot; the mechanism itself without Genevas."""
     names = [name for name, joint in m.joints.items() if joint.kind.name == KIND]
     if not names:
         return m

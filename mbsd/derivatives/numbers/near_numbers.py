@@ -87,8 +87,8 @@ class NearNumbers:
     def of(self, number: Number) -> Near | None:
         """The slopes by a number; None where arrays do not go on straight, or what is given leaves the start open."""
         size = self.variation.size_of(number)
-        away = step_of(NEAR, size)
-        for away in (away, -away):
+        step = step_of(NEAR, size)
+        for away in (step, -step):
             try:
                 return self._at(number, size, away)
             except (ModelError, AssemblyError):

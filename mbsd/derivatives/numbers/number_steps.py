@@ -5,7 +5,7 @@
     lengths                              themselves, from a hundredth of the size to the size
     components of a vector               the vector
     masses, moments of inertia           themselves, or those of the heaviest body where they are next to nothing
-    numbers of a law                     what changes the law by as much as it is, along the motion, or by a size or 1 rad
+    numbers of a law                     what changes the law by as much as it is over the motion, or by a size or 1 rad
     arguments of the author's function   themselves, from a hundredth of their bounds to their bounds
     others                               themselves, or 1 SI unit where they are zero
 

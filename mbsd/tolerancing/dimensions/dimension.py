@@ -84,6 +84,8 @@ class Size(Dimension):
     """A length, a coordinate, a mass, a stiffness."""
 
     spread: Spread = Spread(1.0)
+    least_step: float = 0.0
+    """Step below which a difference of results is rounding."""
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -97,8 +99,8 @@ class Size(Dimension):
 
     @property
     def step(self) -> float:
-        """A standard deviation."""
-        return self.spread.sigma
+        """A standard deviation, or what makes a difference of results where that is less."""
+        return max(self.spread.sigma, self.least_step)
 
     def draw(self, u: np.ndarray) -> np.ndarray:
         """(n, 1) deviations."""

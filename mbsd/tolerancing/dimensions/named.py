@@ -13,11 +13,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
+from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
+from mbsd.derivatives.numbers.number_steps import size_of, step_of
 from mbsd.model.change import values_of
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, connections
@@ -29,6 +32,8 @@ from mbsd.tolerancing.dimensions.spreads import spread_of
 
 PIN, PLAY, TOLERANCES = "revolute", "play", "tolerances"
 AXES = ("x", "y")
+LEAST_STEP = 1e-6
+"""Least step of a difference, as part of the size of a number; see mbsd/derivatives/numbers/number_steps.py."""
 SIZES = ("length", "radius", "diameter", "bore")
 """Parts of the names of arguments that are sizes, by which classes and grades go."""
 
@@ -59,7 +64,15 @@ def dimensions_of(m: Model, sizes: Any) -> list[Dimension]:
             out += _plain(m, name, value)
     if not out:
         raise ModelError(f"{m.name}: tolerances: nothing strays; name a length, a place, a mass or a pin with play")
-    return out
+    packed = pack(m)
+    return [replace(size, least_step=_least_step(m, packed, size)) if isinstance(size, Size) else size for size in out]
+
+
+def _least_step(m: Model, packed: Packed, size: Size) -> float:
+    """By how much its number is moved for a derivative at least."""
+    [column] = size.columns
+    number = number_in(m, column.name, column.key or "length", TOLERANCES)
+    return step_of(LEAST_STEP, size_of(number, m, packed, (0.0, 1.0)))
 
 
 def numbers_of(function: str, nominal: Mapping[str, float], sizes: Any) -> list[Dimension]:

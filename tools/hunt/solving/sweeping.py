@@ -175,11 +175,13 @@ def _names(case: Driven) -> Outcome:
     name, other = "other names", renamed(case.m)
     if other is None or case.first is None:
         return Outcome(name, UNCLEAR, "no file could hold the model, or it was refused as built")
-    sol, error = attempt(lambda: other.sweep(times=case.grid))
+    here, _ = attempt(lambda: case.m.sweep(times=case.grid))
+    there, error = attempt(lambda: other.sweep(times=case.grid))
     if error is not None:
-        return case.refusal(name, error)
-    assert sol is not None
-    differs = renamed_differs(case.first, sol)
+        return case.refusal(name, error) if here is not None else Outcome(name, REFUSED, "with its own names, too")
+    assert here is not None
+    assert there is not None
+    differs = renamed_differs(here, there)
     return Outcome(name, WRONG, "differs", differs) if differs else Outcome(name, AGREED)
 
 

@@ -141,11 +141,12 @@ def _of_row(
             grown = np.maximum.accumulate(np.abs(quantity.of_solution(moved) - alone)) / NUDGE
         bound = SLACK * tolerance * (grown + max(largest, _usual(name, sol))) + SAME_STEPS * largest
         bound = np.where(bound < USELESS * max(largest, 1e-6), bound, np.inf)
-        gap = np.abs(table[name][row][at] - alone)
+        mine = table[name][row][at]
+        gap = np.where(np.isnan(mine) & np.isnan(alone), 0.0, np.abs(mine - alone))
         odd = np.flatnonzero(~(gap <= bound))
         if len(odd):
             k = int(odd[np.argmax(gap[odd])])
-            return f"{name} at t = {sol.t[k]:.6g} s is {table[name][row][at[k]]:.9g}, alone {alone[k]:.9g}"
+            return f"{name} at t = {sol.t[k]:.6g} s is {mine[k]:.9g}, alone {alone[k]:.9g}"
     return ""
 
 

@@ -14,7 +14,7 @@ from shared.stage.paths import mechanism_names
 from tools.hunt.subject import Builder, Subject, family
 
 WEIGHT = 0.1
-"""Of each: all of them together are as four other kinds."""
+"""Weight of each mechanism: all of them together count as four other kinds."""
 LONGEST, SHORTEST = 1.0, 0.05
 """s of a simulation, drawn from the first part of its own."""
 BESIDE = 0.9871

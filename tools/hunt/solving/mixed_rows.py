@@ -126,8 +126,8 @@ def _of_row(
     sol, error = attempt(lambda: rows.alone(row).simulate(times=times, tolerance=tolerance))
     if error is not None:
         whole = str(error).partition(". ")[0]
-        told = all(whole in str(table.reason[row]) for table in many)
-        return "" if told else f"reasons {[table.reason[row] for table in many]}, alone: {error}"
+        is_known = all(whole in str(table.reason[row]) for table in many)
+        return "" if is_known else f"reasons {[table.reason[row] for table in many]}, alone: {error}"
     assert sol is not None
     if any(table.reason[row] is not None for table in many):
         return f"reasons {[table.reason[row] for table in many]}, alone it is solved"

@@ -16,6 +16,7 @@ from tools.hunt.judging.agreement import SAME, Words, compare_driven, turned_dri
 from tools.hunt.judging.checks import driven_problems
 from tools.hunt.judging.refusals import cannot_be_saved, expected_refusal
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
+from tools.hunt.solving.mixed_rows import designs_beside_sweeps
 from tools.hunt.solving.variations import Variations
 from tools.hunt.subject import Subject
 from tools.hunt.words.changed import there_and_back
@@ -288,6 +289,11 @@ def _changed_to(case: Driven) -> Outcome:
 @variation("pickled and back")
 def _pickled(case: Driven) -> Outcome:
     return pickled("pickled and back", case.first)
+
+
+@variation("designs at once")
+def _designs(case: Driven) -> Outcome:
+    return designs_beside_sweeps("designs at once", case.m, case.rng, case.subject.duration, HEALTHY)
 
 
 @variation("simulated with its drivers")

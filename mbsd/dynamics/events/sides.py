@@ -43,9 +43,9 @@ def refuse_chance(packed: Packed, event: Event, state: State) -> None:
         return
     raise ModelError(
         f"{packed.name}: event '{event.name}' at t = {float(state.clock[TIME]):.6g} s: its function is {value:.6g}, "
-        f"and changes by {jump:.6g} where places and speeds change by rounding alone, so that chance would decide whether "
-        "the event happens. It jumps with the sign of something that is zero here, perhaps of a speed that a contact "
-        "or a joint holds. Give a function that is smooth in time and motion"
+        f"and changes by {jump:.6g} where places and speeds change by rounding alone, so that chance would decide "
+        "whether the event happens. It jumps with the sign of something that is zero here, perhaps of a speed that a "
+        "contact or a joint holds. Give a function that is smooth in time and motion"
     )
 
 

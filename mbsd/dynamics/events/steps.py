@@ -166,8 +166,8 @@ class EventSteps:
         From then on it passes zero by rounding alone, as the speed of a body that a contact now holds does.
         """
         while not self.ended:
-            watched = (monitor for monitor in self.monitors if monitor.event is not None)
-            reached = next((monitor for monitor in watched if self._side_ahead(monitor.event) == 0.0), None)
+            watched = ((monitor, monitor.event) for monitor in self.monitors if monitor.event is not None)
+            reached = next((monitor for monitor, event in watched if self._side_ahead(event) == 0.0), None)
             if reached is None:
                 return
             self._meet(reached)

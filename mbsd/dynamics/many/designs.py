@@ -56,7 +56,7 @@ class Designs:
         columns = [*self.starts.values(), *self.velocities.values(), *(each.values for each in self.numbers)]
         columns += [column for values in self.changes.values() for column in values.values()]
         wide = [column.reshape(self.count, -1) for column in columns]
-        return {int(row) for column in wide for found in (column.argmin(0), column.argmax(0)) for row in found}
+        return {int(row) for column in wide for rows in (column.argmin(0), column.argmax(0)) for row in rows}
 
     def put_numbers(self, work: Any, row: int) -> None:
         """Give ``work``, which is as it was copied, all numbers of a row but its start. Raises ModelError."""

@@ -27,6 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -63,7 +64,7 @@ class Words:
         """-1 where angles and moments have the other sign."""
         return -1.0 if self.mirrored else 1.0
 
-    def vector(self, array: np.ndarray, unit: float) -> np.ndarray:
+    def vector(self, array: Any, unit: float) -> Any:
         """Complex places or forces in the first description; ``unit`` of their numbers."""
         return np.conj(array / unit) if self.mirrored else array / unit
 

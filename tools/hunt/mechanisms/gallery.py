@@ -14,9 +14,11 @@ from shared.stage.paths import mechanism_names
 from tools.hunt.subject import Builder, Subject, family
 
 WEIGHT = 0.1
-"""Of each: all of them together are as four other kinds."""
+"""Weight of each mechanism: all of them together count as four other kinds."""
 LONGEST, SHORTEST = 1.0, 0.05
 """s of a simulation, drawn from the first part of its own."""
+BESIDE = 0.9871
+"""Part of a motion whose accelerations jump at simple fractions of it: at a jump itself either side is right."""
 STIFF = {"tyre", "hydraulic_cylinder", "gas_strut", "contact", "gear_mesh"}
 JUMPS = {"geneva", "cam_roller", "cam_flat"}
 
@@ -42,7 +44,8 @@ def subject_of(name: str, rng: np.random.Generator) -> Subject:
     if m.mobility().dof <= len(m.drivers):
         turn = common_period(m.drivers.values())
         whole = duration or m.period() or turn or 1.0
-        return Subject(m, min(whole, 2.0 * (turn or whole)), True, turn, traits=frozenset(traits))
+        span = min(whole, 2.0 * (turn or whole)) * (BESIDE if "jumps" in traits else 1.0)
+        return Subject(m, span, True, turn, traits=frozenset(traits))
     span = min(duration or LONGEST, LONGEST)
     return Subject(m, float(rng.uniform(SHORTEST, 1.0)) * span, False, traits=frozenset(traits))
 

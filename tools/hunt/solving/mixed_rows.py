@@ -1,4 +1,4 @@
-"""Many simulations whose rows differ in numbers of all kinds, beside each of them alone: every quantity.
+"""Many simulations, or designs, that differ in numbers of all kinds, beside each of them alone: every quantity.
 
 Rows of one chunk differ in lengths, positions, masses, laws, traced points, starts and velocities at once, so that a
 number which the compiled loop reads from another row shows. Bounds are those of two free motions (agreement.py):
@@ -18,7 +18,7 @@ from mbsd.dynamics.many.quantities import Quantity, quantity_named
 from mbsd.dynamics.many.simulate_many import Simulations
 from mbsd.measures import samples
 from mbsd.model.mechanism import connections
-from mbsd.model.numbers import Number, known_numbers, number_in, with_values
+from mbsd.model.numbers import Number, known_numbers, number_in, number_named, with_values
 from mbsd.results.columns import FRAME
 from mbsd.results.solution import Solution
 from tools.hunt.judging.agreement import NUDGE, SLACK, USELESS
@@ -32,6 +32,8 @@ FEW = 0.1
 SAME_STEPS = 1e-11
 """Part of the largest value that rounding of the same steps leaves."""
 OUTPUTS = 12
+ANGLE = 1e-10
+"""rad, and sizes, by which designs may differ from their sweeps, over the least margin."""
 
 
 @dataclass
@@ -126,8 +128,8 @@ def _of_row(
     sol, error = attempt(lambda: rows.alone(row).simulate(times=times, tolerance=tolerance))
     if error is not None:
         whole = str(error).partition(". ")[0]
-        told = all(whole in str(table.reason[row]) for table in many)
-        return "" if told else f"reasons {[table.reason[row] for table in many]}, alone: {error}"
+        is_known = all(whole in str(table.reason[row]) for table in many)
+        return "" if is_known else f"reasons {[table.reason[row] for table in many]}, alone: {error}"
     assert sol is not None
     if any(table.reason[row] is not None for table in many):
         return f"reasons {[table.reason[row] for table in many]}, alone it is solved"
@@ -141,11 +143,12 @@ def _of_row(
             grown = np.maximum.accumulate(np.abs(quantity.of_solution(moved) - alone)) / NUDGE
         bound = SLACK * tolerance * (grown + max(largest, _usual(name, sol))) + SAME_STEPS * largest
         bound = np.where(bound < USELESS * max(largest, 1e-6), bound, np.inf)
-        gap = np.abs(table[name][row][at] - alone)
+        mine = table[name][row][at]
+        gap = np.where(np.isnan(mine) & np.isnan(alone), 0.0, np.abs(mine - alone))
         odd = np.flatnonzero(~(gap <= bound))
         if len(odd):
             k = int(odd[np.argmax(gap[odd])])
-            return f"{name} at t = {sol.t[k]:.6g} s is {table[name][row][at[k]]:.9g}, alone {alone[k]:.9g}"
+            return f"{name} at t = {sol.t[k]:.6g} s is {mine[k]:.9g}, alone {alone[k]:.9g}"
     return ""
 
 
@@ -159,3 +162,47 @@ def _usual(name: str, sol: Solution) -> float:
 
 def _words(rows: Rows) -> str:
     return ", ".join(f"{whole}: {key}" for whole, key, _ in rows.varied)
+
+
+def designs_beside_sweeps(name: str, m: Mechanism, rng: np.random.Generator, duration: float, margin: float) -> Outcome:
+    """Designs of a batch, which differ in lengths and positions, beside a sweep of each.
+
+    Designs are compared where none comes nearer to a singular pose than ``margin``.
+    """
+    bars = [body.name for body in m.bodies.values() if body.length is not None]
+    placed = [*m.joints, *(name for name in m.traces if name not in m.joints)]
+    chosen = [rng.permutation(part)[:2].tolist() if len(part) else [] for part in (bars, placed)]
+    numbers = {f"{bar}.length": m.bodies[bar].length or 0.0 for bar in chosen[0]}
+    numbers |= {f"{place}.{axis}": number_named(m, f"{place}.{axis}").value for place in chosen[1] for axis in "xy"}
+    if not numbers:
+        return Outcome(name, UNCLEAR, "nothing to vary")
+    size = max(map(abs, numbers.values()), default=0.0)
+    values = {key: value + 1e-3 * size * rng.normal(size=len(PARTS)) for key, value in numbers.items()}
+    lengths = {bar: values[f"{bar}.length"] for bar in chosen[0]}
+    places = {place: np.stack([values[f"{place}.x"], values[f"{place}.y"]], axis=1) for place in chosen[1]}
+    angles = [body for body in m.bodies if body != "ground"]
+    batch, error = attempt(lambda: m.batch(lengths, places, angles, duration, OUTPUTS))
+    if error is not None:
+        return Outcome(name, UNCLEAR, "a batch does not take it", str(error))
+    assert batch is not None
+    compared = 0
+    for row in range(len(PARTS)):
+        named = [number_named(m, key) for key in values]
+        alone, _ = attempt(
+            lambda row=row, named=named: with_values(m, named, [column[row] for column in values.values()]).sweep(
+                times=batch.t
+            )
+        )
+        if alone is None or not batch.closes[row] or alone.singularity_margin.min() < margin:
+            continue
+        compared += 1
+        for body in angles:
+            gap = float(np.abs(batch.angles[body][row] - alone.body(body).theta).max())
+            if not gap < ANGLE / margin:
+                return Outcome(name, WRONG, "differs", f"design {row}: angle of '{body}' is off by {gap:.3g} rad")
+        for point in m.traces:
+            there = np.stack([alone.point(point).x, alone.point(point).y], axis=1)
+            gap = float(np.abs(batch.points[point][row] - there).max()) / alone.packed.size
+            if not gap < ANGLE / margin:
+                return Outcome(name, WRONG, "differs", f"design {row}: point '{point}' is off by {gap:.3g} sizes")
+    return Outcome(name, AGREED) if compared else Outcome(name, UNCLEAR, "no design away from singular poses")

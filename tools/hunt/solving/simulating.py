@@ -86,11 +86,13 @@ def _names(case: Free) -> Outcome:
     name, other = "other names", renamed(case.m)
     if other is None or case.first is None:
         return Outcome(name, UNCLEAR, "no file could hold the model, or it was refused as built")
-    sol, error = case.run(other)
+    here, _ = case.run(case.m)
+    there, error = case.run(other)
     if error is not None:
-        return case.refusal(name, error)
-    assert sol is not None
-    differs = renamed_differs(case.first, sol)
+        return case.refusal(name, error) if here is not None else Outcome(name, REFUSED, "with its own names, too")
+    assert here is not None
+    assert there is not None
+    differs = renamed_differs(here, there)
     return Outcome(name, WRONG, "differs", differs) if differs else Outcome(name, AGREED)
 
 

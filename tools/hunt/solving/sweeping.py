@@ -16,6 +16,7 @@ from tools.hunt.judging.agreement import SAME, Words, compare_driven, turned_dri
 from tools.hunt.judging.checks import driven_problems
 from tools.hunt.judging.refusals import cannot_be_saved, expected_refusal
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
+from tools.hunt.solving.mixed_rows import designs_beside_sweeps
 from tools.hunt.solving.variations import Variations
 from tools.hunt.subject import Subject
 from tools.hunt.words.changed import there_and_back
@@ -175,11 +176,13 @@ def _names(case: Driven) -> Outcome:
     name, other = "other names", renamed(case.m)
     if other is None or case.first is None:
         return Outcome(name, UNCLEAR, "no file could hold the model, or it was refused as built")
-    sol, error = attempt(lambda: other.sweep(times=case.grid))
+    here, _ = attempt(lambda: case.m.sweep(times=case.grid))
+    there, error = attempt(lambda: other.sweep(times=case.grid))
     if error is not None:
-        return case.refusal(name, error)
-    assert sol is not None
-    differs = renamed_differs(case.first, sol)
+        return case.refusal(name, error) if here is not None else Outcome(name, REFUSED, "with its own names, too")
+    assert here is not None
+    assert there is not None
+    differs = renamed_differs(here, there)
     return Outcome(name, WRONG, "differs", differs) if differs else Outcome(name, AGREED)
 
 
@@ -286,6 +289,11 @@ def _changed_to(case: Driven) -> Outcome:
 @variation("pickled and back")
 def _pickled(case: Driven) -> Outcome:
     return pickled("pickled and back", case.first)
+
+
+@variation("designs at once")
+def _designs(case: Driven) -> Outcome:
+    return designs_beside_sweeps("designs at once", case.m, case.rng, case.subject.duration, HEALTHY)
 
 
 @variation("simulated with its drivers")

@@ -42,7 +42,7 @@ DIMENSIONS: dict[str, dict[str, Dimension]] = {
         "static_friction": RATIO,
     },
 }
-"""Numbers of the kinds that can be told in other units; ``law``: of all laws and motions."""
+"""Numbers of the kinds that can be given in other units; ``law``: of all laws and motions."""
 TURNED = {"free_angle", "phase", "fires_at", "offset", "direction"}
 """Numbers that have the other sign in a mirror: angles, and what counts to the left."""
 ANGULAR = {"torque", "drive_angle", "drive_relative_angle"}
@@ -107,15 +107,18 @@ def renamed(m: Mechanism) -> Mechanism | None:
     names = [name for name in dict.fromkeys(name for table in tables for name in table) if name != "ground"]
     new = {name: f"{chr(ord('z') - k % 26)} {len(names) - k} {name}" for k, name in enumerate(names)}
 
-    def told(value: Any) -> Any:
+    def with_new_names(value: Any) -> Any:
         if isinstance(value, dict):
-            return {new.get(key, key) if isinstance(inner, dict) else key: told(inner) for key, inner in value.items()}
+            return {
+                new.get(key, key) if isinstance(inner, dict) else key: with_new_names(inner)
+                for key, inner in value.items()
+            }
         if isinstance(value, list | tuple):
-            return [told(part) for part in value]
+            return [with_new_names(part) for part in value]
         return new.get(value, value) if isinstance(value, str) else value
 
     try:
-        return build(told(document(m)), Mechanism)
+        return build(with_new_names(document(m)), Mechanism)
     except ModelError:
         return None
 
@@ -138,7 +141,7 @@ def _rebuilt(
     inertia: Callable[[Body], tuple[float, float]],
     entry_of: Callable[[Any], Any],
 ) -> Mechanism:
-    """A mechanism of its own, with all frames, masses and entries told in other words."""
+    """A mechanism of its own, with all frames, masses and entries in other words."""
     out = Mechanism(m.name)
     out.gravity = frame(*(m.gravity or (0.0, 0.0)), 0.0)[:2]
     for name, body in m.bodies.items():

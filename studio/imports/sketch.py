@@ -194,8 +194,8 @@ class Sketch:
         counted = self.counted_freedom()
         if self.freedom is not None and counted != self.freedom and not self.left_out:
             raise UserError(
-                f"its degrees of freedom are {self.freedom}, and {counted} of what was read of it; that is a fault of this "
-                "importer: please report the file"
+                f"its degrees of freedom are {self.freedom}, and {counted} of what was read of it; "
+                "that is a fault of this importer: please report the file"
             )
 
 

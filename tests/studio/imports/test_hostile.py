@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mbsd import MechanismError
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from studio.imports.limits import DEEPEST, LARGEST_FILE, MOST
@@ -216,3 +217,12 @@ def test_a_file_that_does_not_load_is_never_left(tmp_path: Path) -> None:
     file.write_text(text)
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("error", [KeyError("a"), UserError("that is a fault of this importer"), MechanismError("odd")])
+def test_the_hunt_finds_what_is_no_sentence(monkeypatch: pytest.MonkeyPatch, error: Exception) -> None:
+    def broken(source: str) -> Sketch:
+        raise error
+
+    monkeypatch.setattr("tools.hunt_imports.case.read", broken)
+    assert run(1).outcomes[-1].state == WRONG

@@ -145,7 +145,7 @@ def records_of(query: str) -> Records:
         if link.id in read.links:
             raise UserError(f"there are two links {link.id}")
         read.links[link.id] = link
-    for mark in ",".join(rest[1:]).split(","):
+    for mark in ".".join(rest[1:]).split(","):  # in which points are those of numbers
         _take_in(read, mark)
     _check_references(read)
     return read

@@ -123,6 +123,14 @@ def test_what_cannot_be_said_is_named() -> None:
     assert read(geared).left_out == ["its gears; m.gear_pair says them"]
 
 
+def test_a_mark_corrects_a_number_that_thousandths_cannot_hold() -> None:
+    exact = read(stamped(ADDRESSES["four_bar"][:-1] + ".JB,PJB~0~-2.6223456,PJA~3~2.5q"))
+    assert exact.links["AB"].points["B"] == pytest.approx((-0.026223456, 0.00902))
+    assert exact.motors[0].rate == pytest.approx(2.5 * math.tau / 60)
+    with pytest.raises(UserError, match="corrects no number that is there"):
+        read(stamped(ADDRESSES["four_bar"][:-1] + ".PJB~7~1q"))
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [

@@ -240,9 +240,11 @@ def _take_in(read: Records, mark: str) -> None:
     """A correction of a number, or gears; other marks say how things are shown and edited."""
     if mark.startswith("G1~"):
         read.gears = True
+    name, number, value = (*mark[2:].split("~"), "", "")[:3]
+    if mark.startswith(("PI~0~", "PD~1~")):
+        setattr(read, "speed" if mark[1] == "I" else "linear_speed", float(value))
     if not re.match(r"P[JL]", mark):
         return
-    name, number, value = (*mark[2:].split("~"), "", "")[:3]
     things, numbers = (read.joints, JOINT_NUMBERS) if mark[1] == "J" else (read.links, LINK_NUMBERS)
     if name not in things or not number.isascii() or not number.isdigit() or int(number) >= len(numbers):
         raise UserError(f"{mark[:40]!r} corrects no number that is there")

@@ -127,6 +127,8 @@ def test_a_mark_corrects_a_number_that_thousandths_cannot_hold() -> None:
     exact = read(stamped(ADDRESSES["four_bar"][:-1] + ".JB,PJB~0~-2.6223456,PJA~3~2.5q"))
     assert exact.links["AB"].points["B"] == pytest.approx((-0.026223456, 0.00902))
     assert exact.motors[0].rate == pytest.approx(2.5 * math.tau / 60)
+    faster = read(stamped(ADDRESSES["four_bar"][:-1] + ".PI~0~12.5q"))
+    assert faster.motors[0].rate == pytest.approx(-12.5 * math.tau / 60)
     with pytest.raises(UserError, match="corrects no number that is there"):
         read(stamped(ADDRESSES["four_bar"][:-1] + ".PJB~7~1q"))
 

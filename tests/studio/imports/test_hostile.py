@@ -151,7 +151,7 @@ def test_a_name_of_any_form_makes_a_file_that_loads(word: str) -> None:
 
 
 @given(st.lists(st.tuples(st.text(), st.sampled_from(["link", "number"])), max_size=30))
-@settings(max_examples=60)
+@settings(max_examples=60, deadline=None)
 def test_names_are_names_of_python_and_differ(words: list[tuple[str, str]]) -> None:
     names = Names()
     given_names = {(word, kind): names.name_for(word, kind) for word, kind in words}
@@ -163,7 +163,7 @@ def test_names_are_names_of_python_and_differ(words: list[tuple[str, str]]) -> N
 
 
 @given(st.lists(st.text(st.characters()), max_size=20))
-@settings(max_examples=60)
+@settings(max_examples=60, deadline=None)
 def test_titles_are_printable_and_differ(words: list[str]) -> None:
     titles = Titles()
     titled = [titles.title_for(word) for word in words]

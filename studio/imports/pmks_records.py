@@ -84,12 +84,27 @@ class LinkRecord:
 
 
 @dataclass
+class ForceRecord:
+    """A force on a link, from one place towards another, or the other way; a local one turns with its link."""
+
+    id: str
+    link: str
+    name: str
+    is_local: bool
+    is_outwards: bool
+    start: Place
+    end: Place
+    magnitude: float
+    """Pounds of force with inches, else newtons."""
+
+
+@dataclass
 class Records:
     """All of an address."""
 
     joints: dict[str, JointRecord] = field(default_factory=dict)
     links: dict[str, LinkRecord] = field(default_factory=dict)
-    forces: list[str] = field(default_factory=list)
+    forces: list[ForceRecord] = field(default_factory=list)
     is_clockwise: bool = False
     has_gravity: bool = True
     speed: float = 0.0
@@ -132,9 +147,10 @@ def records_of(query: str) -> Records:
     )
     joints, rest = _until_empty(sections[4:])
     links, rest = _until_empty(rest)
-    read.forces, rest = _until_empty(rest)
-    for things, words in ((joints, "joints"), (links, "links"), (read.forces, "forces")):
+    forces, rest = _until_empty(rest)
+    for things, words in ((joints, "joints"), (links, "links"), (forces, "forces")):
         check_count(things, words)
+    read.forces = [_force(text) for text in forces]
     for text in joints:
         joint = _joint(text)
         if joint.id in read.joints:
@@ -145,7 +161,7 @@ def records_of(query: str) -> Records:
         if link.id in read.links:
             raise UserError(f"there are two links {link.id}")
         read.links[link.id] = link
-    for mark in ",".join(rest[1:]).split(","):
+    for mark in ".".join(rest[1:]).split(","):  # in which points are those of numbers
         _take_in(read, mark)
     _check_references(read)
     return read
@@ -236,13 +252,26 @@ def _link(text: str) -> LinkRecord:
     )
 
 
+def _force(text: str) -> ForceRecord:
+    cells = text.split(",")
+    if len(cells) < 8 or len(cells[0]) < 2:
+        raise UserError(f"{text[:40]!r} is no force")
+    flags = _whole(cells[0][0], signed=False)
+    x0, y0, x1, y1, magnitude = (_decimal(cell) for cell in cells[3:8])
+    return ForceRecord(
+        cells[0][1:], cells[1], cells[2], bool(flags & 1), bool(flags & 2), (x0, y0), (x1, y1), magnitude
+    )
+
+
 def _take_in(read: Records, mark: str) -> None:
     """A correction of a number, or gears; other marks say how things are shown and edited."""
     if mark.startswith("G1~"):
         read.gears = True
+    name, number, value = (*mark[2:].split("~"), "", "")[:3]
+    if mark.startswith(("PI~0~", "PD~1~")):
+        setattr(read, "speed" if mark[1] == "I" else "linear_speed", float(value))
     if not re.match(r"P[JL]", mark):
         return
-    name, number, value = (*mark[2:].split("~"), "", "")[:3]
     things, numbers = (read.joints, JOINT_NUMBERS) if mark[1] == "J" else (read.links, LINK_NUMBERS)
     if name not in things or not number.isascii() or not number.isdigit() or int(number) >= len(numbers):
         raise UserError(f"{mark[:40]!r} corrects no number that is there")
@@ -260,6 +289,9 @@ def _check_references(read: Records) -> None:
         for part in link.parts:
             if part not in read.links:
                 raise UserError(f"link {link.id} has a part {part}, which is not there")
+    for force in read.forces:
+        if force.link not in read.links:
+            raise UserError(f"force {force.id} is on link {force.link}, which is not there")
     for joint in read.joints.values():
         if joint.carrier and (joint.carrier not in read.links or not all(end in read.joints for end in joint.slot)):
             raise UserError(f"slider {joint.id} has a slot in {joint.carrier}, which is not there")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 from shared.stage.errors import UserError
 from studio.imports.limits import check_count, check_length, parsed_json
@@ -93,19 +94,23 @@ def _drive(sketch: Sketch, label: str, joint: _Joint, links: list[str], speed: f
 def _joint_of(line: str) -> _Joint | None:
     """The joint of a line ``link,link,R,x,y,angle,flags``; None where it is none."""
     cells = [cell.strip() for cell in line.split(",")]
-    at = next((k for k, cell in enumerate(cells) if k and cell.upper() in TAKEN), 0)
-    numbers = [number for number in map(_number, " ".join(cells[at + 1 :]).split()[:3]) if number is not None]
-    if not at or len(numbers) < 2 or not all(cells[:at]):
-        return None
-    angle = math.radians(numbers[2]) if len(numbers) > 2 else 0.0
-    return _Joint(cells[:at], cells[at].upper(), (numbers[0] * UNIT, numbers[1] * UNIT), angle)
+    for k, (cell, following) in enumerate(pairwise(cells)):
+        numbers = _leading_numbers(" ".join([following, *cells[k + 2 : k + 4]])) if cell.upper() in TAKEN else []
+        if k and len(numbers) > 1 and all(cells[:k]):
+            angle = math.radians(numbers[2]) if len(numbers) > 2 else 0.0
+            return _Joint(cells[:k], cell.upper(), (numbers[0] * UNIT, numbers[1] * UNIT), angle)
+    return None
 
 
-def _number(text: str) -> float | None:
-    try:
-        return float(text)
-    except ValueError:
-        return None
+def _leading_numbers(text: str) -> list[float]:
+    """Up to three numbers at the beginning of a text."""
+    numbers: list[float] = []
+    for word in text.split()[:3]:
+        try:
+            numbers.append(float(word))
+        except ValueError:
+            break
+    return numbers
 
 
 def _of_lines(text: str) -> list[_Joint]:

@@ -15,7 +15,7 @@ from urllib.parse import urlparse
 from shared.stage.errors import UserError
 from studio.imports.names import Titles
 from studio.imports.pmks_records import PARTS, ROOTS, JointRecord, LinkRecord, Records, query_of, records_of
-from studio.imports.sketch import GROUND, Link, Motor, Place, Push, Sketch, Slide, Weld
+from studio.imports.sketch import GROUND, Link, Load, Motor, Place, Push, Sketch, Slide, Weld
 
 HOST = "pmksplus.com"
 RECORD = re.compile(rf"\.[{ROOTS}{PARTS}][RP]\w")
@@ -25,6 +25,8 @@ UNITS = (
     ("a metre", 1.0, 1.0, 1.0),
 )
 """By the unit of length: its name, m, kg of a mass (lb, g, kg), kg m^2 of an inertia (lb in^2, kg cm^2, kg m^2)."""
+POUND = 4.4482216152605
+"""N"""
 GRAVITY = (0.0, -9.81)
 USUAL_RATE = 5.0
 """Units of length a second of a driven slider, in addresses older than the setting."""
@@ -74,6 +76,7 @@ class _Reader:
             else:
                 self._pin(joint)
         self._drives()
+        self._loads()
         self.sketch.freedom = self._freedom(roots)
         if any(link.mass for link in self.sketch.links.values()) and records.has_gravity:
             self.sketch.gravity = GRAVITY
@@ -233,6 +236,20 @@ class _Reader:
         rpm = joint.speed or (-records.speed if records.is_clockwise else records.speed)
         self.sketch.motors.append(Motor(f"motor {label}", first, second, rpm * math.tau / 60.0))
 
+    def _loads(self) -> None:
+        """Forces on links that move."""
+        for force in self.records.forces:
+            body = self.bodies.get(force.link, GROUND)
+            (x0, y0), (x1, y1) = force.start, force.end
+            if body == GROUND or (x0, y0) == (x1, y1):
+                self.sketch.left_out.append(f"force {force.name or force.id}: it is on the ground, or has no direction")
+                continue
+            sign = 1.0 if force.is_outwards else -1.0
+            angle = math.atan2(sign * (y1 - y0), sign * (x1 - x0))
+            newtons = force.magnitude * (POUND if self.records.length == 0 else 1.0)
+            place = (x0 * self.length, y0 * self.length)
+            self.sketch.loads.append(Load(force.name or force.id, body, place, newtons, angle, force.is_local))
+
     def _freedom(self, roots: list[LinkRecord]) -> int:
         """3 for each moving link and block, less what the records of joints take."""
         moving = {self.bodies[link.id] for link in roots} - {GROUND}
@@ -249,8 +266,6 @@ class _Reader:
 
     def _name_left_out(self) -> None:
         left_out, records = self.sketch.left_out, self.records
-        if records.forces:
-            left_out.append(f"forces ({len(records.forces)}); m.force(...) and m.load(...) say them")
         if records.gears:
             left_out.append("its gears; m.gear_pair says them")
         for joint in self.joints.values():

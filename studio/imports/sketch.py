@@ -126,6 +126,18 @@ ROWS = {Pin: 2, Weld: 3, Gears: 1}
 
 
 @dataclass
+class Load:
+    """A constant force (N) on a place of a link, along an angle of the world; ``turns``: with the link from there."""
+
+    name: str
+    link: str
+    place: Place
+    force: float
+    angle: float
+    turns: bool = False
+
+
+@dataclass
 class Sketch:
     """A whole mechanism, and what of the file could not be said."""
 
@@ -136,6 +148,7 @@ class Sketch:
     motors: list[Motor] = field(default_factory=list)
     pushes: list[Push] = field(default_factory=list)
     rams: list[Ram] = field(default_factory=list)
+    loads: list[Load] = field(default_factory=list)
     traces: dict[str, tuple[str, Place]] = field(default_factory=dict)
     gravity: Place | None = None
     duration: float | None = None
@@ -178,7 +191,8 @@ class Sketch:
         for things, words in ((self.links, "links"), (self.joints, "joints"), (self.traces, "traced points")):
             check_count(things, words)
         check_count([*self.motors, *self.pushes, *self.rams], "motors")
-        for thing in (self, *self.links.values(), *self.joints, *self.motors, *self.pushes, *self.rams):
+        check_count(self.loads, "forces")
+        for thing in (self, *self.links.values(), *self.joints, *self.motors, *self.pushes, *self.rams, *self.loads):
             _check_numbers(thing)
         for thing in (*self.joints, *self.motors, *self.pushes, *self.rams):
             for link in (thing.first, thing.second):
@@ -188,14 +202,14 @@ class Sketch:
                 raise UserError(f"{type(thing).__name__.lower()} '{thing.name}' is on one link alone")
         if any(motor.second == GROUND for motor in self.motors):
             raise UserError("a motor turns the ground")
-        for link, _ in self.traces.values():
+        for link in (*(link for link, _ in self.traces.values()), *(load.link for load in self.loads)):
             if link not in self.links:
-                raise UserError(f"a traced point is on '{link}', which is no link")
+                raise UserError(f"a traced point or a force is on '{link}', which is no link")
         counted = self.counted_freedom()
         if self.freedom is not None and counted != self.freedom and not self.left_out:
             raise UserError(
-                f"its degrees of freedom are {self.freedom}, and {counted} of what was read of it; that is a fault of this "
-                "importer: please report the file"
+                f"its degrees of freedom are {self.freedom}, and {counted} of what was read of it; "
+                "that is a fault of this importer: please report the file"
             )
 
 

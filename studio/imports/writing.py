@@ -7,7 +7,7 @@ import json
 import math
 
 from studio.imports.names import Names, Titles, printable
-from studio.imports.sketch import GROUND, Gears, Link, Motor, Pin, Place, Push, Ram, Sketch, Slide, Weld
+from studio.imports.sketch import GROUND, Gears, Link, Load, Motor, Pin, Place, Push, Ram, Sketch, Slide, Weld
 
 NEAR = 1e-9
 """Places closer than this part of the mechanism's size are one."""
@@ -71,6 +71,7 @@ class _Writer:
             *(self._push(push) for push in self.sketch.pushes),
             *(self._ram(ram) for ram in self.sketch.rams),
         ]
+        loads = [self._load(load) for load in self.sketch.loads]
         traces = [
             f"m.trace({_quoted(self.points.title_for(point))}, {self._marker(link, place)})"
             for point, (link, place) in self.sketch.traces.items()
@@ -83,7 +84,7 @@ class _Writer:
         lines += ["", "", "def build(p: Params) -> Mechanism:"]
         gravity = self.sketch.gravity
         lines += [f'    m = Mechanism("{self.name}", gravity={_place(gravity) if gravity else None})']
-        body = (*bodies, "", *joints, *([""] if motors else []), *motors, *traces)
+        body = (*bodies, "", *joints, *([""] if motors or loads else []), *motors, *loads, *traces)
         lines += [f"    {line}" if line else "" for line in body]
         lines += ["", *self._starts(), "    return m", ""]
         return "\n".join(lines)
@@ -190,7 +191,13 @@ class _Writer:
         guide, rider = self._marker(push.first, along, push.angle), self._marker(push.second, push.place)
         return f"m.drive_coordinate({self._title(push)}, {guide}, {rider}, {self._constant(push, start)})"
 
-    def _title(self, thing: Pin | Slide | Weld | Gears | Motor | Push | Ram) -> str:
+    def _load(self, load: Load) -> str:
+        marker, name = self._marker(load.link, load.place), self._name(load.link)
+        angle = _number(_wrapped(load.angle - self.frames[load.link].angle if load.turns else load.angle))
+        frame = f", frame={name}" if load.turns else ""
+        return f"m.force({self._title(load)}, {marker}, {_number(load.force)}, {angle}{frame})"
+
+    def _title(self, thing: Pin | Slide | Weld | Gears | Motor | Push | Ram | Load) -> str:
         """A new name of a joint or motor, between quotes."""
         return _quoted(self.titles.title_for(thing.name))
 

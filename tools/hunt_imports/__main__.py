@@ -25,7 +25,7 @@ from tools.hunt.report import Tally
 from tools.hunt_imports import case
 from tools.hunt_imports.mutations import damaged, samples
 
-LIMIT = 30.0
+LIMIT = 60.0
 """s of one case, a thousand times the usual."""
 
 

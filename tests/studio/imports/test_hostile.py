@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mbsd import MechanismError
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from studio.imports.limits import DEEPEST, LARGEST_FILE, MOST
@@ -150,7 +151,7 @@ def test_a_name_of_any_form_makes_a_file_that_loads(word: str) -> None:
 
 
 @given(st.lists(st.tuples(st.text(), st.sampled_from(["link", "number"])), max_size=30))
-@settings(max_examples=60)
+@settings(max_examples=60, deadline=None)
 def test_names_are_names_of_python_and_differ(words: list[tuple[str, str]]) -> None:
     names = Names()
     given_names = {(word, kind): names.name_for(word, kind) for word, kind in words}
@@ -162,7 +163,7 @@ def test_names_are_names_of_python_and_differ(words: list[tuple[str, str]]) -> N
 
 
 @given(st.lists(st.text(st.characters()), max_size=20))
-@settings(max_examples=60)
+@settings(max_examples=60, deadline=None)
 def test_titles_are_printable_and_differ(words: list[str]) -> None:
     titles = Titles()
     titled = [titles.title_for(word) for word in words]
@@ -216,3 +217,12 @@ def test_a_file_that_does_not_load_is_never_left(tmp_path: Path) -> None:
     file.write_text(text)
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("error", [KeyError("a"), UserError("that is a fault of this importer"), MechanismError("odd")])
+def test_the_hunt_finds_what_is_no_sentence(monkeypatch: pytest.MonkeyPatch, error: Exception) -> None:
+    def broken(source: str) -> Sketch:
+        raise error
+
+    monkeypatch.setattr("tools.hunt_imports.case.read", broken)
+    assert run(1).outcomes[-1].state == WRONG

@@ -117,6 +117,15 @@ def test_numbers_of_pmks_may_begin_with_a_point(tmp_path: Path, written: str, me
     assert read(str(file)).links["input"].points["B"] == pytest.approx((metres, metres))
 
 
+def test_links_of_pmks_may_be_called_as_a_kind_of_joint(tmp_path: Path) -> None:
+    file = tmp_path / "a.txt"
+    file.write_text((SAMPLES / "4bar1.txt").read_text().replace("input", "R").replace("output", "P"))
+    assert set(read(str(file)).links) == {"R", "coupler", "P"}
+    file.write_text("mech=\nground,R,R,x,1,2\n")
+    with pytest.raises(UserError, match="line 2 is no joint of PMKS"):
+        read(str(file))
+
+
 def test_a_slot_of_pmks_has_its_direction_and_carries_all_links_on_it(tmp_path: Path) -> None:
     """The rod slides up and down the ground; the arm on the same pin hangs free."""
     file = tmp_path / "a.txt"

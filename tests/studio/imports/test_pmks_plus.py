@@ -39,9 +39,8 @@ def test_a_published_address_is_read_completely(name: str) -> None:
     expected = []
     if name in PUSHED:
         expected.append(f"input {PUSHED[name]}: PMKS+ turns it round at the ends of its travel, here it goes on")
-    if name in LOADED:
-        expected.append(f"forces ({LOADED[name]}); m.force(...) and m.load(...) say them")
     assert sketch.left_out == expected
+    assert len(m.forces) == LOADED.get(name, 0)
 
 
 def test_a_slider_crank_moves_as_its_closed_form() -> None:
@@ -108,6 +107,27 @@ def test_the_last_two_digits_are_62_and_63() -> None:
     assert read(ADDRESSES["cylinder_boom"]).links["GN"].points["N"] == pytest.approx((0.01272, 0.02303))
 
 
+def test_forces_are_fixed_in_the_world_or_turn_with_their_link() -> None:
+    """The punch is pushed up by its work; the hook of a crane pulls down, the rope of its jib along with the jib."""
+    sketch = read(ADDRESSES["punch_press"])
+    (work,) = sketch.loads
+    assert (work.link, work.force, work.angle, work.turns) == (
+        "Connecting rod",
+        400.0,
+        pytest.approx(math.pi / 2),
+        False,
+    )
+    assert work.place == pytest.approx((0.0, -0.034))
+    hook, rope = read(ADDRESSES["crane_two_loads"]).loads
+    assert (hook.angle, hook.turns, rope.turns) == (pytest.approx(-math.pi / 2), False, True)
+    light = ADDRESSES["punch_press"].replace("Crank,VG,o,", "Crank,0,0,").replace("rod,ku,6G,", "rod,0,0,")
+    m = built(stamped(light.replace("CP,CP,1Tm,", "CP,CP,0,")))[1]
+    sol = m.sweep(steps=36)
+    rod = sol.body("connecting_rod")
+    slides = rod.vy + m.bodies["connecting_rod"].length * rod.omega * np.cos(rod.theta)
+    np.testing.assert_allclose(sol.driver("motor A").effort * sol.body("crank").omega, -400.0 * slides, atol=1e-9)
+
+
 def test_only_the_first_input_of_a_machine_drives_it() -> None:
     sketch = read(stamped(ADDRESSES["four_bar"].replace(".KD,D,", ".MD,D,")))
     assert [motor.name for motor in sketch.motors] == ["motor A"]
@@ -121,6 +141,16 @@ def test_what_cannot_be_said_is_named() -> None:
     assert read(lone).left_out == ["input X: it needs two links that meet there, and there are 1"]
     geared = stamped(ADDRESSES["four_bar"][:-1] + ".G1~eyJ9q")
     assert read(geared).left_out == ["its gears; m.gear_pair says them"]
+
+
+def test_a_mark_corrects_a_number_that_thousandths_cannot_hold() -> None:
+    exact = read(stamped(ADDRESSES["four_bar"][:-1] + ".JB,PJB~0~-2.6223456,PJA~3~2.5q"))
+    assert exact.links["AB"].points["B"] == pytest.approx((-0.026223456, 0.00902))
+    assert exact.motors[0].rate == pytest.approx(2.5 * math.tau / 60)
+    faster = read(stamped(ADDRESSES["four_bar"][:-1] + ".PI~0~12.5q"))
+    assert faster.motors[0].rate == pytest.approx(-12.5 * math.tau / 60)
+    with pytest.raises(UserError, match="corrects no number that is there"):
+        read(stamped(ADDRESSES["four_bar"][:-1] + ".PJB~7~1q"))
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ def mass_sets(draw: st.DrawFn) -> dict[str, tuple[float, tuple[float, float], fl
         name: (
             draw(st.floats(0.1, 5.0)),
             (draw(st.floats(-0.5, 1.5)), draw(st.floats(-0.5, 0.5))),
-            draw(st.floats(0.0, 2.0)),
+            draw(st.just(0.0) | st.floats(1e-9, 2.0)),
         )
         for name in NAMES
     }

@@ -43,9 +43,9 @@ class KernelFiles(IndexDataCacheFile):
         try:
             refuse_damaged(path.read_bytes())
             return read()
-        except FileNotFoundError:
-            return None
         except Exception as error:  # unpickling raises nearly everything
+            if isinstance(error, OSError) and not isinstance(error, PermissionError | IsADirectoryError):
+                return None  # it is not there, or this process has too many files open
             _remove(path)
             tell_of_damage(str(path), str(error) or type(error).__name__)
             return None

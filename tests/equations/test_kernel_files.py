@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 import os
 import shutil
@@ -87,6 +88,18 @@ def test_a_file_without_a_digest_counts_if_it_can_be_unpickled(tmp_path: Path) -
     _files(tmp_path).save("key", DATA)
     (data,) = tmp_path.glob("*.nbc")
     data.write_bytes(data.read_bytes().partition(kernel_files.MARK)[0])
+    assert _files(tmp_path).load("key") == DATA
+
+
+def test_a_process_without_room_for_a_file_removes_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _files(tmp_path).save("key", DATA)
+
+    def refused(_: Path) -> bytes:
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "read_bytes", refused)
+        assert _files(tmp_path).load("key") is None
     assert _files(tmp_path).load("key") == DATA
 
 

@@ -28,7 +28,9 @@ def test_linkages_with_change_points_are_named(name: str) -> None:
 @given(more=st.floats(1e-6, 0.05), bar=st.sampled_from(["crank", "coupler", "rocker"]))
 def test_a_length_that_differs_is_no_change_point(more: float, bar: str) -> None:
     m = linkage("2-5-4-3", 75.0)
-    m.change(bar, length=m.bodies[bar].length + more)
+    length = m.bodies[bar].length
+    assert length is not None
+    m.change(bar, length=length + more)
     assert notes(m) == []
 
 

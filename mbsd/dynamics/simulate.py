@@ -16,7 +16,7 @@ from mbsd.arrays.friction_along import friction_along
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.states import states_of, without_states
-from mbsd.base.errors import InitialConditionWarning, ModelError
+from mbsd.base.errors import InitialConditionWarning, ModelError, SimulationError
 from mbsd.base.names import no_such
 from mbsd.base.progress import users_progress
 from mbsd.base.warn import warn
@@ -81,7 +81,12 @@ def simulate(
     recording = follow(ready, run, grid if asked is None else asked.solved, events, event_rows, progress)
 
     def at(times: np.ndarray) -> Solution:
-        sol = solution(m, ready, resumed(ready, run, recording, times, events))
+        try:
+            sol = solution(m, ready, resumed(ready, run, recording, times, events))
+        except SimulationError:
+            if clear.all():
+                raise
+            sol = beside(times)
         return with_efforts_beside(ready, sol, beside, span)
 
     def beside(times: np.ndarray) -> Solution:

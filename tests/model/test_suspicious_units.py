@@ -38,7 +38,7 @@ def _of_units(m: Mechanism) -> list[Finding]:
     return [
         finding
         for finding in m.check()
-        if finding.name != "start" and "the links close in two ways" not in finding.problem
+        if finding.name != "start" and "the links close in two ways" not in finding.problem and not finding.is_note
     ]
 
 

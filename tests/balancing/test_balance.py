@@ -99,13 +99,13 @@ def test_a_quantity_that_is_rounding_leaves_the_others_their_weight(norm: Any, s
     m.revolute("O", m.ground.at(0.3 * scale, 0.1 * scale), fan.origin)
     m.drive_angle("motor", fan, constant_rate(50.0))
     m.start_near(fan=0)
-    found = balance(
+    best = balance(
         m.sweep(steps=45), [Counterweight(fan.origin, 0.1 * scale)], {"force": 1.0, "moment": 1e-3}, norm,
         about=(0.3 * scale, 0.1 * scale),
     )  # fmt: skip
-    assert 0.0 < found.before["moment"] < 1e-9 * scale * found.before["force"]
-    assert found.after["force"] < 1e-7 * found.before["force"]
-    assert found.weights[0].mass == pytest.approx(math.hypot(0.05, 0.02) / 0.1, rel=1e-6)
+    assert 0.0 < best.before["moment"] < 1e-9 * scale * best.before["force"]
+    assert best.after["force"] < 1e-7 * best.before["force"]
+    assert best.weights[0].mass == pytest.approx(math.hypot(0.05, 0.02) / 0.1, rel=1e-6)
 
 
 def test_half_the_oscillating_mass_is_least_at_the_peak_of_a_single_cylinder() -> None:

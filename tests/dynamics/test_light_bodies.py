@@ -121,8 +121,8 @@ def test_other_bodies_and_units_change_nothing(other: float, length: float, mass
 
     plain = motion(None, 1.0, 1.0)
     scaled = motion(0.1 * 10.0 ** (mass + other), 10.0**length, 10.0**mass)
-    for one, two in zip(plain, scaled, strict=True):
-        assert two == pytest.approx(one, rel=1e-9, abs=1e-9 * float(np.abs(one).max()))
+    for expected, got in zip(plain, scaled, strict=True):
+        assert got == pytest.approx(expected, rel=1e-9, abs=1e-9 * float(np.abs(expected).max()))
 
 
 def cart(angle: float = -90.0) -> Mechanism:

@@ -67,8 +67,8 @@ def test_a_name_is_as_good_as_the_object(name: str) -> None:
     first, second = given
     for table in ("joints", "drivers", "forces", "contacts"):
         ends = [
-            {key: [(end.body.name, end.x, end.y, end.angle) for end in (part.i, part.j)] for key, part in one.items()}
-            for one in (getattr(first, table), getattr(second, table))
+            {key: [(end.body.name, end.x, end.y, end.angle) for end in (part.i, part.j)] for key, part in parts.items()}
+            for parts in (getattr(first, table), getattr(second, table))
         ]
         assert ends[0] == ends[1]
     assert [body.mass for body in first.bodies.values()] == [body.mass for body in second.bodies.values()]

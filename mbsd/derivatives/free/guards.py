@@ -240,7 +240,8 @@ def _changes_of_friction(
 
     changes = np.zeros(len(every))
     for p, (dq, dv, variants) in enumerate(zip(tangent.q, tangent.v, every, strict=True)):
-        h = _reach(terms, here, dq, dv)
+        pushed = float(np.abs(tangent.lam[p]).max()) / (float(np.abs(lam).max()) or 1.0)
+        h = _reach(terms, here, dq, dv, pushed)
         ahead, behind = (left(terms, sign * h, dq, tangent.lam[p]) for sign in (1.0, -1.0))
         changes[p] = (ahead - behind) / (2 * h)
         changes[p] += float(variants.slope(lambda variant: np.array(_friction_left(variant.terms, here, guard))))
@@ -270,10 +271,10 @@ def _friction_left(terms: Terms, here: Along, guard: Guard) -> float:
     return float(-packed.joints[guard.joint].params["static_friction"] * known[gap] - abs(known[way]))
 
 
-def _reach(terms: Terms, here: Along, dq: np.ndarray, dv: np.ndarray) -> float:
-    """How many times a tangent (3 nb,) goes as far as ``REACH``."""
+def _reach(terms: Terms, here: Along, dq: np.ndarray, dv: np.ndarray, pushed: float = 0.0) -> float:
+    """How many times a tangent (3 nb,) goes as far as ``REACH``; ``pushed``: by what part forces change along it."""
     per_size, per_speed = per_scales(terms, here)
-    far = max(float(np.abs(dq * per_size).max()), float(np.abs(dv * per_size).max()) * per_speed)
+    far = max(float(np.abs(dq * per_size).max()), float(np.abs(dv * per_size).max()) * per_speed, pushed)
     return REACH / far if far > 0.0 else REACH
 
 

@@ -302,7 +302,7 @@ def _overwritten(base: Base) -> list[tuple[int, int]]:
     dyn = base.arguments[0]
     if not isinstance(dyn, Embedding):
         lifted = [
-            base.layout.place(part, c) for part in (dyn.inverse, dyn.metric) for c in np.flatnonzero(dyn.inertia == 0)
+            base.layout.place(part, int(c)) for part in (dyn.inverse, dyn.metric) for c in np.flatnonzero(dyn.inertia == 0)
         ]
         places += [(first, first + 1) for first in lifted]
     return places

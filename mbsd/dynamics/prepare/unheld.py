@@ -24,11 +24,6 @@ from mbsd.results.mobility import Mobility
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics
 
-
-LOOSE = 1e-9
-"""Singular values of the scaled Jacobian below this part of the largest are zero."""
-SHARE = 1e-3
-"""Share of a coordinate in a motion of unit length; less is rounding."""
 LOOSE = 1e-9
 """Singular values of the scaled Jacobian below this part of the largest are zero."""
 SHARE = 1e-3

@@ -21,6 +21,7 @@ import numpy as np
 from mbsd.arrays.friction_along import friction_under
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
+from mbsd.dynamics.prepare.lent_inertia import LIFT
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.state import TIME, State
 from mbsd.equations.joint_friction import X
@@ -28,6 +29,7 @@ from mbsd.equations.joint_friction import X
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from mbsd.dynamics.reference.arrays import Dynamics
     from mbsd.dynamics.runs.run import Run
     from mbsd.model.force import Force
 
@@ -112,7 +114,7 @@ def _jumping(run: Run, time: float, y: np.ndarray, slope: np.ndarray, h: float) 
     states = y + ahead[:, None, None] * slope
     times = np.full(len(ahead), time)
     close = slice(len(FAR), -len(FAR))
-    inverse = run.ready.dynamics.inverse
+    inverse = _inverse(run.ready.dynamics)
     largest = max(float(np.abs(run.ready.dynamics.weight * inverse).max()), 1e-300)
     best: tuple[Force, float] | None = None
     worst = 0.0
@@ -126,9 +128,14 @@ def _jumping(run: Run, time: float, y: np.ndarray, slope: np.ndarray, h: float) 
     return best
 
 
+def _inverse(dynamics: Dynamics) -> np.ndarray:
+    """(3 nb,) of inertias, where there is none of what joints lend."""
+    return np.where(dynamics.inertia > 0.0, dynamics.inverse, LIFT * dynamics.inverse)
+
+
 def _stiffest(run: Run, time: float, y: np.ndarray, slope: np.ndarray) -> Stiffest | None:
     dynamics = run.ready.dynamics
-    per_size, inverse = dynamics.per_size, dynamics.inverse
+    per_size, inverse = dynamics.per_size, _inverse(dynamics)
     n3 = y.shape[1]
     if n3 <= 3 * MANY_BODIES:
         ways = np.concatenate(

@@ -34,6 +34,8 @@ REACH = 0.05
 """Distance of the furthest pose from which the root is found, in sizes and rad."""
 FURTHEST = 0.3
 """How far the poses beside may be from each other, in sizes and rad."""
+MOST_COORDINATES = 120
+"""Of larger mechanisms D takes too long, and multipliers stay as they come."""
 OFF = 1e-3
 """By how much an output may miss the polynomials through them, in sizes and rad."""
 
@@ -54,7 +56,8 @@ def with_efforts_beside(
     ``motion`` solves it at other times (T,) within ``span`` (s), efforts as they come, and begins at no output near.
     """
     suspects, margin = np.flatnonzero(near_singular(solution)), solution.singularity_margin.copy()
-    if not len(suspects) or len(suspects) == len(margin) or ready.packed.states:
+    is_small = ready.packed.coordinates <= MOST_COORDINATES and not ready.packed.states
+    if not len(suspects) or len(suspects) == len(margin) or not is_small:
         return solution
     lam, wrench = solution.lam.copy(), solution.wrench.copy()
     poses = [part.copy() for part in (solution.q, solution.v, solution.a)]

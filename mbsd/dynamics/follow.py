@@ -50,9 +50,18 @@ def recording_of(met: EventSteps, event_rows: bool = False) -> Recording:
 
 
 def resumed(
-    ready: PreparedDynamics, run: Run, recording: Recording, times: np.ndarray, events: list[Event]
+    ready: PreparedDynamics,
+    run: Run,
+    recording: Recording,
+    times: np.ndarray,
+    events: list[Event],
+    passes_singular: bool = False,
 ) -> Recording:
-    """The motion at other times (T,), rising and within the recording: each from the last point known before it."""
+    """The motion at other times (T,), rising and within the recording: each from the last point known before it.
+
+    ``passes_singular``: take the steps that pass singular poses at once, where the run was in independent coordinates.
+    """
+    passes_singular = passes_singular and recording.independent
     began = np.array([snapshot.time for snapshot in recording.snapshots])
     which = np.maximum(np.searchsorted(began, times, side="right") - 1, 0)
     outputs = np.searchsorted(recording.out.t, times, side="right") - 1
@@ -74,12 +83,15 @@ def resumed(
         met.resume(snapshot, snapshot.work if k < 0 else float(recording.out.work[k]))
         if recording.approaches is not None:
             recording.approaches.recall(float(state.clock[TIME]))
-        try:
-            met.to(float(times[last - 1]))
-            pieces.append(recording_of(met))
-        except SimulationError:
-            if events or ready.switches.contacts or ready.sticks:
-                raise
+        piece = None
+        if not passes_singular:
+            try:
+                met.to(float(times[last - 1]))
+                piece = recording_of(met)
+            except SimulationError:
+                if events or ready.switches.contacts or ready.sticks:
+                    raise
+        if piece is None:
             # near a singular pose, which independent coordinates pass
             state, out = ready.begun(times[first:last])
             state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
@@ -88,7 +100,8 @@ def resumed(
             if to_end(run, state, out):
                 fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
             held = np.broadcast_to(ready.switches.held(), out.lam.shape)
-            pieces.append(Recording(out, held, int(state.count[ACCEPTED])))
+            piece = Recording(out, held, int(state.count[ACCEPTED]))
+        pieces.append(piece)
         steps += pieces[-1].steps
         first = last
     out = Output(*(np.concatenate(parts) for parts in zip(*(piece.out for piece in pieces), strict=True)))

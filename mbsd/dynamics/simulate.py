@@ -90,7 +90,7 @@ def simulate(
         return with_efforts_beside(ready, sol, beside, span)
 
     def beside(times: np.ndarray) -> Solution:
-        return solution(m, ready, resumed(ready, run, recording.only(clear), times, events))
+        return solution(m, ready, resumed(ready, run, recording.only(clear), times, events, True))
 
     refuse_impossible(ready, recording)
     if event_rows:

@@ -301,8 +301,7 @@ def _overwritten(base: Base) -> list[tuple[int, int]]:
     places = [(first, first + part.size) for part in parts for first in [base.layout.place(part)]]
     dyn = base.arguments[0]
     if not isinstance(dyn, Embedding):
-        lifted = [
-            base.layout.place(part, int(c)) for part in (dyn.inverse, dyn.metric) for c in np.flatnonzero(dyn.inertia == 0)
-        ]
+        massless = [int(c) for c in np.flatnonzero(dyn.inertia == 0)]
+        lifted = [base.layout.place(part, c) for part in (dyn.inverse, dyn.metric) for c in massless]
         places += [(first, first + 1) for first in lifted]
     return places

@@ -23,8 +23,8 @@ from mbsd.model.mechanism import Model
 
 EQUAL = 1e-9
 """Part of the longest link by which sums of lengths may differ and count as equal."""
-MOST_TOLD = 3
-"""Chains that are told one by one."""
+MOST_NAMED = 3
+"""Chains that are named one by one."""
 LINKS = 4
 PIN, SLIDE, WELD = "revolute", "prismatic", "weld"
 REMEDY = (
@@ -58,14 +58,14 @@ def change_point_chains(m: Model) -> list[Finding]:
         packed = pack(m)
         q = assemble(m, packed, 0.0)
     except MechanismError:
-        return []  # which other findings tell
+        return []  # which other findings name
     links = _links(packed)
     chains = list(_chains(packed, links, q))
-    told = [_finding(packed, *chain) for chain in chains[:MOST_TOLD]]
-    more = len(chains) - len(told)
+    reason = [_finding(packed, *chain) for chain in chains[:MOST_NAMED]]
+    more = len(chains) - len(reason)
     if more > 0:
-        told.append(Finding("chains", f"{more} more closed chains have change points", REMEDY, True))
-    return told
+        reason.append(Finding("chains", f"{more} more closed chains have change points", REMEDY, True))
+    return reason
 
 
 def _links(packed: Packed) -> list[int]:
@@ -102,32 +102,32 @@ def _chains(packed: Packed, links: list[int], q: np.ndarray) -> Iterator[tuple[l
     for chain, way in _closed(around):
         slides = [k for k, connection in enumerate(way) if connection.kind == SLIDE]
         if not slides:
-            told = _in_line([math.dist(way[k - 1].place, way[k].place) for k in range(LINKS)])
+            reason = _in_line([math.dist(way[k - 1].place, way[k].place) for k in range(LINKS)])
         elif len(slides) == 1:
             k = slides[0]
-            told = _slider_crank(*way[k + 1 :], *way[: k + 1])
+            reason = _slider_crank(*way[k + 1 :], *way[: k + 1])
         else:
             continue
-        if told:
-            yield chain, told
+        if reason:
+            yield chain, reason
 
 
 def _closed(around: dict[int, list[_Connection]]) -> Iterator[tuple[list[int], list[_Connection]]]:
     """Chains of four links, each once, and what connects each link with the next."""
     for first in sorted(around):
-        for one in around[first]:
-            second = one.other(first)
+        for near in around[first]:
+            second = near.other(first)
             for two in around[second]:
                 third = two.other(second)
-                if second <= first or third <= first or two is one or third == second:
+                if second <= first or third <= first or two is near or third == second:
                     continue
                 for three in around[third]:
                     fourth = three.other(third)
                     if three is two or fourth <= second or fourth == third:
                         continue  # each chain is met in both directions
                     for four in around[fourth]:
-                        if four is not three and four.other(fourth) == first and four is not one:
-                            yield [first, second, third, fourth], [one, two, three, four]
+                        if four is not three and four.other(fourth) == first and four is not near:
+                            yield [first, second, third, fourth], [near, two, three, four]
 
 
 def _in_line(lengths: list[float]) -> str:
@@ -141,10 +141,10 @@ def _in_line(lengths: list[float]) -> str:
     )
 
 
-def _slider_crank(one: _Connection, two: _Connection, three: _Connection, slide: _Connection) -> str:
+def _slider_crank(near: _Connection, two: _Connection, three: _Connection, slide: _Connection) -> str:
     """The lengths for which the slider of a chain with three pins has change points; empty for others."""
-    first, second = math.dist(one.place, two.place), math.dist(two.place, three.place)
-    along, longest = three.place - one.place, max(first, second)
+    first, second = math.dist(near.place, two.place), math.dist(two.place, three.place)
+    along, longest = three.place - near.place, max(first, second)
     offset = abs(float(along[0] * slide.axis[1] - along[1] * slide.axis[0]))
     if not min(first, second) > EQUAL * longest or abs(offset - abs(second - first)) > EQUAL * longest:
         return ""
@@ -153,6 +153,6 @@ def _slider_crank(one: _Connection, two: _Connection, three: _Connection, slide:
     return f"crank and rod are equally long, {first:g} m, and the slider runs through the crank's pin"
 
 
-def _finding(packed: Packed, chain: list[int], told: str) -> Finding:
+def _finding(packed: Packed, chain: list[int], reason: str) -> Finding:
     names = " - ".join(packed.body_names[link] for link in chain)
-    return Finding(f"chain {names}", f"it has change points, where two assemblies meet, because {told}", REMEDY, True)
+    return Finding(f"chain {names}", f"it has change points, where two assemblies meet, because {reason}", REMEDY, True)

@@ -155,8 +155,8 @@ def _past_change_points(m: Model, motion: Solution, actuators: Sequence[str]) ->
         fill_beside(motion.packed, beside.side, beside.factor, both[0], both[1], nodes, len(nodes) + np.arange(count))
         lam[rows], wrench[rows] = (part[len(nodes) :][at] for part in both)
         values = np.stack([there.efforts[name] for name in actuators], axis=1)
-        found = beside.side.efforts(beside.factor, values, np.ones(len(actuators)))
-        for name, effort in zip(actuators, found.T, strict=True):
+        values_near = beside.side.efforts(beside.factor, values, np.ones(len(actuators)))
+        for name, effort in zip(actuators, values_near.T, strict=True):
             efforts[name][rows] = effort[at]
     solution = replace(motion, lam=lam, wrench=wrench, work=None, route=rest.solution.route, efforts=efforts)
     return ActuatedMotion(solution, efforts, rest.residual)

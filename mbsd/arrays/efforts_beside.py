@@ -6,7 +6,7 @@ Cramer's rule. Where D has a root t_c,
     y(t_c) = 0     lam has a limit, and is smooth itself
     y(t_c) != 0    lam grows without bound as 1 / (t - t_c), and there is none at t_c
 
-Both are told from poses at which D is not small, on both sides of t_c, or on one side where the motion begins, ends or
+Both follow from poses at which D is not small, on both sides of t_c, or on one side where the motion begins, ends or
 switches to the other assembly; polynomials through these give what is between. Reactions go with the multipliers.
 """
 
@@ -23,7 +23,7 @@ FINITE = 1e-7
 NOISE = 1e-8
 """The same as a part of the largest of all y."""
 TOLD, LEAST = 1e-5, 1e-2
-"""Error, as a part of the largest value beside or of that part of the largest of all, beyond which none is told."""
+"""Error, as a part of the largest value beside or of that part of the largest of all, beyond which it is NaN."""
 AT_ROOT = 1e-8
 """Part of the largest D beside below which lam = y / D is not a number."""
 
@@ -42,7 +42,7 @@ class Side:
     """Poses beside a change point from which efforts of others follow."""
 
     time: float
-    """Of the change point (s)."""
+    """Time of the change point (s)."""
     nodes: np.ndarray
     """(N,) rising times (s)."""
     rows: np.ndarray

@@ -35,7 +35,7 @@ REACH = 0.05
 FURTHEST = 0.3
 """How far the poses beside may be from each other, in sizes and rad."""
 MOST_COORDINATES = 120
-"""Of larger mechanisms D takes too long, and multipliers stay as they come."""
+"""Coordinates of the largest mechanisms whose D is looked at; multipliers of larger ones stay as they come."""
 OFF = 1e-3
 """By how much an output may miss the polynomials through them, in sizes and rad."""
 

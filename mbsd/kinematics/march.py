@@ -181,7 +181,7 @@ def _newton(
             break
         if index == 0:
             raise impossible_motions.refused(packed, status, steps.times, 0, steps.drives, q, v)
-        if not passages.found and steps.follow_laws():
+        if not passages.passages and steps.follow_laws():
             arrays, first, chosen = _arrays(ready.q0, len(steps.times), sequence), 0, 0
             continue
         if ready.mobility.redundant_rows and index - 1 > chosen:
@@ -207,7 +207,7 @@ def _newton(
         passages.pass_ends(q, v, determinant)
         impossible_motions.refuse_disagreeing(packed, steps.times, residual, q, steps.drives)
     passages.refuse_missed_switches()
-    return *passages.fill(q, v, a), passages.found
+    return *passages.fill(q, v, a), passages.passages
 
 
 def _gone_on(passage: Passage, steps: Steps, arrays: tuple[np.ndarray, ...]) -> tuple[tuple[np.ndarray, ...], int]:

@@ -98,9 +98,9 @@ def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solu
     drives, states = ready.packed.drives(every), _states(ready, every, *parts)
     q, v, a = (part[solved] for part in parts)
     known = None if states is None else states[solved]
-    found = inverse_dynamics(ready, every[solved], drives[solved], q, v, a, known)
-    lam, wrench = _spread(found.lam, solved), _spread(found.wrench, solved)
-    approached = None if found.approached is None else _spread(found.approached, solved)
+    loads = inverse_dynamics(ready, every[solved], drives[solved], q, v, a, known)
+    lam, wrench = _spread(loads.lam, solved), _spread(loads.wrench, solved)
+    approached = None if loads.approached is None else _spread(loads.approached, solved)
     beside = []
     for passage, side in sides:
         nodes, rows = np.searchsorted(every, side.nodes), np.searchsorted(every, side.rows)
@@ -109,7 +109,7 @@ def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solu
         if approached is not None and len(nodes):
             approached[rows] = approached[nodes[0]]
         beside.append((side, factor))
-    efforts = Efforts(lam, wrench, found.residuals, approached)
+    efforts = Efforts(lam, wrench, loads.residuals, approached)
     whole = _named(m, ready, march, (every, drives, *parts), efforts, states)
     motions = [Beside(side, factor, whole.only(np.isin(every, side.nodes))) for side, factor in beside]
     return replace(whole.only(asked), beside=tuple(motions))

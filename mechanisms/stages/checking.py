@@ -16,20 +16,20 @@ def run(name: str, as_json: bool = False) -> int:
     module, given = loading.load(name, "mechanism"), loading.params(name)
     with loading.author_code(name):
         m = module.build(given)
-        found = m.check()
+        everything = m.check()
         try:
             mobility = m.mobility()
         except MechanismError:  # which is among the findings
             mobility = None
-    findings = [finding for finding in found if not finding.is_note]
+    findings = [finding for finding in everything if not finding.is_note]
     if as_json:
         rows = [
             {"name": finding.name, "problem": finding.problem, "remedy": finding.remedy, "note": finding.is_note}
-            for finding in found
+            for finding in everything
         ]
         print(msgspec.json.encode({"machine": name, "freedom": mobility and mobility.dof, "findings": rows}).decode())
         return int(bool(findings))
-    for finding in found:
+    for finding in everything:
         (say if finding.is_note else warn)("check", f"{name}: {finding}")
     joints, bodies = len(m.joints), len(m.bodies) - 1
     looks = f"{len(findings)} things look odd" if len(findings) > 1 else "one looks odd" if findings else "nothing odd"

@@ -69,6 +69,6 @@ def test_other_actuators_pass_as_well(is_simulated: bool) -> None:
     m.torque("push", m.bodies["right"], 0.0)
     motion = m.simulate(1.0, steps=360) if is_simulated else m.sweep(1.0)
     for name in ("motor", "push"):
-        found = m.inverse_dynamics(motion, [name])
-        np.testing.assert_allclose(found.efforts[name], 0.2 * G * np.cos(motion.body("left").theta), atol=1e-6)
-        assert np.isnan(found.solution.joint("C").fx).sum() == 2
+        actuated = m.inverse_dynamics(motion, [name])
+        np.testing.assert_allclose(actuated.efforts[name], 0.2 * G * np.cos(motion.body("left").theta), atol=1e-6)
+        assert np.isnan(actuated.solution.joint("C").fx).sum() == 2

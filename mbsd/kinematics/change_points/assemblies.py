@@ -152,7 +152,7 @@ class Assembly:
         return np.einsum("pn,knc->kpc", lagrange(self.nodes, p), self.parts)
 
     def errors(self, solver: Solver) -> tuple[float, float]:
-        """Of q and of d2q/dp2: what the outermost two poses change near the change point."""
+        """Errors of q and of d2q/dp2: what the outermost two poses change near the change point."""
         inner = np.abs(self.nodes) < np.abs(self.nodes).max() * 0.99
         probes = 0.5 * np.array([-1.0, 0.0, 1.0]) * np.abs(self.nodes).min()
         fewer = np.einsum("pn,knc->kpc", lagrange(self.nodes[inner], probes), self.parts[:, inner])
@@ -162,12 +162,12 @@ class Assembly:
     def root(self) -> float | None:
         """The p nearest to 0 at which the determinant of a block vanishes; None if none does."""
         coefficients = np.polynomial.polynomial.polyfit(self.nodes, self.determinant, len(self.nodes) - 1)
-        reach, found = 0.5 * np.abs(self.nodes).min(), []
+        reach, meeting = 0.5 * np.abs(self.nodes).min(), []
         for column in coefficients.T:
             roots = np.polynomial.polynomial.polyroots(column)
             real = roots.real[np.abs(roots.imag) < 1e-6 * reach]
-            found += [float(root) for root in real if abs(root) < reach]
-        return min(found, key=abs) if found else None
+            meeting += [float(root) for root in real if abs(root) < reach]
+        return min(meeting, key=abs) if meeting else None
 
 
 def way_from(
@@ -281,7 +281,7 @@ def other_assembly(solver: Solver, way: Way, smooth: Assembly) -> Assembly | Non
     if not abs(bend) * IN_SIGHT > 1e-3 * values[-1]:
         return None
     started = pose - values[-1] / bend * scale * u
-    found = solver.walk(way, started, np.array([p]))
-    if found is None or solver.extent(found[0][0] - pose) < 0.3 * abs(values[-1] / bend):
+    meeting = solver.walk(way, started, np.array([p]))
+    if meeting is None or solver.extent(meeting[0][0] - pose) < 0.3 * abs(values[-1] / bend):
         return None
-    return assembly_around(solver, way, found[0][0], p)
+    return assembly_around(solver, way, meeting[0][0], p)

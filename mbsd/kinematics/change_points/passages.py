@@ -98,13 +98,13 @@ class Passage:
 
 
 class Passages:
-    """Those of one march, in the order in which they are found."""
+    """Those of one march, in the order in which they are meeting."""
 
     def __init__(self, solver: Solver, steps: Steps, switch_at: np.ndarray) -> None:
         self.solver, self.steps = solver, steps
         self.switch_at = switch_at
         """(n,) times at which the motion is to go on to the other assembly (s)."""
-        self.found: list[Passage] = []
+        self.passages: list[Passage] = []
         self._vain = (0.0, -np.inf)
         """Times between which none was found (s)."""
 
@@ -116,14 +116,14 @@ class Passages:
         """
         if self._vain[0] <= self.steps.times[row] <= self._vain[1]:
             return None
-        found = self._meeting(row, q[row], v[row])
-        if found is None:
+        meeting = self._meeting(row, q[row], v[row])
+        if meeting is None:
             return None
-        passage = self._in_time(row, *found)
+        passage = self._in_time(row, *meeting)
         if not passage.start < passage.end:
             return None
         passage.left_out = self._leave_gap(passage)
-        self.found.append(passage)
+        self.passages.append(passage)
         return passage
 
     def pass_ends(self, q: np.ndarray, v: np.ndarray, determinant: np.ndarray) -> None:
@@ -131,11 +131,11 @@ class Passages:
         largest = np.abs(determinant).max(axis=0, initial=0.0)
         for row in dict.fromkeys((0, len(q) - 1)):
             time = self.steps.times[row]
-            is_known = any(passage.start <= time <= passage.end for passage in self.found)
+            is_known = any(passage.start <= time <= passage.end for passage in self.passages)
             if not is_known and (len(q) == 1 or (np.abs(determinant[row]) < NEAR_END * largest).any()):
-                found = self._meeting(row, q[row], v[row])
-                if found is not None:
-                    self.found.append(self._in_time(row, *found))
+                meeting = self._meeting(row, q[row], v[row])
+                if meeting is not None:
+                    self.passages.append(self._in_time(row, *meeting))
 
     def fill(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The arrays (T, 3 nb) of all steps with those left out; poses near change points are those of the passages.
@@ -143,11 +143,11 @@ class Passages:
         Raises ModelError where the motion was to switch at a time at which it passes no change point.
         """
         steps = self.steps
-        for passage in self.found:
+        for passage in self.passages:
             if len(passage.left_out):
                 at = steps.put_back(passage.left_out)
                 q, v, a = (np.insert(array, at, 0.0, axis=0) for array in (q, v, a))
-        for passage in self.found:
+        for passage in self.passages:
             rows = passage.covers(steps.times)
             q[rows], v[rows], a[rows] = passage.motion(steps.times[rows])
         return q, v, a
@@ -199,13 +199,13 @@ class Passages:
         if other is None:
             raise SingularPoseError(
                 f"{self.steps.packed.name}: at the change point at t = {passage.time:.9g} s no single other assembly "
-                "was found, so the motion cannot switch to it. Leave that time out of switch_at."
+                "was meeting, so the motion cannot switch to it. Leave that time out of switch_at."
             )
         return other
 
     def refuse_missed_switches(self) -> None:
         """Raise ModelError where the motion was to switch at a time at which it passes no change point."""
-        passed = [passage for passage in self.found if passage.start < passage.end]
+        passed = [passage for passage in self.passages if passage.start < passage.end]
         for time in self.switch_at.tolist():
             if not any(passage.start < time < passage.end for passage in passed):
                 times = ", ".join(f"{passage.time:.9g}" for passage in passed)

@@ -23,14 +23,14 @@ SILENCE = 300.0
 
 
 class Freshness:
-    """What is known of some mechanisms; their files are asked for when one of them is first shown."""
+    """Knows which results of some mechanisms are current; it looks when one of them is first shown."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self._names = list(names)
         self._current: set[str] | None = None
 
     def is_current(self, name: str) -> bool:
-        """Whether motion, parts and shot of a mechanism follow from its files as they are."""
+        """Return True if motion, parts and shot of a mechanism follow from its files as they are."""
         if self._current is None:
             self._current = current_names(self._names)
         return name in self._current
@@ -50,7 +50,7 @@ class Freshness:
 
 
 def current_names(names: Sequence[str]) -> set[str]:
-    """Those of these mechanisms whose results follow from their files; none, with a warning, where that takes long.
+    """Return the mechanisms whose results follow from their files; none, with a warning, if that takes long.
 
     Asked in a process of its own, for mechanism.py may do anything there.
     """

@@ -154,7 +154,7 @@ def _result(m: Model, resting: Model, ready: Statics, q: np.ndarray, steps: int)
 
 
 def _stability(ready: Statics, q: np.ndarray, stiffness: np.ndarray, load: float) -> str:
-    """That of the least stable group; ``stiffness`` (f, f) and largest load are those of all."""
+    """Return the stability of the least stable group; ``stiffness`` (f, f) and largest load are those of all."""
     if len(ready.groups) == 1:
         return _stability_of(stiffness, load)
     words = set()

@@ -13,7 +13,7 @@ class Finding:
     problem: str
     remedy: str
     is_note: bool = False
-    """Whether it is something to know of a model that may well be meant so."""
+    """True if it is something to know of a model that may well be meant so."""
 
     def __str__(self) -> str:
         return f"{self.name}: {self.problem}. {self.remedy}"

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import pandas
 
 FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")
-"""What a formula begins with."""
+"""Characters with which a formula begins."""
 
 
 def csv_text(names: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:

@@ -36,7 +36,7 @@ class KernelFiles(IndexDataCacheFile):
         return self._read_or_removed(Path(self._index_path), super()._load_index) or {}
 
     def _load_data(self, name: str) -> Any:
-        """What was kept; None if the file is damaged or cannot be read."""
+        """Return what was kept; None if the file is damaged or cannot be read."""
         return self._read_or_removed(Path(self._data_path(name)), lambda: super(KernelFiles, self)._load_data(name))
 
     def _read_or_removed(self, path: Path, read: Callable[[], Any]) -> Any:

@@ -17,7 +17,7 @@ SUBJECTS = {
     "mbsd.kinematics": ("sweeps", "10 s"),
     "mbsd": ("this kind of model", "5 s"),
 }
-"""What the kernels of a package solve, and how long they take to compile on two idle cores; the first match counts."""
+"""Subject of the kernels of a package, and the time they take to compile on two idle cores; the first match counts."""
 
 
 class CompileNotice(Listener):

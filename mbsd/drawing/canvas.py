@@ -56,7 +56,7 @@ class Canvas:
     """What is being drawn, where it is shown on demand: a canvas that records keeps it."""
 
     anew: bool = False
-    """Whether nothing carries what is being drawn, whatever its symbol says."""
+    """True if nothing carries what is being drawn, whatever its symbol says."""
 
     @contextmanager
     def on(self, carrier: Carrier | None) -> Iterator[None]:

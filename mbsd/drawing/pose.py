@@ -40,7 +40,7 @@ class Pose:
     """Joints and drivers that an event releases, and whether that has happened."""
 
     def gone(self, joint: str) -> bool:
-        """Whether a joint or driver has been released."""
+        """Return True if a joint or driver has been released."""
         return self.released.get(joint, False)
 
     def place(self, marker: Marker) -> np.ndarray:

@@ -157,7 +157,7 @@ def _scaled(ready: PreparedDynamics, change: np.ndarray) -> np.ndarray:
 
 
 def _is_plain(ready: PreparedDynamics, solution: Solution, side: Side, there: Solution) -> bool:
-    """Whether the poses beside are near each other, and the outputs on the polynomials through them."""
+    """Return True if the poses beside are near each other, and the outputs on the polynomials through them."""
     if np.abs(_scaled(ready, np.ptp(there.q, axis=0))).max() > FURTHEST:
         return False
     rows = np.searchsorted(solution.t, side.rows)

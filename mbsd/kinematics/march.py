@@ -141,7 +141,7 @@ def _closed_form(
 
 
 def _ends_close(determinant: np.ndarray) -> bool:
-    """Whether a block comes close to a singular pose at the first or the last step: ``determinant`` (blocks, T, 1)."""
+    """Return True if a block is nearly singular at the first or the last step: ``determinant`` (blocks, T, 1)."""
     if not len(determinant):
         return False
     ends = np.abs(determinant[:, [0, -1], 0])

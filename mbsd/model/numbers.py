@@ -64,7 +64,7 @@ class Number:
     marker: Marker | None = None
     """The marker whose coordinate or angle it is."""
     is_place: bool = False
-    """Whether it is a coordinate, whose origin is anywhere."""
+    """True if it is a coordinate, whose origin is anywhere."""
     vector: float = 0.0
     """Length of the vector that it is a component of (SI); 0 of others."""
     reach: float = 0.0

@@ -71,7 +71,7 @@ def tell_current(names: Iterable[str]) -> None:
 
 
 def is_current(name: str) -> bool:
-    """Whether motion, parts and shot that are there follow from the author's files as they are."""
+    """Return True if motion, parts and shot that are there follow from the author's files as they are."""
     from mechanisms.stages.parts import stage as parts
     from mechanisms.stages.shot import stage as shot
     from mechanisms.stages.solve import stage as solve
@@ -135,7 +135,7 @@ def _made_words(name: str) -> str:
 
 
 def _made(out: Out) -> dict[str, Path]:
-    """What is there of a mechanism, and the file that stands for it."""
+    """Return what is there of a mechanism, with the file that stands for it."""
     files = {
         "parts": out.parts,
         "motion": out.motion,
@@ -154,7 +154,7 @@ def _made(out: Out) -> dict[str, Path]:
 
 
 def _older(out: Out, made: Mapping[str, Path]) -> list[str]:
-    """What of it is older than what it was made of."""
+    """Return the results that are older than what they were made of."""
     from mechanisms.stages.shot import stage as shot
     from mechanisms.stages.solve import stage as solve
 
@@ -164,7 +164,7 @@ def _older(out: Out, made: Mapping[str, Path]) -> list[str]:
 
 
 def _is_outdated(out: Out, path: Path, stale: set[Path]) -> bool:
-    """Whether a result was made of an older one, or of one that is ``stale`` itself."""
+    """Return True if a result was made of an older one, or of one that is ``stale`` itself."""
     read = results_of(out, path)
     return bool(read and (read & stale or outdated_by(out, path)))
 

@@ -1,4 +1,4 @@
-"""What happens at one moment of a motion: dead points, impacts and others. Plots and the page mark them, the report
+"""Events at one moment of a motion: dead points, impacts and others. Plots and the page mark them, the report
 lists them.
 """
 

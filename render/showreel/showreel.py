@@ -77,7 +77,7 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
 
 
 def _is_older(freshness: Freshness, name: str, film: Path, preset: Preset) -> bool:
-    """Whether a film shows the machine as it was, which is reported."""
+    """Return True if a film shows the machine as it was, which is reported."""
     why = freshness.why_older(Out(name), film)
     if why:
         warn(NAME, f"{film.name} is left out, being of an older version: {why}; {to_run('film', name)} {preset.asked}")

@@ -49,7 +49,7 @@ def run(name: str, form: str = "usd") -> None:
 
 
 def is_fresh(name: str, form: str) -> bool:
-    """Whether the file that is there is of the motion, the parts and the shot that are there."""
+    """Return True if the file that is there is of the motion, the parts and the shot that are there."""
     return _stage(Out(name), form).is_fresh()
 
 

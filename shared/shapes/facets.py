@@ -40,7 +40,7 @@ def facets(shape: Any, tolerance: float, angle: float, relative: bool = False) -
 
 
 def is_closed(corners: np.ndarray) -> bool:
-    """Whether triangles (n, 3, 3) leave no hole and touch nowhere: each edge is that of two, in opposite directions."""
+    """Return True if triangles (n, 3, 3) are closed: each edge belongs to two, in opposite directions."""
     places = np.ascontiguousarray(corners, np.float32).reshape(-1, 3)
     _, numbers = np.unique(places.view(np.dtype((np.void, 12))).ravel(), return_inverse=True)
     first = numbers.reshape(-1, 3).astype(np.int64)
@@ -75,7 +75,7 @@ def volume_of(solid: Any) -> float:
 
 
 def _with_three_corners(corners: np.ndarray) -> np.ndarray:
-    """Those of the triangles (n, 3, 3) that have three corners.
+    """Return the triangles of (n, 3, 3) that have three corners.
 
     An edge shorter than float32 can tell has one end in the file; a triangle on it would be an open edge.
     """

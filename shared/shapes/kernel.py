@@ -23,7 +23,7 @@ def is_of_kernel(error: BaseException) -> bool:
 
 
 def is_sound(shape: cq.Workplane) -> bool:
-    """Whether the solid is valid, its mesh closed, and the volume of both the same.
+    """Return True if the solid is valid, its mesh closed, and the volume of both the same.
 
     The kernel calls fillets valid that overlap each other.
     """

@@ -79,7 +79,7 @@ def cache_roots() -> list[Path]:
 
 
 def _is_writable(folder: Path) -> bool:
-    """Whether this user may write into a folder, or make it."""
+    """Return True if this user may write into a folder, or make it."""
     try:
         folder.mkdir(exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()

@@ -128,7 +128,7 @@ def outdated_by(out: Out, path: Path) -> list[str]:
 
 
 def is_recorded(out: Out, path: Path) -> bool:
-    """Whether a stage has recorded what it made a file of; not so of files that were brought from elsewhere."""
+    """Return True if a stage has recorded what it made a file of; not so of files that were brought from elsewhere."""
     return _stamp_of(out, path) is not None
 
 

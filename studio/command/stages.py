@@ -42,7 +42,7 @@ _PICTURE = ("preset", "aspect", "show")
 PARTS = Stage("mechanisms", "parts", solids=True)
 PARTS_IF_ANY = Stage("mechanisms", "parts", also=("--or-none",))
 PARTS_FOR_MOTION = Stage("mechanisms", "parts", also=("--if-needed=motion",))
-"""Those whose masses the motion needs, because mechanism.py does not give them."""
+"""Parts whose masses the motion needs, because mechanism.py does not give them."""
 SOLVE = Stage("mechanisms", "solve")
 CLEARANCE = Stage("mechanisms", "clearance", solids=True)
 SHOT = Stage("mechanisms", "shot")

@@ -88,7 +88,7 @@ def _run(names: Sequence[str], folder: Path) -> int:
 
 
 class _Shown:
-    """What may be shown of a machine; what is of an older version is remembered, to be named."""
+    """Selects what may be shown of a machine; what is of an older version is remembered, to be named."""
 
     def __init__(self, out: Out, freshness: Freshness) -> None:
         self._out, self._freshness = out, freshness

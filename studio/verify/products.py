@@ -1,4 +1,4 @@
-"""What is printed and cut, and files for other programs: made again in scratch, and compared byte by byte."""
+"""Plates, outlines and files for other programs, rebuilt in scratch and compared byte by byte."""
 
 from __future__ import annotations
 

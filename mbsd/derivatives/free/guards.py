@@ -107,7 +107,7 @@ def contacts_of(packed: Packed) -> list[tuple[int, Joint]]:
 
 
 def _state(packed: Packed, along: Along, k: int, row: int) -> str:
-    """What contact ``k`` does at a row: it rests where it needs no friction."""
+    """Return what contact ``k`` does at a row: it rests where it needs no friction."""
     assert along.held is not None
     gap, end = int(packed.first_row[k]), int(packed.first_row[k + 1])
     if not along.held[row, gap]:

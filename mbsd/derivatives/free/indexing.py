@@ -65,7 +65,7 @@ def unwatched(sol: Solution, m: Model) -> Solution:
 
 
 def is_index(event: Any) -> bool:
-    """Whether an event is that of a pin at its slot."""
+    """Return True if an event is that of a pin at its slot."""
     return isinstance(event, Event) and isinstance(event.value, PinAtSlot)
 
 

@@ -45,7 +45,7 @@ def step_of(part: float, size: float) -> float:
 
 
 def size_of(number: Number, m: Model, packed: Packed, span: tuple[float, float]) -> float:
-    """What steps of a number of ``m``, which is ``packed``, are parts of, along a motion over ``span`` (s)."""
+    """Return the size of a number of ``m``, which is ``packed``, along a motion over ``span`` (s)."""
     own, last = abs(number.value), number.name.rpartition(".")[2]
     if number.reach:
         return float(np.clip(own, LEAST * number.reach, number.reach))
@@ -90,7 +90,7 @@ def _size_in_law(number: Number, m: Model, packed: Packed, span: tuple[float, fl
 
 
 def _unit(number: Number, m: Model, packed: Packed) -> float:
-    """What the law of a driver may be large by: a length or an angle; 0 of a law of a force."""
+    """Return the usual size of the law of a driver, a length or an angle; 0 for a law of a force."""
     driver = None if number.within is None else m.drivers.get(number.within.whole)
     if driver is None:
         return 0.0

@@ -69,7 +69,7 @@ class Variants:
     """(k,) of the variants, for a derivative by the number: / step."""
     variants: list[Variant]
     size: float
-    """What the step is a part of; see number_steps.py."""
+    """Size of the number, of which the step is a part; see number_steps.py."""
 
     def slope(self, of: Callable[[Variant], np.ndarray]) -> np.ndarray:
         """The derivative by the number of what ``of`` gives of a variant."""
@@ -135,7 +135,7 @@ class Variation:
         raise ModelError(f"{self.base.packed.name}: no derivative by '{number.name}': {first}") from first
 
     def size_of(self, number: Number) -> float:
-        """What steps of a number are parts of."""
+        """Return the size of a number, of which its steps are parts."""
         return size_of(number, self.work, self.base.packed, self.span)
 
     def _variant(self, number: Number, offset: float, h: float, starts: bool) -> Variant:

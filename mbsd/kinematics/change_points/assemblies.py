@@ -230,7 +230,7 @@ def assembly_around(solver: Solver, way: Way, pose: np.ndarray, p: float) -> Ass
 
 
 def meets(solver: Solver, way: Way, assembly: Assembly) -> bool:
-    """Whether the motion between the poses of an assembly meets the constraints."""
+    """Return True if the motion between the poses of an assembly meets the constraints."""
     probes = GAP * np.array([-1.0, -0.3, 0.0, 0.3, 1.0])
     poses = assembly.at(probes)[0]
     return max(solver.gap(way, pose, float(p)) for pose, p in zip(poses, probes, strict=True)) <= CLOSES

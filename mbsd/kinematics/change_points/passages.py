@@ -58,7 +58,7 @@ class Passage:
 
     @property
     def is_switched(self) -> bool:
-        """Whether the motion goes on to the other assembly."""
+        """Return True if the motion goes on to the other assembly."""
         return self.after is not self.before
 
     @property
@@ -98,7 +98,7 @@ class Passage:
 
 
 class Passages:
-    """Those of one march, in the order in which they are meeting."""
+    """Change points of one march, in the order in which they are met."""
 
     def __init__(self, solver: Solver, steps: Steps, switch_at: np.ndarray) -> None:
         self.solver, self.steps = solver, steps

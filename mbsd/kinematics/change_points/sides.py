@@ -1,4 +1,4 @@
-"""Which poses beside a change point tell the efforts near it, and the determinant of J at these.
+"""Poses beside a change point from which the efforts near it follow, and the determinant of J at these.
 
 mbsd/arrays/efforts_beside.py says how. There are poses on both sides of the change point, or on one side alone where
 the motion begins or ends there or switches to the other assembly.

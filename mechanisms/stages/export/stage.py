@@ -57,7 +57,7 @@ def run(name: str, form: str, time: float = 0.0) -> None:
 
 
 def is_fresh(name: str, form: str) -> bool:
-    """Whether the file that is there is of the mechanism as it is."""
+    """Return True if the file that is there is of the mechanism as it is."""
     out = Out(name)
     notes = Stage(out, f"export-{form}", "", []).notes()
     inputs, time = observed(notes.get("inputs")), notes.get("time", 0.0)

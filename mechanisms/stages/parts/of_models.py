@@ -1,4 +1,4 @@
-"""Which solids a motion or a model at a scale needs: those whose masses mechanism.py does not give.
+"""The solids that a motion or a model at a scale needs: those whose masses mechanism.py does not give.
 
 A sweep moves as its drivers say; its forces follow from the masses. A simulation of bodies whose masses mechanism.py
 does not give moves as the masses of their parts make it, so these parts are made first.

@@ -54,7 +54,7 @@ class Words:
     turned_round: frozenset[str] = frozenset()
     """Drivers whose value and effort have the other sign."""
     mirrored: bool = False
-    """Whether it is the mirror image about the x axis."""
+    """True if it is the mirror image about the x axis."""
     length: float = 1.0
     mass: float = 1.0
     """How many times as large numbers of length and mass are."""
@@ -124,7 +124,7 @@ def numbers(sol: Solution, first: Solution, words: Words, rows: np.ndarray, firs
 
 
 def _unit_of_effort(driver: Joint, words: Words) -> float:
-    """What a torque or a force of 1 is in other words."""
+    """Return a torque or a force of 1 in other units."""
     angular = "angle" in driver.kind.name
     return words.sense * words.mass * words.length**2 if angular else words.mass * words.length
 

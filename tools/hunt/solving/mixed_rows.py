@@ -42,7 +42,7 @@ class Rows:
 
     m: Mechanism
     varied: list[tuple[str, str, Number]]
-    """What is varied, by the two names that ``vary`` takes."""
+    """Return what is varied, by the two names that ``vary`` takes."""
     values: np.ndarray
     """(rows, numbers)"""
 
@@ -124,7 +124,7 @@ def _of_row(
     rows: Rows, row: int, many: tuple[Simulations, Simulations], quantities: dict[str, Quantity], times: np.ndarray,
     tolerance: float, nudged: Callable[[Mechanism], Mechanism],
 ) -> str:  # fmt: skip
-    """What a row has otherwise than its single simulation; "" if nothing."""
+    """Return how a row differs from its single simulation; "" if it does not."""
     sol, error = attempt(lambda: rows.alone(row).simulate(times=times, tolerance=tolerance))
     if error is not None:
         whole = str(error).partition(". ")[0]
@@ -153,7 +153,7 @@ def _of_row(
 
 
 def _usual(name: str, sol: Solution) -> float:
-    """What rounding of a quantity goes with: forces are differences of larger ones, and so is what they give."""
+    """Return what the rounding of a quantity grows with: forces are differences of larger ones, and so is what they give."""
     component = name.rpartition(".")[2]
     if component in ("fx", "fy", "torque", "effort", "power"):
         return float(np.abs(sol.wrench).max(initial=0.0))

@@ -107,7 +107,7 @@ def bits(m: Mechanism) -> tuple[Any, ...]:
 
 
 def renamed_differs(first: Solution, other: Solution) -> str:
-    """What a solution of the same mechanism with other names has otherwise; "" if nothing."""
+    """Return how a solution of the same mechanism with other names differs; "" if it does not."""
     parts = ("t", "q", "v", "a", "wrench", "lam", "drives", "singularity_margin")
     return next(
         (key for key in parts if not np.array_equal(getattr(first, key), getattr(other, key), equal_nan=True)), ""

@@ -187,7 +187,7 @@ def first_met(dyn, scratch, state, settings, contacts, out, before, after):
 
 @apart
 def _chance(contacts, state, e, value):
-    """Whether rounding may decide the sign of event e, whose value beyond the root this is: refuse_chance."""
+    """Return True if rounding may decide the sign of event e, whose value beyond the root this is: refuse_chance."""
     if contacts.clock[BEYOND] == 1.0:
         return abs(value) <= rounding_of(contacts.events, e, state.clock[TIME], state.y)
     trial = contacts.trial

@@ -153,7 +153,7 @@ def _of_row(
 
 
 def _usual(name: str, sol: Solution) -> float:
-    """Return what the rounding of a quantity grows with: forces are differences of larger ones, and so is what they give."""
+    """Return the size to which rounding of a quantity is relative: forces are differences of larger ones."""
     component = name.rpartition(".")[2]
     if component in ("fx", "fy", "torque", "effort", "power"):
         return float(np.abs(sol.wrench).max(initial=0.0))

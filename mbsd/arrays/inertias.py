@@ -24,12 +24,15 @@ def inertia_of(packed: Packed) -> np.ndarray:
 def usual_inertia(packed: Packed) -> np.ndarray:
     """Return (3 nb,) M where it is not zero, elsewhere the largest mass and the size of what joints connect."""
     inertia, mass = inertia_of(packed), packed.system.mass
+    heaviest = float(mass.max()) or 1.0
+    if inertia[3:].all():
+        inertia[:3] = heaviest, heaviest, heaviest * packed.size**2
+        return inertia
     largest = np.zeros(len(mass))
-    if (inertia[3:] == 0.0).any():
-        group = connected(packed.system.row_body, len(mass))
-        np.maximum.at(largest, group, mass)
-        largest = largest[group]
-    largest[largest == 0.0] = float(mass.max()) or 1.0
+    group = connected(packed.system.row_body, len(mass))
+    np.maximum.at(largest, group, mass)
+    largest = largest[group]
+    largest[largest == 0.0] = heaviest
     usual = largest.repeat(3)
     usual[2::3] *= packed.size**2
     return np.where(inertia > 0.0, inertia, usual)

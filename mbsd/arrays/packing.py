@@ -100,8 +100,11 @@ class Packed:
         }
 
     def holds_position(self) -> np.ndarray:
-        """(m,) whether a row of J holds a position while it holds; of what sticks by friction it holds a speed of 0."""
-        out = np.arange(len(self.ws.phi)) < self.contact_rows
+        """Return (m,) True for the rows of J that hold a position; a row that sticks by friction holds a speed of 0."""
+        out = np.ones(len(self.ws.phi), bool)
+        if self.contact_rows == len(out):
+            return out
+        out[self.contact_rows :] = False
         out[list(self.contact_gaps().values())] = True
         return out
 

@@ -43,22 +43,26 @@ Motion = Callable[[np.ndarray], Solution]
 
 
 def near_singular(solution: Solution) -> np.ndarray:
-    """(T,) whether outputs may be near a change point, by their margins and multipliers."""
+    """Return (T,) True for outputs that may be near a change point, by their margins and multipliers."""
     margin, largest = solution.singularity_margin, np.abs(solution.lam).max(axis=1, initial=0.0)
-    return ~((margin >= SUSPECT * np.nanmax(margin, initial=0.0)) & (largest <= ODD * np.median(largest)))
+    ordered, middle = largest.copy(), len(largest) // 2
+    ordered.partition(middle)
+    return ~((margin >= SUSPECT * np.fmax.reduce(margin, initial=0.0)) & (largest <= ODD * ordered[middle]))
 
 
 def with_efforts_beside(
-    ready: PreparedDynamics, solution: Solution, motion: Motion, span: tuple[float, float]
+    ready: PreparedDynamics, solution: Solution, is_near: np.ndarray, motion: Motion, span: tuple[float, float]
 ) -> Solution:
-    """The solution with reactions and efforts at outputs near change points taken from poses beside.
+    """Return the solution with reactions and efforts at outputs near change points taken from poses beside.
 
-    ``motion`` solves it at other times (T,) within ``span`` (s), efforts as they come, and begins at no output near.
+    ``is_near`` (T,): the outputs of :func:`near_singular`. ``motion`` solves it at other times (T,) within ``span``
+    (s), efforts as they come, and begins at no output near.
     """
-    suspects, margin = np.flatnonzero(near_singular(solution)), solution.singularity_margin.copy()
+    suspects = np.flatnonzero(is_near)
     is_small = ready.packed.coordinates <= MOST_COORDINATES and not ready.packed.states
-    if not len(suspects) or len(suspects) == len(margin) or not is_small:
+    if not len(suspects) or len(suspects) == len(is_near) or not is_small:
         return solution
+    margin = solution.singularity_margin.copy()
     lam, wrench = solution.lam.copy(), solution.wrench.copy()
     poses = [part.copy() for part in (solution.q, solution.v, solution.a)]
     closeness = _determinants(ready, solution, suspects)

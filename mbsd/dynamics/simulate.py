@@ -87,7 +87,7 @@ def simulate(
             if clear.all():
                 raise
             sol = beside(times)
-        return with_efforts_beside(ready, sol, beside, span)
+        return with_efforts_beside(ready, sol, near_singular(sol), beside, span)
 
     def beside(times: np.ndarray) -> Solution:
         return solution(m, ready, resumed(ready, run, recording.only(clear), times, events, True))
@@ -98,8 +98,9 @@ def simulate(
     anew = partial(simulate, m, None, 1, grid, method, tolerance, step, None, options, event_rows, formulation)
     span = float(recording.out.t[0]), float(recording.out.t[-1])
     sol = solution(m, ready, recording, Between(at, anew, recording.out.y[-1, 0]))
-    clear = ~near_singular(sol)
-    sol = with_efforts_beside(ready, sol, beside, span)
+    is_near = near_singular(sol)
+    clear = ~is_near
+    sol = with_efforts_beside(ready, sol, is_near, beside, span)
     return sol if asked is None else asked.rows(sol)
 
 
@@ -202,7 +203,8 @@ def solution(
             compact, v[at], out.a[at], lam[at], rate, bend, loads,
         )  # fmt: skip
         power = np.einsum("tc,tc->t", loads[:, 3:], v[at, 3:])
-        errors = [phi * (held & placed), rate * held, bend * held]
+        all_hold = held.all() and placed.all()
+        errors = [phi, rate, bend] if all_hold else [phi * (held & placed), rate * held, bend * held]
         residuals = np.maximum(residuals, [np.abs(error).max(initial=0.0) for error in (*errors, power)])
     shown = without_states(packed)
     end = 3 * len(shown.body_names)

@@ -39,10 +39,10 @@ def lift_inertia(packed: Packed, rows: Sequence[int], q: np.ndarray, time: float
     ``rows``: independent rows of J; ``time`` (s); ``usual`` (3 nb,) that of :func:`mbsd.arrays.inertias.usual_inertia`.
     """
     inertia = inertia_of(packed)
+    if inertia[3:].all():
+        return usual
     light = np.flatnonzero(inertia[3:] == 0.0)
     out = np.where(inertia > 0.0, inertia, usual)
-    if not len(light):
-        return out
     residual_and_jacobian(packed.system, q, packed.drives(np.array([time]))[0], packed.ws)
     lent = _lent(packed, np.asarray(rows, np.int64), inertia[3:], usual[3:], light)
     most = usual[3 + light]

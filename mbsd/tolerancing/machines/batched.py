@@ -14,6 +14,7 @@ from mbsd.dynamics.many.measures import Measure
 from mbsd.kinematics.batch import parameters
 from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, Push, in_closed_form
 from mbsd.kinematics.prepare import prepare
+from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
 from mbsd.tolerancing.dimensions.dimension import Column
 from mbsd.tolerancing.dimensions.named import first_marker
@@ -110,16 +111,20 @@ class Batched:
         return DesignSweeps(self._m, self._ready, self._grid, moved, self._angles, finer)
 
     def _numbers(self, x: np.ndarray) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """Lengths and places as ``batch`` takes them."""
-        lengths: dict[str, np.ndarray] = {}
+        """Return lengths and positions as ``batch`` takes them; a pin at the end of a bar goes with its length."""
+        lengths = {
+            column.name: column.nominal + x[:, k] for k, column in enumerate(self._columns) if column.kind == "length"
+        }
         places: dict[str, np.ndarray] = {}
         for k, column in enumerate(self._columns):
             if column.kind == "length":
-                lengths[column.name] = column.nominal + x[:, k]
                 continue
             if column.name not in places:
                 marker = self._m.traces.get(column.name) or first_marker(self._m, column.name)
                 places[column.name] = np.tile([marker.x, marker.y], (len(x), 1))
+                bar = marker.body
+                if bar.name in lengths and bar.length is not None and at_end(marker, bar.length):
+                    places[column.name][:, 0] = lengths[bar.name]
             if column.kind != "reaction":
                 places[column.name][:, "xy".index(column.key)] += x[:, k]
         return lengths, places

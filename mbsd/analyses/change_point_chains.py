@@ -26,7 +26,8 @@ EQUAL = 1e-9
 MOST_NAMED = 3
 """Chains that are named one by one."""
 LINKS = 4
-PIN, SLIDE, WELD = "revolute", "prismatic", "weld"
+PIN, SLIDE = "pin", "guide"
+"""Pairs of :class:`mbsd.model.joint.JointKind` that a chain may have."""
 REMEDY = (
     "Sweeps and simulations pass such a pose on the smooth continuation, and reactions may grow without bound there: "
     "choose the other way with sweep(switch_at=...), or change a length, or add a link that decides"
@@ -38,7 +39,7 @@ class _Connection:
     """A pin or a slide between two links."""
 
     name: str
-    kind: str
+    pair: str
     links: tuple[int, int]
     place: np.ndarray
     """(2,) in the world at the start (m)."""
@@ -51,8 +52,8 @@ class _Connection:
 
 def change_point_chains(m: Model) -> list[Finding]:
     """Return a finding for each closed chain with change points, with its lengths; none where ``m`` does not close."""
-    kinds = [joint.kind.name for joint in m.joints.values()]
-    if kinds.count(PIN) < LINKS - 1:
+    pairs = [joint.kind.pair for joint in m.joints.values()]
+    if pairs.count(PIN) < LINKS - 1:
         return []
     try:
         packed = pack(m)
@@ -73,7 +74,7 @@ def _links(packed: Packed) -> list[int]:
     links = list(range(len(packed.body_names)))
     bodies = packed.system.marker_body[packed.markers]
     for joint, (a, b) in zip(packed.joints, bodies.tolist(), strict=True):
-        if joint.kind.name == WELD:
+        if set(joint.kind.constraints) == {"point", "angle"}:  # welded
             first, second = sorted((links[a], links[b]))
             links = [first if link == second else link for link in links]
     return links
@@ -84,12 +85,12 @@ def _connections(packed: Packed, links: list[int], q: np.ndarray) -> list[_Conne
     for joint, (i, _), bodies in zip(
         packed.joints, packed.markers.tolist(), system.marker_body[packed.markers].tolist(), strict=True
     ):
-        if joint.kind.name not in (PIN, SLIDE) or links[bodies[0]] == links[bodies[1]]:
+        if joint.kind.pair not in (PIN, SLIDE) or links[bodies[0]] == links[bodies[1]]:
             continue
         x, y, theta = q[3 * bodies[0] : 3 * bodies[0] + 3]
         turn = np.array([[math.cos(theta), -math.sin(theta)], [math.sin(theta), math.cos(theta)]])
         place, axis = turn @ system.marker_arm[i] + (x, y), turn @ system.marker_axis[i]
-        out.append(_Connection(joint.name, joint.kind.name, (links[bodies[0]], links[bodies[1]]), place, axis))
+        out.append(_Connection(joint.name, joint.kind.pair, (links[bodies[0]], links[bodies[1]]), place, axis))
     return out
 
 
@@ -100,7 +101,7 @@ def _chains(packed: Packed, links: list[int], q: np.ndarray) -> Iterator[tuple[l
         for link in connection.links:
             around.setdefault(link, []).append(connection)
     for chain, way in _closed(around):
-        slides = [k for k, connection in enumerate(way) if connection.kind == SLIDE]
+        slides = [k for k, connection in enumerate(way) if connection.pair == SLIDE]
         if not slides:
             reason = _in_line([math.dist(way[k - 1].place, way[k].place) for k in range(LINKS)])
         elif len(slides) == 1:

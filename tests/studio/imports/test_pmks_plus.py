@@ -35,7 +35,7 @@ def test_a_published_address_is_read_completely(name: str) -> None:
     freedom = FREEDOM.get(name, 1)
     assert sketch.freedom == sketch.counted_freedom() == m.mobility().dof == freedom
     assert len(m.drivers) == freedom
-    assert m.check() == []
+    assert [finding for finding in m.check() if not finding.is_note] == []
     expected = []
     if name in PUSHED:
         expected.append(f"input {PUSHED[name]}: PMKS+ turns it round at the ends of its travel, here it goes on")

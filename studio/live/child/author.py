@@ -95,19 +95,10 @@ class Author:
         return solving.motion_of(self.name, self.module, m, p)
 
     def _parts(self) -> contract.Parts | None:
-        """The parts, if there are any that can be read. Those of an older version are named; they are made anew
-        meanwhile.
-        """
-        from mechanisms.stages.parts.stage import are_current
-
+        """Return the parts if there are any that can be read; they are rebuilt meanwhile."""
         out = Out(self.name)
         try:
-            parts = contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
-            if parts is not None and not are_current(self.name):
-                console.say(
-                    "parts", f"{self.name}: masses and solids are of an older version until parts are made again"
-                )
-            return parts
+            return contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
         except UserError:
             return None
 

@@ -187,7 +187,7 @@ def _quantity(m: Model, name: str, sol: Solution) -> Callable[[Solution], np.nda
 
 
 def _numbers(m: Model, label: str, given: Callable[[Solution], Any], sol: Solution, finite: bool) -> np.ndarray:
-    """What a function of the user gives. Raises ModelError for no numbers, and where they must be finite and are not.
+    """Return what a function of the user gives. Raises ModelError for no numbers, or for infinite ones if that matters.
 
     Beside the motion itself NaN stands for what has no derivative.
     """

@@ -1,4 +1,4 @@
-"""What nothing connects is not measured by each other's loads: equilibrium, stability and modes beside other bodies."""
+"""Bodies that nothing connects are not measured by each other's loads: equilibrium, stability and modes."""
 
 from __future__ import annotations
 

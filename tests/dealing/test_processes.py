@@ -119,7 +119,7 @@ def until(is_so: Callable[[], bool], seconds: float) -> None:
 
 
 def is_alive(process: int) -> bool:
-    """Whether a process runs; one that has ended and waits for its parent does not."""
+    """Return True if a process runs; one that has ended and waits for its parent does not."""
     try:
         return ") Z " not in Path(f"/proc/{process}/stat").read_text()
     except OSError:

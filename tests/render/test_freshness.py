@@ -1,4 +1,4 @@
-"""What is shown is of the machine as it is now: the clearance of reports and pages, and what is asked of others."""
+"""Reports and pages show the machine as it is now: their clearance, and results of other stages."""
 
 from __future__ import annotations
 

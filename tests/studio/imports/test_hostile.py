@@ -79,7 +79,7 @@ def test_what_no_program_wrote_is_an_error_and_takes_no_time(text: str, said: st
 
 @pytest.mark.parametrize("name", ["/dev/zero", "a\0b", "x" * 5000, "", "\udcff"])
 def test_what_is_no_file_is_an_error(name: str) -> None:
-    """Of /dev/zero no more is read than a file may have, though its size is said to be 0."""
+    """Reading /dev/zero stops at the limit of bytes, though its size is given as 0."""
     with pytest.raises(UserError):
         read(name)
 

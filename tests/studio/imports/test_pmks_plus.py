@@ -24,9 +24,9 @@ PUSHED = {
     "elliptical_trammel": "A",
     "press_crosshead_2026": "S",
 }
-"""Those that a slider drives."""
+"""Addresses with a drive along a slider."""
 LOADED = {"punch_press": 1, "punch_press_2026": 1, "crane_two_loads": 2}
-"""Those with forces."""
+"""Addresses with forces."""
 
 
 @pytest.mark.parametrize("name", ADDRESSES)

@@ -146,11 +146,11 @@ BODIES = ["gravity.x", "gravity.y", "a.mass", "a.length", "b.com.x", "b.com.y", 
 def test_how_bodies_move_is_read_along_the_tangents(
     make: Callable[[], mbsd.Mechanism], numbers: list[str], accelerations: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    of = {"x": "b.x", "turn": "b.theta", "speed": "P.vy", "energy": "kinetic"}
+    of = {"x": "b.x", "turn": "b.theta", "traced turn": "P.theta", "speed": "P.vy", "energy": "kinetic"}
     of |= {"end": final("P.x"), "some": samples("b.omega", [0.2, 0.4]), "all": integral("b.vy")}
     of |= {"push": "P.ay", "largest": integral("b.alpha")} if accelerations else {}
     m = make()
-    m.trace("P", m.bodies["b"].at(0.05, 0.02))
+    m.trace("P", m.bodies["b"].at(0.05, 0.02, angle=30))
     ways = noted_ways(monkeypatch)
     mine = m.sensitivities(of, numbers, 0.4, 12, tolerance=1e-11)
     monkeypatch.setattr(simulations, "suits", lambda ready: None)

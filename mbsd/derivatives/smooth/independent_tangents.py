@@ -109,7 +109,7 @@ class IndependentTangents:
         """The motion itself."""
         packed, system = self.ready.packed, self.ready.packed.system
         q, v, a = (part.reshape(1, len(along.t), -1, 3) for part in (along.q, along.v, along.a))
-        places = {name: (packed.body_names.index(marker.body.name), np.array([[marker.x, marker.y]]), marker.angle)
+        places = {name: (packed.body_names.index(marker.body.name), np.array([[marker.x, marker.y]]), np.array([marker.angle]))
                   for name, marker in traces.items()}  # fmt: skip
         own = packed.com[None], system.mass[None], system.inertia[None], places
         return Motions(packed.body_names, q, v, a, np.zeros(q.shape[:2]), *own, along.t)
@@ -159,13 +159,13 @@ class IndependentTangents:
         work = np.zeros(q.shape[:2])
         return Motions(packed.body_names, q, v, a, work, com, mass, moment, self._places(traces), along.t), weights
 
-    def _places(self, traces: Mapping[str, Marker]) -> dict[str, tuple[int, np.ndarray, float]]:
-        """Body, places (K, 2) on all sides, and angle of each traced point."""
-        out: dict[str, tuple[int, np.ndarray, float]] = {}
+    def _places(self, traces: Mapping[str, Marker]) -> dict[str, tuple[int, np.ndarray, np.ndarray]]:
+        """Body, places (K, 2) on all sides, and angle (1,) of each traced point."""
+        out: dict[str, tuple[int, np.ndarray, np.ndarray]] = {}
         for name, marker in traces.items():
             moved = [sides.traces.get(name, np.zeros((len(sides.away), 2))) for sides in self.every]
             place = np.array([marker.x, marker.y]) + np.concatenate(moved)
-            out[name] = self.ready.packed.body_names.index(marker.body.name), place, marker.angle
+            out[name] = self.ready.packed.body_names.index(marker.body.name), place, np.array([marker.angle])
         return out
 
     def at(

@@ -33,7 +33,7 @@ from numba.core.ccallback import CFunc
 from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic
 
-from mbsd.base.errors import ModelError
+from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.kept import Kept
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
@@ -123,7 +123,7 @@ class Callback:
         if not failed:
             return
         t, inputs = float(self._failure[1]), self._failure[2:].copy()
-        if error is not None and not isinstance(error, Exception):
+        if isinstance(error, MechanismError) or (error is not None and not isinstance(error, Exception)):
             raise error
         when = f"at t = {t:.6g} s with" if self.timed else "at"
         at = f"{self.what}: {when} {np.array2string(inputs, precision=6)} the user's function"

@@ -13,6 +13,7 @@ from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs.recording import Recording, Snapshot
 from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.reference_steps import step_to
 from mbsd.dynamics.runs.to_end import to_end
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
 from mbsd.model.event import Event
@@ -62,6 +63,7 @@ def resumed(
     ``passes_singular``: take the steps that pass singular poses at once, where the run was in independent coordinates.
     """
     passes_singular = passes_singular and recording.independent
+    smooth = not (events or ready.switches.contacts or ready.sticks)
     began = np.array([snapshot.time for snapshot in recording.snapshots])
     which = np.maximum(np.searchsorted(began, times, side="right") - 1, 0)
     outputs = np.searchsorted(recording.out.t, times, side="right") - 1
@@ -79,18 +81,23 @@ def resumed(
         state, out = ready.begun(times[first:last])
         state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
         state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
-        met = EventSteps(ready, run, state, out, events)
-        met.resume(snapshot, snapshot.work if k < 0 else float(recording.out.work[k]))
+        state.clock[WORK] = snapshot.work if k < 0 else recording.out.work[k]
         if recording.approaches is not None:
             recording.approaches.recall(float(state.clock[TIME]))
         piece = None
-        if not passes_singular:
+        if not smooth:
+            met = EventSteps(ready, run, state, out, events)
+            met.resume(snapshot, float(state.clock[WORK]))
+            met.to(float(times[last - 1]))
+            piece = recording_of(met)
+        elif not passes_singular:
+            ready.following.settle(*state.y)
             try:
-                met.to(float(times[last - 1]))
-                piece = recording_of(met)
+                step_to(run, state, out, float(times[last - 1]))
+                held = np.broadcast_to(ready.switches.held(), out.lam.shape)
+                piece = Recording(out, held, int(state.count[ACCEPTED]))
             except SimulationError:
-                if events or ready.switches.contacts or ready.sticks:
-                    raise
+                piece = None
         if piece is None:
             # near a singular pose, which independent coordinates pass
             state, out = ready.begun(times[first:last])
@@ -120,13 +127,11 @@ def _followed(
     state, out = ready.begun(times)
     ready.approaches.forget()
     if not events and not ready.switches.contacts and not ready.sticks:
-        now = ready.switches.now
-        now.events = {}
-        begun = Snapshot(state.y.copy(), float(state.clock[TIME]), float(state.clock[WORK]), now.copy())
+        begun = Snapshot(state.y.copy(), float(state.clock[TIME]), float(state.clock[WORK]))
         independent = to_end(run, state, out, progress)
         held = ready.switches.held()[None].repeat(len(times), axis=0)
         return Recording(out, held, int(state.count[ACCEPTED]), [], [begun], ready.approaches.copy(), independent)
-    met = EventSteps(ready, run, state, out, events)
+    met = EventSteps(ready, run, state, out, events, event_rows)
     met.begin()
     met.to(float(times[-1]), progress)
     return recording_of(met, event_rows)

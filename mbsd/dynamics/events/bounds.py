@@ -59,3 +59,9 @@ AHEAD = (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3)
 """Parts of the duration after which the side is looked for to which an event that is zero goes."""
 BEYOND = (1e-6, 1e-5, 1e-4, 1e-3)
 """Times (s) after which it is looked for where a duration is too short to tell."""
+LESS = 1e-3
+"""Part of NEAR by which a state is changed to tell a jump from a slope."""
+IN_TURN = 5
+"""Events at one time, for each contact, after which contacts are no longer taken one by one."""
+STILL = 1e-9
+"""Rates below this part of the size (rad) by 1 s are zero."""

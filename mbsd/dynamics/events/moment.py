@@ -10,9 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.arrays.states import own_states, states_of
+from mbsd.base.arguments import LARGEST
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
+from mbsd.base.shown import shown
+from mbsd.base.users_function import described
+from mbsd.compiling.callback import as_numbers
 from mbsd.model.body import Marker, at_end, finite_number
+from mbsd.model.event import Event
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
@@ -74,6 +79,21 @@ class Moment:
             raise ModelError(f"{self.packed.name}: force '{force}': {no_such('state', name, known[force])}")
         own = states_of(self.packed, self.v)[own_states(self.packed.forces, force)]
         return float(own[known[force].index(name)])
+
+    def act(self, event: Event) -> None:
+        """Let the action of an event act, and release its joints. Raises ModelError where it fails."""
+        try:
+            if event.frames:
+                given = event.action(self.t, *self.numbers(event.frames))
+                self.set_numbers(event.frames, as_numbers(given, 3 * len(event.frames)))
+            else:
+                event.action(self)
+        except Exception as error:
+            raise ModelError(
+                f"{self.packed.name}: event '{event.name}': its action fails at t = {self.t:.6g} s: {described(error)}"
+            ) from error
+        for name in event.releases:
+            self.release(name)
 
     # -- for actions --------------------------------------------------------------------------------------------
 
@@ -144,3 +164,18 @@ class Moment:
             float(vy + omega * x),
             float(omega),
         )
+
+
+def value_at(packed: Packed, event: Event, moment: Moment) -> float:
+    """Return the value of an event; raises ModelError where the function fails or gives no finite number."""
+    what = f"{packed.name}: event '{event.name}'"
+    try:
+        value = event.value_at(moment)
+    except Exception as error:
+        raise ModelError(f"{what}: its function fails at t = {moment.t:.6g} s: {described(error)}") from error
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    number = not isinstance(value, bool) and isinstance(value, int | float | np.floating | np.integer)
+    if not number or not -LARGEST <= value <= LARGEST:
+        raise ModelError(f"{what} is {shown(value)} at t = {moment.t:.6g} s; it must be a finite number")
+    return float(value)

@@ -10,7 +10,6 @@ from __future__ import annotations
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.integrators.formulation import derivative
 from mbsd.dynamics.many.contacts.steps import NOT_SOLVED, OVER, go_on
-from mbsd.dynamics.many.events.arrays import GONE
 from mbsd.dynamics.many.indexing.steps import index
 from mbsd.dynamics.many.repeated.exchange import again, opens
 from mbsd.dynamics.many.through import through
@@ -144,7 +143,7 @@ def run_rows(
             ended = REACHED
             over[r] = state.clock[TIME]
         for e in range(released.shape[1]):
-            released[r, e] = contacts.events.number[e, GONE]
+            released[r, e] = contacts.events.gone[e]
         status[r] = STOPPED if stop[0] != 0 else ended
         if status[r] == KNOWN:
             put_away(state, block, widest, kept[r], counts[r])

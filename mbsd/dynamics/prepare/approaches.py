@@ -49,6 +49,14 @@ class Approaches:
         """Let kernels go on from this time (s)."""
         self._now[:] = self.at(np.array([time]))[0]
 
+    def note(self, time: float) -> None:
+        """Keep what is remembered at a time (s), and forget what was noted later, in steps that were taken back."""
+        if self._asked:
+            kept = bisect_left(self._times, time)
+            del self._times[kept:], self._speeds[kept:]
+            self._times.append(time)
+            self._speeds.append(self._now.copy())
+
     def through(self, advance: Callable[..., int], arrays: Any, scratch: Any, state: State, *rest: Any) -> int:
         """``advance`` of an Integrator, a step at a time, with what each step leaves noted."""
         out, settings, end, steps = rest

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from mbsd.dynamics.prepare.approaches import Approaches
-from mbsd.dynamics.rows.held import Held
 from mbsd.dynamics.state import Output
 from mbsd.model.event import Happening
 
@@ -20,7 +19,10 @@ class Snapshot:
     """(2, 3 nb)"""
     time: float
     work: float
-    held: Held
+    held: tuple[np.ndarray, ...] = ()
+    """Arrays that events change."""
+    released: frozenset[int] = frozenset()
+    """Rows of joints that are released for good."""
 
 
 @dataclass

@@ -44,7 +44,7 @@ def complementarity(
     ``compliance`` (c + k, c + k) and ``rates`` (c + k,) are those of gaps and ways without N and T; the limit of
     friction is ``pick`` (k, c) N + ``limits`` (k,).
     """
-    _refuse_driven(at, taking, compliance)
+    refuse_driven(at, taking, compliance)
     c, k = len(taking), len(ways)
     n, t = slice(0, c), slice(c, c + k)
     unit = 1.0 / np.sqrt(alone(at, [*(contact.gap for contact in taking), *ways]))
@@ -66,10 +66,15 @@ def complementarity(
     )
     z = lemke(matrix, np.concatenate([b[n], b[t], -b[t], limits * size / fastest]))
     if z is None:
-        frictions = ", ".join(f"{contact.friction:.4g}" for contact in taking)
-        raise _paradox(at, taking, f" with friction {frictions}" if taking else "")
+        raise jammed(at, taking)
     z *= fastest / size
     return z[:c] * unit[n], (z[c : c + k] - z[c + k : c + 2 * k]) * unit[t]
+
+
+def jammed(at: Compliance, taking: Sequence[RunContact]) -> SimulationError:
+    """Return the error of contacts with friction that have no forces."""
+    frictions = ", ".join(f"{contact.friction:.4g}" for contact in taking)
+    return _paradox(at, taking, f" with friction {frictions}" if taking else "")
 
 
 def _paradox(at: Compliance, taking: Sequence[RunContact], why: str) -> SimulationError:
@@ -97,8 +102,8 @@ def gives_way(at: Compliance, row: int, compliance: float) -> bool:
     return compliance > STIFF * float(alone(at, [row])[0])
 
 
-def _refuse_driven(at: Compliance, taking: Sequence[RunContact], compliance: np.ndarray) -> None:
-    """A contact that no force can open: joints and drivers alone decide its gap, or its friction undoes what it pushes.
+def refuse_driven(at: Compliance, taking: Sequence[RunContact], compliance: np.ndarray) -> None:
+    """Raise SimulationError for a contact that no force can open: joints and drivers alone decide its gap, or its friction undoes what it pushes.
 
     While it slides its compliance is  G_nn - mu G_nt, which is not positive from the friction  mu = G_nn / G_nt  on.
     """

@@ -26,11 +26,21 @@ VALUE, RATE, NORMAL, GIVEN, FREE, ALONE, PUSH, SHIFT = range(8)
 """Rows of Contacts.vector."""
 SKIPPED, TOUCHING, STAYING, TAKING, KEPT, RESTING = range(6)
 """Rows of Contacts.chosen."""
-BEGUN, WHEN, AT_ONCE, MET, LOAD, START, LENGTH, WHERE, BEYOND, FAILURE, SHARING = range(11)
-"""Entries of Contacts.clock: whether the run has begun; time of the last event (s), events at that time, events so far;
-the largest load; the step's start and length (s); where in it something was met, and a part where it is beyond; the
-status with which a step to some time within it failed; whether what is at rest shares its forces: APART, JOINTS among
-themselves, or joints and contacts TOGETHER."""
+(
+    BEGUN, WHEN, AT_ONCE, MET, LOAD, START, LENGTH, WHERE, BEYOND, FAILURE, SHARING, PENDING, ACTED, PAUSES, LOGGED,
+    ENERGY, WHICH, METHOD, TRYING,
+) = range(19)  # fmt: skip
+"""Entries of Contacts.clock: NOT_BEGUN, BEGUN_NOW or RESUMED; time of the last event (s), events at that time, events
+so far; the largest load; the step's start and length (s); where in it something was met, and a part where it is beyond;
+the status with which a step to some time within it failed; whether what is at rest shares its forces: APART, JOINTS
+among themselves, or joints and contacts TOGETHER; 1 + the row or event that is to happen at the state, 0 where none is;
+1 once a Python action has changed the state there; NEVER, AFTER or BEFORE_AND_AFTER, when the loop returns at events;
+rows of Contacts.log in use; kinetic energy (J) that the last impacts added; 1 + the row or event that happened last, 0
+where it passed zero the other way; the number of the integrator, OUTSIDE for one in Python; 1 while a step to some time
+is tried."""
+NOT_BEGUN, BEGUN_NOW, RESUMED = 0.0, 1.0, 2.0
+NEVER, AFTER, BEFORE_AND_AFTER = 0.0, 1.0, 2.0
+OUTSIDE = -1.0
 APART, JOINTS, TOGETHER = 0.0, 1.0, 2.0
 PARTS = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
 """Parts of a step at which gaps and normal forces are looked at, as events/crossing.py does."""
@@ -59,9 +69,9 @@ class Friction(NamedTuple):
     """No contact with friction, as while all are open."""
 
 
-HALF, SHORTEST = 0, 1
-"""Entries of Wheels.bounds: the part of their way to each other that centres may go in a step, and the part of the
-longest step below which no step is divided."""
+HALF, SHORTEST, LAST_STEP = range(3)
+"""Entries of Wheels.bounds: the part of their way to each other that centres may go in a step, the part of the longest
+step below which no step is divided, and the last step (s)."""
 
 
 class Wheels(NamedTuple):
@@ -72,7 +82,7 @@ class Wheels(NamedTuple):
     near: Any
     """(k,) distance below which the centres have met (m)."""
     bounds: Any
-    """(2,)"""
+    """(3,)"""
     before: Any
     """mbsd.dynamics.state.State: where a step began."""
 
@@ -91,6 +101,8 @@ class Curves(NamedTuple):
 LIMIT, FORCE, UNSHARED, PREVIOUS, LEFT = range(5)
 """Rows of Sticks.vector: limits of friction; normal forces and friction; friction before it is shared, and as it was
 shared last; accelerations that friction leaves, and friction that would hold joints alone."""
+NO_AGREEMENT = 20.0
+"""Value of FAILURE where normal forces of joints and the friction that they cause do not agree."""
 NOW, LAST, FOUND, BASIS = range(4)
 """Rows of Sticks.normal: normal forces used now, their last error, those that the multipliers give, those of the motion
 where joints slide beside others at rest."""
@@ -124,6 +136,17 @@ class Sticks(NamedTuple):
     """mbsd.dynamics.events.laws.least_part.Together, of c rows."""
 
 
+class Outside(NamedTuple):
+    """An integrator in Python, which the loop calls where METHOD is OUTSIDE."""
+
+    address: Any
+    """(1,) int"""
+    asked: Any
+    """(2,) steps at most, and TRYING."""
+    answer: Any
+    """(1,) status."""
+
+
 class Contacts(NamedTuple):
     """c rows: gaps of contacts and clutches, ways of contacts with friction, then ways of joints that stick."""
 
@@ -132,7 +155,7 @@ class Contacts(NamedTuple):
     number: Any
     """(c, 9)"""
     clock: Any
-    """(11,)"""
+    """(19,)"""
     before: Any
     """mbsd.dynamics.state.State: where the step began."""
     trial: Any
@@ -181,3 +204,6 @@ class Contacts(NamedTuple):
     """Those of the user; e-th of them is met as row c + e."""
     repeated: Repeated
     """Rows of joints that repeat others."""
+    log: Any
+    """(n, 2) gap and impulse (N s, N m s) of each impact of the last event, in order; no rows where none is kept."""
+    outside: Outside

@@ -5,7 +5,8 @@ k: a row of Contacts, whose scalar within.py says.
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart, internal
+from mbsd.compiling.jit import apart, internal, lazy
+from mbsd.dynamics.events.bounds import LESS
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
 from mbsd.dynamics.many.contacts.arrays import (
     BEYOND,
@@ -24,6 +25,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     START,
     WAY,
     WHERE,
+    WHICH,
 )
 from mbsd.dynamics.many.contacts.dips import may_dip
 from mbsd.dynamics.many.contacts.events.crossing import first_event
@@ -39,10 +41,13 @@ from mbsd.dynamics.many.contacts.within import (
     sample,
     stand_at,
 )
+from mbsd.dynamics.many.events.arrays import SIDE
 from mbsd.dynamics.many.events.sides import rounding_of
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.state import TIME
 
+CHANCE = 15
+"""Status of rows in which rounding decides whether an event happens."""
 ROUNDING = 1e-10
 """Rounding of forces, as part of the largest."""
 
@@ -130,6 +135,19 @@ def _may_meet(contacts, k):
     return may
 
 
+@lazy(int)
+def _fallen(dyn, scratch, contacts, state):
+    """Return the first row below zero after a step with no time within it, on which a quintic is rounding; -1: none."""
+    contacts.clock[WHERE] = 1.0
+    contacts.clock[BEYOND] = 1.0
+    for k in range(contacts.place.shape[0] + contacts.events.table.shape[0]):
+        if k >= contacts.place.shape[0] and contacts.events.number[k - contacts.place.shape[0], SIDE] == 0.0:
+            continue
+        if at_state(dyn, scratch, contacts, state, k) < -still_of(contacts, k):
+            return k
+    return -1
+
+
 @apart
 def first_met(dyn, scratch, state, settings, contacts, out, before, after):
     """The row whose scalar is the first to fall through zero within the step to ``state``; -1: none.
@@ -140,6 +158,9 @@ def first_met(dyn, scratch, state, settings, contacts, out, before, after):
     friction = contacts.friction
     gaps = gaps_of(contacts)
     events = contacts.events.table.shape[0]
+    middle = contacts.clock[START] + 0.5 * contacts.clock[LENGTH]
+    if middle == contacts.clock[START] or middle == state.clock[TIME]:
+        return _fallen(dyn, scratch, contacts, state)
     if count > 0:
         sample(dyn, scratch, contacts)
     for e in range(events):
@@ -173,7 +194,8 @@ def first_met(dyn, scratch, state, settings, contacts, out, before, after):
             value = of_motion(dyn, scratch, settings, contacts, out, before, after, best, t)
         if value < -still_of(contacts, best):
             if best >= count and _chance(contacts, state, best - count, value):
-                contacts.clock[FAILURE] = 1.0  # a single simulation says what is wrong
+                contacts.clock[FAILURE] = CHANCE
+                contacts.clock[WHICH] = 1.0 + best
                 return -1
             return best
         if contacts.clock[FAILURE] != 0.0:
@@ -187,11 +209,15 @@ def first_met(dyn, scratch, state, settings, contacts, out, before, after):
 
 @apart
 def _chance(contacts, state, e, value):
-    """Return True if rounding may decide the sign of event e, whose value beyond the root this is: refuse_chance."""
-    if contacts.clock[BEYOND] == 1.0:
-        return abs(value) <= rounding_of(contacts.events, e, state.clock[TIME], state.y)
-    trial = contacts.trial
-    return abs(value) <= rounding_of(contacts.events, e, trial.clock[TIME], trial.y)
+    """Return True if rounding decides the sign of event e, whose value beyond the root this is, as its function jumps.
+
+    A smooth function that is within rounding of zero changes by less where the state changes by less.
+    """
+    there = state
+    if contacts.clock[BEYOND] != 1.0:
+        there = contacts.trial
+    jump = rounding_of(contacts.events, e, there.clock[TIME], there.y, 1.0)
+    return abs(value) <= jump and rounding_of(contacts.events, e, there.clock[TIME], there.y, LESS) >= 0.5 * jump
 
 
 @apart

@@ -11,6 +11,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     BESIDE,
     CLOSED,
     CLUTCH,
+    ENERGY,
     FREE,
     GAP,
     GIVEN,
@@ -18,6 +19,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     KEPT,
     KIND,
     KINETIC,
+    LOGGED,
     NEAR,
     NORMAL,
     PUSH,
@@ -110,7 +112,7 @@ def _push(contacts):
 
 
 @apart
-def impacts(dyn, scratch, contacts, v):
+def _strike(dyn, scratch, contacts, v):
     """Let the contacts in chosen[TOUCHING] that approach push, in rounds; returns False where none can."""
     count = contacts.place.shape[0]
     friction = contacts.friction
@@ -143,6 +145,8 @@ def impacts(dyn, scratch, contacts, v):
         if not _push(contacts):
             return False
         give(contacts, v, vector[NORMAL])
+        since = int(contacts.clock[LOGGED])
+        _log_pushes(contacts, since)
         if not bounces:
             continue
         for k in range(gaps):
@@ -159,6 +163,39 @@ def impacts(dyn, scratch, contacts, v):
         for k in range(count):
             vector[PUSH, k] = vector[GIVEN, k] + vector[NORMAL, k]
         give(contacts, v, vector[PUSH])
+        for i in range(since, int(contacts.clock[LOGGED])):
+            contacts.log[i, 1] += vector[PUSH, int(contacts.log[i, 0])]
+    return True
+
+
+@internal
+def _log_pushes(contacts, since):
+    """Write the impulses of a round in vector[NORMAL] to the log, behind its first ``since`` rows."""
+    if contacts.log.shape[0] == 0:
+        return
+    for k in range(gaps_of(contacts)):
+        if contacts.chosen[TAKING, k] != 0:
+            contacts.log[since, 0] = k
+            contacts.log[since, 1] = contacts.vector[NORMAL, k]
+            since += 1
+    contacts.clock[LOGGED] = since
+
+
+@internal
+def _kinetic_energy(dyn, v):
+    energy = 0.0
+    for c in range(v.shape[0]):
+        energy += dyn.inertia[c] * v[c] ** 2
+    return 0.5 * energy
+
+
+@internal
+def impacts(dyn, scratch, contacts, v):
+    """Change velocities v (3 nb,) by the impacts of the contacts in chosen[TOUCHING]; False where none are possible."""
+    before = _kinetic_energy(dyn, v)
+    if not _strike(dyn, scratch, contacts, v):
+        return False
+    contacts.clock[ENERGY] = _kinetic_energy(dyn, v) - before
     return True
 
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from mbsd.arrays.curve_branches import CURVES
 from mbsd.dynamics.events.bounds import NEAR as CLOSED_GAP
+from mbsd.dynamics.events.bounds import ROUNDS, STILL
 from mbsd.dynamics.events.laws.division import division_of
 from mbsd.dynamics.events.laws.least_part import together_of
-from mbsd.dynamics.events.steps import STILL
 from mbsd.dynamics.many.contacts.arrays import (
     BASIS,
     CLUTCH,
@@ -23,18 +23,19 @@ from mbsd.dynamics.many.contacts.arrays import (
     PARTS,
     RELEASED,
     RESTING,
-    SHARING,
     SHIFT,
     SLIDE,
     STATIC,
+    TRYING,
     WAY,
     Contacts,
     Curves,
     Friction,
+    Outside,
     Sticks,
     Wheels,
 )
-from mbsd.dynamics.many.events.made import events_of
+from mbsd.dynamics.many.events.made import events_of, may_release
 from mbsd.dynamics.many.repeated.made import repeated_of
 from mbsd.dynamics.prepare.following import SHORTEST
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -66,10 +67,12 @@ def why_not(ready: PreparedDynamics, events: Sequence[Event]) -> str | None:
     return None
 
 
-def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], longest: float) -> Contacts:
-    """Those of a run at its start, and events of the user; all are open, and all joints slide.
+def contacts_of(
+    ready: PreparedDynamics, state: State, events: Sequence[Event], longest: float, log: bool = False
+) -> Contacts:
+    """Return contacts of a run at its start, and events of the user; all are open, and all joints slide.
 
-    ``longest``: of all steps (s).
+    ``longest``: of all steps (s). ``log``: impulses of impacts are kept for whoever reads them.
     """
     own = _places(ready)
     c, n3, rows = len(own), state.y.shape[1], len(state.lam)
@@ -83,7 +86,7 @@ def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], 
     return Contacts(
         np.array(own, np.int64).reshape(-1, FRICTION + 1),
         np.array(_numbers(ready)).reshape(-1, RELEASED + 1),
-        np.zeros(SHARING + 1),
+        np.zeros(TRYING + 1),
         another(),
         another(),
         np.zeros((6, n3)),
@@ -108,6 +111,8 @@ def contacts_of(ready: PreparedDynamics, state: State, events: Sequence[Event], 
         _curves_of(ready),
         events_of(ready, events, longest, bare[0]),
         repeated_of(ready),
+        np.zeros(((ROUNDS + 1) * len(ready.switches.contacts) if log else 0, 2)),
+        Outside(np.zeros(1, np.int64), np.zeros(2), np.zeros(1)),
     )
 
 
@@ -185,7 +190,7 @@ def _wheels_of(ready: PreparedDynamics, before: State) -> Wheels:
     return Wheels(
         np.array([(i, j) for _, i, j in pairs], np.int64).reshape(-1, 2),
         np.array([MET * (params["radius_i"] + params["radius_j"]) for params in sized]),
-        np.array([HALF, SHORTEST]),
+        np.array([HALF, SHORTEST, 0.0]),
         before,
     )
 
@@ -215,7 +220,7 @@ def _without(ready: PreparedDynamics, events: Sequence[Event]) -> tuple[Schur, n
     blocks = schur.rows[(schur.rows >= 0).any(axis=1)]
     kept = blocks[np.argsort(blocks.max(axis=1))]
     bare = plan_schur(packed.system.row_body, np.ascontiguousarray(kept, np.int64))[0]
-    dry, releasing = len(ready.dynamics.loads.friction) > 0, any(event.releases for event in events)
+    dry, releasing = len(ready.dynamics.loads.friction) > 0, any(may_release(event) for event in events)
     if not (dry or releasing or len(first) or ready.dynamics.passes > 1):
         bare = with_pins(bare, packed.system, packed.contact_rows, PINS)
     return bare, first

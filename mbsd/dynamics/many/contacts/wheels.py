@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 
+from mbsd.compiling.callback import call
 from mbsd.compiling.jit import internal, lazy
-from mbsd.dynamics.many.contacts.arrays import HALF, SHORTEST
-from mbsd.dynamics.many.methods import USUAL
+from mbsd.dynamics.many.contacts.arrays import HALF, LAST_STEP, METHOD, SHORTEST, TRYING
 from mbsd.dynamics.many.through import copy_state, through
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STEP_TOO_SMALL, TIME
 from mbsd.equations.relative.curve_pieces import CLOSED, FARTHEST, SPAN, U, X, Y, find_foot
@@ -108,7 +108,7 @@ def _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, befo
         copy_state(kept, state)
         target = end
         while True:
-            status = through(dyn, scratch, state, out, settings, target, 1, before, after, USUAL)
+            status = through(dyn, scratch, state, out, settings, target, 1, before, after, int(contacts.clock[METHOD]))
             if status != REACHED and status != PAUSED:
                 return status
             taken = state.clock[TIME] - kept.clock[TIME]
@@ -120,6 +120,7 @@ def _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, befo
             target = kept.clock[TIME] + taken / (2.0 * farthest)
         for k in range(curves.place.shape[0]):
             scratch.ws.relative[curves.place[k, 0], LAST] = curves.feet[k]
+        wheels.bounds[LAST_STEP] = taken
         if _met(dyn.system, wheels, state.y):
             return STEP_TOO_SMALL
         steps -= state.count[ACCEPTED] - kept.count[ACCEPTED]
@@ -129,9 +130,21 @@ def _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, befo
             return PAUSED
 
 
+@lazy(int)
+def _advance_outside(contacts, end, steps):
+    """``through`` by an integrator in Python."""
+    outside = contacts.outside
+    outside.asked[0] = steps
+    outside.asked[1] = contacts.clock[TRYING]
+    call(outside.address[0], end, outside.asked, outside.answer)  # pyright: ignore[reportCallIssue]
+    return int(outside.answer[0])
+
+
 @internal
 def advance_to(dyn, scratch, state, out, settings, contacts, end, steps, before, after):
-    """``through`` by the usual integrator, a step at a time where wheels may meet or points follow curves."""
+    """``through``, a step at a time where wheels may meet or points follow curves."""
+    if contacts.clock[METHOD] < 0.0:
+        return _advance_outside(contacts, end, steps)
     if contacts.wheels.markers.shape[0] > 0 or contacts.curves.place.shape[0] > 0:
         return _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, before, after)
-    return through(dyn, scratch, state, out, settings, end, steps, before, after, USUAL)
+    return through(dyn, scratch, state, out, settings, end, steps, before, after, int(contacts.clock[METHOD]))

@@ -25,6 +25,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     SIGN,
     START,
     STATIC,
+    TRYING,
     VALUE,
 )
 from mbsd.dynamics.many.contacts.bare import any_held, without_contacts
@@ -153,7 +154,9 @@ def of_motion(dyn, scratch, settings, contacts, out, before, after, k, t):
     if t > trial.clock[TIME]:
         trial.count[NEXT] = out.t.shape[0]
         own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
+        contacts.clock[TRYING] = 1.0
         status = advance_to(own, scratch, trial, out, settings, contacts, t, NO_LIMIT, before, after)
+        contacts.clock[TRYING] = 0.0
         if status != REACHED:
             contacts.clock[FAILURE] = status
             return math.nan

@@ -7,11 +7,16 @@ from typing import Any, NamedTuple
 VALUE, FIRST, FRAMES, DIRECTION, ENDS, ACTION, ACTION_FIRST, ACTION_FRAMES = range(8)
 """Columns of Events.table: address of the function; its first frame, and how many it has; rising 1, falling -1, both 0;
 whether the simulation ends there; address of the action, 0 where there is none; its frames."""
-SIDE, LEVEL, SHORTEST, GONE = range(4)
+WHOLE = -1
+"""Number of frames of a function that gets all coordinates and velocities."""
+BY_PYTHON = -1
+"""Address of an action that Python lets act while the loop waits."""
+SIDE, LEVEL, SHORTEST, UNKNOWN = range(4)
 """Columns of Events.number: sign of the value, 0 where that is zero; what is taken off the function's number; how long
-the shortest thing in it lasts (s), 0 where nothing is said; when (s) it released its joints, infinite before."""
-EVENT, ROW, BLOCK, SIDE_OF_BLOCK, OPEN_BLOCK, OPEN_SIDE, ITS_FRICTION = range(7)
-"""Columns of Events.release: the event; a row of J that it releases; its block and its place there in Schur.rows, and
+the shortest thing in it lasts (s), 0 where nothing is said; how many values did not tell how it goes in a step, 0 while all did."""
+GROUP, ROW, BLOCK, SIDE_OF_BLOCK, OPEN_BLOCK, OPEN_SIDE, ITS_FRICTION = range(7)
+"""Columns of Events.release: the event, or a number behind all events for a joint that actions in Python may release; a
+row of J that is released; its block and its place there in Schur.rows, and
 the same without contacts; the row of a friction of its joint in Loads.friction. -1: there is none."""
 
 
@@ -22,6 +27,8 @@ class Events(NamedTuple):
     """(e, 8) int"""
     number: Any
     """(e, 4)"""
+    gone: Any
+    """(g,) when (s) each group of rows was released, infinite before."""
     release: Any
     """(r, 7) int"""
     body: Any
@@ -33,7 +40,7 @@ class Events(NamedTuple):
     outputs: Any
     """(o,)"""
     near: Any
-    """(4,) factors of the time that change it by what counts as nothing."""
+    """(4,) parts of the time by which it changes by what counts as nothing."""
     away: Any
     """(4, 3 nb) the same for coordinates and velocities, to be added."""
     span: Any

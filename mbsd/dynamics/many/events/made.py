@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,9 @@ import numpy as np
 from mbsd.compiling.callback import Callback
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics.events.bounds import MOST_VALUES, NEAR, PER_SHORTEST, ROUNDINGS
+from mbsd.dynamics.events.moment import Moment, value_at
 from mbsd.dynamics.many.events import ready_made
-from mbsd.dynamics.many.events.arrays import ACTION_FRAMES, GONE, ITS_FRICTION, Events
+from mbsd.dynamics.many.events.arrays import ACTION_FRAMES, BY_PYTHON, ITS_FRICTION, UNKNOWN, WHOLE, Events
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.schur import Schur
 from mbsd.equations.joint_friction import FIRST
@@ -48,25 +49,28 @@ def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float, 
         seen = event.value.frames if isinstance(event.value, Reaching) else event.frames
         frames += seen
         action, acting = 0, len(frames)
-        if event.action is not None:
+        if acts_in_python(event):
+            action = BY_PYTHON
+        elif event.action is not None:
             action = _address(ready, event.action, event.frames, 3 * len(event.frames), f"{what}: its action")
             frames += event.frames
         ends, kinds = int(event.terminal), (acting, len(frames) - acting)
-        value = _value(ready, event.value, seen, what)
-        table.append((value, first, len(seen), event.direction, ends, action, *kinds))
+        value, given = _value(ready, event, seen, what)
+        table.append((value, first, given, event.direction, ends, action, *kinds))
         level = event.value.level if isinstance(event.value, Reaching) else 0.0
-        number.append((0.0, level, event.shortest or 0.0, math.inf))
+        number.append((0.0, level, event.shortest or 0.0, 0.0))
     most = max((len(frames) for frames in [[], *(event.frames for event in events), *_ready(events)]), default=0)
     n3, looks = len(ready.initial.q), max((_looks(event, longest) for event in events), default=0)
     return Events(
         np.array(table, np.int64).reshape(-1, ACTION_FRAMES + 1),
-        np.array(number).reshape(-1, GONE + 1),
+        np.array(number).reshape(-1, UNKNOWN + 1),
+        np.full(len(events) + (len(packed.joints) if any(map(acts_in_python, events)) else 0), np.inf),
         _release(ready, events, bare),
         np.array([packed.body_names.index(marker.body.name) for marker in frames], np.int64),
         np.array([_arm(ready, marker) for marker in frames]).reshape(-1, 3),
-        np.zeros(6 * most),
+        np.zeros(max(6 * most, 2 * n3) if events else 0),
         np.zeros(max(3 * most, 1)),
-        np.array([1.0 + signs[0] * NEAR for signs in ROUNDINGS]),
+        np.array([signs[0] * NEAR for signs in ROUNDINGS]),
         _away(ready),
         np.array([ready.end - ready.start]),
         np.zeros((2, n3)),
@@ -79,19 +83,36 @@ def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float, 
     )
 
 
+def acts_in_python(event: Event) -> bool:
+    """Return True if the action of an event is a Python function, which may release any joint."""
+    return event.action is not None and not Callback.is_machine_code(event.action)
+
+
+def may_release(event: Event) -> bool:
+    """Return True if an event may release joints."""
+    return bool(event.releases) or acts_in_python(event)
+
+
 def _release(ready: PreparedDynamics, events: Sequence[Event], bare: Schur) -> np.ndarray:
     """Rows of all joints that events release."""
     packed, friction, out = ready.packed, ready.dynamics.loads.friction, []
     names = [joint.name for joint in packed.joints]
-    for e, event in enumerate(events):
-        for joint in map(names.index, event.releases):
-            first = int(packed.first_row[joint])
-            frictions = np.flatnonzero(friction[:, FIRST] == first).tolist()
-            for row in range(first, int(packed.first_row[joint + 1])):
-                places = ready.switches.place.get(row, (-1, -1)), _place(bare, row)
-                out += [
-                    (e, row, *places[0], *places[1], at) for at in (frictions if row == first and frictions else [-1])
-                ]
+    groups = [
+        (e, joint)
+        for e, event in enumerate(events)
+        if not acts_in_python(event)
+        for joint in map(names.index, event.releases)
+    ]
+    if any(map(acts_in_python, events)):
+        groups += [(len(events) + joint, joint) for joint in range(len(names) - packed.contacts)]
+    for group, joint in groups:
+        first = int(packed.first_row[joint])
+        frictions = np.flatnonzero(friction[:, FIRST] == first).tolist()
+        for row in range(first, int(packed.first_row[joint + 1])):
+            places = ready.switches.place.get(row, (-1, -1)), _place(bare, row)
+            out += [
+                (group, row, *places[0], *places[1], at) for at in (frictions if row == first and frictions else [-1])
+            ]
     return np.array(out, np.int64).reshape(-1, ITS_FRICTION + 1)
 
 
@@ -110,12 +131,22 @@ def _looks(event: Event, longest: float) -> int:
     return 16 + max(MOST_VALUES, asked)
 
 
-def _value(ready: PreparedDynamics, value: Callable[..., Any], frames: Sequence[Marker], what: str) -> int:
-    if not isinstance(value, Reaching):
-        return _address(ready, value, frames, 1, f"{what}: its function")
-    if COMPILED:
-        return READY_MADE[value.measured.__name__].address
-    return _address(ready, value.measured, frames, 1, what)
+def _value(ready: PreparedDynamics, event: Event, frames: Sequence[Marker], what: str) -> tuple[int, int]:
+    """Return the address of the function of an event, and how many frames it gets."""
+    packed, value = ready.packed, event.value
+    if isinstance(value, Reaching):
+        if COMPILED:
+            return READY_MADE[value.measured.__name__].address, len(frames)
+        return _address(ready, value.measured, frames, 1, what), len(frames)
+    if Callback.is_machine_code(value):
+        return _address(ready, value, frames, 1, f"{what}: its function"), len(frames)
+
+    def watched(t: float, q: np.ndarray, v: np.ndarray) -> float:
+        return value_at(packed, event, Moment(packed, t, q, v))
+
+    size = len(ready.initial.q)
+    made = packed.specials.callback(f"{what}: its function", lambda name: Callback(watched, (size, size), 1, name))
+    return made.address, WHOLE
 
 
 def _address(ready: PreparedDynamics, function: Any, frames: Sequence[Marker], outputs: int, what: str) -> int:

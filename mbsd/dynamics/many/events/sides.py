@@ -10,23 +10,23 @@ from mbsd.dynamics.state import TIME
 
 
 @apart
-def rounding_of(events, e, t, y):
-    """How much the value of event e at t (s) and y (2, 3 nb) changes where these do by what counts as nothing."""
+def rounding_of(events, e, t, y, part):
+    """Return how much the value of event e at t (s) and y (2, 3 nb) changes with ``part`` of what counts as nothing."""
     value = value_of(events, e, t, y[0], y[1])
     pose = events.pose
     most = 0.0
     for k in range(events.away.shape[0]):
-        for part in range(2):
+        for side in range(2):
             for c in range(pose.shape[1]):
-                pose[part, c] = y[part, c] + events.away[k, c]
-        most = max(most, abs(value_of(events, e, t * events.near[k], pose[0], pose[1]) - value))
+                pose[side, c] = y[side, c] + part * events.away[k, c]
+        most = max(most, abs(value_of(events, e, t * (1.0 + part * events.near[k]), pose[0], pose[1]) - value))
     return most
 
 
 @apart
 def _side(events, e, t, y):
     value = value_of(events, e, t, y[0], y[1])
-    if abs(value) <= rounding_of(events, e, t, y) or value == 0.0:
+    if abs(value) <= rounding_of(events, e, t, y, 1.0) or value == 0.0:
         return 0.0
     return 1.0 if value > 0.0 else -1.0
 
@@ -37,7 +37,7 @@ def _side_ahead(events, e, t, y, a):
     side = _side(events, e, t, y)
     if side != 0.0:
         return side
-    rounding = rounding_of(events, e, t, y)
+    rounding = rounding_of(events, e, t, y, 1.0)
     pose = events.pose
     last = AHEAD[-1] * events.span[0]
     for k in range(len(AHEAD) + len(BEYOND)):

@@ -6,13 +6,21 @@ import math
 
 from mbsd.compiling.callback import call
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.many.events.arrays import FIRST, FRAMES, LEVEL, SIDE, VALUE
+from mbsd.dynamics.many.events.arrays import FIRST, FRAMES, LEVEL, SIDE, VALUE, WHOLE
 
 
 @internal
 def read_frames(events, first, count, q, v):
-    """Fill events.inputs with places and rates of frames at q, v (3 nb,), as events/moment.py gives them."""
+    """Fill events.inputs with places and rates of frames at q, v (3 nb,), as events/moment.py gives them.
+
+    With a count of WHOLE they are q and v themselves.
+    """
     inputs = events.inputs
+    if count == WHOLE:
+        for c in range(q.shape[0]):
+            inputs[c] = q[c]
+            inputs[q.shape[0] + c] = v[c]
+        return
     for i in range(count):
         b = 3 * events.body[first + i]
         arm = events.arm[first + i]

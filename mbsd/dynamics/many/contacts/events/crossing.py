@@ -27,7 +27,7 @@ def _met_of(dyn, scratch, settings, contacts, out, before, after, e, until):
     if first < count - 1 and x[first] < until:
         zero = 0.0
         if first == 0 and values[0] > 0.0:  # it may have begun here: a root beside it is none
-            zero = rounding_of(events, e, contacts.before.clock[TIME], contacts.before.y)
+            zero = rounding_of(events, e, contacts.before.clock[TIME], contacts.before.y, 1.0)
         where, negative = root_between(
             dyn, scratch, contacts, k, x[first], x[first + 1], values[first], values[first + 1], 0.0, zero
         )

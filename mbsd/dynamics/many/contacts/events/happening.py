@@ -10,9 +10,10 @@ from mbsd.dynamics.many.events.arrays import (
     ACTION,
     ACTION_FIRST,
     ACTION_FRAMES,
+    BY_PYTHON,
     DIRECTION,
     ENDS,
-    EVENT,
+    GROUP,
     SIDE,
 )
 from mbsd.dynamics.many.events.sides import turn_side
@@ -20,8 +21,8 @@ from mbsd.dynamics.many.events.values import read_frames
 from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.state import TIME
 
-PASSED, HAPPENED, ENDED = range(3)
-"""It passed zero the other way; it happened; the simulation ends there."""
+PASSED, HAPPENED, ENDED, ACTS = range(4)
+"""It passed zero the other way; it happened; the simulation ends there; it happens once its Python action has acted."""
 
 
 @lazy(int)
@@ -35,9 +36,11 @@ def happen(dyn, scratch, contacts, state, e):
         return PASSED
     if table[e, ENDS] != 0:
         return ENDED
+    if table[e, ACTION] == BY_PYTHON:
+        return ACTS
     releases = False
     for k in range(events.release.shape[0]):
-        releases = releases or events.release[k, EVENT] == e
+        releases = releases or events.release[k, GROUP] == e
     v = state.y[1]
     if table[e, ACTION] != 0:
         first = table[e, ACTION_FIRST]
@@ -59,3 +62,16 @@ def happen(dyn, scratch, contacts, state, e):
         project(dyn, scratch, state.clock[TIME], state.y, 2)
         events.number[e, SIDE] = 0.0  # it may go back to where it came from
     return HAPPENED
+
+
+@lazy(None)
+def finish_action(dyn, scratch, contacts, state, e):
+    """Bring velocities onto the joints that hold after the Python action of event e; others it released at this time."""
+    events = contacts.events
+    t = state.clock[TIME]
+    for group in range(events.gone.shape[0]):
+        if events.gone[group] == t:
+            release_joints(dyn, scratch, contacts, group, t, state.y[0])
+    release_rows(dyn, contacts)
+    project(dyn, scratch, t, state.y, 2)
+    events.number[e, SIDE] = 0.0  # it may go back to where it came from

@@ -8,8 +8,7 @@ from mbsd.compiling.jit import internal, lazy
 from mbsd.dynamics.many.contacts.arrays import CLOSED, FRICTION, HELD, RELEASED, SIGN
 from mbsd.dynamics.many.events.arrays import (
     BLOCK,
-    EVENT,
-    GONE,
+    GROUP,
     ITS_FRICTION,
     OPEN_BLOCK,
     OPEN_SIDE,
@@ -55,18 +54,18 @@ def hold_joints(dyn, contacts):
     for k in range(release.shape[0]):
         _put(dyn, contacts, k, release[k, ROW])
     for k in range(release.shape[0]):  # afterwards, as several events may release one joint
-        if events.number[release[k, EVENT], GONE] < math.inf:
+        if events.gone[release[k, GROUP]] < math.inf:
             _put(dyn, contacts, k, -1)
 
 
 @lazy(None)
-def release_joints(dyn, scratch, contacts, e, t, q):
-    """Release the joints of event e at t (s) and q (3 nb,); rows that repeat theirs hold from then on."""
+def release_joints(dyn, scratch, contacts, group, t, q):
+    """Release the joints of a group at t (s) and q (3 nb,); rows that repeat theirs hold from then on."""
     events = contacts.events
     repeated = contacts.repeated
-    events.number[e, GONE] = min(events.number[e, GONE], t)
+    events.gone[group] = min(events.gone[group], t)
     for k in range(events.release.shape[0]):
-        if events.release[k, EVENT] != e:
+        if events.release[k, GROUP] != group:
             continue
         if events.release[k, ITS_FRICTION] >= 0:
             _end_friction(dyn, contacts, events.release[k, ITS_FRICTION])

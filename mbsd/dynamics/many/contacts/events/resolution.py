@@ -8,7 +8,7 @@ from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.bounds import FAR, MOST_VALUES, NARROWEST, PER_SHORTEST, ROUGH, ROUGH_HALVES, TRIED
 from mbsd.dynamics.many.contacts.arrays import LENGTH, PARTS
 from mbsd.dynamics.many.contacts.within import on_quintic
-from mbsd.dynamics.many.events.arrays import SHORTEST
+from mbsd.dynamics.many.events.arrays import SHORTEST, UNKNOWN
 
 SAMPLES = 6
 
@@ -189,4 +189,6 @@ def look(dyn, scratch, contacts, e):
         waiting = 0
         for i in range(count - 1):
             waiting += events.rough[0, i]
+    if waiting > 0:
+        events.number[e, UNKNOWN] = count
     return count

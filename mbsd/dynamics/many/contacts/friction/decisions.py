@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import internal, lazy
-from mbsd.dynamics.events.bounds import AT_LIMIT, BEGINS, GRAZING, UNSURE
+from mbsd.dynamics.events.bounds import AT_LIMIT, BEGINS, GRAZING, IN_TURN, UNSURE
 from mbsd.dynamics.many.contacts.arrays import (
+    AT_ONCE,
     BESIDE,
     BROKEN,
     CLOSED,
@@ -49,9 +50,12 @@ def note_met(contacts, met, lam):
 
 @internal
 def one_by_one(contacts):
-    """Whether contacts may come to their limits one by one; see events/laws/together.py."""
+    """Return True if contacts may come to their limits one by one; see events/laws/together.py.
+
+    Not where they do so again and again at one time.
+    """
     number = contacts.friction.number
-    out = contacts.sticks.joint.shape[0] == 0
+    out = contacts.sticks.joint.shape[0] == 0 and contacts.clock[AT_ONCE] <= IN_TURN * gaps_of(contacts)
     for w in range(number.shape[0]):
         out = out and number[w, STATIC] <= number[w, KINETIC]
     return out

@@ -17,7 +17,9 @@ from mbsd.dynamics.many.contacts.arrays import (
     KINETIC,
     LAST,
     LEFT,
+    FAILURE,
     LIMIT,
+    NO_AGREEMENT,
     NORMAL,
     NOW,
     RATE,
@@ -201,6 +203,7 @@ def _agree(dyn, scratch, contacts, v, hair, rounding):
         for k in range(count):
             gap = normal[FOUND, k] - normal[NOW, k]
             if not math.isfinite(gap):
+                contacts.clock[FAILURE] = NO_AGREEMENT
                 return -1.0
             worst = max(worst, abs(gap))
             most = max(most, normal[FOUND, k])
@@ -213,6 +216,7 @@ def _agree(dyn, scratch, contacts, v, hair, rounding):
             gap = normal[FOUND, k] - normal[NOW, k]
             normal[LAST, k] = gap
             normal[NOW, k] = max(normal[NOW, k] + weight * gap, 0.0)
+    contacts.clock[FAILURE] = NO_AGREEMENT
     return -1.0
 
 

@@ -28,6 +28,7 @@ from mbsd.dynamics.many.contacts.rows import along, gaps_of
 from mbsd.dynamics.many.contacts.sticking.sharing import carry, limit_of
 from mbsd.dynamics.many.contacts.sticking.together import carry_together
 from mbsd.dynamics.many.rows_at import measure
+from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import normal_forces
 
 ROUNDING = 1e-10
@@ -86,3 +87,19 @@ def share_outputs(dyn, scratch, contacts, out, first, end):
     for k in range(first, end):
         measure(dyn, scratch, out.t[k], out.y[k, 0])
         _share(dyn, scratch, contacts, out.y[k, 1], out.lam[k], False)
+
+
+@internal
+def share_here(dyn, scratch, contacts, state):
+    """Put the multipliers of a state whose derivative is valid in contacts.lam, divided among what is at rest."""
+    for r in range(state.lam.shape[0]):
+        contacts.lam[r] = state.lam[r]
+    if contacts.clock[SHARING] != APART:
+        share_state(dyn, scratch, contacts, state)
+
+
+@lazy(None)
+def share_state(dyn, scratch, contacts, state):
+    """Divide contacts.lam, the multipliers of a state."""
+    measure(dyn, scratch, state.clock[TIME], state.y[0])
+    _share(dyn, scratch, contacts, state.y[1], contacts.lam, False)

@@ -98,9 +98,10 @@ class Curves(NamedTuple):
     """(k,) parameters of feet after a step."""
 
 
-LIMIT, FORCE, UNSHARED, PREVIOUS, LEFT = range(5)
+LIMIT, FORCE, UNSHARED, PREVIOUS, LEFT, GIVES = range(6)
 """Rows of Sticks.vector: limits of friction; normal forces and friction; friction before it is shared, and as it was
-shared last; accelerations that friction leaves, and friction that would hold joints alone."""
+shared last; accelerations that friction leaves, and friction that would hold joints alone; signs of ways that give way, and 1 of
+gaps that push then (giving_way.py)."""
 NO_AGREEMENT = 20.0
 """Value of FAILURE where normal forces of joints and the friction that they cause do not agree."""
 NOW, LAST, FOUND, BASIS = range(4)
@@ -115,7 +116,7 @@ class Sticks(NamedTuple):
     joint: Any
     """(k,) int, rows of Contacts that are ways of joints that stick: the last k."""
     vector: Any
-    """(5, c)"""
+    """(6, c)"""
     normal: Any
     """(4, f)"""
     borne: Any

@@ -16,9 +16,9 @@ from mbsd.dynamics.many.contacts.arrays import (
     CLUTCH,
     FRICTION,
     GAP,
+    GIVES,
     HOLDING,
     KINETIC,
-    LEFT,
     MOST_LOOKS,
     PARTS,
     RELEASED,
@@ -152,7 +152,7 @@ def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Sticks:
     own = c if frictions or losing else 0
     return Sticks(
         np.arange(c - len(ready.sticks), c),
-        np.zeros((LEFT + 1, own)),
+        np.zeros((GIVES + 1, own)),
         np.zeros((BASIS + 1, frictions)),
         np.zeros((own, rows)),
         np.zeros((2, rows)),

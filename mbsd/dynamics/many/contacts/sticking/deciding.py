@@ -37,6 +37,14 @@ from mbsd.dynamics.many.contacts.friction.resting import find_resting, gives, ho
 from mbsd.dynamics.many.contacts.jumps import FAINT
 from mbsd.dynamics.many.contacts.rows import along, gaps_of
 from mbsd.dynamics.many.contacts.sticking.answers import stand
+from mbsd.dynamics.many.contacts.sticking.giving_way import (
+    begin_giving,
+    gives_way,
+    keep_pushes,
+    may_give,
+    note_giving,
+    solve_giving,
+)
 from mbsd.dynamics.many.contacts.sticking.sharing import limit_of
 from mbsd.dynamics.many.contacts.sticking.together import divide_together
 from mbsd.dynamics.reference.refinement import respond
@@ -150,8 +158,11 @@ def _add_sliding(contacts, lam):
 
 
 @internal
-def _try(dyn, scratch, contacts, v, hair, rounding):
-    """N and T under the normal forces normal[NOW], and those that they give; returns the largest load, -1 if none."""
+def _try(dyn, scratch, contacts, v, hair, rounding, giving):
+    """Find N and T under the normal forces normal[NOW], and those that they give; returns the largest load, -1 if none.
+
+    ``giving``: ways give way as GIVES says.
+    """
     sticks = contacts.sticks
     load = sticks.load[1]
     lam = sticks.lam[1]
@@ -170,9 +181,14 @@ def _try(dyn, scratch, contacts, v, hair, rounding):
         if contacts.chosen[TAKING, k] != 0:
             contacts.vector[FREE, k] = along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row]
     pressed = contacts.friction.compliance
-    if not solve_with_friction(contacts, pressed, contacts.vector[FREE], HOLDING, sticks.vector[FORCE]):
-        return -1.0
-    _share_rest(contacts, rounding)
+    if giving:
+        solve_giving(contacts)
+    else:
+        if not solve_with_friction(contacts, pressed, contacts.vector[FREE], HOLDING, sticks.vector[FORCE]):
+            return -1.0
+        keep_pushes(contacts)
+        _share_rest(contacts, rounding)
+        note_giving(contacts, rounding)
     for k in range(contacts.place.shape[0]):
         if contacts.chosen[TAKING, k] != 0:
             for r in range(lam.shape[0]):
@@ -183,7 +199,7 @@ def _try(dyn, scratch, contacts, v, hair, rounding):
 
 
 @apart
-def _agree(dyn, scratch, contacts, v, hair, rounding):
+def _agree(dyn, scratch, contacts, v, hair, rounding, giving):
     """Repeat that until the normal forces of the joints agree; returns the largest load, -1 if they do not."""
     normal = contacts.sticks.normal
     count = normal.shape[1]
@@ -193,7 +209,7 @@ def _agree(dyn, scratch, contacts, v, hair, rounding):
         normal[NOW, k] = before if math.isfinite(before) else 0.0
         normal[LAST, k] = 0.0
     for turn in range(MOST_PASSES):
-        largest = _try(dyn, scratch, contacts, v, hair, rounding)
+        largest = _try(dyn, scratch, contacts, v, hair, rounding, giving)
         if largest < 0.0:
             return largest
         worst = 0.0
@@ -239,7 +255,11 @@ def decide(dyn, scratch, contacts, state, halted, slipping, touched):
     _loads(dyn, scratch, contacts, state.clock[TIME], state.y)
     for _ in range(contacts.friction.gap.shape[0] + 1):
         _choose(dyn, scratch, contacts, v, halted)
-        largest = _agree(dyn, scratch, contacts, v, hair, rounding)
+        begin_giving(contacts)
+        largest = _agree(dyn, scratch, contacts, v, hair, rounding, False)
+        if largest < 0.0 and slipping and may_give(contacts):
+            largest = _agree(dyn, scratch, contacts, v, hair, rounding, True)
+            largest = largest if largest >= 0.0 and gives_way(contacts, rounding) else -1.0
         if largest < 0.0:
             return False
         for k in range(count):

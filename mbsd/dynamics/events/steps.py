@@ -50,8 +50,9 @@ from mbsd.dynamics.many.contacts.steps import (
     TOO_MANY,
     run_events,
 )
-from mbsd.dynamics.many.events.arrays import UNKNOWN
+from mbsd.dynamics.many.events.arrays import GROUP, ROW, UNKNOWN
 from mbsd.dynamics.many.methods import number_of
+from mbsd.dynamics.many.repeated.made import opened
 from mbsd.dynamics.rows import held as kinds
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.recording import Snapshot
@@ -140,6 +141,7 @@ class EventSteps:
             ready.stops.before, ready.stops.after,
         )  # fmt: skip
         self._check(status)
+        ready.dropped = tuple(sorted({*ready.dropped, *opened(contacts.repeated)}))
         ready.approaches.note(float(state.clock[TIME]))
         self._note_outputs()
         if status == FOUND:
@@ -169,6 +171,8 @@ class EventSteps:
     def _read(self) -> tuple[list[str], tuple[float, ...], np.ndarray]:
         """Return states of contacts and of joints that stick, directions of sliding, and rows (m,) that hold."""
         contacts, switches = self.contacts, self.switches
+        gone = contacts.events.release[contacts.events.gone[contacts.events.release[:, GROUP]] < np.inf]
+        switches.now.released.update(gone[:, ROW].tolist())
         number, gaps = contacts.number, len(switches.contacts)
         states, way = [], gaps
         for k, contact in enumerate(switches.contacts):
@@ -237,7 +241,6 @@ class EventSteps:
         moment = Moment(self.packed, float(state.clock[TIME]), state.y[0].copy(), state.y[1].copy())
         moment.act(event)
         for joint in moment.released:
-            self.switches.release(joint)
             contacts.events.gone[len(self.events) + joint] = moment.t
         state.y[1] = moment.v
         state.y[1, :3] = 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mbsd.dynamics.many.repeated.arrays import BETTER, FOLLOWS, HELD, OPENED, SCALE, UNTIL, Repeated
+from mbsd.dynamics.many.repeated.arrays import BETTER, FOLLOWS, HELD, OPENED, ROW, SCALE, UNTIL, Repeated
 from mbsd.dynamics.prepare.exchange import WORN
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.start.large import MANY_COORDINATES
@@ -45,3 +45,8 @@ def repeated_of(ready: PreparedDynamics) -> Repeated:
         np.zeros((2, k)),
         np.zeros((2, k), np.int64),
     )
+
+
+def opened(repeated: Repeated) -> list[int]:
+    """Return the rows that did not hold once, so that they might open."""
+    return repeated.place[repeated.number[:, OPENED] > 0.0, ROW].tolist()

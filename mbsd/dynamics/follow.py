@@ -104,7 +104,7 @@ def resumed(
             state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
             state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
             state.clock[WORK] = snapshot.work if k < 0 else recording.out.work[k]
-            if to_end(run, state, out):
+            if to_end(run.passing, state, out):
                 fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
             held = np.broadcast_to(ready.switches.held(), out.lam.shape)
             piece = Recording(out, held, int(state.count[ACCEPTED]))

@@ -11,10 +11,10 @@ from functools import cached_property
 
 import numpy as np
 
-from mbsd.dynamics.integrators.kind import Integrator
+from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from mbsd.dynamics.many.contacts.arrays import Contacts
 from mbsd.dynamics.many.contacts.made import contacts_of
-from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.prepare.prepared import OUTPUTS_LONGEST, PreparedDynamics
 from mbsd.dynamics.reference.arrays import Scratch
 from mbsd.dynamics.state import Output, State, output_for
 from mbsd.model.event import Event
@@ -56,6 +56,15 @@ class Run:
         self._contacts: Contacts | None = None
         ready.refuse_method(method)
         self.settings = ready.settings(method, tolerance, step, duration, options)
+
+    @cached_property
+    def passing(self) -> Run:
+        """This run, or where its method knows no independent coordinates one that passes singular poses."""
+        if self.method.independent:
+            return self
+        settings = self.settings
+        duration = OUTPUTS_LONGEST * settings.longest
+        return Run(self.ready, INTEGRATORS["dop853"], self.tolerance, settings.step, duration, {})
 
     @cached_property
     def scratch(self) -> Scratch:

@@ -62,7 +62,10 @@ def still_of(contacts, k):
 
 @apart
 def _leaves(dyn, scratch, contacts, k):
-    """Whether a gap rises away from zero at the begin of the step, by its rates and its second derivative."""
+    """Return True if a gap rises away from zero at the begin of the step, by its rates and its second derivative.
+
+    The latter may be negative by the rounding of forces: where a contact has just opened nothing else is left of it.
+    """
     row = contacts.place[k, ROW]
     rest = -contacts.number[k, REST]
     t = stand_at(contacts, 1.0)
@@ -73,7 +76,8 @@ def _leaves(dyn, scratch, contacts, k):
     derivative(dyn, scratch, t, contacts.pose, contacts.rates, contacts.lam)
     if not along(dyn, scratch, row, contacts.pose[1]) > rest:
         return False
-    return along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row] > 0.0
+    least = -ROUNDING * contacts.clock[LOAD] * contacts.compliance[k, k]
+    return along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row] > least
 
 
 @apart

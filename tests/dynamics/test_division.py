@@ -10,7 +10,6 @@ from scipy.linalg import block_diag
 from scipy.optimize import linprog
 
 from mbsd.dynamics.events.laws.division import divide, division_of
-from mbsd.dynamics.events.laws.sharing import share, share_any
 
 NEAR = 1e-8
 
@@ -114,7 +113,8 @@ def test_joints_that_move_each_other_more_than_themselves_divide_too() -> None:
     compliance[1, 2:] += 2.0
     compliance[2:, 1] -= 2.0
     forces = np.array([3.0, 1.0, 2.0, 0.0])
-    out, part = share_any(compliance, forces, np.ones(4))
+    out = forces.copy()
+    part = divide(compliance, np.ones(4, np.int64), out, np.ones(4), division_of(4))
     np.testing.assert_allclose(out, [3.0, 1.0, 1.0, 1.0], atol=1e-15)
     np.testing.assert_allclose(compliance @ out, compliance @ forces, atol=1e-14)
     assert part == 3.0
@@ -170,14 +170,6 @@ def test_the_second_of_two_freedoms_in_closed_form() -> None:
     # the first freedom alone: 1 + 2 + 1 carry 6, each a part of 1.5; 1 - 1.5 = -0.5 is left to 2 and 3
     np.testing.assert_allclose(case.divided()[0], [1.5, 1.5, -0.25, 0.25, 1.5], atol=1e-15)
     assert case.divided()[1] == 1.5
-    np.testing.assert_allclose(share(case.compliance, forces, np.ones(5))[0], case.divided()[0], atol=1e-15)
-
-
-@given(stuck())
-def test_single_simulations_divide_so(case: Stuck) -> None:
-    out, part = share(case.compliance, case.forces, case.limits)
-    np.testing.assert_allclose(out, case.divided()[0], atol=NEAR)
-    assert part == pytest.approx(case.divided()[1], abs=NEAR)
 
 
 def test_joints_without_load_carry_nothing_and_joints_without_limit_hold_nothing() -> None:

@@ -6,7 +6,26 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mbsd.dynamics.events.laws.lcp import lemke
+from mbsd.compiling.jit import kernel
+from mbsd.dynamics.many.contacts.pushes import lowest_row, pivot_to_end
+
+
+@kernel
+def pivoted(tableau, basis, n):
+    """Pivot a tableau to the end; False where that has none."""
+    row = lowest_row(tableau, n)
+    return row < 0 or pivot_to_end(tableau, basis, n, row)
+
+
+def lemke(matrix: np.ndarray, q: np.ndarray) -> np.ndarray | None:
+    """Return z (n,) for M (n, n) and q (n,); None where there is none."""
+    n = len(q)
+    tableau = np.hstack([np.eye(n), -matrix, -np.ones((n, 1)), q[:, None]])
+    basis, z = np.arange(n), np.zeros(2 * n + 1)
+    if not pivoted(tableau, basis, n):
+        return None
+    z[basis] = tableau[:, -1]
+    return z[n : 2 * n]
 
 
 @settings(max_examples=60, deadline=None)

@@ -9,11 +9,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd.dynamics.events.bounds import MOST_PUSH
-from mbsd.dynamics.events.laws.least_part import PULLED
-from mbsd.dynamics.events.laws.together import divided
+from mbsd.dynamics.events.laws.least_part import FORCE, OWN, PULLED, RAW, UNIT, least_part, together_of
 
 MOST, LESS = 1e4, 1e-3
 """Parts above which none is looked for, and by how much less must not hold."""
+
+
+def divided(
+    compliance: np.ndarray, raw: np.ndarray, unit: np.ndarray, pick: np.ndarray, own: np.ndarray, held: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Return N and T (n,) that move nothing differently than ``raw``, and the smallest part s of their limits."""
+    k, c = pick.shape
+    work = together_of(c + k)
+    work.compliance[...], work.held[...] = compliance, held
+    work.number[RAW], work.number[UNIT], work.number[OWN, :k] = raw, unit, own
+    work.pick[:k, :c] = pick
+    part = float(least_part(work, c, k, 1.0))
+    return work.number[FORCE].copy(), part
 
 
 @dataclass
@@ -37,8 +49,7 @@ class Held:
 
     def least(self) -> tuple[np.ndarray, float]:
         """What the solver finds."""
-        held = np.ones(len(self.raw), bool)
-        return divided(self.compliance, self.raw, self.unit, self.pick, self.own, held)
+        return divided(self.compliance, self.raw, self.unit, self.pick, self.own, np.ones(len(self.raw), bool))
 
     def holds(self, part: float) -> bool:
         """Whether any N >= 0 and T up to this part of their limits do, N within the bound of the solver."""

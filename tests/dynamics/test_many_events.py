@@ -187,7 +187,7 @@ def test_a_function_that_fails_is_a_reason() -> None:
     m.event("bad", bad, frames=m.bodies["arm"].end)
     many = m.simulate_many(0.2, start={"arm": [-100.0, -30.0]}, measure={"a": final("arm.theta")}, steps=STEPS)
     assert many.good.tolist() == [False, True]
-    assert "event 'bad' is nan" in str(many.reason[0])
+    assert "event 'bad': its function: at t = 0.09" in str(many.reason[0])
 
 
 def test_the_interface_of_frames() -> None:

@@ -22,8 +22,7 @@ from mbsd.derivatives.free.guards import USER, End, Guard, guards_of, times_move
 from mbsd.derivatives.free.indexing import is_index
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import Variants, Variation
-from mbsd.dynamics.events.laws.compliance import Compliance
-from mbsd.dynamics.events.laws.impact import impacts
+from mbsd.dynamics.events.impacts import velocities_after
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.model.numbers import with_value
@@ -31,7 +30,6 @@ from mbsd.results.solution import Solution
 
 REACH = 1e-6
 """Reach of the differences of an impact, in sizes, rad, and parts of the fastest speed."""
-STILL = 1e-9
 
 
 class Whole(Protocol):
@@ -180,10 +178,7 @@ class Jump:
 
     def _after(self, ready: Any, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """(3 nb,) velocities after the impacts of this event."""
-        packed = ready.packed
-        at = Compliance(packed, ready.dynamics, ready.switches, t, np.ascontiguousarray(q))
-        closed = [contact for contact in ready.switches.contacts if contact.name in self.impacts]
-        return impacts(at, closed, v.copy(), STILL / packed.row_scale())[0]
+        return velocities_after(ready, t, q, v, self.impacts)
 
 
 def jumps_of(whole: Whole, sol: Solution, along: Along, edges: list[int]) -> list[Jump]:

@@ -1,58 +1,72 @@
-"""Errors of contacts: they start inside what they should touch, nothing gives way, or friction jams."""
+"""Errors of contacts, from the arrays of the loop: they start inside, nothing gives way, or friction jams."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.arrays.friction_along import REMEDY, jam
-from mbsd.arrays.packing import Packed
 from mbsd.base.errors import SimulationError
-from mbsd.dynamics.events.laws.complementarity import jammed, refuse_driven
-from mbsd.dynamics.events.laws.compliance import Compliance
-from mbsd.dynamics.many.contacts.arrays import FAILURE, NO_AGREEMENT, NOW, TAKING, Contacts
-from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.dynamics.rows.switches import Switches
+from mbsd.dynamics.many.contacts.arrays import ALONE, FAILURE, NO_AGREEMENT, NOW, TAKING, Contacts
+from mbsd.dynamics.many.contacts.pushes import STIFF
+from mbsd.dynamics.many.contacts.steps import INSIDE
+from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import TIME, State
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics
 
-INSIDE = 1e-6
-"""A contact that starts deeper than this part of the size (rad) inside is refused."""
 
-
-def refuse_inside(packed: Packed, dynamics: Dynamics, switches: Switches, state: State) -> None:
-    """Raise SimulationError for a contact that starts inside."""
-    if not switches.contacts:
-        return
-    scale = packed.row_scale()
-    residuals = Compliance(packed, dynamics, switches, float(state.clock[TIME]), state.y[0]).phi
-    for contact in switches.contacts:
+def refuse_inside(ready: PreparedDynamics, residuals: np.ndarray) -> None:
+    """Raise SimulationError for a contact that starts inside, with residuals (m,) at the start."""
+    name, scale = ready.packed.name, ready.packed.row_scale()
+    for contact in ready.switches.contacts:
         gap = float(residuals[contact.gap])
         if not contact.always_closed and gap * scale[contact.gap] < -INSIDE:
             closed = contact.joint.params.get("closed") is True
             other = "give the points of its closed curve in reverse order" if closed else "turn the contact's marker"
             raise SimulationError(
-                f"{packed.name}: contact '{contact.name}' starts {-gap:.3g} (m or rad) inside; "
+                f"{name}: contact '{contact.name}' starts {-gap:.3g} (m or rad) inside; "
                 f"move the start with start_near, or, where its solid side is the wrong one, {other}"
             )
 
 
 def jam_at(ready: PreparedDynamics, contacts: Contacts, state: State) -> SimulationError:
-    """Return the error of an event at which no velocities or forces are possible, from the arrays of the loop."""
-    packed, time = ready.packed, float(state.clock[TIME])
+    """Return the error of an event at which no velocities or forces are possible."""
+    where = f"{ready.packed.name}: at t = {float(state.clock[TIME]):.6g} s"
     if contacts.clock[FAILURE] == NO_AGREEMENT:
-        return SimulationError(f"{packed.name}: at t = {time:.6g} s {jam(packed, contacts.sticks.normal[NOW])}. {REMEDY}.")
-    at = Compliance(packed, ready.dynamics, ready.switches, time, state.y[0].copy())
-    count = len(ready.switches.contacts)
-    taking = np.flatnonzero(contacts.chosen[TAKING, :count]).tolist()
+        return SimulationError(f"{where} {jam(ready.packed, contacts.sticks.normal[NOW])}. {REMEDY}.")
+    taking = np.flatnonzero(contacts.chosen[TAKING, : len(ready.switches.contacts)]).tolist()
     pressed = contacts.friction.compliance if len(contacts.friction.gap) else contacts.compliance
+    for k in taking:
+        contact, own, stiff = ready.switches.contacts[k], contacts.compliance[k, k], STIFF * contacts.vector[ALONE, k]
+        if not own > stiff:
+            return SimulationError(
+                f"{where} joints and drivers move '{contact.name}' against its stop, and nothing can give way. "
+                "Drive less far, move the stop, or put a spring between."
+            )
+        if not pressed[k, k] > stiff:
+            critical = contact.friction * own / (own - pressed[k, k])
+            return _paradox(
+                where, [contact], f": its friction {contact.friction:.4g} is above {critical:.4g}, from which on "
+                "sliding this way its own normal force presses the bodies together"
+            )  # fmt: skip
     closed = [ready.switches.contacts[k] for k in taking]
-    try:
-        refuse_driven(at, closed, contacts.compliance[np.ix_(taking, taking)])
-        refuse_driven(at, closed, pressed[np.ix_(taking, taking)])
-    except SimulationError as error:
-        return error
-    return jammed(at, closed)
+    frictions = ", ".join(f"{contact.friction:.4g}" for contact in closed)
+    return _paradox(where, closed, f" with friction {frictions}" if closed else "")
+
+
+def _paradox(where: str, taking: Sequence[RunContact], why: str) -> SimulationError:
+    """Return the error where rigid bodies with Coulomb's friction have no motion; ``taking``: the contacts that jam."""
+    names = [f"'{contact.name}'" for contact in taking]
+    what = "joints that stick jam"
+    if names:
+        what = f"contact {names[0]} jams" if len(names) == 1 else f"contacts {' and '.join(names)} jam"
+    return SimulationError(
+        f"{where} {what}{why}. This is Painleve's paradox: with rigid bodies and "
+        "Coulomb's friction the equations of motion have no solution in this pose, whatever the step or the method. "
+        "Take less friction, or a contact that yields: m.contact(...) in place of m.rigid_contact(...), see "
+        "docs/events.md."
+    )

@@ -258,11 +258,12 @@ class EventSteps:
 
     def _changing(self) -> tuple[np.ndarray, ...]:
         """Return all arrays that events change."""
-        contacts, now = self.contacts, self.switches.now
+        contacts, now, loads = self.contacts, self.switches.now, self.dynamics.loads
         return (
             contacts.number, contacts.clock, contacts.friction.number, contacts.sticks.vector, contacts.sticks.normal,
             contacts.events.number, contacts.events.gone, contacts.repeated.number, contacts.repeated.clock,
-            contacts.schur.rows, now.rows, now.remembered, now.factors, now.senses, now.approached,
+            contacts.schur.rows, now.rows, now.remembered, now.factors, loads.friction_number,
+            loads.normal, loads.iteration, loads.switch,
         )  # fmt: skip
 
     def _row(self) -> tuple:
@@ -296,7 +297,7 @@ class EventSteps:
             )
         if status == NOT_SOLVED:
             if not self.snapshots:
-                refuse_inside(self.packed, self.dynamics, self.switches, state)
+                refuse_inside(self.ready, self.packed.ws.phi)
             raise jam_at(self.ready, contacts, state)
         tried = contacts.trial if contacts.clock[FAILURE] != 0.0 else state
         if status == CHANCE:

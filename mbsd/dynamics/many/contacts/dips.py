@@ -1,12 +1,28 @@
-"""Where a gap or a normal force falls below zero for a moment, between parts of a step: events/dips.py, compiled."""
+"""Dips of a gap or a normal force below zero for a moment, between the parts of a step at which it was sampled.
+
+Where a scalar is convex it lies above the lines through the samples on both sides of an interval. So it can fall below
+zero there only where these lines do; where they meet it is looked at next, and each half is judged anew. That closes in
+on a minimum of any width, and costs nothing where the scalar stays away from zero.
+
+A distance is no convex scalar: the arms of its V bend inwards where the point moves on an arc. So lines that come near
+zero are drawn again from the ends of the interval, where they are steeper.
+"""
 
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, inlined, internal
-from mbsd.dynamics.events.dips import AT_END, INSIDE, NARROWEST, NEAR, SLACK, UNSURE
 from mbsd.dynamics.many.contacts.arrays import LENGTH, MOST_LOOKS, START
 from mbsd.dynamics.many.contacts.within import of_motion, on_quintic
 
+AT_END = 1e-3
+"""Part of an interval within which the slope at the end of a step is taken."""
+INSIDE = 0.02
+"""The next look is this part of an interval away from its ends."""
+NARROWEST = 1e-10
+NEAR, SLACK = 0.3, 0.05
+"""Fractions of the higher sample: lines of the neighbours, and of the ends, that come down to this are followed."""
+UNSURE = 1e-4
+"""Part of what the scalar changes by in a step below which the quintic does not tell its sign."""
 A, FA, B, FB, FALLS, RISES = range(6)
 """Columns of Contacts.intervals: both ends and the values there, slopes of the lines from the left and the right."""
 

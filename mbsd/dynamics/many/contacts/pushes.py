@@ -2,7 +2,10 @@
 
     0 <= N complementary to  G N + g >= 0,    G = J_g W^-1 J_g^T with joints and drivers holding
 
-as events/laws/complementarity.py has it without friction, by Lemke's method (events/laws/lcp.py).
+by Lemke's method: z >= 0, w = M z + q >= 0, z w = 0. Ties of the ratio test are broken lexicographically, so that it
+cannot cycle.
+
+Source: Cottle, Pang, Stone, The Linear Complementarity Problem, ch. 4.4 and 4.9.
 """
 
 from __future__ import annotations
@@ -10,7 +13,6 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.laws.lcp import GONE, SMALL
 from mbsd.dynamics.many.contacts.arrays import ALONE, NORMAL, ROW, TAKING
 from mbsd.dynamics.many.contacts.rows import along
 from mbsd.dynamics.reference.refinement import respond
@@ -18,6 +20,10 @@ from mbsd.dynamics.reference.refinement import respond
 STIFF = 1e-12
 """Compliance of a row, as part of that of its bodies alone, below which nothing gives way."""
 TIE = 1e-14
+GONE = 1e-13
+"""Part of the largest number below which the artificial variable is zero; it may stay where forces share a load."""
+SMALL = 1e-11
+"""Pivots below this are none; M and q are of order 1."""
 
 
 @apart

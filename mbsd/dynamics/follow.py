@@ -12,8 +12,8 @@ from mbsd.dynamics.events.steps import EventSteps
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs.recording import Recording, Snapshot
-from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.runs.reference_steps import step_to
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.runs.to_end import to_end
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
 from mbsd.model.event import Event

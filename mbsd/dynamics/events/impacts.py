@@ -37,7 +37,7 @@ def velocities_after(
     """
     packed = ready.packed
     state = start_state(np.stack([q, v]), len(packed.ws.phi), t)
-    contacts = contacts_of(ready, state, [], ready.end - ready.start)
+    contacts = contacts_of(ready, state, [], ready.end - ready.start, None)
     for k, contact in enumerate(ready.switches.contacts):
         contacts.chosen[TOUCHING, k] = contact.name in names
     scratch = scratch_for(ready.dynamics, packed.ws, len(packed.motions), 1, (0, 0))

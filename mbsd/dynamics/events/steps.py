@@ -29,8 +29,6 @@ from mbsd.dynamics.many.contacts.arrays import (
     LAST_STEP,
     LENGTH,
     LOGGED,
-    METHOD,
-    OUTSIDE,
     PAUSES,
     PENDING,
     RELEASED,
@@ -51,7 +49,6 @@ from mbsd.dynamics.many.contacts.steps import (
     run_events,
 )
 from mbsd.dynamics.many.events.arrays import GROUP, ROW, UNKNOWN
-from mbsd.dynamics.many.methods import number_of
 from mbsd.dynamics.many.repeated.made import opened
 from mbsd.dynamics.rows import held as kinds
 from mbsd.dynamics.runs.pace import Pace
@@ -86,8 +83,6 @@ class EventSteps:
         self._go_on = ready.advancing.setdefault((run_events.__name__, type(self.dynamics)), Often(run_events))
         self._outside = Callback(self._advance_outside, (2,), 1, f"{self.packed.name}: steps")
         self.contacts.outside.address[0] = self._outside.address
-        number = number_of(run.method)
-        self.contacts.clock[METHOD] = OUTSIDE if number is None else number
         self.contacts.clock[PAUSES] = BEFORE_AND_AFTER if rows else AFTER
         self._failure: BaseException | None = None
         what = f"{self.packed.name}: event '"
@@ -112,11 +107,11 @@ class EventSteps:
 
     def resume(self, snapshot: Snapshot, work: float) -> None:
         """Go on from where another run was, with its contacts as they were."""
-        kept = self.contacts.clock[[METHOD, PAUSES]].copy()
+        pauses = self.contacts.clock[PAUSES]
         for own, given in zip(self._changing(), snapshot.held, strict=True):
             own[...] = given
         self.switches.now.released = set(snapshot.released)
-        self.contacts.clock[[METHOD, PAUSES]] = kept
+        self.contacts.clock[PAUSES] = pauses
         self.contacts.clock[BEGUN] = RESUMED
         self.ready.following.settle(*self.state.y)
         self.state.clock[WORK] = work
@@ -305,9 +300,7 @@ class EventSteps:
         if status == STEP_TOO_SMALL:
             wheels, before = self.ready.following.wheels, contacts.wheels.before
             wheels.refuse_met(time, state.y[0])
-            wheels.refuse_meeting(
-                float(before.clock[TIME]), before.y, AHEAD * float(contacts.wheels.bounds[LAST_STEP])
-            )
+            wheels.refuse_meeting(float(before.clock[TIME]), before.y, AHEAD * float(contacts.wheels.bounds[LAST_STEP]))
         raise refusal(self.run, status, tried)
 
     def _warn_of(self, event: Event, count: int) -> None:

@@ -19,7 +19,7 @@ from mbsd.dynamics.many.cylinders import has_cylinders
 from mbsd.dynamics.many.events import made as events_made
 from mbsd.dynamics.many.indexing.arrays import Genevas
 from mbsd.dynamics.many.indexing.made import genevas_of
-from mbsd.dynamics.many.methods import USUAL, number_of
+from mbsd.dynamics.many.methods import number_of
 from mbsd.dynamics.many.repeated import made as repeated_made
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -142,7 +142,7 @@ class SingleRun:
     def contacts(self) -> Contacts:
         """Contacts and joints that stick, which the loop meets, and wheels that it looks at step by step."""
         state = self.state if self.independent is None else self.independent.own
-        return contacts_of(self.ready, state, self.events, self.run.settings.longest)
+        return contacts_of(self.ready, state, self.events, self.run.settings.longest, self.run.method)
 
     @cached_property
     def genevas(self) -> Genevas:
@@ -167,11 +167,6 @@ def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:
         raise NotCompiled("reactions where the damping of a contact remembers how fast it approached")
     if reactive and ready.following.rows:
         raise NotCompiled("reactions where points are on curves that cross themselves")
-    if number_of(asked.integrator) != USUAL and (ready.switches.contacts or ready.sticks or ready.following or events):
-        raise NotCompiled(
-            "events, stops, contacts, joints that stick and wheels that may meet are met by 'dop853' alone, not by "
-            f"'{asked.integrator.name}'"
-        )
     longest = asked.step or float(np.diff(times).max())
     run = Run(
         ready, asked.integrator, asked.tolerance, longest, float(times[-1] - times[0]), asked.options, asked.formulation

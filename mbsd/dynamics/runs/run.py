@@ -74,7 +74,7 @@ class Run:
     def contacts_of(self, state: State, events: Sequence[Event]) -> Contacts:
         """Return arrays of contacts and events for the compiled loop: the same ones whenever the run goes on."""
         if self._contacts is None:
-            self._contacts = contacts_of(self.ready, state, events, self.settings.longest, log=True)
+            self._contacts = contacts_of(self.ready, state, events, self.settings.longest, self.method, log=True)
         return self._contacts
 
     @cached_property

@@ -11,6 +11,7 @@ from mbsd.dynamics.events.bounds import NEAR as CLOSED_GAP
 from mbsd.dynamics.events.bounds import ROUNDS, STILL
 from mbsd.dynamics.events.laws.division import division_of
 from mbsd.dynamics.events.laws.least_part import together_of
+from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.many.contacts.arrays import (
     BASIS,
     CLUTCH,
@@ -19,7 +20,9 @@ from mbsd.dynamics.many.contacts.arrays import (
     GIVES,
     HOLDING,
     KINETIC,
+    METHOD,
     MOST_LOOKS,
+    OUTSIDE,
     PARTS,
     RELEASED,
     RESTING,
@@ -36,6 +39,7 @@ from mbsd.dynamics.many.contacts.arrays import (
     Wheels,
 )
 from mbsd.dynamics.many.events.made import events_of, may_release
+from mbsd.dynamics.many.methods import number_of
 from mbsd.dynamics.many.repeated.made import repeated_of
 from mbsd.dynamics.prepare.following import SHORTEST
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -68,17 +72,25 @@ def why_not(ready: PreparedDynamics, events: Sequence[Event]) -> str | None:
 
 
 def contacts_of(
-    ready: PreparedDynamics, state: State, events: Sequence[Event], longest: float, log: bool = False
+    ready: PreparedDynamics,
+    state: State,
+    events: Sequence[Event],
+    longest: float,
+    method: Integrator | None,
+    log: bool = False,
 ) -> Contacts:
     """Return contacts of a run at its start, and events of the user; all are open, and all joints slide.
 
-    ``longest``: of all steps (s). ``log``: impulses of impacts are kept for whoever reads them.
+    ``longest``: the longest step (s). ``method``: the integrator, if there are steps. ``log``: keep impulses of impacts.
     """
     own = _places(ready)
     c, n3, rows = len(own), state.y.shape[1], len(state.lam)
     pushing = c + 2 * len(_rough(ready)) + 2 * len(ready.sticks)
 
     bare = _without(ready, events)
+    number = None if method is None else number_of(method)
+    clock = np.zeros(TRYING + 1)
+    clock[METHOD] = OUTSIDE if number is None else number
 
     def another() -> State:
         return State(*(np.zeros_like(part) for part in state))
@@ -86,7 +98,7 @@ def contacts_of(
     return Contacts(
         np.array(own, np.int64).reshape(-1, FRICTION + 1),
         np.array(_numbers(ready)).reshape(-1, RELEASED + 1),
-        np.zeros(TRYING + 1),
+        clock,
         another(),
         another(),
         np.zeros((6, n3)),

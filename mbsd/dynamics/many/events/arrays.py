@@ -13,7 +13,8 @@ BY_PYTHON = -1
 """Address of an action that Python lets act while the loop waits."""
 SIDE, LEVEL, SHORTEST, UNKNOWN = range(4)
 """Columns of Events.number: sign of the value, 0 where that is zero; what is taken off the function's number; how long
-the shortest thing in it lasts (s), 0 where nothing is said; how many values did not tell how it goes in a step, 0 while all did."""
+the shortest thing in it lasts (s), 0 where nothing is said; how many values did not tell how it goes in a
+step, 0 while all did."""
 GROUP, ROW, BLOCK, SIDE_OF_BLOCK, OPEN_BLOCK, OPEN_SIDE, ITS_FRICTION = range(7)
 """Columns of Events.release: the event, or a number behind all events for a joint that actions in Python may release; a
 row of J that is released; its block and its place there in Schur.rows, and

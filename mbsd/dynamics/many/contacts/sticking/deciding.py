@@ -8,6 +8,7 @@ from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.bounds import AT_LIMIT, AT_LIMIT_BEYOND, BEGINS, HAIR, PATIENCE, ROUNDING
 from mbsd.dynamics.events.laws.division import divide
 from mbsd.dynamics.many.contacts.arrays import (
+    FAILURE,
     FORCE,
     FOUND,
     FREE,
@@ -17,7 +18,6 @@ from mbsd.dynamics.many.contacts.arrays import (
     KINETIC,
     LAST,
     LEFT,
-    FAILURE,
     LIMIT,
     NO_AGREEMENT,
     NORMAL,

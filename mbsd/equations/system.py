@@ -3,7 +3,7 @@
 System is constant: its arrays cannot be written into. Closing the start makes another one, with its own ARM and ACTIVE
 of ``special``, first four of each constraint's ``numbers`` (kinematics/pose/phases.py) and turns of ``angle_offset``
 (close.py). What events change of a constraint of relative pose stands in the last columns of ``Workspace.relative``
-(ZERO, LAST), where its equation finds it beside its pose; the record ``Held`` of a run holds it.
+(ZERO, LAST), where its equation finds it beside its pose; a run keeps it at events.
 
 Bodies are numbered 0 .. nb-1; body 0 is ground. A row of the Jacobian touches two bodies, so six numbers hold it.
 A constraint table has one row per constraint: marker i, marker j, first row in J, motion (0: none, constant 0).

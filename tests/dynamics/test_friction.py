@@ -253,7 +253,7 @@ def test_normal_forces_of_a_trial_stage_far_away_leave_nothing(far: float, slide
     dynamics, contact = ready.dynamics, ready.switches.contacts[0]
     if slides:
         ready.switches.hold_row(contact.gap)
-        ready.switches.now.factors[contact.sliding] = contact.friction
+        ready.dynamics.sliding.table[contact.sliding, 0] = contact.friction
     scratch = scratch_for(dynamics, ready.packed.ws, 0, 1)
     state = np.stack([ready.initial.q, 1.0 + 0.3 * np.arange(len(ready.initial.q))])
     seen = []

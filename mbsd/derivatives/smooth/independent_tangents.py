@@ -109,8 +109,14 @@ class IndependentTangents:
         """The motion itself."""
         packed, system = self.ready.packed, self.ready.packed.system
         q, v, a = (part.reshape(1, len(along.t), -1, 3) for part in (along.q, along.v, along.a))
-        places = {name: (packed.body_names.index(marker.body.name), np.array([[marker.x, marker.y]]), np.array([marker.angle]))
-                  for name, marker in traces.items()}  # fmt: skip
+        places = {
+            name: (
+                packed.body_names.index(marker.body.name),
+                np.array([[marker.x, marker.y]]),
+                np.array([marker.angle]),
+            )
+            for name, marker in traces.items()
+        }
         own = packed.com[None], system.mass[None], system.inertia[None], places
         return Motions(packed.body_names, q, v, a, np.zeros(q.shape[:2]), *own, along.t)
 

@@ -29,6 +29,8 @@ from mbsd.dynamics.many.contacts.arrays import (
     LAST_STEP,
     LENGTH,
     LOGGED,
+    METHOD,
+    OUTSIDE,
     PAUSES,
     PENDING,
     RELEASED,
@@ -50,18 +52,20 @@ from mbsd.dynamics.many.contacts.steps import (
 )
 from mbsd.dynamics.many.events.arrays import GROUP, ROW, UNKNOWN
 from mbsd.dynamics.many.repeated.made import opened
-from mbsd.dynamics.rows import held as kinds
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.recording import Snapshot
 from mbsd.dynamics.runs.reference_steps import advance, check_callbacks
 from mbsd.dynamics.runs.refusal import refusal
 from mbsd.dynamics.state import NEXT, NOT_FINITE, PAUSED, REACHED, STEP_TOO_SMALL, TIME, WORK, Output, State
+from mbsd.equations.system import ZERO
 from mbsd.model.event import Event, Happening
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics
     from mbsd.dynamics.runs.run import Run
 
+OPEN, SLIDES, STICKS, RELEASED_FOR_GOOD = "open", "slides", "sticks", "released"
+"""States of a contact, one without friction slides, and of a joint with friction."""
 EVENT_STEPS = 20
 """Steps that an event is worth where the pace of a run is looked at."""
 AHEAD = 2.0
@@ -81,8 +85,9 @@ class EventSteps:
         self.run, self.state, self.out, self.events = run, state, out, events
         self.contacts = run.contacts_of(state, events)
         self._go_on = ready.advancing.setdefault((run_events.__name__, type(self.dynamics)), Often(run_events))
-        self._outside = Callback(self._advance_outside, (2,), 1, f"{self.packed.name}: steps")
-        self.contacts.outside.address[0] = self._outside.address
+        if self.contacts.clock[METHOD] == OUTSIDE:
+            self._outside = Callback(self._advance_outside, (2,), 1, f"{self.packed.name}: steps")
+            self.contacts.outside.address[0] = self._outside.address
         self.contacts.clock[PAUSES] = BEFORE_AND_AFTER if rows else AFTER
         self._failure: BaseException | None = None
         what = f"{self.packed.name}: event '"
@@ -110,7 +115,7 @@ class EventSteps:
         pauses = self.contacts.clock[PAUSES]
         for own, given in zip(self._changing(), snapshot.held, strict=True):
             own[...] = given
-        self.switches.now.released = set(snapshot.released)
+        self.switches.released = set(snapshot.released)
         self.contacts.clock[PAUSES] = pauses
         self.contacts.clock[BEGUN] = RESUMED
         self.ready.following.settle(*self.state.y)
@@ -167,17 +172,17 @@ class EventSteps:
         """Return states of contacts and of joints that stick, directions of sliding, and rows (m,) that hold."""
         contacts, switches = self.contacts, self.switches
         gone = contacts.events.release[contacts.events.gone[contacts.events.release[:, GROUP]] < np.inf]
-        switches.now.released.update(gone[:, ROW].tolist())
+        switches.released.update(gone[:, ROW].tolist())
         number, gaps = contacts.number, len(switches.contacts)
         states, way = [], gaps
         for k, contact in enumerate(switches.contacts):
             rough = contact.way is not None
-            closed = kinds.STICKS if rough and number[way, CLOSED] > 0.0 else kinds.SLIDES
-            states.append(closed if number[k, CLOSED] > 0.0 else kinds.OPEN)
+            closed = STICKS if rough and number[way, CLOSED] > 0.0 else SLIDES
+            states.append(closed if number[k, CLOSED] > 0.0 else OPEN)
             way += rough
         for joint in number[way:]:
-            resting = kinds.STICKS if joint[CLOSED] > 0.0 else kinds.SLIDES
-            states.append(kinds.RELEASED if joint[RELEASED] != 0.0 else resting)
+            resting = STICKS if joint[CLOSED] > 0.0 else SLIDES
+            states.append(RELEASED_FOR_GOOD if joint[RELEASED] != 0.0 else resting)
         return states, tuple(number[gaps:, SIGN].tolist()), switches.held()
 
     def _note_outputs(self) -> None:
@@ -214,9 +219,9 @@ class EventSteps:
         names = [part.name for part in (*self.switches.contacts, *self.ready.sticks)]
         gaps = len(self.switches.contacts)
         for k, (name, old, new) in enumerate(zip(names, self._states, states, strict=True)):
-            if old != new and new != kinds.RELEASED:
-                opens = k < gaps and new == kinds.OPEN
-                closes = k < gaps and old == kinds.OPEN
+            if old != new and new != RELEASED_FOR_GOOD:
+                opens = k < gaps and new == OPEN
+                closes = k < gaps and old == OPEN
                 self._tell(name, "opens" if opens else "closes" if closes else new)
 
     def _tell(self, name: str, what: str, impulse: float = 0.0, energy: float = 0.0) -> None:
@@ -246,19 +251,19 @@ class EventSteps:
     def snapshot(self) -> Snapshot:
         """This moment, to go on from."""
         held = tuple(part.copy() for part in self._changing())
-        released = frozenset(self.switches.now.released)
+        released = frozenset(self.switches.released)
         return Snapshot(
             self.state.y.copy(), float(self.state.clock[TIME]), float(self.state.clock[WORK]), held, released
         )
 
     def _changing(self) -> tuple[np.ndarray, ...]:
         """Return all arrays that events change."""
-        contacts, now, loads = self.contacts, self.switches.now, self.dynamics.loads
+        contacts, loads, ws = self.contacts, self.dynamics.loads, self.packed.ws
         return (
             contacts.number, contacts.clock, contacts.friction.number, contacts.sticks.vector, contacts.sticks.normal,
             contacts.events.number, contacts.events.gone, contacts.repeated.number, contacts.repeated.clock,
-            contacts.schur.rows, now.rows, now.remembered, now.factors, loads.friction_number,
-            loads.normal, loads.iteration, loads.switch,
+            contacts.schur.rows, self.switches.rows, ws.relative[:, ZERO:], self.dynamics.sliding.table,
+            loads.friction_number, loads.normal, loads.iteration, loads.switch,
         )  # fmt: skip
 
     def _row(self) -> tuple:

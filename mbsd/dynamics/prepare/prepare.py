@@ -14,7 +14,6 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.states import widened, with_states
 from mbsd.base.errors import MobilityError, ModelError
-from mbsd.base.kept import Kept
 from mbsd.dynamics.prepare.dependent import refuse_singular_start
 from mbsd.dynamics.prepare.lent_inertia import lift_inertia
 from mbsd.dynamics.prepare.mass_ratio import as_heavy_as_ground, passes_for
@@ -24,10 +23,8 @@ from mbsd.dynamics.prepare.start_states import take_start_states
 from mbsd.dynamics.prepare.unheld import refuse_unheld
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.pins import with_pins
-from mbsd.dynamics.reference.schur import Schur
-from mbsd.dynamics.reference.sequence import plan_schur
+from mbsd.dynamics.reference.sequence import elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
-from mbsd.dynamics.rows.held import Held
 from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
 from mbsd.dynamics.rows.switches import Switches, friction_rows
 from mbsd.dynamics.start.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
@@ -39,8 +36,6 @@ from mbsd.results.mobility import Mobility
 
 REFINEMENTS = 3
 """Passes at least where inertia was lifted: the second takes off the lift, the third what rounding it enlarged."""
-MOST_BLOCKS = 200
-"""Up to so many pairs of rows their sequence is kept for the next simulation."""
 
 
 def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False) -> PreparedDynamics:
@@ -79,14 +74,13 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
     always = packed.contact_rows
     spare = set() if large else set(range(always)) - set(kept)
     planned = {*kept, *spare, *range(always, len(packed.ws.phi))}
-    schur = _sequence(packed.system.row_body, blocks_of(packed, planned))
+    schur = elimination_sequence(packed.system.row_body, blocks_of(packed, planned))
     loads = pack_loads(packed)
     passes = max(apart, REFINEMENTS if light[3:].any() else 1)
     if not (spare or len(loads.friction) or passes > 1 or m.events):
         schur = with_pins(schur, packed.system, len(packed.system.row_body))
     sliding = sliding_for(friction_rows(packed), len(inertia), len(packed.ws.phi))
-    held = Held.of(schur, packed.ws, sliding, loads)
-    switches = Switches(packed, held, spare)
+    switches = Switches(packed, schur.rows, spare)
     dynamics = Dynamics(
         system=packed.system,
         laws=compiled_laws(packed, start, end),
@@ -109,7 +103,7 @@ def prepare_dynamics(m: Model, start: float, end: float, contacts: bool = False)
         end,
         mobility,
         switches,
-        joint_sticks(packed, loads, held),
+        joint_sticks(packed, loads),
         masses_apart=apart > 1,
     )
     refuse_singular_start(ready, list(kept), always)
@@ -135,16 +129,6 @@ def started(m: Model, start: float, end: float, packed: Packed | None = None) ->
 
 def _initial(m: Model, packed: Packed, start: float) -> Initial:
     return (consistent_large if packed.coordinates > MANY_COORDINATES else consistent)(m, packed, start)
-
-
-_SEQUENCES: Kept[Schur] = Kept()
-
-
-def _sequence(row_body: np.ndarray, blocks: np.ndarray) -> Schur:
-    """That of plan_schur, with rows of its own, as events change them."""
-    key = row_body.tobytes(), blocks.tobytes()
-    sequence = _SEQUENCES.get(key, lambda: plan_schur(row_body, blocks)[0]) if len(blocks) < MOST_BLOCKS else None
-    return plan_schur(row_body, blocks)[0] if sequence is None else sequence._replace(rows=sequence.rows.copy())
 
 
 def _still(packed: Packed, mobility: Mobility) -> np.ndarray:

@@ -9,7 +9,11 @@ import heapq
 
 import numpy as np
 
+from mbsd.base.kept import Kept
 from mbsd.dynamics.reference.schur import INDEX, Schur, SchurFactors, schur_factors
+
+MOST_BLOCKS = 200
+"""Up to so many pairs of rows their sequence is kept for the next simulation."""
 
 
 def plan_schur(row_body: np.ndarray, blocks: np.ndarray) -> tuple[Schur, SchurFactors]:
@@ -96,3 +100,15 @@ def _minimum_degree(neighbours: list[set[int]]) -> tuple[np.ndarray, list[set[in
             graph[other] -= {other, block}
             heapq.heappush(queue, (len(graph[other]), other))
     return np.array(order, np.int64), columns
+
+
+_SEQUENCES: Kept[Schur] = Kept()
+
+
+def elimination_sequence(row_body: np.ndarray, blocks: np.ndarray) -> Schur:
+    """Return the sequence of plan_schur, with rows of its own, as events change them."""
+    if len(blocks) >= MOST_BLOCKS:
+        return plan_schur(row_body, blocks)[0]
+    key = row_body.tobytes(), blocks.tobytes()
+    sequence = _SEQUENCES.get(key, lambda: plan_schur(row_body, blocks)[0])
+    return sequence._replace(rows=sequence.rows.copy())

@@ -11,20 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.dynamics.rows.held import OPEN, Held
-from mbsd.equations.constraints.relative import ROW
-from mbsd.kinematics.pose.mobility import independent_rows, scaled_jacobian
 from mbsd.model.contact import ContactKind
 from mbsd.model.joint import Joint
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class RunContact:
     """A contact of a run."""
 
-    held: Held
-    number: int
-    """Its place in ``held``."""
     joint: Joint
     gap: int
     """Row."""
@@ -35,20 +29,6 @@ class RunContact:
     always_closed: bool
     settle: float
     """A rebound slower than this (m/s or rad/s) is none."""
-
-    @property
-    def state(self) -> str:
-        """State of the contact: OPEN, SLIDES or STICKS."""
-        return self.held.contacts[self.number]
-
-    def set(self, state: str, sign: float = 0.0) -> None:
-        """Open, slide with this sign, or stick."""
-        self.held.contacts[self.number], self.held.sliding[self.number] = state, sign
-
-    @property
-    def sign(self) -> float:
-        """The direction of its sliding: 1, -1, or 0."""
-        return self.held.sliding[self.number]
 
     @property
     def name(self) -> str:
@@ -76,15 +56,15 @@ SETTLE = 1e-4
 
 
 class Switches:
-    """Says which rows hold now. It is made while all of them do; then all contacts are open."""
+    """The rows that hold now. It is made while all of them do; then all contacts are open."""
 
-    def __init__(self, packed: Packed, held: Held, spare: Collection[int] = ()) -> None:
-        self.packed = packed
-        self.now = held
-        self.place = {int(row): (k, s) for k, rows in enumerate(held.rows) for s, row in enumerate(rows) if row >= 0}
+    def __init__(self, packed: Packed, rows: np.ndarray, spare: Collection[int] = ()) -> None:
+        """``rows`` (blocks, 2) of the elimination sequence, which kernels read; ``spare``: those that repeat others."""
+        self.packed, self.rows = packed, rows
+        self.released: set[int] = set()
+        """Rows of joints that an event released for good."""
+        self.place = {int(row): (k, s) for k, pair in enumerate(rows) for s, row in enumerate(pair) if row >= 0}
         self.contacts: list[RunContact] = []
-        special = packed.system.special
-        self._special_of = {int(special[k, ROW]): k for k in range(len(special))}
         first = len(packed.joints) - packed.contacts
         friction = 0
         for k, joint in enumerate(packed.joints[first:], first):
@@ -95,8 +75,6 @@ class Switches:
             slippery = joint.params.get("friction", 0.0) == 0.0
             self.contacts.append(
                 RunContact(
-                    held,
-                    len(self.contacts),
                     joint,
                     row,
                     None if slippery else row + 1,
@@ -106,58 +84,36 @@ class Switches:
                 )
             )
             friction += not slippery
-        held.contacts, held.sliding = [OPEN] * len(self.contacts), [0.0] * len(self.contacts)
         for row in (*spare, *range(packed.contact_rows, len(packed.ws.phi))):
             self.release_row(row)
 
     @property
     def spare(self) -> list[int]:
         """Rows of joints that repeat others: each can stand in for one of those, or holds once those are released."""
-        held = {int(row) for row in self.bilateral()} | self.now.released
+        held = {int(row) for row in self.bilateral()} | self.released
         return [row for row in sorted(self.place) if row < self.packed.contact_rows and row not in held]
 
     def release_row(self, row: int) -> None:
-        """Row ``row`` of J no longer holds."""
+        """Let row ``row`` of J no longer hold."""
         k, s = self.place[row]
-        self.now.rows[k, s] = -1
+        self.rows[k, s] = -1
 
     def hold_row(self, row: int) -> None:
-        """Row ``row`` of J holds from now on."""
+        """Let row ``row`` of J hold from now on."""
         k, s = self.place[row]
-        self.now.rows[k, s] = row
-
-    def release(self, joint: int) -> None:
-        """Release joint number ``joint`` of the packed mechanism for good."""
-        for row in range(int(self.packed.first_row[joint]), int(self.packed.first_row[joint + 1])):
-            self.now.released.add(row)
-            if row in self.place:
-                self.release_row(row)
-
-    def hold_spare(self, q: np.ndarray) -> None:
-        """Hold the spare rows that no others repeat any more in pose q (3 nb,)."""
-        left = self.spare
-        if left:
-            held = [int(row) for row in self.bilateral()]
-            rows = [*held, *left]
-            for k in independent_rows(scaled_jacobian(self.packed, q)[rows]):
-                if k >= len(held):
-                    self.hold_row(rows[k])
-
-    def move_zero(self, row: int, residual: float) -> None:
-        """Count the way of a contact or of a joint that sticks from here, where its residual is ``residual``."""
-        self.now.remembered[self._special_of[row], 0] += residual
+        self.rows[k, s] = row
 
     def held(self) -> np.ndarray:
-        """(m,) which rows hold; joints' redundant rows do too."""
-        rows = self.now.rows[self.now.rows >= 0]
+        """Return (m,) which rows hold; joints' redundant rows do too."""
+        rows = self.rows[self.rows >= 0]
         out = np.arange(len(self.packed.ws.phi)) < self.packed.contact_rows
-        out[sorted(self.now.released)] = False
+        out[sorted(self.released)] = False
         out[rows] = True
         return out
 
     def bilateral(self) -> np.ndarray:
-        """Independent rows of joints and drivers that hold."""
-        rows = self.now.rows[self.now.rows >= 0]
+        """Return independent rows of joints and drivers that hold."""
+        rows = self.rows[self.rows >= 0]
         return np.sort(rows[rows < self.packed.contact_rows])
 
 

@@ -24,7 +24,7 @@ KEPT, VALUE, HERE, END, LAW_HERE, LAW_RATE_HERE, ROUGH, LOOSE, BEFORE, SPEED_HER
 where it ends, not a number where it does not switch; its law of time and the law's rate, 0 without one; the power of s
 by which its force grows, if that is no whole number, else 0; steps, this one included, for which it is not
 held; scratch of KEPT; rate of s where it was evaluated last and where the step ends; that rate where s last went above
-0, not a number before it ever did: events may set it back, so it belongs to the record of a run (Held)."""
+0, not a number before it ever did: events may set it back, so a run keeps it at events."""
 WIDTH = 12
 TIGHT = 1e-12
 """Fraction of the size: interactions so near to their switch are on neither side."""

@@ -45,7 +45,7 @@ from mbsd.dynamics.prepare.following import SHORTEST
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.pins import with_pins
 from mbsd.dynamics.reference.schur import Schur
-from mbsd.dynamics.reference.sequence import plan_schur
+from mbsd.dynamics.reference.sequence import elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import State
@@ -81,7 +81,7 @@ def contacts_of(
 ) -> Contacts:
     """Return contacts of a run at its start, and events of the user; all are open, and all joints slide.
 
-    ``longest``: the longest step (s). ``method``: the integrator, if there are steps. ``log``: keep impulses of impacts.
+    ``longest``: the longest step (s). ``method``: the integrator, if there are steps. ``log``: keep impulses.
     """
     own = _places(ready)
     c, n3, rows = len(own), state.y.shape[1], len(state.lam)
@@ -152,7 +152,7 @@ def _numbers(ready: PreparedDynamics) -> list[tuple[float, ...]]:
         near = STILL if contact.always_closed else CLOSED_GAP
         out.append((near / size, STILL / size, contact.settle, contact.restitution, size, 0.0, 0.0, 0.0, 0.0))
     ways = [(contact.way or 0, 0.0) for _, contact in _rough(ready)]
-    for way, sign in [*ways, *((stick.way, stick.sign) for stick in ready.sticks)]:
+    for way, sign in [*ways, *((stick.way, 1.0) for stick in ready.sticks)]:
         still = STILL / scale[way]
         out.append((still, still, 0.0, 0.0, scale[way], 0.0, 0.0, sign, 0.0))
     return out
@@ -231,7 +231,7 @@ def _without(ready: PreparedDynamics, events: Sequence[Event]) -> tuple[Schur, n
         return schur, first  # rows that stand in for others are planned in it
     blocks = schur.rows[(schur.rows >= 0).any(axis=1)]
     kept = blocks[np.argsort(blocks.max(axis=1))]
-    bare = plan_schur(packed.system.row_body, np.ascontiguousarray(kept, np.int64))[0]
+    bare = elimination_sequence(packed.system.row_body, np.ascontiguousarray(kept, np.int64))
     dry, releasing = len(ready.dynamics.loads.friction) > 0, any(may_release(event) for event in events)
     if not (dry or releasing or len(first) or ready.dynamics.passes > 1):
         bare = with_pins(bare, packed.system, packed.contact_rows, PINS)

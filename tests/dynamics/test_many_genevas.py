@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
 from mbsd import Mechanism
-from mbsd.dynamics.runs.indexing import Genevas
 from mbsd.measures import final, first, samples
 from tests.dynamics.beside_single_runs import between
 from tests.dynamics.test_geneva_energy import two_genevas
@@ -56,30 +54,14 @@ MEASURES = {
 }
 
 
-def meets_jumps(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """Times at which single simulations have passed a jump."""
-    met: list[float] = []
-    meet = Genevas._meet
-
-    def noted(self: Genevas, *arguments: Any) -> int:
-        met.append(float(arguments[3].clock[0]))
-        return meet(self, *arguments)
-
-    monkeypatch.setattr(Genevas, "_meet", noted)
-    return met
-
-
 @pytest.mark.parametrize("formulation", ["independent", "reference"])
 @pytest.mark.parametrize("case", CASES)
-def test_genevas_have_the_digits_of_single_simulations(
-    case: str, formulation: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_genevas_have_the_digits_of_single_simulations(case: str, formulation: str) -> None:
     build = CASES[case]
     measure = {**MEASURES, "W": final("Wwheel.fx" if case == "two" else "W.fx")}
     many = build().simulate_many(2.0, vary=VARY, measure=measure, steps=STEPS, formulation=formulation)
     assert many.alone == [None] * 6, many.way
     assert "anew" not in many.way
-    met = meets_jumps(monkeypatch)
     for k in range(6):
         m = build()
         for name, values in VARY.items():
@@ -88,7 +70,6 @@ def test_genevas_have_the_digits_of_single_simulations(
         assert np.array_equal(many["theta"][k], sol.body("wheel").theta)
         assert np.array_equal(many["omega"][k], sol.body("crank").omega[[STEPS // 2, STEPS]])
         assert many["work"][k] == (0.0 if sol.work is None else sol.work[-1])
-    assert (formulation == "independent") == (len(met) > 10)
 
 
 def test_starts_vary_and_rows_end_early_by_the_steps_of_whole_ones() -> None:

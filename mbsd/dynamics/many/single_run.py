@@ -18,7 +18,7 @@ from mbsd.dynamics.many.contacts.made import contacts_of, why_not
 from mbsd.dynamics.many.cylinders import has_cylinders
 from mbsd.dynamics.many.events import made as events_made
 from mbsd.dynamics.many.indexing.arrays import Genevas
-from mbsd.dynamics.many.indexing.made import genevas_of
+from mbsd.dynamics.many.indexing.made import no_genevas
 from mbsd.dynamics.many.methods import number_of
 from mbsd.dynamics.many.repeated import made as repeated_made
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
@@ -147,8 +147,7 @@ class SingleRun:
     @cached_property
     def genevas(self) -> Genevas:
         """Genevas at whose jumps steps end."""
-        state = self.state if self.independent is None else self.independent.own
-        return genevas_of(self.ready, state, self.independent)
+        return no_genevas(self.state) if self.independent is None else self.independent.genevas
 
 
 def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
 
+from mbsd.compiling.jit import Often
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
 from mbsd.dynamics.embedding.equations import write_alone
+from mbsd.dynamics.many.indexing.made import genevas_of
+from mbsd.dynamics.many.indexing.steps import run_indexed
 from mbsd.dynamics.runs.embed import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, embedding_scratch
-from mbsd.dynamics.runs.indexing import Genevas
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.reference_steps import advance
 from mbsd.dynamics.runs.run import Run
@@ -31,7 +32,7 @@ class IndependentSteps:
 
     def __init__(self, run: Run, made: Embedded, state: run_state.State) -> None:
         self.run, self.ready, self.whole = run, run.ready, state
-        self.genevas = Genevas(self.ready.packed)
+        self._run_indexed = Often(run_indexed)
         self._passing, self._passed = PASSING, -math.inf
         self._take(made)
 
@@ -86,10 +87,10 @@ class IndependentSteps:
     def _advance(self, out: run_state.Output, end: float, steps: int) -> int:
         """The integrator's own, from jump to jump where there are Genevas."""
         arrays = self.arrays, self.scratch, self.own, out, self.settings
-        advance = partial(self.ready.advance, self.run.method)
-        if self.genevas:
-            return self.genevas.through(advance, *arrays, end, steps)
-        return advance(*arrays, end, steps)
+        if len(self.genevas.body):
+            stops = self.ready.stops
+            return self._run_indexed(*arrays, self.genevas, end, steps, stops.before, stops.after)
+        return self.ready.advance(self.run.method, *arrays, end, steps)
 
     def leave(self) -> None:
         """Let the whole state be gone on from in reference coordinates."""
@@ -104,6 +105,7 @@ class IndependentSteps:
         begun = run_state.start_state(made.state(q, v), 0, float(clock[TIME]))
         self.own = begun._replace(clock=clock, count=self.whole.count)
         limit = DOUBLED * max(made.sensitivity, GOOD)
+        self.genevas = genevas_of(self.ready.packed, self.own, self.arrays, self.scratch)
         begin_at(self.arrays, self.scratch, self.own.y, float(clock[TIME]), limit)
         self._start_anew()
 

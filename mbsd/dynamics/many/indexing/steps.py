@@ -1,11 +1,19 @@
-"""Steps that end where the pin of a Geneva enters or leaves its slot: runs/indexing.py, compiled, for its reasons."""
+"""Steps in independent coordinates that end where the pin of a Geneva enters or leaves its slot.
+
+The wheel's acceleration jumps there. In reference coordinates what a step across the jump gets wrong is an impulse of
+the joint, which the projection takes off again; in independent ones it is the speed of the crank, so that each index
+would change the energy by about the tolerance. So a step ends right before the jump, and the next one begins right
+after it with new derivatives, as at jumps of laws (prepare/stops.py).
+
+    x - r = 0      x: the wheel's centre along the crank's axis, r: radius of the pin
+"""
 
 from __future__ import annotations
 
 import math
 
 from mbsd.compiling.alternatives import alternatives
-from mbsd.compiling.jit import inlined, internal, lazy
+from mbsd.compiling.jit import inlined, internal, kernel, lazy
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.embedding.equations import write_alone
 from mbsd.dynamics.many.indexing.arrays import (
@@ -22,8 +30,19 @@ from mbsd.dynamics.many.indexing.arrays import (
 from mbsd.dynamics.many.methods import USUAL
 from mbsd.dynamics.many.through import copy_state, through
 from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.dynamics.runs.bounds import MOST, MOST_UNSEEN, NEAR, ROUNDING, SHORT, SIDE
 from mbsd.dynamics.state import ACCEPTED, ERROR, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK
+
+SHORT = 1e-3
+"""Part of the way to the jump that is left, so that Newton's steps do not go beyond it."""
+MOST = 60
+SIDE = 1e-300
+"""A gap (m) that has a sign, and no size."""
+NEAR = 3.0
+"""Steps from which on a jump is gone for."""
+MOST_UNSEEN = 10
+"""Steps that are taken before it is asked again how far the next jump is."""
+ROUNDING = 8
+"""Rounding of the time, in neighbouring numbers: a jump is not found closer than this."""
 
 
 @internal
@@ -262,3 +281,9 @@ def _never(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
 
 index = alternatives({Dynamics: _never, Embedding: _index_here})
 """``through`` by the usual integrator, from jump to jump of Genevas; never in reference coordinates."""
+
+
+@kernel
+def run_indexed(dyn, scratch, state, out, settings, genevas, end, steps, before, after):
+    """``index`` in independent coordinates, called from Python."""
+    return _index(dyn, scratch, state, out, settings, genevas, end, steps, before, after)

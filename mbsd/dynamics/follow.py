@@ -13,7 +13,7 @@ from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs.recording import Recording, Snapshot
 from mbsd.dynamics.runs.reference_steps import step_to
-from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.run import INDEPENDENT, Run
 from mbsd.dynamics.runs.to_end import to_end
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
 from mbsd.model.event import Event
@@ -63,7 +63,7 @@ def resumed(
     ``passes_singular``: take the steps that pass singular poses at once, where the run was in independent coordinates.
     """
     passes_singular = passes_singular and recording.independent
-    smooth = not (events or ready.switches.contacts or ready.sticks)
+    smooth = not (events or ready.is_switched)
     began = np.array([snapshot.time for snapshot in recording.snapshots])
     which = np.maximum(np.searchsorted(began, times, side="right") - 1, 0)
     outputs = np.searchsorted(recording.out.t, times, side="right") - 1
@@ -91,7 +91,6 @@ def resumed(
             met.to(float(times[last - 1]))
             piece = recording_of(met)
         elif not passes_singular:
-            ready.following.settle(*state.y)
             try:
                 step_to(run, state, out, float(times[last - 1]))
                 held = np.broadcast_to(ready.switches.held(), out.lam.shape)
@@ -126,7 +125,7 @@ def _followed(
 ) -> Recording:
     state, out = ready.begun(times)
     ready.approaches.forget()
-    if not events and not ready.switches.contacts and not ready.sticks:
+    if run.formulation == INDEPENDENT or not (events or ready.is_switched):
         begun = Snapshot(state.y.copy(), float(state.clock[TIME]), float(state.clock[WORK]))
         independent = to_end(run, state, out, progress)
         held = ready.switches.held()[None].repeat(len(times), axis=0)

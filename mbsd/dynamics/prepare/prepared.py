@@ -62,9 +62,12 @@ class PreparedDynamics:
         advancing: Any = self.advancing[key]
         if self.approaches:
             advancing = partial(self.approaches.through, advancing)
-        if self.following and isinstance(arrays, Dynamics):
-            return self.following.through(partial(self.stops.through, advancing), arrays, *rest)
         return self.stops.through(advancing, arrays, *rest)
+
+    @property
+    def is_switched(self) -> bool:
+        """True if steps are looked at one by one: rows of J come and go, or points and wheels are followed."""
+        return bool(self.switches.contacts or self.sticks or self.switches.spare or self.following)
 
     @cached_property
     def _sizes(self) -> np.ndarray:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from mbsd.dynamics import state as run_state
-from mbsd.dynamics.prepare.exchange import exchange_rows
-from mbsd.dynamics.rows.bounds import LOOK
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.refusal import refusal
 from mbsd.dynamics.runs.run import Run
@@ -39,25 +37,5 @@ def check_callbacks(run: Run, state: run_state.State, accepted: bool) -> None:
 def step_to(run: Run, state: run_state.State, out: run_state.Output, end: float) -> None:
     """Go on to ``end`` (s) a step at a time, with word of long runs. Raises SimulationError."""
     pace = Pace(run, state, end, None)
-    turn = 0
-    while True:
-        if turn % LOOK == 0:
-            exchange_rows(run.ready, state)
-        turn += 1
-        status = advance(run, state, out, end, 1)
+    while advance(run, state, out, end, 1) != run_state.REACHED:
         pace.note()
-        if status == run_state.REACHED:
-            return
-
-
-def some_steps(run: Run, state: run_state.State, out: run_state.Output, end: float) -> int:
-    """As :func:`advance`, with a look at rows that repeat others now and then."""
-    if not run.ready.switches.spare:
-        return advance(run, state, out, end, run.steps_at_once)
-    status = run_state.PAUSED
-    for _ in range(0, run.steps_at_once, LOOK):
-        exchange_rows(run.ready, state)
-        status = advance(run, state, out, end, LOOK)
-        if status == run_state.REACHED:
-            break
-    return status

@@ -15,7 +15,7 @@ from mbsd.dynamics.runs.carried_steps import CarriedSteps, can_carry
 from mbsd.dynamics.runs.embed import NO_PLAN, Embedded, can_embed, embed, embedded_at_start
 from mbsd.dynamics.runs.independent_steps import IndependentSteps
 from mbsd.dynamics.runs.pace import Pace
-from mbsd.dynamics.runs.reference_steps import some_steps
+from mbsd.dynamics.runs.reference_steps import advance
 from mbsd.dynamics.runs.run import AUTO, INDEPENDENT, REFERENCE, Run
 
 
@@ -72,7 +72,7 @@ def in_reference(
             fill_multipliers(run.ready.packed, run.ready.dynamics, out.t, out.y, out.lam, out.margin)
         return
     pace = None if progress is None else Pace(run, state, end, progress)
-    while some_steps(run, state, out, end) != run_state.REACHED:
+    while advance(run, state, out, end, run.steps_at_once) != run_state.REACHED:
         pace = pace or Pace(run, state, end, progress)
         pace.note()
     if pace is not None:

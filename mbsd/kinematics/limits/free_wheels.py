@@ -42,21 +42,6 @@ class FreeWheels:
     def __bool__(self) -> bool:
         return bool(self.pairs)
 
-    def approach(self, before: np.ndarray, after: np.ndarray, h: float) -> float:
-        """How far centres come nearer to each other in a step of h (s) between states (2, 3 nb), over how far they may.
-
-        Either by the straight way from line to line, or at the speed with which the step began.
-        """
-        most = 0.0
-        for _, i, j in self.pairs:
-            line, later = self._line(before[0], i, j), self._line(after[0], i, j)
-            way, apart = later - line, math.hypot(*line)
-            part = min(max(-float(line @ way) / max(float(way @ way), 1e-300), 0.0), 1.0)
-            rate = float(line @ self._rate(before, i, j))
-            nearer = max(apart - math.hypot(*(line + part * way)), -h * rate / apart)
-            most = max(most, nearer / (HALF * apart))
-        return most
-
     def refuse_met(self, time: float, q: np.ndarray) -> None:
         """Raise SimulationError where the centres of two wheels have met at a time (s) in the pose q (3 nb,)."""
         for joint, i, j in self.pairs:

@@ -18,7 +18,7 @@ least to others from which it does not follow."""
 
 
 class Repeated(NamedTuple):
-    """k rows: all of joints and drivers, in order; see prepare/exchange.py."""
+    """k rows: all of joints and drivers, in order; see exchange.py."""
 
     place: Any
     """(k, 3) int"""

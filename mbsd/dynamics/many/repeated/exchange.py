@@ -1,7 +1,15 @@
-"""Rows that hold, exchanged for better ones on the way: prepare/exchange.py, compiled.
+"""Rows of joints that repeat others, exchanged during a run for rows that are further from dependent.
+
+The equations of motion hold r independent rows of J. Which r does not matter to the motion, but rows that are
+independent at the start may become dependent on the way: of three equal cranks the two that are kept can lie flat where
+the third does not. Multipliers and rounding grow there without bound, although nothing is singular. So now and then the
+rows are chosen anew by pivoted QR of all, and taken where their least singular value is clearly the larger.
 
 Pivoted QR of J^T is here the pivoted Cholesky factor of J J^T, which takes the same rows in the same order; the least
 singular value of some rows is the root of the least eigenvalue of their products, found by inverse iteration.
+
+Source: Wehage and Haug 1982, J. Mech. Design 104, 247 (choice by factorisation); Golub and Van Loan, Matrix
+Computations, sec. 5.4 (pivoted QR).
 """
 
 from __future__ import annotations

@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.dynamics.many.repeated.arrays import BETTER, FOLLOWS, HELD, OPENED, ROW, SCALE, UNTIL, Repeated
-from mbsd.dynamics.prepare.exchange import WORN
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.start.large import MANY_COORDINATES
 from mbsd.kinematics.pose.mobility import BETTER as FACTOR
 from mbsd.kinematics.pose.mobility import RANK_TOLERANCE
+
+WORN = 1e3
+"""As FACTOR where friction of joints comes from these rows' multipliers: other rows divide the load otherwise."""
 
 
 def why_not(ready: PreparedDynamics) -> str | None:

@@ -1,4 +1,4 @@
-"""Bounds of the search for events and of impacts, for single simulations and for the compiled loop over many."""
+"""Bounds of the search for events and of impacts."""
 
 from __future__ import annotations
 

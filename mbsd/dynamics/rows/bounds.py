@@ -1,4 +1,4 @@
-"""Bounds of rows of joints that repeat others, for single simulations and for the compiled loop over many."""
+"""Bounds of rows of joints that repeat others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The division of friction among joints at rest that loads none of them more than it must, compiled.
+"""The division of friction among joints at rest that loads none of them more than it must.
 
 Joints p of a basis, as many as there are freedoms, move as they like, and the others with them, at rates
 

@@ -1,4 +1,4 @@
-"""Forces with which contacts that stick and joints at rest hold each other, compiled: a linear programme.
+"""Forces with which contacts that stick and joints at rest hold each other: a linear programme.
 
 Contacts push with N >= 0, ways at rest are held by T, and all together keep rows of J from moving, G (N, T) = b. Many
 N and T do; of those the ones are chosen that ask for the smallest part s of what Coulomb's law allows,

@@ -1,4 +1,4 @@
-"""The smallest part of their limits with which contacts that stick and joints at rest hold each other, compiled.
+"""The smallest part of their limits with which contacts that stick and joints at rest hold each other.
 
     minimise s   with   |T_k| <= s (mu_k N_k + L_k),   N >= 0,   G (N, T) = G (N, T)_raw
 

@@ -43,7 +43,7 @@ NEVER, AFTER, BEFORE_AND_AFTER = 0.0, 1.0, 2.0
 OUTSIDE = -1.0
 APART, JOINTS, TOGETHER = 0.0, 1.0, 2.0
 PARTS = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
-"""Parts of a step at which gaps and normal forces are looked at, as events/crossing.py does."""
+"""Parts of a step at which gaps and normal forces are looked at."""
 MOST_LOOKS = 80
 KINETIC, STATIC, FORCED, BROKEN, GUESS, NEXT_SIGN, BESIDE, HOLDING = range(8)
 """Columns of Friction.number: coefficients while it slides and while it sticks; the direction in which what was met
@@ -162,7 +162,7 @@ class Contacts(NamedTuple):
     trial: Any
     """The same, somewhere within it."""
     quintic: Any
-    """(6, 3 nb) of the step; see events/dense.py."""
+    """(6, 3 nb) of the step; see within.py."""
     pose: Any
     """(2, 3 nb) coordinates and velocities on it."""
     rates: Any

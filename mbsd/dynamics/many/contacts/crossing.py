@@ -1,6 +1,13 @@
-"""Which contact closes, opens, slips or comes to rest first in a step, and when: events/crossing.py, compiled.
+"""Which contact closes, opens, slips or comes to rest first in a step, and when.
 
-k: a row of Contacts, whose scalar within.py says.
+Interior samples of the step's quintic also find scalars that dip below zero and come back, and those that leave zero
+at the start of the step (a bounce) and return within it. What dips between two samples is found by its minimum
+(dips.py). A gap that begins within rounding of zero, or an error of the integrator below, and opens by its rate and its
+acceleration, does not close there: a multistep method begins anew with steps of order one, whose errors in places are
+above the gap while it is so young. A scalar that the quintic shows below zero is looked at again along the motion
+itself, and the root is one of the motion.
+
+k: a row of Contacts, whose scalar within.py says; behind the last row come the events of the user.
 """
 
 from __future__ import annotations

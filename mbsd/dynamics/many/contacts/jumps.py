@@ -1,6 +1,19 @@
 """What changes where contacts close, open, slide or stick: impacts, then what each does from now on.
 
-events/jumps.py, events/laws/impact.py and stick_slip.py for contacts, compiled; formulas stand there.
+By Poisson's law with Coulomb friction in both phases of an impact:
+
+    compression   0 <= N_c  complementary to  g' >= 0,    |T_c| <= mu N_c
+    expansion     N_e = e N_c + N,  0 <= N complementary to g' >= 0,   |T_e| <= mu N_e
+
+For one contact without friction this is Newton's law, g'+ = -e g'-. Impacts pass on in rounds: a round takes the
+contacts that approach, all at once; those that approach by its impulses are the next round, as in Newton's cradle.
+Friction of joints is left out of impacts. Then contacts that do not separate push so that gaps do not close (pushes.py),
+and slide or stick (friction/decisions.py). A rebound too slow to count ends here: its rate must not go on into
+accelerations, which would turn bodies that two contacts hold.
+
+Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts, ch. 8; Glocker, Simulation von harten
+Kontakten, on rounds and on laws that keep the energy from growing (sure where all coefficients of restitution in a
+round are equal).
 """
 
 from __future__ import annotations

@@ -1,11 +1,16 @@
 """What is looked at within a step, on its quintic, which shows where to look, and of the motion itself.
 
     open contact    its gap (of a clutch its rate)      closed contact    its normal force N
-    it slides       its speed                           it sticks         mu_s N - |T|
+    it slides       its speed, sign kept                it sticks         mu_s N - |T|
+    user's event    its value, sign kept
 
-Each is that of a row of Contacts: of a gap, or of a way; sticking/ways.py says what those of joints are.
+Each is that of a row of Contacts: of a gap, or of a way; sticking/ways.py says what those of joints are. Scalars are
+not negative now, and mean an event where they fall through zero.
 
-The quintic is that of events/dense.py; the motion itself is found by going on from the start of the step.
+    q(x) = q_0 + h v_0 x + h^2 a_0 x^2 / 2 + ... x^5        x = (t - t_0) / h
+
+The quintic has places, velocities and accelerations of both ends of the step; the motion itself is found by going on
+from the start of the step.
 """
 
 from __future__ import annotations

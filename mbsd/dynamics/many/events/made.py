@@ -160,6 +160,6 @@ def _arm(ready: PreparedDynamics, marker: Marker) -> tuple[float, float, float]:
 
 
 def _away(ready: PreparedDynamics) -> np.ndarray:
-    """(4, 3 nb), as events/sides.py has them."""
+    """Return (4, 3 nb) small changes of a state."""
     sizes = np.concatenate([np.zeros(3), ready.packed.column_scale()])
     return np.array([NEAR * sizes * np.resize(signs, len(sizes)) for signs in ROUNDINGS])

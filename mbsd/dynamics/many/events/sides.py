@@ -1,4 +1,8 @@
-"""The side of zero on which events are: events/sides.py, compiled."""
+"""The side of zero on which events are: their value, what of it is rounding, where it goes next.
+
+A value is zero if it changes by no less where the state changes by what counts as no distance. The side of a value that
+is zero is that of its next values, along the motion's own acceleration; none where it stays zero.
+"""
 
 from __future__ import annotations
 

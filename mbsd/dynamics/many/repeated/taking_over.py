@@ -1,4 +1,4 @@
-"""Rows that hold once an event has released those that they repeat: Switches.hold_spare, compiled."""
+"""Rows that hold once an event has released those that they repeat."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which event of the user is the first to pass zero in a step: events/crossing.py, compiled."""
+"""Which event of the user is the first to pass zero in a step."""
 
 from __future__ import annotations
 

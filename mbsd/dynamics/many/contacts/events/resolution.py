@@ -1,4 +1,9 @@
-"""At how many parts of a step an event is looked at: events/resolution.py, compiled."""
+"""At how many parts of a step a function of the user is looked at.
+
+As often as ``shortest`` asks for; else one more value tells whether the polynomial through the first ones knows the
+function. If not, intervals whose middle is not what the neighbours let expect are halved. What comes after the first
+negative value is not looked at.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Which contacts with friction slide from now on and which stick: events/laws/stick_slip.py for contacts, compiled.
+"""Which contacts with friction slide from now on and which stick.
 
-0 <= N complementary to g'' >= 0;   sliding: T = -mu N sign(s');   s' = 0: |T| <= mu_s N, s'' = 0 or against T
+    0 <= N complementary to g'' >= 0;   sliding: T = -mu N sign(s');   s' = 0: |T| <= mu_s N, s'' = 0 or against T
 """
 
 from __future__ import annotations
@@ -50,9 +50,10 @@ def note_met(contacts, met, lam):
 
 @internal
 def one_by_one(contacts):
-    """Return True if contacts may come to their limits one by one; see events/laws/together.py.
+    """Return True if contacts may come to their limits one by one: none loses friction, no joint sticks.
 
-    Not where they do so again and again at one time.
+    What one at its limit lacks the others carry, and nothing moves before all of them are there. Not where they come to
+    their limits again and again at one time.
     """
     number = contacts.friction.number
     out = contacts.sticks.joint.shape[0] == 0 and contacts.clock[AT_ONCE] <= IN_TURN * gaps_of(contacts)

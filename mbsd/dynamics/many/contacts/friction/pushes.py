@@ -1,9 +1,18 @@
-"""Normal forces and friction at a pose, as forces or as impulses.
+"""Normal forces and friction of closed contacts and of joints that stick, as a linear complementarity problem.
+
+In accelerations, or in velocities for impulses; without N and T gaps open with g, ways go on with s:
 
     0 <= N complementary to g + G_n N + G_nt T >= 0;    |T| <= mu N + L, and the way rests or goes against T
 
-L is the whole limit of a joint, whose normal force is none of N. This is events/laws/complementarity.py, compiled; the
-formulas in N, T = T+ - T- and the slack of the limit stand there.
+in N, T = T+ - T-, and the slack l of the friction limit:
+
+    w  = G_n N + G_nt T + g                  w+ = G_tn N + G_t T + l + s
+    w_l = mu N + L - T+ - T-                 w- = -(G_tn N + G_t T) + l - s
+
+L is the limit of friction of a joint, whose normal force is none of N.
+
+Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts, ch. 5; Stewart, Trinkle 1996, Int. J. Numer.
+Meth. Eng. 39.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""Joints that stick, and friction of joints beside contacts, in the compiled loop: events/laws/, compiled."""
+"""Joints that stick, and friction of joints beside contacts, in the compiled loop."""

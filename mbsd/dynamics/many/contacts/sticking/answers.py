@@ -2,7 +2,7 @@
 
     M a + J^T lam = Q,   J a = gamma          M dv + J^T p = impulse,   J dv = 0
 
-As events/laws/compliance.py has it, by the factors of dynamics/reference/acceleration.py.
+By the factors of dynamics/reference/acceleration.py.
 """
 
 from __future__ import annotations

@@ -1,4 +1,14 @@
-"""Friction of joints that slide beside others at rest, as events/laws/beside.py has it, compiled."""
+"""Friction of joints that slide beside others at rest, where these share what holds them.
+
+The rows that hold say what the motion is, and with it the friction of joints that slide. What is at rest may carry
+otherwise than they say, and then presses the sliding joints otherwise. Whether it holds is therefore asked with the
+friction that belongs to the forces by which it holds,
+
+    T_raw(x) = T_raw + Y (x - x_0),   G_rr Y = - J_r a_x        r: rows that hold
+
+x (f,) normal forces of all joints with friction, x_0 those of the rows that hold; a_x (n, f) accelerations by the
+friction of joints that slide under unit normal forces. All is linear in x.
+"""
 
 from __future__ import annotations
 

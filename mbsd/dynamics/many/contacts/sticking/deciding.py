@@ -1,4 +1,13 @@
-"""What gaps that stay closed and joints that may stick do from now on: events/laws/stick_slip.py, compiled."""
+"""What gaps that stay closed and joints that may stick do from now on: open, slide or stick.
+
+For contacts that do not separate and joints at rest, in accelerations (friction/pushes.py):
+
+    0 <= N complementary to g'' >= 0;   sliding: T = -mu N sign(s');   s' = 0: |T| <= L, s'' = 0 or against T
+
+L = mu_s N of a contact, mu_s (N + N_0) of a joint, whose N is the size of a reaction and no unknown of that problem: it
+is solved again with the N of the joints that it gives, until both agree, by the iteration of joint_friction.py. T that
+several joints at rest can share is shared (events/laws/division.py).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""What changes at an event where joints have friction: impacts, then which rows hold (events/jumps.py, compiled)."""
+"""What changes at an event where joints have friction, or contacts lose some: impacts, then which rows hold.
+
+The impacts are those of contacts (contacts/jumps.py); what holds from now on is decided with the friction of joints.
+"""
 
 from __future__ import annotations
 

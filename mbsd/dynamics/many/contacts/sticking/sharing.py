@@ -1,4 +1,21 @@
-"""How joints at rest share a friction that several of them could carry, as events/laws/resting.py has it, compiled."""
+"""Joints at rest that hold each other: what each carries, and how near they are to giving way.
+
+One set of rows holds them, and its multipliers carry all. The friction is shared among all joints at rest
+(events/laws/division.py);
+their limits depend on reactions, which change with the shares, so it is shared again until both agree. Contacts that
+are closed react, so that their gaps stay closed, and with them the friction of those that slide:
+
+    V = V_t - V_h G_h^-1 G_ht,   G = J_t V     h: rows of contacts that hold; the gap of one that slides pushes along
+                                               its way too
+
+V (n, k) are accelerations by unit friction T. What contacts hold by themselves no joint needs to. Where contacts slide,
+G is not symmetric, and two questions part:
+
+    V d = 0     T may change by d: nothing moves differently. As  V^T M V d = 0  it is one of a symmetric compliance
+    G d = 0     joints stay at rest, though what else moves may move differently, as the contacts press more or less
+
+The first is how friction is shared, the second how near joints are to giving way: Coulomb's law asks no more of them.
+"""
 
 from __future__ import annotations
 

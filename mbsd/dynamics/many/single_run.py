@@ -14,7 +14,7 @@ from mbsd.dynamics.embedding.coordinates import Coordinate
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.many.arguments import kind_of
 from mbsd.dynamics.many.contacts.arrays import Contacts
-from mbsd.dynamics.many.contacts.made import contacts_of, why_not
+from mbsd.dynamics.many.contacts.made import contacts_of
 from mbsd.dynamics.many.cylinders import has_cylinders
 from mbsd.dynamics.many.events import made as events_made
 from mbsd.dynamics.many.indexing.arrays import Genevas
@@ -161,7 +161,7 @@ def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:
     if events and asked.formulation == INDEPENDENT:
         raise NotCompiled("formulation='independent' does not know events")
     ready = prepare_dynamics(m, float(times[0]), float(times[-1]), contacts=True)
-    _refuse(ready, events)
+    _refuse(ready)
     if reactive and ready.approaches:
         raise NotCompiled("reactions where the damping of a contact remembers how fast it approached")
     if reactive and ready.following.rows:
@@ -180,10 +180,10 @@ def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:
     return SingleRun(ready, run, state, independent, [] if made is None else made.coordinates, {**m.traces}, events)
 
 
-def _refuse(ready: PreparedDynamics, events: list[Event]) -> None:
+def _refuse(ready: PreparedDynamics) -> None:
     """Raise NotCompiled for what Python decides between steps, and what it looks at after a simulation."""
     packed = ready.packed
-    why = why_not(ready, events) or repeated_made.why_not(ready)
+    why = repeated_made.why_not(ready)
     if why is not None:
         raise NotCompiled(why)
     slow = [callback.what for callback in packed.specials.callbacks if not callback.compiled]

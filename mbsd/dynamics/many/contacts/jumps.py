@@ -7,9 +7,9 @@ By Poisson's law with Coulomb friction in both phases of an impact:
 
 For one contact without friction this is Newton's law, g'+ = -e g'-. Impacts pass on in rounds: a round takes the
 contacts that approach, all at once; those that approach by its impulses are the next round, as in Newton's cradle.
-Friction of joints is left out of impacts. Then contacts that do not separate push so that gaps do not close (pushes.py),
-and slide or stick (friction/decisions.py). A rebound too slow to count ends here: its rate must not go on into
-accelerations, which would turn bodies that two contacts hold.
+Friction of joints is left out of impacts. Then contacts that do not separate push so that gaps do not close
+(pushes.py), and slide or stick (friction/decisions.py). A rebound too slow to count ends here: its rate must not go on
+into accelerations, which would turn bodies that two contacts hold.
 
 Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts, ch. 8; Glocker, Simulation von harten
 Kontakten, on rounds and on laws that keep the energy from growing (sure where all coefficients of restitution in a

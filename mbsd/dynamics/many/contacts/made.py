@@ -55,20 +55,8 @@ from mbsd.kinematics.limits.free_wheels import HALF, MET
 from mbsd.model.event import Event
 from mbsd.model.teeth import with_radii
 
-MOST = 40
-"""Contacts of which all meet all others in small full matrices."""
 PINS = 2
 """Pins from which on steps without contacts go their own way (reference/pins.py): a third less an evaluation."""
-
-
-def why_not(ready: PreparedDynamics, events: Sequence[Event]) -> str | None:
-    """Why events of this mechanism, and those of the user, are left to single simulations, or None."""
-    contacts, sticks = ready.switches.contacts, ready.sticks
-    if (contacts or sticks or events) and ready.approaches:
-        return f"'{[*contacts, *sticks, *events][0].name}' is beside a contact that remembers how fast it began"
-    if len(contacts) + len(sticks) > MOST:
-        return f"it has {len(contacts) + len(sticks)} contacts and joints that stick; {MOST} at most"
-    return None
 
 
 def contacts_of(

@@ -2,8 +2,8 @@
 
 One set of rows holds them, which says nothing of what each carries: where a ball lies between floor and face of a
 slider that sticks in its guide, any of the three may stick less. Of all forces that keep them at rest those are found
-that need the smallest part s of what Coulomb's law allows (events/laws/least_part.py); limits of joints depend on reactions, so it is
-done again until both agree. They hold while s <= 1, whatever rows hold them.
+that need the smallest part s of what Coulomb's law allows (events/laws/least_part.py); limits of joints depend on
+reactions, so it is done again until both agree. They hold while s <= 1, whatever rows hold them.
 """
 
 from __future__ import annotations

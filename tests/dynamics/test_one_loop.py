@@ -1,0 +1,75 @@
+"""What only single simulations could do once is done in the loop of many, too."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mbsd import Mechanism
+from mbsd.compiling.jit import kernel
+from mbsd.dynamics.many.contacts.sticking.giving_way import solve_least
+from mbsd.measures import final, samples
+
+
+def discs(count: int) -> Mechanism:
+    """Discs that fall side by side on a floor, each by its own rail."""
+    m = Mechanism("discs", gravity=(0, -9.81))
+    for k in range(count):
+        disc = m.body(f"d{k}", 1.0, inertia=0.01)
+        m.rigid_contact(f"floor{k}", m.ground.origin, disc.origin, radius=0.1, restitution=0.5)
+    m.start_near(**{f"d{k}": (0.3 * k, 0.2 + 0.01 * k, 0.0) for k in range(count)})
+    return m
+
+
+def test_more_than_forty_contacts_go_in_the_loop() -> None:
+    m = discs(45)
+    many = m.simulate_many(0.4, vary={"d44": {"mass": [1.0, 2.0]}}, measure={"y": final("d44.y")}, steps=4)
+    assert many.way == "all of 2 in the compiled loop"
+    sol = m.simulate(0.4, steps=4)
+    assert len({event.name for event in sol.events}) == 45
+    np.testing.assert_allclose(many["y"], sol.body("d44").y[-1], rtol=1e-12)
+
+
+def test_contacts_that_remember_their_approach_stand_beside_stops() -> None:
+    m = Mechanism("soft", gravity=(0, -9.81))
+    ball, other = m.body("ball", 1.0, inertia=0.01), m.body("other", 1.0, inertia=0.01)
+    m.contact("soft", m.ground.origin, ball.origin, radius=0.1, stiffness=1e5, restitution=0.6)
+    m.rigid_contact("hard", m.ground.origin, other.origin, radius=0.1, restitution=0.6)
+    m.start_near(ball=(0, 0.4, 0), other=(1, 0.3, 0))
+    times = np.linspace(0.0, 0.8, 9).tolist()
+    many = m.simulate_many(vary={"ball": {"mass": [1.0, 1.5]}}, measure={"y": samples("ball.y", times)}, times=times)
+    assert many.way == "all of 2 in the compiled loop"
+    for k, mass in enumerate((1.0, 1.5)):
+        m.change("ball", mass=mass)
+        np.testing.assert_allclose(many["y"][k], m.simulate(times=times).body("ball").y, atol=1e-9)
+
+
+@pytest.mark.parametrize("method", ["rk4", "radau", "generalized_alpha", "scipy-dop853"])
+def test_every_integrator_meets_a_bounce(method: str) -> None:
+    m = discs(1)
+    options = {"step": 1e-4} if method in ("rk4", "generalized_alpha") else {}
+    sol, exact = (m.simulate(0.5, steps=5, **more) for more in ({"method": method, **options}, {"tolerance": 1e-11}))
+    assert [event.what for event in sol.events] == [event.what for event in exact.events]
+    np.testing.assert_allclose([event.time for event in sol.events], [event.time for event in exact.events], atol=1e-6)
+    np.testing.assert_allclose(sol.body("d0").y, exact.body("d0").y, atol=1e-6)
+
+
+@kernel
+def least(table, n):
+    """``solve_least`` for tests."""
+    solve_least(table, n)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(1, 7), st.integers(1, 7), st.integers(0, 2**32 - 1))
+def test_the_shortest_solution_is_that_of_numpy(n: int, rank: int, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    matrix = random.normal(size=(n, rank)) @ random.normal(size=(rank, n))
+    right = random.normal(size=n)
+    table = np.zeros((n, 2 * n + 2))
+    table[:, :n], table[:, n : 2 * n], table[:, 2 * n] = matrix, np.eye(n), right
+    least(table, n)
+    expected = np.linalg.lstsq(matrix, right, rcond=1e-10)[0]
+    np.testing.assert_allclose(table[:, 2 * n + 1], expected, atol=1e-6 * max(1.0, np.abs(expected).max()))

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.arrays.directory import directory
 from mbsd.base.codes import CYCLOIDAL, HARMONIC, POLYNOMIAL
 from mbsd.base.errors import MechanismError
 from mbsd.dynamics.many.base import Base
@@ -42,16 +43,11 @@ def law_columns(designs: Designs, base: Base, varied: Sequence[Varied]) -> list[
 
 def _of_force(designs: Designs, base: Base, name: str, own: Sequence[Varied]) -> list[tuple[int, np.ndarray]] | None:
     ready, laws = base.run.ready, base.arguments[0].laws
-    first = 1 + len(ready.packed.motions)
-    for force in ready.packed.forces:
-        if force.name == name:
-            break
-        first += len(force.laws)
     rows = _rows(designs, name, own, ready.start, ready.end)
     if rows is None:
         return None
     columns: list[tuple[int, np.ndarray]] = []
-    for k, compiled in enumerate(zip(*rows, strict=True), first):
+    for k, *compiled in zip(directory(ready.packed)[name].law, *rows, strict=True):
         begin, end = int(laws.first[k]), int(laws.first[k + 1])
         if any(kind != laws.kind[k] or len(numbers) != end - begin for kind, numbers in compiled):
             return None

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.arrays.directory import directory, made_of_masses, numbers_of
 from mbsd.base.arguments import SMALLEST
 from mbsd.base.errors import MechanismError
 from mbsd.dynamics.embedding.arrays import Embedding
@@ -32,8 +33,6 @@ from mbsd.model.force import Force
 
 ROUNDING = 1e-12
 """Part of a number by which it may differ from that of a row prepared in full."""
-FRAME = 7
-"""Numbers of an interaction before its own."""
 Column = tuple[int, np.ndarray]
 """Place in the block, and values (n,) of all rows."""
 
@@ -102,24 +101,15 @@ class Patches:
     # -- forces --------------------------------------------------------------------------------------------------
 
     def _of_force(self, name: str, values: dict[str, np.ndarray]) -> Iterator[Column]:
-        m, loads = self.designs.m, self.dyn.loads
+        loads = self.dyn.loads
         force, masses = self._plain(name, values), self.ready.packed.masses
         if force.kind.of_reactions or force.kind.oil or force.kind.chamber or "function" in force.params:
             raise NotPatched(f"force '{name}'")
-        places: list[int] = []
-        term = number = 0
-        for other in m.forces.values():
-            own = force if other.name == name else other
-            terms = range(term, term + sum(len(element.terms) for element in own.kind.elements(own)))
-            if own is force:
-                places += [self.base.layout.place(loads.number, k, c) for k in terms for c in range(3)]
-            term = terms.stop
-            for interaction in own.kind.interactions(own, masses):
-                if own is force:
-                    first = int(loads.interaction[number, 3]) + FRAME + interaction.calls_law
-                    places += [self.base.layout.place(loads.given, first + c) for c in range(len(interaction.numbers))]
-                number += 1
-        numbers = numbers_of_force(force, masses)
+        entries = directory(self.ready.packed)[name].entries(loads)
+        places = [self.base.layout.place(array, *index) for array, index in entries]
+        numbers = numbers_of(force, masses)
+        if len(numbers) != len(places):
+            raise NotPatched(f"{', '.join(values)} of '{name}'")
         varying = [k for k, value in enumerate(numbers) if isinstance(value, np.ndarray)]
         if self.designs.exact and varying:  # arrays may be rounded otherwise than single numbers
             rows = np.array([self._row_of_force(force, values, row) for row in range(self.designs.count)], float)
@@ -130,7 +120,7 @@ class Patches:
     def _row_of_force(self, force: Force, values: dict[str, np.ndarray], row: int) -> list[Any]:
         params = {key: float(column[row]) for key, column in values.items()}
         own = replace(force, params={**force.params, **params})
-        return numbers_of_force(own, self.ready.packed.masses)
+        return numbers_of(own, self.ready.packed.masses)
 
     def _plain(self, name: str, values: dict[str, np.ndarray]) -> Force:
         """The force with arrays in place of numbers, if they are parameters that nothing else is made of."""
@@ -155,8 +145,7 @@ class Patches:
         force = self.designs.m.forces[name]
         made = replace(force, params={**force.params, **params})
         try:
-            made.kind.elements(made)
-            made.kind.interactions(made, self.ready.packed.masses)
+            numbers_of(made, self.ready.packed.masses)
         except Exception:
             raise NotPatched(f"{', '.join(values)} of '{name}'") from None
         return made
@@ -211,15 +200,8 @@ class Patches:
         moving = whole[:, 3:] / np.where(per_size > 0.0, per_size, 1.0)[3:] ** 2
         if not (moving > 0.0).all() or (moving.max(axis=1) > USUAL * moving.min(axis=1)).any():
             raise NotPatched("masses that are zero or far apart")
-        packed = self.ready.packed
-        other = packed.masses._replace(mass=2.0 * packed.masses.mass + 1.0, inertia=2.0 * packed.masses.inertia + 1.0)
-        for force in packed.forces:
-            made = [
-                [list(interaction.numbers) for interaction in force.kind.interactions(force, masses)]
-                for masses in (packed.masses, other)
-            ]
-            if made[0] != made[1]:
-                raise NotPatched(f"force '{force.name}' is made of masses")
+        for name in made_of_masses(self.ready.packed):
+            raise NotPatched(f"force '{name}' is made of masses")
 
     # -- starts --------------------------------------------------------------------------------------------------
 
@@ -258,13 +240,6 @@ def coordinates_along(coordinates: list[Any], q: np.ndarray, v: np.ndarray) -> n
             out[:, 0, 3 + k] = [coordinate.at(row) for row in q]
             out[:, 1, 3 + k] = [coordinate.rate(*row) for row in zip(q, v, strict=True)]
     return out
-
-
-def numbers_of_force(force: Force, masses: Any) -> list[Any]:
-    """All numbers of its elements and interactions, in the order in which they are packed."""
-    terms = (addend for element in force.kind.elements(force) for addend in element.terms)
-    out = [value for addend in terms for value in (addend.a, addend.b, addend.c)]
-    return out + [value for interaction in force.kind.interactions(force, masses) for value in interaction.numbers]
 
 
 def _same(a: Any, b: Any) -> bool:

@@ -22,7 +22,7 @@ from typing import Any
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
-from mbsd.model.body import Marker
+from mbsd.model.body import Marker, rod_inertia
 from mbsd.model.change import BAR, BODY, change, given, given_body
 from mbsd.model.joint import Joint
 from mbsd.model.laws import Motion
@@ -31,6 +31,8 @@ from mbsd.model.saved_model import SavedModel
 
 AXES = {"x": 0, "y": 1}
 PLACE = ("x", "y", "angle")
+ROD_ALIKE = 1e-9
+"""Relative difference below which a bar's inertia is that of a uniform rod."""
 LISTED = 12
 """Numbers of a thing that a message lists."""
 START = {"start": ("angle", "x", "y"), "moving": ("omega", "vx", "vy")}
@@ -99,10 +101,41 @@ def number_in(m: Model, whole: str, rest: str, asked: str) -> Number:
     return number
 
 
+def place_in(m: Model, name: str, axis: str) -> Number:
+    """Return the coordinate "x" or "y" of a traced point, or else of the place of a joint. Raises ModelError."""
+    if name not in m.traces and name not in m.joints:
+        raise ModelError(f"{m.name}: {no_such('joint or traced point', name, [*m.joints, *m.traces])}")
+    if name in m.traces:
+        return _of_trace(m, name, axis)
+    return _of_marker(m, f"{name}.{axis}", name, placed_side(m, m.joints[name]), axis)
+
+
+def placed_side(m: Model, joint: Joint) -> str:
+    """Return "i" or "j", the side whose marker is the place of a joint: that on ground, or else the first."""
+    return "i" if joint.i.body is m.ground or joint.j.body is not m.ground else "j"
+
+
+def lengthened(m: Model, name: str, length: float) -> dict[str, Any]:
+    """Return what ``change`` takes for another length (m) of a rod or bar. A uniform rod stays one."""
+    out: dict[str, Any] = {"length": length}
+    if name in m.joints and m.joints[name].kind.constraints == ("distance",):
+        return out
+    body = m.known_body(name)
+    assert body.length is not None
+    if body.com == (body.length / 2, 0.0):
+        rod = rod_inertia(body.mass, body.length)
+        if "com" not in body.derived:
+            out["com"] = length / 2, 0.0
+        if "inertia" not in body.derived and body.mass > 0 and abs(body.inertia - rod) <= ROD_ALIKE * rod:
+            out["inertia"] = rod_inertia(body.mass, length)
+    return out
+
+
 def _number(m: Model, whole: str, rest: str) -> Number | None:
     if whole == "gravity" and rest in AXES:
         return _gravity(m, AXES[rest])
-    return _of_entry(m, whole, rest) or _of_body(m, whole, rest) or _of_trace(m, whole, rest)
+    own = _of_entry(m, whole, rest) or _of_body(m, whole, rest)
+    return own if own is not None or whole not in m.traces or rest not in PLACE else _of_trace(m, whole, rest)
 
 
 def _things(m: Model) -> list[str]:
@@ -260,8 +293,7 @@ def _of_entry(m: Model, whole: str, rest: str) -> Number | None:
     if first in ("i", "j") and inner in PLACE:
         return _of_marker(m, name, whole, first, inner)
     if rest in PLACE and isinstance(entry, Joint):
-        ground_first = entry.i.body is m.ground or entry.j.body is not m.ground
-        return _of_marker(m, name, whole, "i" if ground_first else "j", rest)
+        return _of_marker(m, name, whole, placed_side(m, entry), rest)
     return None
 
 
@@ -317,10 +349,7 @@ def _of_start(m: Model, name: str, body: str, what: str, at: int) -> Number | No
     return Number(name, value, put, is_place=what == "start" and at > 0, vector=vector)
 
 
-def _of_trace(m: Model, whole: str, rest: str) -> Number | None:
-    if whole not in m.traces or rest not in PLACE:
-        return None
-
+def _of_trace(m: Model, whole: str, rest: str) -> Number:
     def put(m: Model, new: float) -> None:
         m.traces[whole] = replace(m.traces[whole], **{rest: float(new)})
 

@@ -36,7 +36,7 @@ class ForceRows(NamedTuple):
     elements: tuple[Element, ...]
     interactions: Sequence[Interaction]
     blocks: Sequence[range]
-    """Of the numbers of each interaction in Loads.given."""
+    """Rows of Loads.given, of each interaction its numbers."""
     law: range
     element: range
     term: range

@@ -16,7 +16,7 @@ from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, in_closed_
 from mbsd.kinematics.prepare import prepare
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model, names_given
-from mbsd.model.numbers import place_in, placed_side
+from mbsd.numbers.names import place_in, placed_side
 
 MOST_THREADS = 1024
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from mbsd.base.errors import ModelError
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, number_named, with_values
+from mbsd.numbers.names import Number, number_named, with_values
 from mbsd.synthesis.wishes import Bounds
 
 

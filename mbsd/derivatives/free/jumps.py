@@ -26,7 +26,7 @@ from mbsd.dynamics.events.laws.compliance import Compliance
 from mbsd.dynamics.events.laws.impact import impacts
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.model.numbers import with_value
+from mbsd.numbers.names import with_value
 from mbsd.results.solution import Solution
 
 REACH = 1e-6

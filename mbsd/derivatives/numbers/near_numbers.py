@@ -16,19 +16,26 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
 from mbsd.derivatives.numbers.number_steps import step_of
-from mbsd.derivatives.numbers.repacked import repacked, unchanged
 from mbsd.derivatives.numbers.start_tangents import StartTangents
-from mbsd.derivatives.numbers.variants import PLACES, Variation, alike, same_laws
+from mbsd.derivatives.numbers.variants import Variation
 from mbsd.equations.loads import Loads
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, with_value
+from mbsd.numbers.names import Number, with_value
+from mbsd.numbers.placed import (
+    MASSES,
+    NUMBERS_OF_LOADS,
+    PLACES,
+    TABLES_OF_LOADS,
+    alike,
+    laws_of,
+    repacked,
+    same_laws,
+    unchanged,
+)
 
 NEAR = 1e-7
 """Part of its size by which a number is larger."""
-PLACES_OF_LOADS = ("place", "number", "given", "user_com", "friction_number")
-"""Numbers of loads; the other tables must stay."""
-TABLES_OF_LOADS = ("element", "term", "interaction", "user", "user_body", "friction")
 
 
 @dataclass
@@ -98,11 +105,11 @@ class NearNumbers:
             rows_kept = packed.first_row is first.first_row or packed.first_row.tolist() == first.first_row.tolist()
             if not rows_kept or packed.body_names != first.body_names:
                 return None
-            if not (same_laws(packed.motions, own.motions) and same_laws(own.laws_of(packed), own.laws)):
+            if not (same_laws(packed.motions, own.motions) and same_laws(laws_of(packed), own.laws)):
                 return None
             com = _slope(packed.com, first.com, away)
-            moved = packed.system is not first.system and not alike(packed, first, PLACES)
-            masses = packed.system is first.system or alike(packed, first, ("mass", "inertia"))
+            moved = not alike(packed.system, first.system, PLACES)
+            masses = alike(packed.system, first.system, MASSES)
             if own.turns.any():
                 offset = packed.system.angle_offset + own.turns
                 packed = replace(packed, system=packed.system.changed(angle_offset=offset))
@@ -133,9 +140,9 @@ class NearNumbers:
         if not packed.forces or (plain and same_com and unchanged(m.forces, self.variation.saved)):
             return {}
         loads = pack_loads(packed)
-        if any(getattr(loads, name).tobytes() != getattr(base, name).tobytes() for name in TABLES_OF_LOADS):
+        if not alike(loads, base, TABLES_OF_LOADS):
             return None
-        slopes = {name: _slope(getattr(loads, name), getattr(base, name), away) for name in PLACES_OF_LOADS}
+        slopes = {name: _slope(getattr(loads, name), getattr(base, name), away) for name in NUMBERS_OF_LOADS}
         return {name: slope for name, slope in slopes.items() if slope.any()}
 
 

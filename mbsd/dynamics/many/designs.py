@@ -1,6 +1,6 @@
 """The simulations that are asked for: values of numbers, of starts and of velocities, row by row, as mechanisms.
 
-vary={"closer": {"stiffness": [...], "damping": [...]}, "hinge": {"x": [...]}}       see varied.py
+vary={"closer": {"stiffness": [...], "damping": [...]}, "hinge": {"x": [...]}}       see numbers/rows.py
 start={"door": [...]}       as m.start_near: degrees (n,), or (x, y, degrees) (n, 3)
 moving={"door": [...]}      as m.start_moving: rad/s (n,), or (vx, vy, omega) (n, 3)
 """
@@ -17,11 +17,11 @@ import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
-from mbsd.dynamics.many.varied import VARY, Varied, named, refuse_law, refuse_wide, varied
 from mbsd.model.body import Body
 from mbsd.model.mechanism import Model, StartVelocity, start_given
-from mbsd.model.numbers import Number, put_together
-from mbsd.model.saved_model import SavedModel
+from mbsd.numbers.names import Number, put_together
+from mbsd.numbers.rows import VARY, Varied, named, refuse_law, refuse_wide, varied
+from mbsd.numbers.saved import SavedModel
 
 MOST = 100_000_000
 """Simulations of one call."""

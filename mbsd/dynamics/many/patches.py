@@ -31,7 +31,7 @@ from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA
 from mbsd.model.body import rod_inertia
 from mbsd.model.laws import Motion
 from mbsd.model.laws.numbers import Compiled
-from mbsd.model.numbers import put_together
+from mbsd.numbers.names import put_together
 
 ROUNDING = 1e-12
 """Part of a number by which it may differ from that of a row prepared in full."""

@@ -24,7 +24,7 @@ from mbsd.derivatives.numbers.number_steps import size_of, step_of
 from mbsd.model.change import values_of
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, connections
-from mbsd.model.numbers import known_numbers, number_in, place_in
+from mbsd.numbers.names import known_numbers, number_in, place_in
 from mbsd.tolerancing.dimensions.clearance import Clearance
 from mbsd.tolerancing.dimensions.dimension import Column, Dimension, LoosePlay, PushedPlay, Size
 from mbsd.tolerancing.dimensions.reach import refuse_beyond

@@ -16,7 +16,7 @@ from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, Push, in_c
 from mbsd.kinematics.prepare import prepare
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import place_in, placed_side
+from mbsd.numbers.names import place_in, placed_side
 from mbsd.tolerancing.dimensions.dimension import Column
 from mbsd.tolerancing.machines.one_by_one import Answers, swept
 from mbsd.tolerancing.machines.results import called, measured, numbers_of_batch, placed

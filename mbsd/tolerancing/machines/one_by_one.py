@@ -22,7 +22,7 @@ from mbsd.base.quiet import quiet
 from mbsd.dynamics.many.measures import Measure
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, lengthened, number_in, place_in, put_together
+from mbsd.numbers.names import Number, lengthened, number_in, place_in, put_together
 from mbsd.tolerancing.dimensions.dimension import Column
 from mbsd.tolerancing.dimensions.named import TOLERANCES
 from mbsd.tolerancing.machines.results import NAME, FailingResult, NoNumber, OfSolution, called, number_of

@@ -27,7 +27,7 @@ from mbsd.model.change import BAR, BODY, change, given, given_body
 from mbsd.model.joint import Joint
 from mbsd.model.laws import Motion
 from mbsd.model.mechanism import Model, connections, start_given
-from mbsd.model.saved_model import SavedModel
+from mbsd.numbers.saved import SavedModel
 
 AXES = {"x": 0, "y": 1}
 PLACE = ("x", "y", "angle")
@@ -177,6 +177,22 @@ def with_values(m: Any, numbers: Sequence[Number], values: Sequence[float]) -> A
     """A copy of a model with other values of numbers. Raises ModelError for those that it refuses."""
     out = copy.deepcopy(m)
     put_together(out, numbers, values)
+    return out
+
+
+def changed(m: Model, values: Mapping[str, object]) -> Model:
+    """A copy of ``m`` with lengths of bars and rods (one number, m) and places of joints and traced points ((x, y), m).
+
+    A bar's new end moves whatever is at its end, forces included, and a uniform rod stays one; other masses are kept.
+    Raises ModelError for a name of none.
+    """
+    out = copy.deepcopy(m)
+    for name, value in values.items():
+        if isinstance(value, tuple):
+            for axis, coordinate in zip("xy", value, strict=True):
+                place_in(out, name, axis).put(out, coordinate)
+        else:
+            change(out, name, lengthened(out, name, float(value)))  # pyright: ignore[reportArgumentType]
     return out
 
 

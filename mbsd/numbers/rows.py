@@ -1,7 +1,7 @@
 """Numbers that vary, by name: arguments of ``change``, and places, numbers of laws and others that it does not take.
 
 vary={"closer": {"stiffness": [...], "damping": [...]}, "door": {"mass": [...]}}     as m.change takes them
-vary={"hinge": {"x": [...]}, "motor": {"rate": [...]}, "door": {"hinge.y": [...]}}   as model/numbers.py names them
+vary={"hinge": {"x": [...]}, "motor": {"rate": [...]}, "door": {"hinge.y": [...]}}   as numbers/names.py names them
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.model.change import takes, values_of
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import START, Number, number_in, numbers_within, with_values
+from mbsd.numbers.names import START, Number, number_in, numbers_within, with_values
 
 VARY = "vary"
 

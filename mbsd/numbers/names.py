@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import partial
@@ -91,6 +91,12 @@ def number_named(m: Model, name: str) -> Number:
     known = _things(m)
     whole = next((whole for whole, _ in _splits(name) if whole in known), name.partition(".")[0])
     raise _no_number(m, whole, name[len(whole) + 1 :], "derivatives")
+
+
+def twin_of(number: Number, other: Model, value: float, numbers: Iterable[Number]) -> Number | None:
+    """Return the one of ``numbers`` that is ``number`` by another name, which has ``value`` in the model ``other``."""
+    alike = (twin for twin in numbers if twin.value == number.value)
+    return next((twin for twin in alike if number_named(other, twin.name).value == value), None)
 
 
 def number_in(m: Model, whole: str, rest: str, asked: str) -> Number:

@@ -16,7 +16,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.model.change import takes, values_of
 from mbsd.model.mechanism import Model
-from mbsd.numbers.names import START, Number, number_in, numbers_within, with_values
+from mbsd.numbers.names import START, Number, number_in, numbers_within, twin_of, with_values
 
 VARY = "vary"
 
@@ -78,9 +78,9 @@ def _refuse_twice(m: Model, every: Sequence[Varied]) -> None:
             other = with_values(m, [number], [new])
         except ModelError:
             continue  # a row may have that
-        for twin, own in numbers[k + 1 :]:
-            if own.value == number.value and number_in(other, twin.whole, twin.key, VARY).value == new:
-                raise ModelError(f"{m.name}: vary: '{number.name}' and '{own.name}' are the same number; leave out one")
+        twin = twin_of(number, other, new, [own for _, own in numbers[k + 1 :]])
+        if twin is not None:
+            raise ModelError(f"{m.name}: vary: '{number.name}' and '{twin.name}' are the same number; leave out one")
 
 
 def refuse_wide(m: Model, name: str, values: Mapping[str, np.ndarray]) -> None:

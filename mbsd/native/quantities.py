@@ -109,7 +109,7 @@ def _inputs(equations: NativeEquations) -> Iterator[Quantity]:
     for k, (name, motion) in enumerate(zip(packed.driver_names, packed.motions, strict=True)):
         first, end = int(laws.first[k + 1]), int(laws.first[k + 2])
         if laws.kind[k + 1] == POLYNOMIAL and end - first == 2 and motion is not None:
-            angular = packed.joints[len(packed.joints) - len(packed.motions) + k].kind.angular
+            angular = packed.drivers[k].kind.angular
             yield Quantity(
                 f"{name}.rate", "rad/s" if angular else "m/s", "of the driver; its value goes on where it stands",
                 INPUT, RATE, index=k, place=equations.memory.offset(laws.numbers, first),
@@ -197,13 +197,13 @@ def _outputs(equations: NativeEquations) -> Iterator[Quantity]:
     for k, (name, _) in enumerate(_traces(equations), len(packed.body_names) - packed.states):
         for c, word in enumerate(("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")):
             yield Quantity(f"{name}.{word}", _unit(c % 3, c // 3), "of the traced point", OUTPUT, FRAME, k, c)
-    joints = packed.joints[: len(packed.joints) - packed.contacts - len(packed.motions)]
+    joints = packed.passive_joints
     for k, joint in enumerate(joints):
         for c, word in enumerate(("fx", "fy", "torque")):
             words = "of the joint on its second body at its second marker"
             yield Quantity(f"{joint.name}.{word}", "N.m" if c == 2 else "N", words, OUTPUT, JOINT, k, c)
     for k, name in enumerate(packed.driver_names):
-        angular = packed.joints[len(packed.joints) - len(packed.motions) + k].kind.angular
+        angular = packed.drivers[k].kind.angular
         for c, word in enumerate(("value", "speed", "acceleration", "effort")):
             unit = ("N.m" if angular else "N") if c == 3 else _unit(2 if angular else 0, c)
             yield Quantity(f"{name}.{word}", unit, "of the driver", OUTPUT, DRIVER, k, c)

@@ -12,7 +12,7 @@ import mbsd
 from benchmarks.derivatives import DOOR, LINKAGE, MOST, SWEEP
 from benchmarks.rows import Bar, Row
 from mbsd.measures import Measure, final, integral, largest
-from mbsd.model.numbers import number_named, with_values
+from mbsd.numbers.names import number_named, with_values
 
 TURNS = 24
 STEPS = 100

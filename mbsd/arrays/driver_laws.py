@@ -34,7 +34,7 @@ def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
     """Raise ModelError for a law that is not finite, imposes a distance that is not positive, or whose derivatives
     are not those of its values.
     """
-    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
+    drivers = packed.drivers
     if not drivers:
         return
     times = start + (end - start) * _SPREAD

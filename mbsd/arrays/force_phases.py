@@ -28,7 +28,7 @@ def take_force_phases(packed: Packed, q: np.ndarray) -> None:
 
 def world_angles(packed: Packed, force: Force, q: np.ndarray) -> tuple[float, float, float]:
     """Angles (rad) of the line from marker i to j, and of both markers, in the pose q (3 nb,)."""
-    i, j = (int(marker) for marker in packed.force_markers[packed.forces.index(force)])
+    i, j = packed.markers_of(force)
     bi, bj = (int(packed.system.marker_body[marker]) for marker in (i, j))
     away = marker_places(packed, q[None], j)[0] - marker_places(packed, q[None], i)[0]
     line = math.atan2(away[1], away[0])
@@ -37,7 +37,7 @@ def world_angles(packed: Packed, force: Force, q: np.ndarray) -> tuple[float, fl
 
 def relative_poses(packed: Packed, force: Force, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(T,) place x, y (m) and angle (rad) of marker j in the axes of marker i along poses q (T, 3 nb)."""
-    i, j = (int(marker) for marker in packed.force_markers[packed.forces.index(force)])
+    i, j = packed.markers_of(force)
     bi, bj = (int(packed.system.marker_body[marker]) for marker in (i, j))
     away = marker_places(packed, q, j) - marker_places(packed, q, i)
     x, y = ((marker_axes(packed, q, i, turned) * away).sum(axis=1) for turned in (False, True))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arrays.directory import directory
 from mbsd.base.users_function import law_of, tell_missed
 from mbsd.equations.laws import Laws, tabulate_law
 from mbsd.model.laws import Motion
@@ -48,12 +49,9 @@ def compiled_laws(packed: Packed, start: float, end: float) -> Laws:
 
 def law_values(packed: Packed, laws: Laws, force: Force, times: np.ndarray) -> dict[str, np.ndarray]:
     """(T,) values of the laws of a force at times (T,) (s), by the names of its method's arguments."""
-    first = len(packed.motions) + 1
-    for other in packed.forces[: packed.forces.index(force)]:
-        first += len(other.laws)
     out = np.zeros((len(force.laws), len(times), 3))
-    for k, rows in enumerate(out):
-        tabulate_law(laws, first + k, np.ascontiguousarray(times, float), rows)
+    for k, rows in zip(directory(packed)[force.name].law, out, strict=True):
+        tabulate_law(laws, k, np.ascontiguousarray(times, float), rows)
     return {name: rows[:, 0] for name, rows in zip(force.laws, out, strict=True)}
 
 

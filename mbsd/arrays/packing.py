@@ -125,10 +125,25 @@ class Packed:
         return out
 
     @property
-    def driver_names(self) -> list[str]:
-        """In the order of ``motions``."""
+    def drivers(self) -> list[Joint]:
+        """Drivers in the order of ``motions``."""
         end = len(self.joints) - self.contacts
-        return [driver.name for driver in self.joints[end - len(self.motions) : end]]
+        return self.joints[end - len(self.motions) : end]
+
+    @property
+    def driver_names(self) -> list[str]:
+        """Names of the drivers in the order of ``motions``."""
+        return [driver.name for driver in self.drivers]
+
+    @property
+    def passive_joints(self) -> list[Joint]:
+        """Joints that are neither drivers nor contacts; they come first."""
+        return self.joints[: len(self.joints) - self.contacts - len(self.motions)]
+
+    def markers_of(self, force: Force) -> tuple[int, int]:
+        """Return the numbers of the markers i and j of a force."""
+        i, j = self.force_markers[self.forces.index(force)].tolist()
+        return i, j
 
     def settle_laws(self, start: float, end: float) -> None:
         """Make the laws of the drivers ready for ``start`` .. ``end`` (s). Raises ModelError naming the driver."""

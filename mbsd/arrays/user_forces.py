@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numba
@@ -13,20 +13,16 @@ from mbsd.base.kept import Kept
 from mbsd.compiling.callback import Callback
 
 if TYPE_CHECKING:
+    from mbsd.arrays.directory import ForceRows
     from mbsd.arrays.packing import Packed
     from mbsd.model.force import Force
 
 
-def pack_user_forces(packed: Packed) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The table (u, 3), the bodies (b,) and their centres of mass (b, 2) in the author's frames, for Loads."""
-    rows: list[tuple[int, int, int]] = []
-    bodies: list[int] = []
-    for force in packed.forces:
-        if "function" in force.params:
-            named = [packed.body_names.index(name) for name in force.params["bodies"]]
-            rows.append((_callback(packed, force).address, len(bodies), len(named)))
-            bodies += named
-    which = np.array(bodies, np.int64)
+def pack_user_forces(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the table (u, 3), the bodies (b,) and their centres of mass (b, 2) in the author's frames, for Loads."""
+    own = [each for each in forces if each.user]
+    rows = [(_callback(packed, each.force).address, each.user_body.start, len(each.user_body)) for each in own]
+    which = np.array([packed.body_names.index(name) for each in own for name in each.force.params["bodies"]], np.int64)
     return np.array(rows, np.int64).reshape(-1, 3), which, packed.com[which].reshape(-1, 2)
 
 

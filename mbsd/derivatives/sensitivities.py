@@ -22,7 +22,7 @@ from mbsd.dynamics.repeated import Repeated
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, numbers_named
+from mbsd.numbers.names import Number, numbers_named
 from mbsd.results.solution import Solution
 
 if TYPE_CHECKING:

@@ -49,7 +49,7 @@ from mbsd.kinematics.pose.initial import Initial
 from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number
+from mbsd.numbers.names import Number
 from mbsd.results.solution import Solution
 
 

@@ -14,8 +14,9 @@ from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.prepare import prepare
-from mbsd.model.body import Marker, at_end
+from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model, names_given
+from mbsd.numbers.names import place_in, placed_side
 
 MOST_THREADS = 1024
 
@@ -59,12 +60,10 @@ def parameters(
     """Changes (n, p) against the mechanism itself, and what each moves: marker coordinates, or one of a trace."""
     columns: list[np.ndarray] = []
     moved: list[Moved] = []
-    traces = list(m.traces)
-    fixed = {_own_marker(m, packed, name)[1] for name in places if name in m.joints and name not in m.traces}
+    fixed = {_own_marker(m, packed, name) for name in places if name in m.joints and name not in m.traces}
     for name, values in lengths.items():
         rod = _rod(m, packed, name)
-        body = m.known_body(name) if rod is None else m.ground
-        if rod is None and body.length is None:
+        if rod is None and m.known_body(name).length is None:
             raise ModelError(f"{m.name}: batch: '{name}' is no bar, so it has no length; give places instead")
         change = _finite(m, name, values, 1)[:, 0]
         if (change <= 0).any():
@@ -72,31 +71,30 @@ def parameters(
         if rod is not None:
             columns.append(change - packed.system.distance_length[rod])
             moved.append(Moved(rod=rod))
-        if body.length is None:
             continue
+        body = m.bodies[name]
         ends = [
             (number, 0)
             for joint, pair in zip(packed.joints, packed.markers, strict=True)
             for marker, number in zip((joint.i, joint.j), (int(pair[0]), int(pair[1])), strict=True)
             if marker.body is body and at_end(marker, body.length) and number not in fixed  # its place is given
         ]
-        columns.append(change - body.length)
-        moved.append(Moved(ends))
-        for k, trace in enumerate(traces):
-            if m.traces[trace].body is body and at_end(m.traces[trace], body.length) and trace not in places:
-                columns.append(change - body.length)
-                moved.append(Moved(trace=(k, 0)))
+        own = [
+            Moved(trace=(k, 0))
+            for k, (trace, marker) in enumerate(m.traces.items())
+            if marker.body is body and at_end(marker, body.length) and trace not in places
+        ]
+        moved += [Moved(ends), *own]
+        columns += [change - body.length] * (1 + len(own))
     for name, values in places.items():
         change = _finite(m, name, values, 2)
         if name in m.traces:
-            base, target = m.traces[name], [Moved(trace=(traces.index(name), axis)) for axis in (0, 1)]
+            moved += [Moved(trace=(list(m.traces).index(name), axis)) for axis in (0, 1)]
         elif name in m.joints:
-            base, number = _own_marker(m, packed, name)
-            target = [Moved([(number, axis)]) for axis in (0, 1)]
+            moved += [Moved([(_own_marker(m, packed, name), axis)]) for axis in (0, 1)]
         else:
             raise ModelError(f"{m.name}: batch: {no_such('joint or traced point', name, [*m.joints, *m.traces])}")
-        columns += [change[:, 0] - base.x, change[:, 1] - base.y]
-        moved += target
+        columns += [change[:, k] - place_in(m, name, axis).value for k, axis in enumerate("xy")]
     if not columns:
         raise ModelError(f"{m.name}: batch: nothing changes; give lengths or places")
     sizes = {len(column) for column in columns}
@@ -107,11 +105,10 @@ def parameters(
     return np.column_stack(columns), moved
 
 
-def _own_marker(m: Model, packed: Packed, name: str) -> tuple[Marker, int]:
-    """The marker of a joint that ``places`` moves, and its number: that on ground, or else the first."""
+def _own_marker(m: Model, packed: Packed, name: str) -> int:
+    """Return the number of the marker of a joint that ``places`` moves."""
     joint = m.joints[name]
-    first = joint.i.body is m.ground or joint.j.body is not m.ground
-    return (joint.i if first else joint.j), int(packed.markers[packed.joints.index(joint)][0 if first else 1])
+    return int(packed.markers[packed.joints.index(joint)]["ij".index(placed_side(m, joint))])
 
 
 def _rod(m: Model, packed: Packed, name: str) -> int | None:

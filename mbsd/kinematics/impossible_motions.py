@@ -78,9 +78,8 @@ def refused(
 
 def driver_values(packed: Packed, drive: np.ndarray) -> str:
     """What the drivers are at, in words."""
-    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
     parts = []
-    for k, driver in enumerate(drivers):
+    for k, driver in enumerate(packed.drivers):
         value = float(drive[k + 1, 0])
         at = f"{math.degrees(value):.4g} degrees" if driver.kind.angular else f"{value:.4g} m"
         parts.append(f"{driver.name} at {at}")

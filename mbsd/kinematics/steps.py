@@ -31,8 +31,7 @@ AT_ONCE = 64
 
 def strides(packed: Packed) -> np.ndarray:
     """(motions + 1,) how far each law may go in one step (rad or m); entry 0 is the law that is always zero."""
-    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
-    return np.array([np.inf, *(TURN if driver.kind.angular else LENGTH * packed.size for driver in drivers)])
+    return np.array([np.inf, *(TURN if driver.kind.angular else LENGTH * packed.size for driver in packed.drivers)])
 
 
 def divisions(packed: Packed, times: np.ndarray) -> int:
@@ -64,7 +63,7 @@ def refuse_endless(packed: Packed, times: np.ndarray, steps: float) -> None:
         return
     drives = packed.drives(times)
     way = np.abs(np.diff(drives[:, 1:, 0], axis=0)).sum(axis=0) / strides(packed)[1:]
-    driver = packed.joints[len(packed.joints) - len(packed.motions) + int(np.argmax(way))]
+    driver = packed.drivers[int(np.argmax(way))]
     raise ModelError(
         f"{packed.name}: following the drivers from t = {times[0]:.6g} s to {times[-1]:.6g} s takes {steps:.2g} steps, "
         f"most of them for driver '{driver.name}'. Sweep a shorter time, or drive it more slowly."

@@ -63,9 +63,9 @@ def rod_inertia(mass: float, length: float) -> float:
     return mass * length**2 / 12
 
 
-def at_end(marker: Marker, length: float) -> bool:
-    """Whether a marker is at the end of its bar, whose length (m) this is."""
-    return marker.x == length and marker.y == 0.0
+def at_end(marker: Marker, length: float | None) -> bool:
+    """Return True for a marker at the end of its bar, whose length (m) this is; a body without one has no end."""
+    return length is not None and marker.x == length and marker.y == 0.0
 
 
 @dataclass(eq=False)

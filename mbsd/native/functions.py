@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.arrays.directory import directory
 from mbsd.arrays.packing import Packed
 from mbsd.equations.interactions import call
 from mbsd.equations.loads import Loads
@@ -23,10 +24,8 @@ def functions_at(packed: Packed, loads: Loads) -> Iterator[tuple[np.ndarray, tup
         equation = SPECIALS[name].equation
         made = importlib.import_module(f"mbsd.equations.relative.{equation}").residual
         yield packed.system.address, (k,), f"relative_{equation}", made
-    row = 0
-    for force in packed.forces:
-        for interaction in force.kind.interactions(force, packed.masses):
+    for rows in directory(packed).values():
+        for interaction, row in zip(rows.interactions, rows.interaction, strict=True):
             made = importlib.import_module(f"mbsd.equations.interactions.{interaction.function}").force
             yield loads.interaction, (row, FORCE), f"interaction_{interaction.function}", made
             yield loads.interaction, (row, APPLY), "apply_interactions", call._apply()  # pyright: ignore[reportPrivateUsage]
-            row += 1

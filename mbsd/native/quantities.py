@@ -12,8 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
+from mbsd.arrays.directory import directory, made_of_masses, terms_of
 from mbsd.base.codes import CONSTANT, DAMPING, DRY, LINEAR, POLYNOMIAL, TURN
 from mbsd.dynamics.state import POWER, WORK
 from mbsd.model.mechanism import Model
@@ -110,7 +109,7 @@ def _inputs(equations: NativeEquations) -> Iterator[Quantity]:
     for k, (name, motion) in enumerate(zip(packed.driver_names, packed.motions, strict=True)):
         first, end = int(laws.first[k + 1]), int(laws.first[k + 2])
         if laws.kind[k + 1] == POLYNOMIAL and end - first == 2 and motion is not None:
-            angular = packed.joints[len(packed.joints) - len(packed.motions) + k].kind.angular
+            angular = packed.drivers[k].kind.angular
             yield Quantity(
                 f"{name}.rate", "rad/s" if angular else "m/s", "of the driver; its value goes on where it stands",
                 INPUT, RATE, index=k, place=equations.memory.offset(laws.numbers, first),
@@ -128,15 +127,11 @@ def _constants(equations: NativeEquations) -> Iterator[tuple[str, str, int, floa
 
 def _terms(equations: NativeEquations) -> Iterator[tuple[Any, str, int, bool, bool]]:
     """Term, what it belongs to, row of Loads.number, whether the force is this term alone, whether it is a torque."""
-    row = 0
-    for force in equations.ready.packed.forces:
-        elements = list(force.kind.elements(force))
-        alone = len(elements) == 1 and len(elements[0].terms) == 1
-        for number, element in enumerate(elements, 1):
-            of = force.name if len(elements) == 1 else f"{force.name}.{number}"
-            for term in element.terms:
-                yield term, of, row, alone, element.kind == TURN
-                row += 1
+    for name, rows in directory(equations.ready.packed).items():
+        every = [(element, number) for number, element in enumerate(rows.elements, 1) for _ in element.terms]
+        for (element, number), term, row in zip(every, terms_of(rows.elements), rows.term, strict=True):
+            of = name if len(rows.elements) == 1 else f"{name}.{number}"
+            yield term, of, row, len(every) == len(rows.elements) == 1, element.kind == TURN
 
 
 def _number_place(equations: NativeEquations, row: int, column: int = 0) -> int:
@@ -148,7 +143,7 @@ def _parameters(equations: NativeEquations) -> Iterator[Quantity]:
     gravity = packed.system.gravity
     for c in range(2):
         yield Quantity(f"gravity.{'xy'[c]}", "m/s2", "", PARAMETER, GRAVITY, component=c, start=float(gravity[c]))
-    if not _uses_masses(equations):
+    if not made_of_masses(packed):
         for b, name in enumerate(packed.body_names[: len(packed.body_names) - packed.states]):
             for kind, c, unit, word in ((MASS, 0, "kg", "mass"), (INERTIA, 2, "kg.m2", "inertia")):
                 value = float(dynamics.inertia[3 * b + c])
@@ -174,18 +169,6 @@ def _named(term: Any, turns: bool, alone: bool) -> list[tuple[str, str, int, flo
     if term.kind == CONSTANT and not alone:
         return [("constant", effort, 0, term.a)]
     return []
-
-
-def _uses_masses(equations: NativeEquations) -> bool:
-    """Whether numbers of forces are made of masses, so that these cannot change alone."""
-    packed = equations.ready.packed
-    masses = packed.masses
-    other = masses._replace(mass=2.0 * masses.mass + 1.0, inertia=2.0 * masses.inertia + 1.0)
-
-    def numbers(of: Any) -> list[Any]:
-        return [interaction.numbers for force in packed.forces for interaction in force.kind.interactions(force, of)]
-
-    return any(not np.array_equal(a, b) for a, b in zip(numbers(masses), numbers(other), strict=True))
 
 
 def _traces(equations: NativeEquations) -> list[tuple[str, Any]]:
@@ -214,13 +197,13 @@ def _outputs(equations: NativeEquations) -> Iterator[Quantity]:
     for k, (name, _) in enumerate(_traces(equations), len(packed.body_names) - packed.states):
         for c, word in enumerate(("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")):
             yield Quantity(f"{name}.{word}", _unit(c % 3, c // 3), "of the traced point", OUTPUT, FRAME, k, c)
-    joints = packed.joints[: len(packed.joints) - packed.contacts - len(packed.motions)]
+    joints = packed.passive_joints
     for k, joint in enumerate(joints):
         for c, word in enumerate(("fx", "fy", "torque")):
             words = "of the joint on its second body at its second marker"
             yield Quantity(f"{joint.name}.{word}", "N.m" if c == 2 else "N", words, OUTPUT, JOINT, k, c)
     for k, name in enumerate(packed.driver_names):
-        angular = packed.joints[len(packed.joints) - len(packed.motions) + k].kind.angular
+        angular = packed.drivers[k].kind.angular
         for c, word in enumerate(("value", "speed", "acceleration", "effort")):
             unit = ("N.m" if angular else "N") if c == 3 else _unit(2 if angular else 0, c)
             yield Quantity(f"{name}.{word}", unit, "of the driver", OUTPUT, DRIVER, k, c)

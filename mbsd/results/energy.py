@@ -22,7 +22,7 @@ from mbsd.results.surface import depths
 
 def potential_of(packed: Packed, force: Force, q: np.ndarray) -> np.ndarray:
     """(T,) potential energy (J) of one force along poses q (T, 3 nb)."""
-    i, j = packed.force_markers[packed.forces.index(force)]
+    i, j = packed.markers_of(force)
     out = np.zeros(len(q))
     for element in force.kind.elements(force):
         terms = [term for term in element.terms if term.kind in POTENTIAL_TERMS]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.arrays.approaches import stretches
+from mbsd.arrays.directory import directory, slice_of
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
@@ -189,8 +190,7 @@ def loads_of(moved: Moved, k: int) -> tuple[np.ndarray, np.ndarray]:
     system = packed.system.changed(moving=none, directed=none)
     approached = None
     if moved.approached is not None:
-        before = sum(len(force.kind.interactions(force, packed.masses)) for force in packed.forces[:k])
-        approached = moved.approached[:, before : before + len(loads.interaction)]
+        approached = moved.approached[:, slice_of(directory(packed)[packed.forces[k].name].interaction)]
     for at in stretches(loads, approached, len(moved.t)):
         motion = moved.t[at], q[at], v[at]
         tabulate_loads(system, loads, laws, *motion, packed.ws, load[at], power[at])

@@ -38,6 +38,7 @@ def friction_view(
     ``held`` (T, m) are the rows of J that hold, None: all. A joint that an action released has no friction.
     """
     from mbsd.arrays.curve_branches import tabulate_along
+    from mbsd.arrays.directory import directory
     from mbsd.arrays.friction_along import normals_along
     from mbsd.arrays.loads import pack_loads
     from mbsd.equations.joint_friction import FIRST, WAY, tabulate_rates
@@ -49,7 +50,7 @@ def friction_view(
     tabulate_along(packed, drives, flat_q, flat_v, phi, compact, gamma)
     loads = pack_loads(packed)
     normal = normals_along(packed, loads, flat_q, compact, lam)
-    k = [force.name for force in packed.forces if force.kind.of_reactions].index(name)
+    [k] = directory(packed)[name].friction
     rate, force = np.zeros((2, count))
     tabulate_rates(packed.system, loads, k, flat_q, flat_v, normal[:, k], packed.ws, rate, force)
     way = int(loads.friction[k, WAY])

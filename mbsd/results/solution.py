@@ -181,7 +181,7 @@ class Solution(Suggesting, Generic[AnyModel]):
     def notes(self) -> tuple[str, ...]:
         """A sentence for each output at which reactions or efforts do not exist: there they are NaN."""
         packed, out = self.packed, []
-        joints = packed.joints[: len(packed.joints) - packed.contacts - len(packed.motions)]
+        joints = packed.passive_joints
         for row in np.flatnonzero(~self.is_defined).tolist():
             lost = {
                 "reactions of": [j.name for k, j in enumerate(joints) if np.isnan(self.wrench[row, k]).any()],
@@ -250,7 +250,7 @@ class Solution(Suggesting, Generic[AnyModel]):
 
     def joint(self, name: str) -> JointView:
         """Place and reaction of a joint."""
-        joints = self.packed.joints[: len(self.packed.joints) - self.packed.contacts - len(self.packed.motions)]
+        joints = self.packed.passive_joints
         k = self._index(name, [joint.name for joint in joints], "joint")
         marker = joints[k].j  # as solved, whatever was changed since
         place = self._frame(self.packed.body_names.index(marker.body.name), (marker.x, marker.y))

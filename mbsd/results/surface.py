@@ -35,7 +35,7 @@ def foot_of(packed: Packed, force: Force, q: np.ndarray) -> Foot:
     if force.kind.journal is not None:
         return _in_bearing(packed, force, q)
     assert force.kind.surface is not None
-    i, j = packed.force_markers[packed.forces.index(force)]
+    i, j = packed.markers_of(force)
     numbers, stand = np.array([0.0] * OWN + force.kind.surface(force)), np.zeros((len(q), 3))
     x, y = (measured(packed, Element(AXIS, (), turned), i, j, q) for turned in (False, True))
     tabulate_stand(numbers, x, y, np.zeros(STATE), stand)
@@ -48,7 +48,7 @@ def foot_of(packed: Packed, force: Force, q: np.ndarray) -> Foot:
 def _in_bearing(packed: Packed, force: Force, q: np.ndarray) -> Foot:
     """Foot of a journal; in the middle of its bearing it is next to no place of it, and the normal is zero."""
     assert force.kind.journal is not None
-    i, j = packed.force_markers[packed.forces.index(force)]
+    i, j = packed.markers_of(force)
     radius, clearance = force.kind.journal(force)
     centre = marker_places(packed, q, j)
     away = centre - marker_places(packed, q, i)

@@ -20,8 +20,8 @@ from mbsd.kinematics.march import kinematics_at
 from mbsd.kinematics.prepare import prepare
 from mbsd.kinematics.prepared import Prepared
 from mbsd.model.mechanism import Model
+from mbsd.numbers.names import changed
 from mbsd.synthesis.built import built
-from mbsd.synthesis.changed import changed
 from mbsd.synthesis.conditions import Pin, four_bar, grashof_excess, pins, transmission_angles
 from mbsd.synthesis.path_tangents import path_of, tangents_of_path
 from mbsd.synthesis.varied import Varied

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from mbsd.base.errors import ModelError
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, number_named, with_values
+from mbsd.numbers.names import Number, twin_of, with_values
 from mbsd.synthesis.wishes import Bounds
 
 
@@ -24,13 +24,8 @@ def refuse_ends(m: Model, bounds: Bounds, numbers: Sequence[Number]) -> None:
                 ) from error
             if end == number.value:
                 continue
-            twin = next((name for name in bounds.names[k + 1 :] if _is_that(m, other, name, number, float(end))), None)
+            twin = twin_of(number, other, float(end), numbers[k + 1 :])
             if twin is not None:
                 raise ModelError(
-                    f"{m.name}: optimise: '{number.name}' and '{twin}' are the same number; leave out one of them"
+                    f"{m.name}: optimise: '{number.name}' and '{twin.name}' are the same number; leave out one of them"
                 )
-
-
-def _is_that(m: Model, other: Model, name: str, number: Number, value: float) -> bool:
-    """Whether ``name`` is what ``number`` is, which has another ``value`` in the mechanism ``other``."""
-    return number_named(m, name).value == number.value and number_named(other, name).value == value

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from mbsd.base.names import no_such
 from mbsd.base.progress import users_progress
 from mbsd.base.shown import shown
 from mbsd.model.body import Marker
-from mbsd.model.mechanism import Model, Start
+from mbsd.model.mechanism import Model, Start, new_name, own_body
 from mbsd.synthesis.built import refuse_build
 from mbsd.synthesis.designs import Build, Designs
 from mbsd.synthesis.search import Search
@@ -218,9 +219,11 @@ def _traced(m: Model, point: str | Marker | None, build: Build | None) -> tuple[
     if isinstance(point, Marker):
         if build is not None:
             raise ModelError(f"{m.name}: fit_path: with build the point is a name; trace it there: m.trace(...)")
-        from mbsd.synthesis.changed import traced_copy
-
-        return traced_copy(m, TRACE, point), TRACE
+        own_body(m, point.body, "fit_path: point")
+        out = copy.deepcopy(m)
+        new_name(out, TRACE, "trace", out.traces)
+        out.traces[TRACE] = replace(point, body=out.bodies[point.body.name])
+        return out, TRACE
     if point is None and len(m.traces) == 1:
         return m, next(iter(m.traces))
     if point is None:

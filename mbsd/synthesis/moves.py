@@ -20,7 +20,7 @@ from mbsd.dynamics.many.measures import Measure
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, number_named, with_values
+from mbsd.numbers.names import Number, number_named, with_values
 from mbsd.results.solution import Solution
 from mbsd.synthesis.built import built, refuse_build
 from mbsd.synthesis.ends import refuse_ends

@@ -18,7 +18,7 @@ from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.prepared import Prepared
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, numbers_named
+from mbsd.numbers.names import Number, numbers_named
 
 if TYPE_CHECKING:
     from mbsd.synthesis.varied import Value, Varied

@@ -13,7 +13,7 @@ from mbsd.derivatives.numbers.number_steps import size_of, step_of
 from mbsd.derivatives.numbers.variants import FOURTH
 from mbsd.derivatives.sensitivities import moves_freely, sensitivities
 from mbsd.mechanism import Mechanism
-from mbsd.model.numbers import Number, number_named, with_values
+from mbsd.numbers.names import Number, number_named, with_values
 from mbsd.testing.differences import compare
 
 STEP = 1e-3

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mbsd
-from mbsd.model.numbers import number_named, with_values
+from mbsd.numbers.names import number_named, with_values
 
 
 def slider_crank(size: float) -> mbsd.Mechanism:

@@ -14,7 +14,7 @@ from mbsd.derivatives import simulations
 from mbsd.derivatives.numbers import near_numbers
 from mbsd.derivatives.sensitivities import simulation_tangents
 from mbsd.measures import final, integral, samples
-from mbsd.model.numbers import Number
+from mbsd.numbers.names import Number
 from mbsd.testing.derivatives import check_derivatives
 
 

@@ -14,7 +14,7 @@ from mbsd.derivatives.free.mesh import looked_at_closer
 from mbsd.derivatives.smooth.between_looks import between_looks
 from mbsd.dynamics.repeated import Repeated
 from mbsd.measures import final
-from mbsd.model.numbers import number_named, with_values
+from mbsd.numbers.names import number_named, with_values
 
 COEFFICIENT = st.floats(-1.0, 1.0)
 

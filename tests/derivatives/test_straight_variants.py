@@ -11,9 +11,10 @@ import mbsd
 from benchmarks.derivatives.measure import linkage
 from mbsd.derivatives import simulations
 from mbsd.derivatives.numbers.straight_variants import variants_beside
-from mbsd.derivatives.numbers.variants import PLACES, SECOND, TINY, Variants
+from mbsd.derivatives.numbers.variants import SECOND, TINY, Variants
 from mbsd.equations.loads import Loads
-from mbsd.model.numbers import Number
+from mbsd.numbers.names import Number
+from mbsd.numbers.placed import PLACES
 
 ARRAYS = ("mass", "inertia", "gravity", *PLACES)
 LOADS = ("place", "number", "given", "user_com", "friction_number")

@@ -8,7 +8,7 @@ import pytest
 import mbsd.derivatives.sensitivities
 from mbsd import Mechanism, ModelError, constant_rate
 from mbsd.measures import integral, largest, samples
-from mbsd.model.numbers import number_named, with_value
+from mbsd.numbers.names import number_named, with_value
 from mbsd.testing.derivatives import check_derivatives
 from tools.models.random_linkages import linkage
 

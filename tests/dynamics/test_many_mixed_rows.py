@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from mbsd import Mechanism
 from mbsd.base.errors import MechanismError
 from mbsd.measures import final, samples
-from mbsd.model.numbers import number_named, with_values
+from mbsd.numbers.names import number_named, with_values
 from mbsd.studies.simulated import simulated
 from tests.dynamics.many_models import barrier
 from tests.dynamics.test_many_numbers import press

@@ -12,7 +12,7 @@ import pytest
 from mbsd import Mechanism, ModelError, cycloidal, harmonic, polynomial
 from mbsd.measures import final, largest, samples
 from mbsd.model.body import Marker
-from mbsd.model.numbers import number_named, with_values
+from mbsd.numbers.names import number_named, with_values
 from tests.dynamics.many_models import STEPS, barrier
 
 PLACES = np.array([[0.4, 0.02], [0.41, 0.0], [0.38, 0.05]])
@@ -193,3 +193,51 @@ def test_numbers_that_a_row_refuses_are_its_reason() -> None:
 def test_what_cannot_vary_is_refused(asked: dict[str, Any], words: str) -> None:
     with pytest.raises(ModelError, match=words):
         press().simulate_many(0.1, measure={"x": final("P.x")}, **asked)
+
+
+def crowded(order: tuple[int, ...]) -> Mechanism:
+    """Return a pendulum under forces of several terms, two of which share a law."""
+    m = Mechanism("crowded")
+    rod, tip = m.bar("rod", 0.4, mass=1.0), m.body("tip", 0.3, inertia=1e-3)
+    m.revolute("A", m.ground.at(0, 0), rod.start)
+    m.revolute("B", rod.end, tip.origin)
+    law = harmonic(0.3, 4.0)
+    add: list[Callable[[], object]] = [
+        lambda: m.torsion_spring("k", m.ground, rod, stiffness=1.0, damping=0.1, free_angle=0.2),
+        lambda: m.spring("s", m.ground.at(0.3, 0.3), rod.end, 20.0, damping=0.5, free_length=0.2),
+        lambda: m.torque("first", rod, law),
+        lambda: m.torque("second", tip, law, rod),
+        lambda: m.spring("t", m.ground.at(-0.3, 0.1), tip.at(0.02, 0.0), 5.0, free_length=0.3),
+    ]
+    for k in order:
+        add[k]()
+    m.start_near(rod=-40)
+    return m
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2, 3, 4), (4, 3, 2, 1, 0), (3, 0, 4, 1, 2)])
+@pytest.mark.parametrize(
+    "vary",
+    [
+        {"s": {"stiffness": [20.0, 25.0, 15.0], "damping": [0.5, 0.1, 0.9]}},
+        {"t": {"free_length": [0.3, 0.25, 0.35]}},
+        {"second": {"amplitude": [0.3, 0.1, -0.2]}},
+        {
+            "first": {"phase": [0.0, 1.0, 2.0]},
+            "second": {"amplitude": [0.3, 0.5, 0.1]},
+            "k": {"damping": [0.1, 0.2, 0.3]},
+        },
+    ],
+)
+def test_numbers_of_one_force_among_many_are_put_in_its_own_place(vary: Any, order: tuple[int, ...]) -> None:
+    m = crowded(order)
+    many = m.simulate_many(0.3, vary=vary, measure={"r": final("rod.theta"), "t": final("tip.theta")}, steps=STEPS)
+    assert "prepared" not in many.way
+    names = [f"{whole}.{key}" for whole, values in vary.items() for key in values]
+    columns = [column for values in vary.values() for column in values.values()]
+    for k in range(3):
+        sol = with_values(m, [number_named(m, name) for name in names], [c[k] for c in columns]).simulate(
+            0.3, steps=STEPS
+        )
+        np.testing.assert_allclose(many["r"][k], sol.body("rod").theta[-1], rtol=1e-12)
+        np.testing.assert_allclose(many["t"][k], sol.body("tip").theta[-1], rtol=1e-12)

@@ -16,7 +16,7 @@ from mbsd.base.errors import MechanismError
 from mbsd.dynamics.many.simulate_many import Simulations
 from mbsd.measures import final, samples
 from mbsd.model.mechanism import connections
-from mbsd.model.numbers import Number, known_numbers, number_in, with_values
+from mbsd.numbers.names import Number, known_numbers, number_in, with_values
 from tools.models import assur_models, linkages
 from tools.models.random_linkages import linkage
 from tools.models.random_rough import five_bar_with_stops

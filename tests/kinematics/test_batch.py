@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
-from mbsd.model.numbers import number_named, with_values
+from mbsd.numbers.names import number_named, with_values
 
 
 def four_bar(crank: float = 0.1, coupler: float = 0.38, rocker: float = 0.3, x: float = 0.4, y: float = 0.02):

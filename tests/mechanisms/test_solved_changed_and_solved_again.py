@@ -16,7 +16,7 @@ from mbsd import Mechanism, MechanismError
 from mbsd.base.kept import Kept
 from mbsd.measures import final, largest
 from mbsd.model.mechanism import connections
-from mbsd.model.numbers import Number, known_numbers, number_in
+from mbsd.numbers.names import Number, known_numbers, number_in
 from shared.stage.paths import mechanism_names
 
 MASS, INERTIA = 0.3, 2e-4

@@ -17,7 +17,7 @@ from mbsd.derivatives.solution_rows import along_of
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number
+from mbsd.numbers.names import Number
 from mbsd.results.solution import Solution
 
 FAR = 1e-3

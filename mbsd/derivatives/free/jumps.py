@@ -25,7 +25,7 @@ from mbsd.derivatives.numbers.variants import Variants, Variation
 from mbsd.dynamics.events.impacts import velocities_after
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.model.numbers import with_value
+from mbsd.numbers.names import with_value
 from mbsd.results.solution import Solution
 
 REACH = 1e-6

@@ -9,8 +9,6 @@ changed and packed once, and both sides of a difference, farther from the motion
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -18,20 +16,26 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
 from mbsd.derivatives.numbers.number_steps import step_of
-from mbsd.derivatives.numbers.repacked import repacked, unchanged
 from mbsd.derivatives.numbers.start_tangents import StartTangents
-from mbsd.derivatives.numbers.variants import PLACES, Variation, alike, same_laws
+from mbsd.derivatives.numbers.variants import Variation
 from mbsd.equations.loads import Loads
 from mbsd.model.body import Marker
-from mbsd.model.force import Element
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, with_value
+from mbsd.numbers.names import Number, with_value
+from mbsd.numbers.placed import (
+    MASSES,
+    NUMBERS_OF_LOADS,
+    PLACES,
+    TABLES_OF_LOADS,
+    alike,
+    laws_of,
+    repacked,
+    same_laws,
+    unchanged,
+)
 
 NEAR = 1e-7
 """Part of its size by which a number is larger."""
-PLACES_OF_LOADS = ("place", "number", "given", "user_com", "friction_number")
-"""Numbers of loads; the other tables must stay."""
-TABLES_OF_LOADS = ("element", "term", "interaction", "user", "user_body", "friction")
 
 
 @dataclass
@@ -80,9 +84,6 @@ class NearNumbers:
     def __init__(self, variation: Variation, starts: StartTangents, loads: Loads, whole: bool) -> None:
         """With ``whole`` it is found as well whether joints, forces or traced points are made anew."""
         self.variation, self.starts, self.loads, self.whole = variation, starts, loads, whole
-        self._first = variation.first.system
-        self._no_masses, self._no_gravity = np.zeros_like(self._first.mass), np.zeros_like(self._first.gravity)
-        self._no_com = np.zeros_like(variation.first.com)
 
     def of(self, number: Number) -> Near | None:
         """The slopes by a number; None where arrays do not go on straight, or what is given leaves the start open."""
@@ -100,17 +101,15 @@ class NearNumbers:
         value = number.value + away
         away = value - number.value  # as far as the number itself has so many digits
         with with_value(own.work, number, value, own.saved) as m:
-            light = self._light(m, number, size, away) if self._in_place(m) else None
-            if light is not None:
-                return light
             packed = repacked(m, first, own.saved) or pack(m)
-            if packed.first_row.tolist() != first.first_row.tolist() or packed.body_names != first.body_names:
+            rows_kept = packed.first_row is first.first_row or packed.first_row.tolist() == first.first_row.tolist()
+            if not rows_kept or packed.body_names != first.body_names:
                 return None
-            if not (same_laws(packed.motions, own.motions) and same_laws(own.laws_of(packed), own.laws)):
+            if not (same_laws(packed.motions, own.motions) and same_laws(laws_of(packed), own.laws)):
                 return None
             com = _slope(packed.com, first.com, away)
-            moved = packed.system is not first.system and not alike(packed, first, PLACES)
-            masses = packed.system is first.system or alike(packed, first, ("mass", "inertia"))
+            moved = not alike(packed.system, first.system, PLACES)
+            masses = alike(packed.system, first.system, MASSES)
             if own.turns.any():
                 offset = packed.system.angle_offset + own.turns
                 packed = replace(packed, system=packed.system.changed(angle_offset=offset))
@@ -121,42 +120,12 @@ class NearNumbers:
             loads = self._loads(m, packed, away, not com.any())
             if loads is None:
                 return None
-            system, base = packed.system, self._first
+            system, base = packed.system, first.system
             mass, moment, gravity = (
                 _slope(getattr(system, name), getattr(base, name), away) for name in ("mass", "inertia", "gravity")
             )
             there, anew = packed if moved else None, not self._tables_kept(m)
             return Near(number, size, mass, moment, gravity, com, loads, traces, there, away, begun, anew)
-
-    def _in_place(self, m: Model) -> bool:
-        """Whether joints, drivers and centres of mass are what they were, and all forces are elements."""
-        first, saved, base = self.variation.first, self.variation.saved, self.loads
-        if m is not saved.m or first.specials.names:
-            return False
-        if len(base.interaction) or len(base.user) or len(base.friction):
-            return False
-        tables = m.joints, m.drivers, m.contacts
-        return all(unchanged(table, saved) for table in tables) and all(b.com == was["com"] for b, was in saved.bodies)
-
-    def _light(self, m: Model, number: Number, size: float, away: float) -> Near | None:
-        """The slopes, where masses, numbers of elements, gravity and the start alone change; else None."""
-        own, saved = self.variation, self.variation.saved
-        mass, moment, gravity = self._no_masses, self._no_masses, self._no_gravity
-        heavier = any(body.mass != was["mass"] or body.inertia != was["inertia"] for body, was in saved.bodies)
-        if heavier:
-            mass, moment = (
-                np.array([getattr(body, name) - was[name] for body, was in saved.bodies]) / away
-                for name in ("mass", "inertia")
-            )
-        if m.gravity != saved.gravity:
-            gravity = (np.array(m.gravity or (0.0, 0.0)) - self._first.gravity) / away
-        loads = self._elements(m, away)
-        begun = self.starts.of(m, None, away, moved=False, heavier=heavier)
-        traces = _slopes_of_traces(m, own, away)
-        if begun is None or traces is None or loads is None:
-            return None
-        anew = not self._tables_kept(m)
-        return Near(number, size, mass, moment, gravity, self._no_com, loads, traces, None, away, begun, anew)
 
     def _tables_kept(self, m: Model) -> bool:
         saved = self.variation.saved
@@ -164,74 +133,17 @@ class NearNumbers:
             m is saved.m and all(unchanged(table, saved) for table in (m.joints, m.drivers, m.forces, m.traces))
         )
 
-    @cached_property
-    def _numbers(self) -> dict[str, tuple[int, tuple[Element, ...]]]:
-        """Elements of each force, and where their numbers begin."""
-        out, first = dict[str, tuple[int, tuple[Element, ...]]](), 0
-        for name, force in self.variation.saved.before(self.variation.work.forces).items():
-            own = tuple(force.kind.elements(force))
-            out[name] = first, own
-            first += sum(len(part.terms) for part in own)
-        return out
-
-    @cached_property
-    def _ends(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Markers i and j of each element, and whether it is turned."""
-        own = [
-            (*markers, part.turned)
-            for markers, (_, parts) in zip(self.variation.first.force_markers, self._numbers.values(), strict=True)
-            for part in parts
-        ]
-        i, j, turned = np.array(own, np.int64).reshape(-1, 3).T
-        return i, j, turned == 1
-
-    def _places(self, packed: Packed) -> np.ndarray:
-        """(e, 6) ``Loads.place`` of the same elements in another packing."""
-        (i, j, turned), system = self._ends, packed.system
-        axis = system.marker_axis[i]
-        axis[turned] = np.stack([-axis[turned, 1], axis[turned, 0]], axis=1)
-        return np.concatenate([system.marker_arm[i], axis, system.marker_arm[j]], axis=1)
-
-    def _elements(self, m: Model, away: float, moved: bool = False) -> dict[str, np.ndarray] | None:
-        """Slopes of numbers of elements; None where these are others, have other laws or, but for ``moved``, places."""
-        slope, before = None, self.variation.saved.before(m.forces)
-        if m.forces.keys() != before.keys():
-            return None
-        for name, force in m.forces.items():
-            old = before[name]
-            if force is old:
-                continue
-            first, known = self._numbers[name]
-            own = tuple(force.kind.elements(force))
-            elsewhere = not moved and (force.i != old.i or force.j != old.j)
-            if elsewhere or force.kind is not old.kind or _structure(own) != _structure(known):
-                return None
-            if not same_laws([*force.laws.values()], [*old.laws.values()]):
-                return None
-            slope = np.zeros_like(self.loads.number) if slope is None else slope
-            numbers = [[term.a, term.b, term.c] for part in own for term in part.terms]
-            slope[first : first + len(numbers)] = (numbers - self.loads.number[first : first + len(numbers)]) / away
-        return {"number": slope} if slope is not None and slope.any() else {}
-
     def _loads(self, m: Model, packed: Packed, away: float, same_com: bool) -> dict[str, np.ndarray] | None:
         """Slopes of numbers of forces; None where forces are made otherwise."""
-        own, base = self.variation, self.loads
+        base = self.loads
         plain = not (len(base.interaction) or len(base.user) or len(base.friction))
-        if not packed.forces or (plain and same_com and unchanged(m.forces, own.saved)):
+        if not packed.forces or (plain and same_com and unchanged(m.forces, self.variation.saved)):
             return {}
-        if plain and self._elements(m, away, moved=True) == {}:
-            place = self._places(packed)
-            return {} if np.array_equal(place, base.place) else {"place": (place - base.place) / away}
         loads = pack_loads(packed)
-        if any(getattr(loads, name).tobytes() != getattr(base, name).tobytes() for name in TABLES_OF_LOADS):
+        if not alike(loads, base, TABLES_OF_LOADS):
             return None
-        slopes = {name: _slope(getattr(loads, name), getattr(base, name), away) for name in PLACES_OF_LOADS}
+        slopes = {name: _slope(getattr(loads, name), getattr(base, name), away) for name in NUMBERS_OF_LOADS}
         return {name: slope for name, slope in slopes.items() if slope.any()}
-
-
-def _structure(elements: tuple[Element, ...]) -> list[Any]:
-    """What they are, without their numbers."""
-    return [(part.kind, part.turned, [(term.kind, term.law) for term in part.terms]) for part in elements]
 
 
 def _slope(array: np.ndarray, base: np.ndarray, away: float) -> np.ndarray:

@@ -23,7 +23,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, law_with
+from mbsd.numbers.names import Number, law_with
 
 LEAST = 1e-2
 """Least size of a length, as part of the mechanism's, and of an argument, as part of its bounds."""

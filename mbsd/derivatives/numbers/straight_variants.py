@@ -11,9 +11,10 @@ import numpy as np
 from mbsd.derivatives.numbers.near_numbers import Near
 from mbsd.derivatives.numbers.number_steps import step_of
 from mbsd.derivatives.numbers.terms import Terms
-from mbsd.derivatives.numbers.variants import PLACES, SECOND, TINY, Variant, Variants, Variation
+from mbsd.derivatives.numbers.variants import SECOND, TINY, Variant, Variants, Variation
 from mbsd.equations.system import workspace
-from mbsd.model.numbers import Number, with_value
+from mbsd.numbers.names import Number, with_value
+from mbsd.numbers.placed import PLACES
 
 
 def variants_beside(variation: Variation, numbers: Sequence[Number], known: Sequence[Near | None]) -> list[Variants]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -18,14 +18,23 @@ import numpy as np
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import AssemblyError, ModelError
 from mbsd.derivatives.numbers.number_steps import size_of, step_of
-from mbsd.derivatives.numbers.repacked import repacked, unchanged
 from mbsd.derivatives.numbers.terms import Terms, terms_of
-from mbsd.equations.loads import Loads
 from mbsd.model.event import Event
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, with_value, with_values
-from mbsd.model.saved_model import SavedModel
+from mbsd.numbers.names import Number, with_value, with_values
+from mbsd.numbers.placed import (
+    MASSES,
+    NUMBERS_OF_LOADS,
+    PLACES,
+    TABLES_OF_LOADS,
+    alike,
+    laws_of,
+    repacked,
+    same_laws,
+    unchanged,
+)
+from mbsd.numbers.saved import SavedModel
 
 STEP, TINY = 1e-4, 1e-5
 """Steps of a number, as parts of its size: of fourth and of second order."""
@@ -91,9 +100,6 @@ def models_of(m: Model, number: Number, variants: Variants) -> list[Callable[[],
 
 
 Close = Callable[[Model, Packed], Any]
-NUMBERS_OF_LOADS = ("element", "place", "term", "number", "interaction", "given", "user", "user_body", "user_com",
-                    "friction", "friction_number")  # fmt: skip
-PLACES = ("marker_arm", "marker_axis", "angle_offset", "distance_length", "numbers")
 
 
 class Variation:
@@ -113,7 +119,7 @@ class Variation:
         self.given = repr((self.work.starts, self.work.velocities))
         self.saved = SavedModel(self.work)
         self.first = pack(self.work, self._contacts(self.work))
-        self.motions, self.laws = list(self.first.motions), self.laws_of(self.first)
+        self.motions, self.laws = list(self.first.motions), laws_of(self.first)
         self.moving = bool(self.work.velocities) or bool(self.motions)
         self.turns = np.round((base.packed.system.angle_offset - self.first.system.angle_offset) / math.tau) * math.tau
         """Whole turns (rad) of angles that the motion has beyond those of the packed model."""
@@ -144,16 +150,16 @@ class Variation:
             first = self.first
             if packed.first_row is not first.first_row and packed.first_row.tolist() != first.first_row.tolist():
                 raise ModelError(f"{m.name}: '{number.name}' changes which joints there are")
-            places = alike(packed, first, PLACES) and packed.com.tobytes() == first.com.tobytes()
+            places = alike(packed.system, first.system, PLACES) and packed.com.tobytes() == first.com.tobytes()
             places = places and same_laws(packed.motions, self.base.packed.motions)
-            masses = alike(packed, first, ("mass", "inertia"))
+            masses = alike(packed.system, first.system, MASSES)
             begins = starts and self.starts and not (places and (masses or not self.moving) and self._starts_alike(m))
             start = self._decide(m, packed, begins)
             if packed.specials.phased:  # what rolls follows the start
-                places = places and alike(packed, self.base.packed, ("numbers",))
+                places = places and alike(packed.system, self.base.packed.system, ("numbers",))
             known = self.base.loads if lawful and self._pushes_alike(m, packed) else None
             terms = terms_of(packed, self.span, self.base.laws if lawful else None, self.loads, known)
-            same_loads = lawful and (known is not None or _same_loads(terms.loads, self.base.loads))
+            same_loads = lawful and alike(terms.loads, self.base.loads, TABLES_OF_LOADS + NUMBERS_OF_LOADS)
             return Variant(offset, terms, dict(m.traces), places, masses, same_loads, start, dict(m.events))
 
     def _starts_alike(self, m: Model) -> bool:
@@ -169,19 +175,14 @@ class Variation:
     def _packed(self, m: Model) -> tuple[Packed, bool]:
         """The mechanism packed, and whether its laws are those of the motion."""
         packed = repacked(m, self.first, self.saved)
-        if packed is None or (self.moving and not alike(packed, self.first, ("mass", "inertia"))):
+        if packed is None or (self.moving and not alike(packed.system, self.first.system, MASSES)):
             packed = pack(m, self._contacts(m))
         same = same_laws(packed.motions, self.motions)
         if same:
             packed.motions[:] = self.base.packed.motions
         else:
             packed.settle_laws(*self.span)
-        return packed, same and same_laws(self.laws_of(packed), self.laws)
-
-    @staticmethod
-    def laws_of(packed: Packed) -> list[Any]:
-        """Laws of forces."""
-        return [law for force in packed.forces for law in force.laws.values()]
+        return packed, same and same_laws(laws_of(packed), self.laws)
 
     def _contacts(self, m: Model) -> list[Joint]:
         return [m.contacts.get(joint.name) or self._limit(m, joint) for joint in self.contacts]
@@ -199,20 +200,3 @@ class Variation:
             start = self.close(m, packed)
         packed.system = packed.system.changed(angle_offset=mine + self.turns)
         return start
-
-
-def same_laws(laws: list[Any], others: list[Any]) -> bool:
-    """Whether laws are the very same."""
-    return len(laws) == len(others) and all(a is b for a, b in zip(laws, others, strict=True))
-
-
-def alike(packed: Packed, other: Packed, names: Sequence[str]) -> bool:
-    """Whether arrays of two mechanisms have the same numbers."""
-    pairs = [(getattr(packed.system, name), getattr(other.system, name)) for name in names]
-    return all(a is b or a.tobytes() == b.tobytes() for a, b in pairs)
-
-
-def _same_loads(loads: Loads | None, others: Loads | None) -> bool:
-    if loads is None or others is None:
-        return loads is others
-    return all(getattr(loads, name).tobytes() == getattr(others, name).tobytes() for name in NUMBERS_OF_LOADS)

@@ -26,7 +26,7 @@ from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.tables import rows_of
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number
+from mbsd.numbers.names import Number
 
 
 @dataclass

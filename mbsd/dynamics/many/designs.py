@@ -1,6 +1,6 @@
 """The simulations that are asked for: values of numbers, of starts and of velocities, row by row, as mechanisms.
 
-vary={"closer": {"stiffness": [...], "damping": [...]}, "hinge": {"x": [...]}}       see varied.py
+vary={"closer": {"stiffness": [...], "damping": [...]}, "hinge": {"x": [...]}}       see numbers/rows.py
 start={"door": [...]}       as m.start_near: degrees (n,), or (x, y, degrees) (n, 3)
 moving={"door": [...]}      as m.start_moving: rad/s (n,), or (vx, vy, omega) (n, 3)
 """
@@ -9,18 +9,19 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
-from mbsd.dynamics.many.varied import Varied, named, refuse_law, refuse_wide, varied
 from mbsd.model.body import Body
 from mbsd.model.mechanism import Model, StartVelocity, start_given
-from mbsd.model.numbers import put_together
-from mbsd.model.saved_model import SavedModel
+from mbsd.numbers.names import Number, put_together
+from mbsd.numbers.rows import VARY, Varied, named, refuse_law, refuse_wide, varied
+from mbsd.numbers.saved import SavedModel
 
 MOST = 100_000_000
 """Simulations of one call."""
@@ -32,16 +33,33 @@ class Designs:
 
     m: Model
     count: int
-    changes: dict[str, dict[str, np.ndarray]]
-    """By name and argument (count,) or (count, k)."""
-    starts: dict[str, np.ndarray]
-    """(count, 1) degrees or (count, 3)."""
-    velocities: dict[str, np.ndarray]
-    """(count, 1) rad/s or (count, 3)."""
+    columns: list[Varied]
     exact: bool = False
     """Whether each has the digits of a simulation by itself, whichever others are beside it."""
-    numbers: list[Varied] = field(default_factory=list)
-    """What ``change`` does not take as a whole: places, numbers of laws."""
+
+    @cached_property
+    def changes(self) -> dict[str, dict[str, np.ndarray]]:
+        """By name and argument of ``change`` (count,) or (count, k)."""
+        out: dict[str, dict[str, np.ndarray]] = {}
+        for each in self.columns:
+            if each.given == VARY and each.number is None:
+                out.setdefault(each.whole, {})[each.key] = each.values
+        return out
+
+    @cached_property
+    def numbers(self) -> list[tuple[Varied, Number]]:
+        """What ``change`` does not take as a whole: places, numbers of laws."""
+        return [(each, each.number) for each in self.columns if each.number is not None]
+
+    @cached_property
+    def starts(self) -> dict[str, np.ndarray]:
+        """(count, 1) degrees or (count, 3) by body."""
+        return {each.whole: each.values for each in self.columns if each.given == "start"}
+
+    @cached_property
+    def velocities(self) -> dict[str, np.ndarray]:
+        """(count, 1) rad/s or (count, 3) by body."""
+        return {each.whole: each.values for each in self.columns if each.given == "moving"}
 
     def copied(self) -> Any:
         """A mechanism of its own to be changed."""
@@ -53,9 +71,7 @@ class Designs:
 
     def extremes(self) -> set[int]:
         """Rows in which a number is the least or the largest of its column: one row may differ from all others."""
-        columns = [*self.starts.values(), *self.velocities.values(), *(each.values for each in self.numbers)]
-        columns += [column for values in self.changes.values() for column in values.values()]
-        wide = [column.reshape(self.count, -1) for column in columns]
+        wide = [each.values.reshape(self.count, -1) for each in self.columns]
         return {int(row) for column in wide for rows in (column.argmin(0), column.argmax(0)) for row in rows}
 
     def put_numbers(self, work: Any, row: int) -> None:
@@ -63,9 +79,8 @@ class Designs:
         changes = {
             name: {key: _plain(column[row]) for key, column in values.items()} for name, values in self.changes.items()
         }
-        put_together(
-            work, [each.number for each in self.numbers], [float(each.values[row]) for each in self.numbers], changes
-        )
+        numbers, values = [number for _, number in self.numbers], [float(each.values[row]) for each, _ in self.numbers]
+        put_together(work, numbers, values, changes)
 
     def put_start(self, work: Any, row: int) -> None:
         """Only the start of it, as start_near and start_moving set it. Raises ModelError as these do."""
@@ -96,7 +111,7 @@ class Built(Designs):
     """Mechanisms that were built one by one, and may differ in anything."""
 
     def __init__(self, mechanisms: Sequence[Model], why: str) -> None:
-        super().__init__(mechanisms[0], len(mechanisms), {}, {}, {}, exact=True)
+        super().__init__(mechanisms[0], len(mechanisms), [], exact=True)
         self.mechanisms = mechanisms
         self.why = why
         """Why their numbers are not put into one of them."""
@@ -126,40 +141,23 @@ def _plain(value: Any) -> Any:
 def designs_of(m: Model, vary: Any, start: Any, moving: Any) -> Designs:
     """Check what is asked for. Raises ModelError for names that do not exist and lists that do not fit."""
     _refuse_too_many(m, vary, start, moving)
-    changes, numbers = varied(m, vary)
-    starts, velocities = (
-        {name: _wide(m, what, name, values) for name, values in named(m, what, given).items()}
-        for what, given in (("start", start), ("moving", moving))
-    )
-    columns = [
-        *((f"{key} of '{name}'", column) for name, values in changes.items() for key, column in values.items()),
-        *((f"{each.key} of '{each.whole}'", each.values) for each in numbers),
-        *((f"start of '{name}'", column) for name, column in starts.items()),
-        *((f"moving of '{name}'", column) for name, column in velocities.items()),
-    ]
+    columns = sorted(varied(m, vary), key=lambda each: each.number is not None)
+    for what, given in (("start", start), ("moving", moving)):
+        columns += [Varied(what, name, what, _wide(m, what, name, own)) for name, own in named(m, what, given).items()]
     if not columns:
         raise ModelError(f"{m.name}: simulate_many: nothing varies; give vary=, start= or moving=")
-    count = max(len(column) for _, column in columns)
-    for what, column in columns:
-        if len(column) not in (1, count):
+    count = max(len(each.values) for each in columns)
+    for each in columns:
+        what = f"{m.name}: simulate_many: {each.key} of '{each.whole}' has"
+        if len(each.values) not in (1, count):
             raise ModelError(
-                f"{m.name}: simulate_many: {what} has {len(column)} values and another list has {count}; they must be "
-                "equally long, or a single number"
+                f"{what} {len(each.values)} values and another list has {count}; they must be equally long, or a "
+                "single number"
             )
-        if not len(column):
-            raise ModelError(f"{m.name}: simulate_many: {what} has no values; give one or more")
-
-    def spread(column: np.ndarray) -> np.ndarray:
-        return np.broadcast_to(column, (count, *column.shape[1:]))
-
-    out = Designs(
-        m,
-        count,
-        {name: {key: spread(column) for key, column in values.items()} for name, values in changes.items()},
-        {name: spread(values) for name, values in starts.items()},
-        {name: spread(values) for name, values in velocities.items()},
-        numbers=[each._replace(values=spread(each.values)) for each in numbers],
-    )
+        if not len(each.values):
+            raise ModelError(f"{what} no values; give one or more")
+    whole = [np.broadcast_to(each.values, (count, *each.values.shape[1:])) for each in columns]
+    out = Designs(m, count, [each._replace(values=own) for each, own in zip(columns, whole, strict=True)])
     _refuse_unknown(out)
     return out
 
@@ -187,18 +185,16 @@ def _refuse_unknown(designs: Designs) -> None:
                 raise ModelError(str(error).replace(f"{work.name}: ", f"{work.name}: vary: ", 1)) from None
             refuse_law(designs.m, name, list(values))
         refuse_wide(work, name, values)
-    for each in designs.numbers:
-        given = {"start": designs.starts, "moving": designs.velocities}.get(each.of_start or "", {})
-        if each.whole in given:
+    starts = {(each.given, each.whole) for each in designs.columns if each.given != VARY}
+    for each, number in designs.numbers:
+        if (each.of_start, each.whole) in starts:
             raise ModelError(
-                f"{work.name}: vary: '{each.number.name}' is also given by {each.of_start}=; leave out one of them"
+                f"{work.name}: vary: '{number.name}' is also given by {each.of_start}=; leave out one of them"
             )
-    for what, name in [
-        *((f"vary: {each.of_start}", each.whole) for each in designs.numbers if each.of_start),
-        *(("start", name) for name in designs.starts),
-        *(("moving", name) for name in designs.velocities),
-    ]:
-        _refuse_held(work, what, work.known_body(name))
+    for each in designs.columns:
+        if each.given != VARY or each.of_start:
+            what = each.given if each.given != VARY else f"vary: {each.of_start}"
+            _refuse_held(work, what, work.known_body(each.whole))
 
 
 def _refuse_held(m: Model, what: str, body: Body) -> None:

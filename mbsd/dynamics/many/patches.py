@@ -9,37 +9,44 @@ prepared one by one.
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from mbsd.arrays.directory import directory, made_of_masses, numbers_of
 from mbsd.base.arguments import SMALLEST
+from mbsd.base.codes import CYCLOIDAL, HARMONIC, POLYNOMIAL
 from mbsd.base.errors import MechanismError
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE
 from mbsd.dynamics.many.base import Base
-from mbsd.dynamics.many.contact_numbers import contact_columns
+from mbsd.dynamics.many.contacts.arrays import KINETIC, RESTITUTION, STATIC, Contacts
 from mbsd.dynamics.many.designs import Designs
-from mbsd.dynamics.many.law_numbers import law_columns
 from mbsd.dynamics.many.starts import Starts, starts_of
 from mbsd.dynamics.prepare.mass_ratio import USUAL
 from mbsd.dynamics.prepare.pressed import presses
 from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA
 from mbsd.model.body import rod_inertia
-from mbsd.model.force import Force
+from mbsd.model.laws import Motion
+from mbsd.model.laws.numbers import Compiled
+from mbsd.numbers.names import put_together
 
 ROUNDING = 1e-12
 """Part of a number by which it may differ from that of a row prepared in full."""
-FRAME = 7
-"""Numbers of an interaction before its own."""
+FIXED = {POLYNOMIAL: slice(0), HARMONIC: slice(0), CYCLOIDAL: slice(1, 3)}
+"""Numbers of a law, by its kind, that say where steps end: of a cycloidal one its duration and when it begins."""
 Column = tuple[int, np.ndarray]
 """Place in the block, and values (n,) of all rows."""
 
 
 class NotPatched(Exception):
     """Why rows must be prepared one by one."""
+
+
+def _other(name: str, keys: Iterable[str]) -> NotPatched:
+    return NotPatched(f"{', '.join(keys)} of '{name}'")
 
 
 class Patches:
@@ -56,22 +63,16 @@ class Patches:
             raise NotPatched("states of forces are found with the start")
         if presses(m):
             raise NotPatched("a journal starts pressed into its bearing")
-        of_laws = law_columns(designs, base, designs.numbers)
-        if of_laws is None:
-            raise NotPatched(" and ".join(f"{each.key} of '{each.whole}'" for each in designs.numbers))
-        columns += of_laws
+        columns += self._of_laws()
         for name, values in designs.changes.items():
             if name in m.forces:
                 columns += self._of_force(name, values)
             elif name in m.bodies and set(values) <= {"mass", "inertia"}:
                 self._take_masses(name, values)
-            elif name in m.contacts:
-                of_contact = contact_columns(designs, base, name, values)
-                if of_contact is None:
-                    raise NotPatched(f"{', '.join(values)} of '{name}'")
-                columns += of_contact
+            elif name in m.contacts and set(values) <= {"restitution", "friction", "static_friction"}:
+                columns += self._of_contact(name, values)
             else:
-                raise NotPatched(f"{', '.join(values)} of '{name}'")
+                raise _other(name, values)
         if self.mass is not None:
             if designs.exact and self.ready.initial.v.any():
                 raise NotPatched("speeds at the start are found with the masses")
@@ -102,64 +103,125 @@ class Patches:
     # -- forces --------------------------------------------------------------------------------------------------
 
     def _of_force(self, name: str, values: dict[str, np.ndarray]) -> Iterator[Column]:
-        m, loads = self.designs.m, self.dyn.loads
-        force, masses = self._plain(name, values), self.ready.packed.masses
-        if force.kind.of_reactions or force.kind.oil or force.kind.chamber or "function" in force.params:
-            raise NotPatched(f"force '{name}'")
-        places: list[int] = []
-        term = number = 0
-        for other in m.forces.values():
-            own = force if other.name == name else other
-            terms = range(term, term + sum(len(element.terms) for element in own.kind.elements(own)))
-            if own is force:
-                places += [self.base.layout.place(loads.number, k, c) for k in terms for c in range(3)]
-            term = terms.stop
-            for interaction in own.kind.interactions(own, masses):
-                if own is force:
-                    first = int(loads.interaction[number, 3]) + FRAME + interaction.calls_law
-                    places += [self.base.layout.place(loads.given, first + c) for c in range(len(interaction.numbers))]
-                number += 1
-        numbers = numbers_of_force(force, masses)
-        varying = [k for k, value in enumerate(numbers) if isinstance(value, np.ndarray)]
-        if self.designs.exact and varying:  # arrays may be rounded otherwise than single numbers
-            rows = np.array([self._row_of_force(force, values, row) for row in range(self.designs.count)], float)
-            yield from ((places[k], rows[:, k].copy()) for k in varying)
-            return
-        yield from ((places[k], numbers[k]) for k in varying)
-
-    def _row_of_force(self, force: Force, values: dict[str, np.ndarray], row: int) -> list[Any]:
-        params = {key: float(column[row]) for key, column in values.items()}
-        own = replace(force, params={**force.params, **params})
-        return numbers_of_force(own, self.ready.packed.masses)
-
-    def _plain(self, name: str, values: dict[str, np.ndarray]) -> Force:
-        """The force with arrays in place of numbers, if they are parameters that nothing else is made of."""
-        params: dict[str, Any] = {}
+        force, masses = self.designs.m.forces[name], self.ready.packed.masses
         for key, column in values.items():
             if column.ndim > 1:
-                raise NotPatched(f"{key} of '{name}'")
-            for number in (float(column.min()), float(column.max())):
-                work = self.designs.copied()
-                before = dict(work.forces[name].params)
-                try:
-                    work.change(name, **{key: number})
-                except MechanismError:
-                    raise NotPatched(f"some {key} of '{name}' are refused") from None
-                if presses(work):
-                    raise NotPatched(f"some {key} of '{name}' start pressed into its bearing")
-                after = work.forces[name].params
-                changed = {other for other in {*before, *after} if not _same(before.get(other), after.get(other))}
-                if not changed <= {key} or after.get(key) != number:
-                    raise NotPatched(f"{key} of '{name}'")
-            params[key] = np.ascontiguousarray(column)
-        force = self.designs.m.forces[name]
-        made = replace(force, params={**force.params, **params})
+                raise _other(name, [key])
+            if self._followers(name, [{key: float(column.min())}, {key: float(column.max())}]):
+                raise _other(name, [key])
+        own = {key: np.ascontiguousarray(column) for key, column in values.items()}
         try:
-            made.kind.elements(made)
-            made.kind.interactions(made, self.ready.packed.masses)
+            numbers = numbers_of(replace(force, params={**force.params, **own}), masses)
         except Exception:
-            raise NotPatched(f"{', '.join(values)} of '{name}'") from None
-        return made
+            raise _other(name, values) from None
+        if force.kind.of_reactions or force.kind.oil or force.kind.chamber or "function" in force.params:
+            raise NotPatched(f"force '{name}'")
+        entries = directory(self.ready.packed)[name].entries(self.dyn.loads)
+        places = [self.base.layout.place(array, *index) for array, index in entries]
+        if len(numbers) != len(places):
+            raise _other(name, values)
+        varying = [k for k, value in enumerate(numbers) if isinstance(value, np.ndarray)]
+        if self.designs.exact and varying:  # arrays may be rounded otherwise than single numbers
+            rows = [{key: float(column[row]) for key, column in own.items()} for row in range(self.designs.count)]
+            made = [numbers_of(replace(force, params={**force.params, **row}), masses) for row in rows]
+            numbers = [np.array(column, float) for column in zip(*made, strict=True)]
+        yield from ((places[k], numbers[k]) for k in varying)
+
+    def _followers(self, name: str, rows: Sequence[dict[str, float]]) -> set[str]:
+        """Return the parameters of a force or contact that change with those given; NotPatched if one is refused."""
+        out = set[str]()
+        for given in rows:
+            work = self.designs.copied()
+            table = work.forces if name in work.forces else work.contacts
+            before = dict(table[name].params)
+            try:
+                work.change(name, **given)
+            except MechanismError:
+                raise NotPatched(f"some {', '.join(given)} of '{name}' are refused") from None
+            if presses(work):
+                raise NotPatched(f"some {', '.join(given)} of '{name}' start pressed into its bearing")
+            after = table[name].params
+            if any(after.get(key) != value for key, value in given.items()):
+                raise _other(name, given)
+            out |= {key for key in {*before, *after} - {*given} if not _same(before.get(key), after.get(key))}
+        return out
+
+    # -- laws of forces ------------------------------------------------------------------------------------------
+
+    def _of_laws(self) -> Iterator[Column]:
+        """Yield the columns of numbers of laws, on which neither the start nor the end of a step may depend."""
+        designs, laws = self.designs, self.dyn.laws
+        refused = NotPatched(" and ".join(f"{each.key} of '{each.whole}'" for each, _ in designs.numbers))
+        for each, number in designs.numbers:
+            at, force = number.within, designs.m.forces.get(each.whole)
+            if at is None or force is None or at.key not in force.laws or each.whole in designs.changes:
+                raise refused
+        for name in dict.fromkeys(each.whole for each, _ in designs.numbers):
+            rows = self._laws_of(name)
+            if not rows:
+                raise refused
+            for k, *compiled in zip(directory(self.ready.packed)[name].law, *rows, strict=True):
+                begin, end = int(laws.first[k]), int(laws.first[k + 1])
+                if any(kind != laws.kind[k] or len(numbers) != end - begin for kind, numbers in compiled):
+                    raise refused
+                numbers = np.array([numbers for _, numbers in compiled])
+                fixed = FIXED.get(int(laws.kind[k]), slice(None))
+                if (numbers[:, fixed] != laws.numbers[begin:end][fixed]).any():
+                    raise refused
+                for c in range(end - begin):
+                    yield self.base.layout.place(laws.numbers, begin + c), numbers[:, c].copy()
+
+    def _laws_of(self, name: str) -> list[list[Compiled]]:
+        """Return all laws of a force as kernels evaluate them, for each row; none where a row is refused."""
+        work, span = self.designs.copied(), (self.ready.start, self.ready.end)
+        columns, numbers = zip(*(own for own in self.designs.numbers if own[0].whole == name), strict=True)
+        before, out = work.forces[name].params, []
+        for row in range(self.designs.count):
+            try:
+                put_together(work, numbers, [float(each.values[row]) for each in columns])
+                laws = work.forces[name].laws.values()
+                ready = [law.as_load(*span) if isinstance(law, Motion) else law for law in laws]
+                out.append([law.compiled(*span) for law in ready])
+            except MechanismError:
+                return []
+            if work.forces[name].params != before:
+                return []
+        return out
+
+    # -- contacts ------------------------------------------------------------------------------------------------
+
+    def _of_contact(self, name: str, values: dict[str, np.ndarray]) -> Iterator[Column]:
+        """Yield the columns of restitution and friction."""
+        if any(column.ndim > 1 for column in values.values()):
+            raise _other(name, values)
+        columns = {key: np.ascontiguousarray(column) for key, column in values.items()}
+        extremes = {int(at) for column in columns.values() for at in (column.argmin(), column.argmax())}
+        try:
+            followers = self._followers(
+                name, [{key: float(column[row]) for key, column in columns.items()} for row in extremes]
+            )
+        except NotPatched:
+            raise _other(name, values) from None
+        if "friction" in columns and followers == {"static_friction"}:  # it was not given
+            columns["static_friction"] = columns["friction"]
+            followers = set()
+        none = {"friction": 0.0, "static_friction": 0.0}
+        numbers: dict[str, Any] = {**none, **self.designs.m.contacts[name].params, **columns}
+        friction, static = np.asarray(numbers["friction"]), np.asarray(numbers["static_friction"])
+        if followers or (static < friction).any() or ("friction" in columns and not (friction > 0.0).all()):
+            raise _other(name, values)
+        contacts = next((part for part in self.base.arguments if isinstance(part, Contacts)), None)
+        if contacts is None:  # arguments of a loop that meets none
+            return
+        own = [contact.name for contact in self.ready.switches.contacts].index(name)
+        sliding, place = self.ready.switches.contacts[own].sliding, self.base.layout.place
+        for key, column in columns.items():
+            if key == "restitution":
+                yield place(contacts.number, own, RESTITUTION), column
+            elif sliding < 0:
+                raise _other(name, values)
+            else:
+                yield place(contacts.friction.number, sliding, KINETIC if key == "friction" else STATIC), column
 
     # -- masses --------------------------------------------------------------------------------------------------
 
@@ -211,15 +273,8 @@ class Patches:
         moving = whole[:, 3:] / np.where(per_size > 0.0, per_size, 1.0)[3:] ** 2
         if not (moving > 0.0).all() or (moving.max(axis=1) > USUAL * moving.min(axis=1)).any():
             raise NotPatched("masses that are zero or far apart")
-        packed = self.ready.packed
-        other = packed.masses._replace(mass=2.0 * packed.masses.mass + 1.0, inertia=2.0 * packed.masses.inertia + 1.0)
-        for force in packed.forces:
-            made = [
-                [list(interaction.numbers) for interaction in force.kind.interactions(force, masses)]
-                for masses in (packed.masses, other)
-            ]
-            if made[0] != made[1]:
-                raise NotPatched(f"force '{force.name}' is made of masses")
+        for name in made_of_masses(self.ready.packed):
+            raise NotPatched(f"force '{name}' is made of masses")
 
     # -- starts --------------------------------------------------------------------------------------------------
 
@@ -260,16 +315,9 @@ def coordinates_along(coordinates: list[Any], q: np.ndarray, v: np.ndarray) -> n
     return out
 
 
-def numbers_of_force(force: Force, masses: Any) -> list[Any]:
-    """All numbers of its elements and interactions, in the order in which they are packed."""
-    terms = (addend for element in force.kind.elements(force) for addend in element.terms)
-    out = [value for addend in terms for value in (addend.a, addend.b, addend.c)]
-    return out + [value for interaction in force.kind.interactions(force, masses) for value in interaction.numbers]
-
-
 def _same(a: Any, b: Any) -> bool:
     try:
-        return bool(a == b)
+        return np.array_equal(a, b) if isinstance(a, np.ndarray) else bool(a == b)
     except Exception:
         return a is b
 

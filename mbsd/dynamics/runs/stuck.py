@@ -12,14 +12,13 @@ Source: Hairer, Wanner, Solving ODEs II, IV.2.
 
 from __future__ import annotations
 
-import copy
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from mbsd.arrays.directory import directory, slice_of
 from mbsd.arrays.friction_along import friction_under
-from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.dynamics.prepare.lent_inertia import LIFT
 from mbsd.dynamics.reference.acceleration import derivative
@@ -166,24 +165,10 @@ def loads_by_force(run: Run, times: np.ndarray, states: np.ndarray) -> Iterator[
     """
     packed, own = run.ready.packed, run.ready.dynamics.loads
     q, v = np.ascontiguousarray(states[:, 0]), np.ascontiguousarray(states[:, 1])
-    at = np.zeros(4, np.int64)
-    for force, markers in zip(packed.forces, packed.force_markers, strict=True):
-        alone = copy.copy(packed)
-        alone.forces, alone.force_markers = [force], np.array([markers])
-        lone = pack_loads(alone)
-        size = [len(part) for part in (lone.element, lone.interaction, lone.user, lone.friction)]
-        elements, interactions, users, frictions = (slice(a, a + n) for a, n in zip(at, size, strict=True))
-        at += size
-        loads = own._replace(
-            element=own.element[elements],
-            place=own.place[elements],
-            interaction=own.interaction[interactions],
-            user=own.user[users],
-            friction=own.friction[frictions],
-            friction_number=own.friction_number[frictions],
-            total=sum(size[:3]),
-        )
-        if size[3]:
-            yield force, friction_under(packed, loads, q, v, np.tile(own.normal[X, frictions], (len(q), 1)))
+    for rows in directory(packed).values():
+        loads = rows.alone(own)
+        if rows.friction:
+            normal = np.tile(own.normal[X, slice_of(rows.friction)], (len(q), 1))
+            yield rows.force, friction_under(packed, loads, q, v, normal)
         else:
-            yield force, loads_along(packed, loads, run.ready.dynamics.laws, times, q, v)
+            yield rows.force, loads_along(packed, loads, run.ready.dynamics.laws, times, q, v)

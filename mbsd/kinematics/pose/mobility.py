@@ -185,7 +185,7 @@ def _best_rows(packed: Packed, q: np.ndarray) -> tuple[list[int], list[int], np.
 
 
 def _refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int], time: float) -> None:
-    drivers = packed.joints[len(packed.joints) - len(packed.motions) :]
+    drivers = packed.drivers
     idle = [d for k, d in enumerate(drivers) if packed.driver_rows + k not in set(kept)]
     if not idle:
         return

@@ -19,7 +19,7 @@ class Column(NamedTuple):
 
     kind: Kind
     """Length of a bar or rod, coordinate of a place, argument of change(), a number of a law or whatever else
-    model/numbers.py names, argument of a function, half of a play along a reaction, coordinate of a pin in its bore."""
+    numbers/names.py names, argument of a function, half of a play along a reaction, coordinate of a pin in its bore."""
     name: str
     key: str = ""
     """Name of the argument, or "x" or "y"."""

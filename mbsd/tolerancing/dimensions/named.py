@@ -24,7 +24,7 @@ from mbsd.derivatives.numbers.number_steps import size_of, step_of
 from mbsd.model.change import values_of
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, connections
-from mbsd.model.numbers import known_numbers, number_in
+from mbsd.numbers.names import known_numbers, number_in, place_in
 from mbsd.tolerancing.dimensions.clearance import Clearance
 from mbsd.tolerancing.dimensions.dimension import Column, Dimension, LoosePlay, PushedPlay, Size
 from mbsd.tolerancing.dimensions.reach import refuse_beyond
@@ -163,18 +163,12 @@ def _single(value: Any) -> bool:
 
 
 def _coordinate(m: Model, name: str, axis: str, value: Any) -> Dimension:
-    marker = m.traces.get(name) or first_marker(m, name)
-    nominal = marker.x if axis == "x" else marker.y
-    column = Column("place", name, axis, nominal)
+    number = place_in(m, name, axis)
+    marker, column = number.marker, Column("place", name, axis, number.value)
+    assert marker is not None
     size = _size(m.name, f"{name}.{axis}", value, column, math.hypot(marker.x, marker.y) or None)
     refuse_beyond(m, f"'{name}.{axis}' strays by", max(map(abs, size.limits)), marker)
     return size
-
-
-def first_marker(m: Model, name: str) -> Any:
-    """The marker of a joint that ``batch`` places: that on ground, or else the first."""
-    joint = m.joints[name]
-    return joint.i if joint.i.body is m.ground or joint.j.body is not m.ground else joint.j
 
 
 def _size(owner: str, label: str, value: Any, column: Column, length: float | None) -> Size:

@@ -16,8 +16,8 @@ from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, Push, in_c
 from mbsd.kinematics.prepare import prepare
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
+from mbsd.numbers.names import place_in, placed_side
 from mbsd.tolerancing.dimensions.dimension import Column
-from mbsd.tolerancing.dimensions.named import first_marker
 from mbsd.tolerancing.machines.one_by_one import Answers, swept
 from mbsd.tolerancing.machines.results import called, measured, numbers_of_batch, placed
 
@@ -120,11 +120,11 @@ class Batched:
             if column.kind == "length":
                 continue
             if column.name not in places:
-                marker = self._m.traces.get(column.name) or first_marker(self._m, column.name)
+                marker = place_in(self._m, column.name, "x").marker
+                assert marker is not None
                 places[column.name] = np.tile([marker.x, marker.y], (len(x), 1))
-                bar = marker.body
-                if bar.name in lengths and bar.length is not None and at_end(marker, bar.length):
-                    places[column.name][:, 0] = lengths[bar.name]
+                if marker.body.name in lengths and at_end(marker, marker.body.length):
+                    places[column.name][:, 0] = lengths[marker.body.name]
             if column.kind != "reaction":
                 places[column.name][:, "xy".index(column.key)] += x[:, k]
         return lengths, places
@@ -172,8 +172,8 @@ def push_directions(sol: Any, names: Sequence[str]) -> dict[str, np.ndarray | No
             out[name] = None
             continue
         along = force / np.where(size > 0.0, size, 1.0)[:, None]
-        marker = first_marker(m, name)
-        behind = -along if marker is m.joints[name].i else along
+        side = placed_side(m, m.joints[name])
+        marker, behind = getattr(m.joints[name], side), -along if side == "i" else along
         theta = np.zeros(len(sol.t)) if marker.body is m.ground else sol.body(marker.body.name).theta
         c, s = np.cos(theta), np.sin(theta)
         out[name] = np.column_stack([c * behind[:, 0] + s * behind[:, 1], c * behind[:, 1] - s * behind[:, 0]])

@@ -22,10 +22,9 @@ from mbsd.base.quiet import quiet
 from mbsd.dynamics.many.measures import Measure
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import Number, number_in, put_together
-from mbsd.synthesis.changed import lengthen, put_place
+from mbsd.numbers.names import Number, lengthened, number_in, place_in, put_together
 from mbsd.tolerancing.dimensions.dimension import Column
-from mbsd.tolerancing.dimensions.named import TOLERANCES, first_marker
+from mbsd.tolerancing.dimensions.named import TOLERANCES
 from mbsd.tolerancing.machines.results import NAME, FailingResult, NoNumber, OfSolution, called, number_of
 
 LONGEST = 200
@@ -112,27 +111,30 @@ def with_numbers(m: Model, columns: Sequence[Column], row: np.ndarray) -> Any:
     """A copy of ``m`` whose numbers differ by a row of deviations."""
     out: Any = copy.deepcopy(m)
     places: list[tuple[Column, float]] = []
-    changes: dict[str, dict[str, float]] = {}
+    changes: dict[str, dict[str, Any]] = {}
     parts: list[tuple[Number, float]] = []
     for column, deviation in zip(columns, row.tolist(), strict=True):
-        if column.kind == "length" and column.name in out.bodies:
-            lengthen(out, out.bodies[column.name], column.nominal + deviation)
-        elif column.kind in ("length", "argument"):
-            changes.setdefault(column.name, {})[column.key] = column.nominal + deviation
-        elif column.kind != "part" or (number := number_in(m, column.name, column.key, TOLERANCES)).marker is not None:
+        value, own = column.nominal + deviation, changes.get(column.name, {})
+        if column.kind == "length":
+            changes[column.name] = {**lengthened(m, column.name, value), **own}
+        elif column.kind == "argument":
+            changes[column.name] = {**own, column.key: value}
+        elif _number(m, column).marker is not None:
             places.append((column, deviation))
         else:
-            parts.append((number, column.nominal + deviation))
+            parts.append((_number(m, column), value))
     put_together(out, [number for number, _ in parts], [value for _, value in parts], changes)
     for column, deviation in places:  # about where the ends of bars now are
-        if column.kind == "part":
-            number = number_in(out, column.name, column.key, TOLERANCES)
-            number.put(out, number.value + deviation)
-            continue
-        marker = out.traces.get(column.name) or first_marker(out, column.name)
-        dx, dy = (deviation, 0.0) if column.key == "x" else (0.0, deviation)
-        put_place(out, column.name, (marker.x + dx, marker.y + dy))
+        number = _number(out, column)
+        number.put(out, number.value + deviation)
     return out
+
+
+def _number(m: Model, column: Column) -> Number:
+    """Return the coordinate, or the number of a law or of whatever else, that a column strays by."""
+    if column.kind == "part":
+        return number_in(m, column.name, column.key, TOLERANCES)
+    return place_in(m, column.name, column.key)
 
 
 class Simulated:
@@ -171,7 +173,7 @@ class Simulated:
         marker = None
         if column.kind in ("place", "part") and column.key.rpartition(".")[2] == "x":
             marker = number_in(self._m, column.name, column.key, TOLERANCES).marker
-        if marker is None or marker.body.length is None or not at_end(marker, marker.body.length):
+        if marker is None or not at_end(marker, marker.body.length):
             return None
         lengths = [(other.kind, other.name) for other in self._columns]
         bar = "length", marker.body.name

@@ -18,7 +18,7 @@ from mbsd.dynamics.many.quantities import Quantity, quantity_named
 from mbsd.dynamics.many.simulate_many import Simulations
 from mbsd.measures import samples
 from mbsd.model.mechanism import connections
-from mbsd.model.numbers import Number, known_numbers, number_in, number_named, with_values
+from mbsd.numbers.names import Number, known_numbers, number_in, number_named, with_values
 from mbsd.results.columns import FRAME
 from mbsd.results.solution import Solution
 from tools.hunt.judging.agreement import NUDGE, SLACK, USELESS

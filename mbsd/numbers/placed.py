@@ -1,4 +1,4 @@
-"""Arrays of a mechanism after one number has changed: what the number does not concern is taken over.
+"""Arrays of a mechanism whose numbers have changed: what a number does not concern is taken over, the rest packed anew.
 
 Most numbers are a mass, a number of a force, gravity or a start: markers, joints and tables stay as they are, and only
 a few entries are written anew. Whatever moves a marker or a joint is packed as a whole.
@@ -6,7 +6,7 @@ a few entries are written anew. Whatever moves a marker or a joint is packed as 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from operator import is_
 from typing import Any
@@ -16,7 +16,14 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.model.force import Force
 from mbsd.model.mechanism import Model
-from mbsd.model.saved_model import SavedModel
+from mbsd.numbers.saved import SavedModel
+
+PLACES = ("marker_arm", "marker_axis", "angle_offset", "distance_length", "numbers")
+"""Arrays of a system that follow from where markers are, and from lengths and angles."""
+MASSES = ("mass", "inertia")
+NUMBERS_OF_LOADS = ("place", "number", "given", "user_com", "friction_number")
+TABLES_OF_LOADS = ("element", "term", "interaction", "user", "user_body", "friction")
+"""What forces are, without their numbers."""
 
 
 def repacked(m: Model, packed: Packed, saved: SavedModel) -> Packed | None:
@@ -56,3 +63,21 @@ def unchanged(table: Mapping[str, Any], saved: SavedModel) -> bool:
     """Whether a table of the model holds what it held."""
     before = saved.before(table)
     return len(table) == len(before) and all(map(is_, table.values(), before.values()))
+
+
+def same_laws(laws: Sequence[Any], others: Sequence[Any]) -> bool:
+    """Return True for the very same laws."""
+    return len(laws) == len(others) and all(map(is_, laws, others))
+
+
+def laws_of(packed: Packed) -> list[Any]:
+    """Return the laws of all forces."""
+    return [law for force in packed.forces for law in force.laws.values()]
+
+
+def alike(arrays: Any, others: Any, names: Sequence[str]) -> bool:
+    """Return True where arrays of these names have the same numbers in two systems or loads, or neither is there."""
+    if arrays is None or others is None:
+        return arrays is others
+    pairs = [(getattr(arrays, name), getattr(others, name)) for name in names]
+    return all(a is b or a.tobytes() == b.tobytes() for a, b in pairs)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import partial
@@ -22,15 +22,17 @@ from typing import Any
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
-from mbsd.model.body import Marker
+from mbsd.model.body import Marker, rod_inertia
 from mbsd.model.change import BAR, BODY, change, given, given_body
 from mbsd.model.joint import Joint
 from mbsd.model.laws import Motion
 from mbsd.model.mechanism import Model, connections, start_given
-from mbsd.model.saved_model import SavedModel
+from mbsd.numbers.saved import SavedModel
 
 AXES = {"x": 0, "y": 1}
 PLACE = ("x", "y", "angle")
+ROD_ALIKE = 1e-9
+"""Relative difference below which a bar's inertia is that of a uniform rod."""
 LISTED = 12
 """Numbers of a thing that a message lists."""
 START = {"start": ("angle", "x", "y"), "moving": ("omega", "vx", "vy")}
@@ -91,6 +93,12 @@ def number_named(m: Model, name: str) -> Number:
     raise _no_number(m, whole, name[len(whole) + 1 :], "derivatives")
 
 
+def twin_of(number: Number, other: Model, value: float, numbers: Iterable[Number]) -> Number | None:
+    """Return the one of ``numbers`` that is ``number`` by another name, which has ``value`` in the model ``other``."""
+    alike = (twin for twin in numbers if twin.value == number.value)
+    return next((twin for twin in alike if number_named(other, twin.name).value == value), None)
+
+
 def number_in(m: Model, whole: str, rest: str, asked: str) -> Number:
     """The number ``rest`` of a thing: "x" of a joint. Raises ModelError, which says that ``asked`` asked for it."""
     number = _number(m, whole, rest)
@@ -99,10 +107,41 @@ def number_in(m: Model, whole: str, rest: str, asked: str) -> Number:
     return number
 
 
+def place_in(m: Model, name: str, axis: str) -> Number:
+    """Return the coordinate "x" or "y" of a traced point, or else of the place of a joint. Raises ModelError."""
+    if name not in m.traces and name not in m.joints:
+        raise ModelError(f"{m.name}: {no_such('joint or traced point', name, [*m.joints, *m.traces])}")
+    if name in m.traces:
+        return _of_trace(m, name, axis)
+    return _of_marker(m, f"{name}.{axis}", name, placed_side(m, m.joints[name]), axis)
+
+
+def placed_side(m: Model, joint: Joint) -> str:
+    """Return "i" or "j", the side whose marker is the place of a joint: that on ground, or else the first."""
+    return "i" if joint.i.body is m.ground or joint.j.body is not m.ground else "j"
+
+
+def lengthened(m: Model, name: str, length: float) -> dict[str, Any]:
+    """Return what ``change`` takes for another length (m) of a rod or bar. A uniform rod stays one."""
+    out: dict[str, Any] = {"length": length}
+    if name in m.joints and m.joints[name].kind.constraints == ("distance",):
+        return out
+    body = m.known_body(name)
+    assert body.length is not None
+    if body.com == (body.length / 2, 0.0):
+        rod = rod_inertia(body.mass, body.length)
+        if "com" not in body.derived:
+            out["com"] = length / 2, 0.0
+        if "inertia" not in body.derived and body.mass > 0 and abs(body.inertia - rod) <= ROD_ALIKE * rod:
+            out["inertia"] = rod_inertia(body.mass, length)
+    return out
+
+
 def _number(m: Model, whole: str, rest: str) -> Number | None:
     if whole == "gravity" and rest in AXES:
         return _gravity(m, AXES[rest])
-    return _of_entry(m, whole, rest) or _of_body(m, whole, rest) or _of_trace(m, whole, rest)
+    own = _of_entry(m, whole, rest) or _of_body(m, whole, rest)
+    return own if own is not None or whole not in m.traces or rest not in PLACE else _of_trace(m, whole, rest)
 
 
 def _things(m: Model) -> list[str]:
@@ -144,6 +183,22 @@ def with_values(m: Any, numbers: Sequence[Number], values: Sequence[float]) -> A
     """A copy of a model with other values of numbers. Raises ModelError for those that it refuses."""
     out = copy.deepcopy(m)
     put_together(out, numbers, values)
+    return out
+
+
+def changed(m: Model, values: Mapping[str, object]) -> Model:
+    """A copy of ``m`` with lengths of bars and rods (one number, m) and places of joints and traced points ((x, y), m).
+
+    A bar's new end moves whatever is at its end, forces included, and a uniform rod stays one; other masses are kept.
+    Raises ModelError for a name of none.
+    """
+    out = copy.deepcopy(m)
+    for name, value in values.items():
+        if isinstance(value, tuple):
+            for axis, coordinate in zip("xy", value, strict=True):
+                place_in(out, name, axis).put(out, coordinate)
+        else:
+            change(out, name, lengthened(out, name, float(value)))  # pyright: ignore[reportArgumentType]
     return out
 
 
@@ -260,8 +315,7 @@ def _of_entry(m: Model, whole: str, rest: str) -> Number | None:
     if first in ("i", "j") and inner in PLACE:
         return _of_marker(m, name, whole, first, inner)
     if rest in PLACE and isinstance(entry, Joint):
-        ground_first = entry.i.body is m.ground or entry.j.body is not m.ground
-        return _of_marker(m, name, whole, "i" if ground_first else "j", rest)
+        return _of_marker(m, name, whole, placed_side(m, entry), rest)
     return None
 
 
@@ -317,10 +371,7 @@ def _of_start(m: Model, name: str, body: str, what: str, at: int) -> Number | No
     return Number(name, value, put, is_place=what == "start" and at > 0, vector=vector)
 
 
-def _of_trace(m: Model, whole: str, rest: str) -> Number | None:
-    if whole not in m.traces or rest not in PLACE:
-        return None
-
+def _of_trace(m: Model, whole: str, rest: str) -> Number:
     def put(m: Model, new: float) -> None:
         m.traces[whole] = replace(m.traces[whole], **{rest: float(new)})
 

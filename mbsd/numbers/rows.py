@@ -1,7 +1,7 @@
 """Numbers that vary, by name: arguments of ``change``, and places, numbers of laws and others that it does not take.
 
 vary={"closer": {"stiffness": [...], "damping": [...]}, "door": {"mass": [...]}}     as m.change takes them
-vary={"hinge": {"x": [...]}, "motor": {"rate": [...]}, "door": {"hinge.y": [...]}}   as model/numbers.py names them
+vary={"hinge": {"x": [...]}, "motor": {"rate": [...]}, "door": {"hinge.y": [...]}}   as numbers/names.py names them
 """
 
 from __future__ import annotations
@@ -16,21 +16,22 @@ from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.model.change import takes, values_of
 from mbsd.model.mechanism import Model
-from mbsd.model.numbers import START, Number, number_in, numbers_within, with_values
+from mbsd.numbers.names import START, Number, number_in, numbers_within, twin_of, with_values
 
 VARY = "vary"
-Changes = dict[str, dict[str, np.ndarray]]
-"""Names to arguments of ``change`` and their values."""
 
 
 class Varied(NamedTuple):
-    """A number that ``change`` does not take as a whole."""
+    """One argument of ``change``, another number, or a start or velocity, and its values."""
 
+    given: str
+    """VARY, "start" or "moving"."""
     whole: str
     key: str
-    number: Number
     values: np.ndarray
-    """(n,)"""
+    """(n,), or (n, k) of what takes k numbers"""
+    number: Number | None = None
+    """What ``change`` does not take as a whole."""
 
     @property
     def of_start(self) -> str | None:
@@ -39,10 +40,9 @@ class Varied(NamedTuple):
         return first if inner in START.get(first, ()) else None  # "start" alone is a number of laws
 
 
-def varied(m: Model, vary: Any) -> tuple[Changes, list[Varied]]:
+def varied(m: Model, vary: Any) -> list[Varied]:
     """Arguments of ``change``, and other numbers. Raises ModelError for names that there are not."""
-    changes: Changes = {}
-    numbers: list[Varied] = []
+    out: list[Varied] = []
     for name, values in named(m, VARY, vary).items():
         if not isinstance(values, Mapping) or not all(isinstance(key, str) for key in values):
             whole, _, key = name.partition(".")
@@ -52,24 +52,25 @@ def varied(m: Model, vary: Any) -> tuple[Changes, list[Varied]]:
             )
         for key, given in values.items():
             column = _column(f"{m.name}: vary: {key} of '{name}'", given)
-            if takes(m, name, key):
-                changes.setdefault(name, {})[key] = column
-                continue
-            number = number_in(m, name, key, VARY)
-            if column.ndim > 1:
+            number = None if takes(m, name, key) else number_in(m, name, key, VARY)
+            if number is not None and column.ndim > 1:
                 raise _too_wide(m, name, key, column)
-            numbers.append(Varied(name, key, number, column))
-    _refuse_twice(m, changes, numbers)
-    return changes, numbers
+            out.append(Varied(VARY, name, key, column, number))
+    _refuse_twice(m, out)
+    return out
 
 
-def _refuse_twice(m: Model, changes: Changes, numbers: Sequence[Varied]) -> None:
+def _refuse_twice(m: Model, every: Sequence[Varied]) -> None:
     """Raise ModelError where a number varies under two names."""
-    for k, (_, key, number, values) in enumerate(numbers):
+    changes = {(each.whole, each.key) for each in every if each.number is None}
+    numbers = [(each, each.number) for each in every if each.number is not None]
+    for k, (each, number) in enumerate(numbers):
         at = number.within
-        if at is not None and at.key in changes.get(at.whole, ()):
-            raise ModelError(f"{m.name}: vary: '{at.whole}': '{key}' is a part of '{at.key}'; leave out one of them")
-        others = values[values != number.value]
+        if at is not None and (at.whole, at.key) in changes:
+            raise ModelError(
+                f"{m.name}: vary: '{at.whole}': '{each.key}' is a part of '{at.key}'; leave out one of them"
+            )
+        others = each.values[each.values != number.value]
         if not len(others) or k + 1 == len(numbers):
             continue
         new = float(others[0])
@@ -77,12 +78,9 @@ def _refuse_twice(m: Model, changes: Changes, numbers: Sequence[Varied]) -> None
             other = with_values(m, [number], [new])
         except ModelError:
             continue  # a row may have that
-        for twin in numbers[k + 1 :]:
-            there = number_in(other, twin.whole, twin.key, VARY).value
-            if twin.number.value == number.value and there == new:
-                raise ModelError(
-                    f"{m.name}: vary: '{number.name}' and '{twin.number.name}' are the same number; leave out one"
-                )
+        twin = twin_of(number, other, new, [own for _, own in numbers[k + 1 :]])
+        if twin is not None:
+            raise ModelError(f"{m.name}: vary: '{number.name}' and '{twin.name}' are the same number; leave out one")
 
 
 def refuse_wide(m: Model, name: str, values: Mapping[str, np.ndarray]) -> None:

@@ -12,10 +12,11 @@ from numba import TypingError
 
 from mbsd import Mechanism, constant_rate
 from mbsd.arrays.packing import pack
+from mbsd.dynamics.events.steps import EventSteps
 from mbsd.dynamics.integrators.dop853.loop import DOP853
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.run import Run
-from mbsd.dynamics.state import TIME, copied
+from mbsd.dynamics.state import TIME
 from mbsd.equations.system import LAST, System
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.pose.phases import take_decided
@@ -101,31 +102,28 @@ def test_a_kernel_that_writes_into_a_system_does_not_compile() -> None:
 
 
 def test_a_run_along_a_curve_that_crosses_itself_changes_its_record_alone() -> None:
-    """The record and the state are all that going on needs."""
+    """A snapshot is all that going on needs."""
 
-    def begun() -> tuple:
+    def begun() -> EventSteps:
         ready = prepare_dynamics(bead(), 0.0, 2.0)
         state, out = ready.begun(np.array([0.0, 2.0]))
-        return ready, Run(ready, DOP853, 1e-8, 1e-3, 2.0, {}), state, out
+        return EventSteps(ready, Run(ready, DOP853, 1e-8, 1e-3, 2.0, {}), state, out, [])
 
-    def on(ready, run, state, out, end: float) -> None:
-        while state.clock[TIME] < end:
-            ready.advance(DOP853, ready.dynamics, run.scratch, state, out, run.settings, end, 1000)
+    met = begun()
+    relative, constants = met.packed.ws.relative, bytes_of(met.packed.system)
+    met.begin()
+    met.to(1.0)
+    kept, before = met.snapshot(), float(relative[0, LAST])
+    met.to(2.0)
+    assert bytes_of(met.packed.system) == constants
+    assert relative[0, LAST] != before
 
-    ready, run, state, out = begun()
-    constants = bytes_of(ready.packed.system)
-    on(ready, run, state, out, 1.0)
-    kept, held = copied(state), ready.switches.now.copy()
-    on(ready, run, state, out, 2.0)
-    assert bytes_of(ready.packed.system) == constants
-    assert ready.switches.now.remembered[0, -1] == ready.packed.ws.relative[0, LAST] != held.remembered[0, -1]
+    again = begun()
+    again.state.y[...], again.state.clock[TIME] = kept.y, kept.time
+    again.resume(kept, kept.work)
+    again.to(2.0)
+    np.testing.assert_allclose(again.state.y, met.state.y, atol=1e-6)
 
-    again, run, begin, out = begun()
-    for target, source in zip(begin, kept, strict=True):
-        target[...] = source
-    again.switches.now.restore(held)
-    on(again, run, begin, out, 2.0)
-    np.testing.assert_array_equal(begin.y, state.y)
 
 
 def test_whole_turns_at_the_start_are_kept_with_contacts() -> None:

@@ -6,26 +6,12 @@ from collections.abc import Collection
 
 import numpy as np
 
-from mbsd.compiling.jit import kernel
 from mbsd.dynamics.many.contacts.arrays import TOUCHING
-from mbsd.dynamics.many.contacts.jumps import impacts, take_ways
+from mbsd.dynamics.many.contacts.jumps import strike
 from mbsd.dynamics.many.contacts.made import contacts_of
-from mbsd.dynamics.many.contacts.pushes import find_compliance
-from mbsd.dynamics.many.contacts.rows import release_rows
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.dynamics.state import start_state
-
-
-@kernel
-def _strike(dyn, scratch, contacts, t, y):
-    """Change velocities y[1] by the impacts of the contacts in chosen[TOUCHING]; False where none are possible."""
-    release_rows(dyn, contacts)
-    take_ways(contacts, contacts.chosen[TOUCHING])
-    derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
-    find_compliance(dyn, scratch, contacts, contacts.chosen[TOUCHING])
-    return impacts(dyn, scratch, contacts, y[1])
 
 
 def velocities_after(
@@ -41,6 +27,6 @@ def velocities_after(
     for k, contact in enumerate(ready.switches.contacts):
         contacts.chosen[TOUCHING, k] = contact.name in names
     scratch = scratch_for(ready.dynamics, packed.ws, len(packed.motions), 1, (0, 0))
-    if not _strike(ready.dynamics, scratch, contacts, t, state.y):
+    if not strike(ready.dynamics, scratch, contacts, t, state.y):
         raise ArithmeticError(f"{packed.name}: at t = {t:.6g} s no impulses of contacts are possible")
     return state.y[1]

@@ -18,7 +18,7 @@ round are equal).
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart, internal
+from mbsd.compiling.jit import apart, internal, kernel
 from mbsd.dynamics.events.bounds import AT_LIMIT, BEGINS, CREEP, ROUNDS
 from mbsd.dynamics.many.contacts.arrays import (
     BESIDE,
@@ -330,3 +330,13 @@ def moving(dyn, scratch, contacts, v):
     if moving:
         keep_independent(contacts, contacts.chosen[TAKING])
     return moving
+
+
+@kernel
+def strike(dyn, scratch, contacts, t, y):
+    """Change velocities y[1] by the impacts of the contacts in chosen[TOUCHING]; False where none are possible."""
+    release_rows(dyn, contacts)
+    take_ways(contacts, contacts.chosen[TOUCHING])
+    derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
+    find_compliance(dyn, scratch, contacts, contacts.chosen[TOUCHING])
+    return impacts(dyn, scratch, contacts, y[1])

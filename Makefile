@@ -106,7 +106,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts hunt-imports torture check-numbers keep-numbers record-numbers schema docs docs-site site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts hunt-imports torture check-numbers keep-numbers record-numbers check-events record-events schema docs docs-site site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
@@ -306,6 +306,14 @@ keep-numbers: install ## keep the numbers of these runs, before a change that ma
 record-numbers: install ## record them anew, where a change of numbers is meant
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.numbers record
+
+check-events: install ## 590 runs with contacts, stops and events against those recorded, within their bounds; ONLY="rope"
+	$(ALL_KERNELS)
+	@$(PYTHON) -m tools.numbers events check "$$ONLY"
+
+record-events: install ## record them anew, where a change of numbers is meant, with bounds measured anew; ONLY="rope"
+	$(ALL_KERNELS)
+	@$(PYTHON) -m tools.numbers events record "$$ONLY"
 
 hunt: install ## N random mechanisms (1000), each solved again in other words; SEED=1 says which: out/hunt.json
 	$(ALL_KERNELS)

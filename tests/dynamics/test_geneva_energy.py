@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism
+from tools.models.genevas import two_genevas
 
 
 def free_geneva(slots: int, gravity: tuple[float, float] | None, speed: float = 10.0) -> Mechanism:
@@ -39,21 +40,6 @@ def test_a_crank_that_swings_back_at_its_slot_is_followed() -> None:
         m.torsion_spring("spring", m.ground, m.bodies["crank"], 0.02)
         sol = m.simulate(3.0, steps=100, tolerance=1e-9, formulation="independent")
         assert np.ptp(sol.audit) < 1e-8, speed
-
-
-def two_genevas() -> Mechanism:
-    """Two wheels of one crank, which starts where a pin leaves."""
-    m = Mechanism("two", gravity=None)
-    crank = m.body("crank", 0.5, (0.0, 0.0), 1e-3)
-    m.revolute("O", m.ground.origin, crank.origin)
-    for name, slots, x in (("wheel", 4, 0.1), ("other", 5, -0.12)):
-        wheel = m.body(name, 1.0, (0.0, 0.0), 1e-3)
-        m.revolute(f"W{name}", m.ground.at(x, 0), wheel.origin)
-        turned = 0.0 if x > 0 else math.pi / 3
-        m.geneva(f"index {name}", crank.at(0, 0, turned), wheel.origin, slots, abs(x) * math.sin(math.pi / slots))
-    m.start_near(crank=-45.0)
-    m.start_moving(crank=6.0)
-    return m
 
 
 def test_a_start_at_the_jump_and_two_genevas_at_once() -> None:

@@ -19,8 +19,9 @@ from mbsd.compiling.jit import COMPILED
 from mbsd.measures import final, largest, samples, smallest
 from mbsd.model.force import ForceKind
 from mbsd.testing.kinds import force_kinds
-from tests.dynamics.many_models import STEPS, barrier, door, pendulum
+from tests.dynamics.many_models import STEPS, door, pendulum
 from tools.models.random_linkages import linkage
+from tools.models.stops import barrier
 
 
 def test_random_machines_have_the_digits_of_single_simulations() -> None:

@@ -15,7 +15,8 @@ from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics.many import loop
 from mbsd.dynamics.many.early import MOST_PASSED
 from mbsd.measures import Measure, final, first, integral, samples
-from tests.dynamics.many_models import barrier, door, pendulum
+from tests.dynamics.many_models import door, pendulum
+from tools.models.stops import barrier
 
 DURATION, STEPS = 4.0, 300
 WHOLE = {"end": integral("work")}

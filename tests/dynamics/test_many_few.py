@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from mbsd import Mechanism, harmonic
 from mbsd.dynamics.many import loop
 from mbsd.measures import Measure, final, first, integral, samples
-from tests.dynamics.many_models import barrier, door, pendulum
+from tests.dynamics.many_models import door, pendulum
+from tools.models.stops import barrier
 from tools.numbers.blocks import cam
 
 DURATION, STEPS = 2.0, 120

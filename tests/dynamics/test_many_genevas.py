@@ -12,36 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from mbsd import Mechanism
 from mbsd.measures import final, first, samples
 from tests.dynamics.beside_single_runs import between
-from tests.dynamics.test_geneva_energy import two_genevas
+from tools.models.genevas import free, swinging, two
 
 STEPS = 40
-
-
-def free(slots: int, gravity: tuple[float, float] | None = (0.0, -9.81), speed: float = 10.0) -> Mechanism:
-    """A crank with a flywheel's inertia that turns a wheel and its own unbalance."""
-    m = Mechanism("geneva", gravity=gravity)
-    crank, wheel = m.body("crank", 0.5, (0.01, 0.0), 1e-3), m.body("wheel", 1.0, (0.0, 0.0), 2e-3)
-    m.revolute("O", m.ground.origin, crank.origin)
-    m.revolute("W", m.ground.at(0.1, 0), wheel.origin)
-    m.geneva("index", crank.origin, wheel.origin, slots, 0.1 * math.sin(math.pi / slots))
-    m.torsion_spring("spring", m.ground, crank, 0.0, 0.0)
-    m.start_near(wheel=5)
-    m.start_moving(crank=speed)
-    return m
-
-
-def swinging() -> Mechanism:
-    """It swings back at its slot, again and again."""
-    m = free(4, speed=1.0)
-    m.change("spring", stiffness=0.02)
-    return m
-
-
-def two() -> Mechanism:
-    """Two wheels of one crank, whose spring and damper vary."""
-    m = two_genevas()
-    m.torsion_spring("spring", m.ground, m.bodies["crank"], 0.0, 1e-4)
-    return m
 
 
 CASES: dict[str, Callable[[], Mechanism]] = {"turning": lambda: free(6), "swinging": swinging, "two": two}

@@ -9,7 +9,8 @@ import pytest
 
 from mbsd import Mechanism
 from mbsd.measures import first, integral, largest, samples, smallest
-from tests.dynamics.many_models import STEPS, barrier, door, pendulum
+from tests.dynamics.many_models import STEPS, door, pendulum
+from tools.models.stops import barrier
 
 
 def test_measures_are_what_they_say() -> None:

@@ -12,12 +12,12 @@ from mbsd.base.errors import MechanismError
 from mbsd.measures import final, samples
 from mbsd.numbers.names import number_named, with_values
 from mbsd.studies.simulated import simulated
-from tests.dynamics.many_models import barrier
 from tests.dynamics.test_many_numbers import press
 from tools.hunt.outcome import AGREED, WRONG
 from tools.hunt.solving.free_case import nudged
 from tools.hunt.solving.mixed_rows import beside_single_ones, mixed_rows, quantity_names
 from tools.models import assur_models, linkages
+from tools.models.stops import barrier
 
 MOVED = {
     "motor": {"amplitude": [0.6, 0.5, 0.4, 0.45], "rate": [9.0, 8.0, 10.0, 9.5], "phase": [0.2, 0.0, 0.1, -0.3]},

@@ -13,7 +13,8 @@ from mbsd import Mechanism, ModelError, cycloidal, harmonic, polynomial
 from mbsd.measures import final, largest, samples
 from mbsd.model.body import Marker
 from mbsd.numbers.names import number_named, with_values
-from tests.dynamics.many_models import STEPS, barrier
+from tests.dynamics.many_models import STEPS
+from tools.models.stops import barrier
 
 PLACES = np.array([[0.4, 0.02], [0.41, 0.0], [0.38, 0.05]])
 

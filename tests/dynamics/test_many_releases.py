@@ -6,52 +6,17 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mbsd import Mechanism, ModelError, angle_reaches, constant_rate, speed_reaches
+from mbsd import Mechanism, ModelError, angle_reaches
 from mbsd.measures import final, largest, samples
 from tests.dynamics.beside_single_runs import assert_as_single_ones, between
+from tools.models.releases import chain, sling
 
 STEPS = 40
-
-
-@numba.njit
-def kicked(t, q, v):
-    return v[0] + 0.2, v[1] + 0.5, v[2] - 1.0
-
-
-def sling() -> Mechanism:
-    """An arm that is thrown off its hinge onto a floor."""
-    m = Mechanism("sling", gravity=(0, -9.81))
-    arm = m.bar("arm", 0.5, mass=0.3)
-    hinge = m.revolute("hinge", m.ground.at(0, 1), arm.start)
-    m.torque("spring", arm, 4.0)
-    for name, tip in (("floor", arm.start), ("other", arm.end)):
-        m.rigid_contact(name, m.ground.at(0, 0), tip, radius=0.02, restitution=0.3, friction=0.2)
-    m.event("off", angle_reaches(arm, math.pi / 4), releases=hinge)
-    m.start_near(arm=-90)
-    return m
-
-
-def chain() -> Mechanism:
-    """Two pendulums: the lower one breaks off with a kick, then the upper one, and a motor lets go."""
-    m = Mechanism("chain")
-    a, b, disc = m.bar("a", 1.0, mass=1.0), m.bar("arm", 0.7, mass=0.5), m.body("disc", mass=1.0, inertia=5e-3)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("hinge", a.end, b.start)
-    m.revolute("axle", a.at(0.5, 0), disc.origin)
-    m.friction("rub", "hinge", 0.1, radius=0.02)
-    m.drive_angle("motor", disc, constant_rate(20.0))
-    m.torsion_spring("spring", m.ground, a, 1.0, 0.1)
-    m.event("break", speed_reaches(b, -2.0), frames=b, action=kicked, releases="hinge")
-    m.event("stop", angle_reaches(disc, 9.0), releases=("motor", "A"))
-    m.event("again", angle_reaches(disc, 10.0), releases="A")
-    m.start_near(a=-30, arm=-20)
-    return m
 
 
 CASES: dict[str, tuple[Callable[[], Mechanism], dict[str, tuple[str, float, float]], str]] = {

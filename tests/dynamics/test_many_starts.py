@@ -9,7 +9,8 @@ import pytest
 
 from mbsd import Mechanism, ModelError, constant_rate
 from mbsd.measures import final
-from tests.dynamics.many_models import barrier, door, pendulum
+from tests.dynamics.many_models import door, pendulum
+from tools.models.stops import barrier
 
 
 def test_starts_do_not_follow_from_which_rows_go_together() -> None:

@@ -9,14 +9,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, harmonic
+from mbsd import Mechanism
 from mbsd.measures import final, first, samples
 from tools.models.sticking import (
     arm,
     bell,
     coasting_slider_crank,
     loaded_lever,
+    ratchet,
+    rubbed_ratchet,
     shaken_block,
+    stopped_bell,
     stuck_five_bar,
     two_slider_cranks,
     weightless_slider_crank,
@@ -24,30 +27,6 @@ from tools.models.sticking import (
 
 STEPS = 24
 EXACT = 2e-9
-
-
-def stopped_bell() -> Mechanism:
-    m = bell(40.0)
-    m.stop("end", m.joints["pin"], lower=-2.0, upper=1.0, restitution=0.5)
-    return m
-
-
-def ratchet() -> Mechanism:
-    """A wheel on a spring that an oscillating load turns forwards alone."""
-    m = Mechanism("ratchet", gravity=None)
-    wheel, load = m.body("wheel", 1.0, inertia=0.5), m.body("load", 1.0, inertia=0.3)
-    m.revolute("axle", m.ground.origin, wheel.origin)
-    m.revolute("other", m.ground.at(1, 0), load.origin)
-    m.one_way("clutch", m.ground, wheel)
-    m.torsion_spring("shaft", wheel, load, 40.0, 0.2)
-    m.torque("motor", load, harmonic(6.0, 4.0, 1.0))
-    return m
-
-
-def rubbed_ratchet() -> Mechanism:
-    m = ratchet()
-    m.friction("rub", "other", 0.2, radius=0.1, preload=20.0, sticks=True)
-    return m
 
 
 CASES: dict[str, tuple[Callable[[], Mechanism], float, Mapping[str, Any], str]] = {

@@ -2,69 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, angle_reaches, constant_rate, polynomial, speed_reaches
+from mbsd import Mechanism
 from mbsd.measures import samples
-from tests.dynamics.test_many_releases import chain, sling
-from tests.dynamics.test_many_repeated import cranks, dry
+from tools.models.releases import broken_cranks, dry_chain, held_up, motor_and_cranks, twin_hinges
+from tools.models.repeated_joints import cranks, dry
 
 STEPS, DURATION = 40, 1.2
-
-
-def dry_chain() -> Mechanism:
-    """A chain in dry bearings: they come to rest, hold, and are released while they hold and while they turn."""
-    m = chain()
-    m.friction("dry", "A", 0.2, radius=0.1, preload=120.0, sticks=True)
-    m.friction("dry axle", "axle", 0.1, radius=0.02, sticks=True)
-    return m
-
-
-def held_up() -> Mechanism:
-    """Two bars that their dry pins hold where they are, until both are released at once; then one falls on a floor."""
-    m = Mechanism("shelf", gravity=(0, -9.81))
-    a, b, disc = m.bar("a", 0.4, mass=0.5), m.bar("coupler", 0.3, mass=0.4), m.body("disc", mass=1.0, inertia=1.0)
-    m.revolute("A", m.ground.at(0, 0), a.start)
-    m.revolute("B", a.end, b.start)
-    m.revolute("axle", m.ground.at(2, 0), disc.origin)
-    m.drive_angle("clock", disc, constant_rate(1.0))
-    for pin in "AB":
-        m.friction(f"rub {pin}", pin, 0.3, radius=0.1, preload=150.0, sticks=True)
-    m.rigid_contact("floor", m.ground.at(0, -0.3), b.end, radius=0.01, restitution=0.3, friction=0.2)
-    m.event("B breaks", angle_reaches(disc, 0.3), releases="B")
-    m.event("A breaks", angle_reaches(disc, 0.5), releases="A")
-    m.event("too", angle_reaches(disc, 0.5), releases=("A", "B"))
-    m.start_near(a=10, coupler=20, disc=(2, 0, 0))
-    return m
-
-
-def twin_hinges() -> Mechanism:
-    """A sling whose second hinge takes over."""
-    m = sling()
-    m.revolute("twin", m.ground.at(0, 1), m.bodies["arm"].start)
-    m.event("twin breaks", angle_reaches(m.bodies["arm"], math.radians(80)), releases="twin")
-    return m
-
-
-def broken_cranks(m: Mechanism) -> Mechanism:
-    """Of three equal cranks each breaks in turn; then the coupler is free."""
-    for k, (angle, joints) in enumerate(((-75, "A1"), (-80, ("B0", "A2")))):
-        m.event(f"breaks {k}", angle_reaches(m.bodies["crank0"], math.radians(angle)), releases=joints)
-    m.event("last", speed_reaches(m.bodies["crank2"], 0.5), releases="B2")
-    return m
-
-
-def motor_and_cranks() -> Mechanism:
-    """The crank with the motor lets go of the coupler, which the others carry, and then the motor itself."""
-    m = cranks()
-    m.drive_angle("motor", m.bodies["crank1"], polynomial(math.radians(-60), -2.0))
-    m.event("off", angle_reaches(m.bodies["crank1"], math.radians(-80)), releases="B1")
-    m.event("stops", angle_reaches(m.bodies["crank1"], math.radians(-120)), releases="motor")
-    return m
 
 
 Build = Callable[[], Mechanism]

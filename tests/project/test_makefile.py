@@ -173,7 +173,7 @@ def test_the_makefile_keeps_to_make_3_81_and_a_posix_shell() -> None:
 
 
 def test_tests_and_measurements_wait_for_all_kernels() -> None:
-    for target in ("test", "test-fast", "test-slow", "bench-start", "check-numbers"):
+    for target in ("test", "test-fast", "test-slow", "bench-start", "check-numbers", "check-events"):
         done = run("make", "-n", "-o", "install", target)
         [line] = [number for number, text in enumerate(done.stdout.splitlines()) if "-m tools.compiling wait" in text]
         assert line == (1 if target.startswith("test") else 0), (

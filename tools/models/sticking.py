@@ -133,3 +133,27 @@ def loaded_lever() -> Mechanism:
     m.rigid_contact("touch", lever.origin, ball.origin, radius=0.02)
     m.start_near(lever=0, ball=(0.3, 0.32, 0))
     return m
+
+
+def stopped_bell() -> Mechanism:
+    m = bell(40.0)
+    m.stop("end", m.joints["pin"], lower=-2.0, upper=1.0, restitution=0.5)
+    return m
+
+
+def ratchet() -> Mechanism:
+    """A wheel on a spring that an oscillating load turns forwards alone."""
+    m = Mechanism("ratchet", gravity=None)
+    wheel, load = m.body("wheel", 1.0, inertia=0.5), m.body("load", 1.0, inertia=0.3)
+    m.revolute("axle", m.ground.origin, wheel.origin)
+    m.revolute("other", m.ground.at(1, 0), load.origin)
+    m.one_way("clutch", m.ground, wheel)
+    m.torsion_spring("shaft", wheel, load, 40.0, 0.2)
+    m.torque("motor", load, harmonic(6.0, 4.0, 1.0))
+    return m
+
+
+def rubbed_ratchet() -> Mechanism:
+    m = ratchet()
+    m.friction("rub", "other", 0.2, radius=0.1, preload=20.0, sticks=True)
+    return m

@@ -1,5 +1,7 @@
 """``python -m tools.numbers`` check [TEXT] | record | keep [TEXT] | within TOLERANCE [TEXT]: see the package.
 
+``python -m tools.numbers events`` check [TEXT] | record [TEXT] | loop [TEXT]: see tools/numbers/events.
+
 Python's, numpy's and the C library's functions and BLAS choose their code by the processor, which changes last digits.
 So this starts itself anew with what every x86-64 has: BLAS and numpy without AVX, the C library without FMA.
 """
@@ -45,10 +47,23 @@ def main() -> int:
             return 0
         case ["within", tolerance, *only] if len(only) <= 1:
             return _within(float(tolerance), only[0] if only else "")
+        case ["events", "check" | "record" | "loop" as what, *only] if len(only) <= 1:
+            return _events(what, only[0] if only else "")
     print(
-        "usage: python -m tools.numbers check [TEXT] | record | keep [TEXT] | within TOLERANCE [TEXT]", file=sys.stderr
+        "usage: python -m tools.numbers check [TEXT] | record | keep [TEXT] | within TOLERANCE [TEXT]\n"
+        "       python -m tools.numbers events check [TEXT] | record [TEXT] | loop [TEXT]",
+        file=sys.stderr,
     )
     return 2
+
+
+def _events(what: str, only: str) -> int:
+    from tools.numbers.events import commands, loop
+
+    if what == "loop":
+        loop.show(only)
+        return 0
+    return commands.check(only) if what == "check" else commands.record(only)
 
 
 def _measured(only: str, measure: Callable[[Any], Any]) -> dict[str, Any]:

@@ -1,5 +1,5 @@
 """Measures of many simulations (:meth:`mbsd.Mechanism.simulate_many`): what is kept of each."""
 
-from mbsd.dynamics.many.measures import Measure, final, first, integral, largest, samples, smallest
+from mbsd.dynamics.measures.kinds import Measure, final, first, integral, largest, samples, smallest
 
 __all__ = ["Measure", "final", "first", "integral", "largest", "samples", "smallest"]

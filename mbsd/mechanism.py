@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from mbsd.analyses.state_space import Linearisation
     from mbsd.derivatives.sensitivities import Sensitivities
     from mbsd.drawing.of_solution import SkeletonDrawer
-    from mbsd.dynamics.many.measures import Measure
-    from mbsd.dynamics.many.simulate_many import Simulations
+    from mbsd.dynamics.batch.simulate_many import Simulations
+    from mbsd.dynamics.measures.kinds import Measure
     from mbsd.kinematics.batch import Batch
     from mbsd.pictures.picture import Picture, Svg
     from mbsd.results.mobility import Mobility
@@ -197,7 +197,7 @@ class Mechanism(Building):
         Simulations that fail have a reason there. Raises ModelError for what cannot be asked.
         """
         from mbsd.analyses.suspicious_units import tell
-        from mbsd.dynamics.many.simulate_many import simulate_many
+        from mbsd.dynamics.batch.simulate_many import simulate_many
 
         tell(self)
         return simulate_many(

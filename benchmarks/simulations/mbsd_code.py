@@ -10,7 +10,7 @@ import numpy as np
 
 import mbsd
 from benchmarks.simulations import DURATION, LENGTH, MASS, OUTPUTS
-from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.measures.kinds import Measure
 from mbsd.measures import final, first
 
 

@@ -13,8 +13,8 @@ from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
 from mbsd.derivatives.solution_rows import rows_of
-from mbsd.dynamics.many.measures import Measure
-from mbsd.dynamics.many.quantities import ACCELERATIONS, Motions, quantity_named
+from mbsd.dynamics.measures.kinds import Measure
+from mbsd.dynamics.measures.quantities import ACCELERATIONS, Motions, quantity_named
 from mbsd.model.mechanism import Model
 from mbsd.results.columns import DRIVER, FRAME, JOINT, columns
 from mbsd.results.solution import Solution

@@ -10,8 +10,8 @@ import numpy as np
 from mbsd.base.quiet import quiet
 from mbsd.base.users_function import refuse_other_arguments
 from mbsd.derivatives.asked import reads_bodies, reads_forces
-from mbsd.dynamics.many.measures import Measure
-from mbsd.dynamics.many.quantities import quantity_named
+from mbsd.dynamics.measures.kinds import Measure
+from mbsd.dynamics.measures.quantities import quantity_named
 from mbsd.dynamics.simulate import simulate
 from mbsd.kinematics.sweep import sweep
 from mbsd.model.mechanism import Model

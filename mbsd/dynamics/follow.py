@@ -8,7 +8,7 @@ import numpy as np
 
 from mbsd.base.errors import SimulationError
 from mbsd.compiling.interrupts import kept
-from mbsd.dynamics.events.steps import EventSteps
+from mbsd.dynamics.events.driver import EventSteps
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs.recording import Recording, Snapshot

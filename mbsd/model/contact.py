@@ -6,7 +6,7 @@ other. While the contact is closed, g = 0 is a row of J with the normal force N 
     open     g > 0                        nothing acts
     slides   g = 0, N >= 0, s' != 0       friction -mu N sign(s')
     sticks   g = 0, N >= 0, s' = 0        |T| <= mu N
-    impact   g = 0, g' < 0                velocities jump; see mbsd/dynamics/many/contacts/jumps.py
+    impact   g = 0, g' < 0                velocities jump; see mbsd/dynamics/events/jumps.py
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.base.errors import MechanismError
-from mbsd.dynamics.many.designs import designs_of
+from mbsd.dynamics.batch.designs import designs_of
 from mbsd.mechanism import Mechanism
 
 PROTOCOL = 5

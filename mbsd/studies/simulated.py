@@ -13,10 +13,10 @@ from mbsd.base.arguments import checked
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
-from mbsd.dynamics.many.designs import Built, Designs, designs_of
-from mbsd.dynamics.many.measures import Measure
-from mbsd.dynamics.many.simulate_many import Simulations, asked_for, checked_measures, quantities_of, simulations
-from mbsd.dynamics.many.single_run import Asked
+from mbsd.dynamics.batch.designs import Built, Designs, designs_of
+from mbsd.dynamics.batch.simulate_many import Simulations, asked_for, checked_measures, quantities_of, simulations
+from mbsd.dynamics.batch.single_run import Asked
+from mbsd.dynamics.measures.kinds import Measure
 from mbsd.mechanism import Mechanism
 from mbsd.model.mechanism import Model, connections
 from mbsd.studies.numbers_alone import MoreThanNumbers, differences

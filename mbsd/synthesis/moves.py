@@ -16,7 +16,7 @@ from mbsd.base.shown import shown
 from mbsd.derivatives.driven.sweeps import SweepTangents
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, values_and_slopes
-from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.measures.kinds import Measure
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism
-from mbsd.dynamics.events.steps import EventSteps
+from mbsd.dynamics.events.driver import EventSteps
 from mbsd.dynamics.integrators.dop853.loop import DOP853
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.run import Run

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd.compiling.jit import kernel
-from mbsd.dynamics.many.contacts.pushes import lowest_row, pivot_to_end
+from mbsd.dynamics.events.pushes import lowest_row, pivot_to_end
 
 
 @kernel

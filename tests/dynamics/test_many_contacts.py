@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism
-from mbsd.dynamics.many.contacts import made
-from mbsd.dynamics.many.simulate_many import asked_for
-from mbsd.dynamics.many.single_run import single_run
+from mbsd.dynamics.batch.simulate_many import asked_for
+from mbsd.dynamics.batch.single_run import single_run
+from mbsd.dynamics.events import packing as made
 from mbsd.measures import final, largest, samples, smallest
 from tools.models.stops import ball, barrier, box, bumpers, limited, massless, plank
 

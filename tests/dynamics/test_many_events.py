@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, ModelError, angle_reaches, distance_reaches, speed_reaches
-from mbsd.dynamics.many.quantities import quantity_named
+from mbsd.dynamics.measures.quantities import quantity_named
 from mbsd.measures import final, first, integral, largest, samples
 from mbsd.results.columns import columns
 from mbsd.results.solution import Solution

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, harmonic
-from mbsd.dynamics.many import loop
+from mbsd.dynamics.batch import loop
 from mbsd.measures import Measure, final, first, integral, samples
 from tests.dynamics.many_models import door, pendulum
 from tools.models.stops import barrier

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism
 from mbsd.base.errors import MechanismError
-from mbsd.dynamics.many.simulate_many import Simulations
+from mbsd.dynamics.batch.simulate_many import Simulations
 from mbsd.measures import final, samples
 from mbsd.model.mechanism import connections
 from mbsd.numbers.names import Number, known_numbers, number_in, with_values

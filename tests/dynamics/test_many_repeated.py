@@ -12,13 +12,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism
-from mbsd.dynamics.events import steps
-from mbsd.dynamics.many import worker
-from mbsd.dynamics.many.base import based_on
-from mbsd.dynamics.many.repeated.arrays import Repeated
-from mbsd.dynamics.many.repeated.made import opened
-from mbsd.dynamics.many.simulate_many import asked_for
-from mbsd.dynamics.many.single_run import single_run
+from mbsd.dynamics.batch import worker
+from mbsd.dynamics.batch.base import based_on
+from mbsd.dynamics.batch.simulate_many import asked_for
+from mbsd.dynamics.batch.single_run import single_run
+from mbsd.dynamics.events import driver as steps
+from mbsd.dynamics.repeated_rows.arrays import Repeated
+from mbsd.dynamics.repeated_rows.packing import opened
 from mbsd.measures import final, largest, samples
 from tests.dynamics.beside_single_runs import assert_as_single_ones, between
 from tools.models.repeated_joints import cranks, doors, dry, row_of_cranks

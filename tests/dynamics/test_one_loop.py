@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism
 from mbsd.compiling.jit import kernel
-from mbsd.dynamics.many.contacts.sticking.giving_way import solve_least
+from mbsd.dynamics.events.sticking.giving_way import solve_least
 from mbsd.measures import final, samples
 
 

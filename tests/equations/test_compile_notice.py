@@ -36,7 +36,7 @@ def test_long_compilations_of_the_package_are_told(caplog, module: str, wait: fl
 def test_every_package_with_kernels_is_named(caplog) -> None:
     for module in (
         "mbsd.dynamics.integrators.dop853.loop",
-        "mbsd.dynamics.many.rows",
+        "mbsd.dynamics.batch.rows",
         "mbsd.kinematics.sweep",
         "mbsd.x",
     ):

@@ -12,7 +12,7 @@ from numba import TypingError
 
 from mbsd import Mechanism, constant_rate
 from mbsd.arrays.packing import pack
-from mbsd.dynamics.events.steps import EventSteps
+from mbsd.dynamics.events.driver import EventSteps
 from mbsd.dynamics.integrators.dop853.loop import DOP853
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.run import Run
@@ -123,7 +123,6 @@ def test_a_run_along_a_curve_that_crosses_itself_changes_its_record_alone() -> N
     again.resume(kept, kept.work)
     again.to(2.0)
     np.testing.assert_allclose(again.state.y, met.state.y, atol=1e-6)
-
 
 
 def test_whole_turns_at_the_start_are_kept_with_contacts() -> None:

@@ -24,7 +24,7 @@ from mbsd.derivatives.smooth.rates_beside import FIRST, Held, motions_beside, ra
 from mbsd.derivatives.smooth.sides import Sides, forces_beside
 from mbsd.derivatives.smooth.smooth_motion import CLOSE, NotSmooth
 from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.many.quantities import Motions
+from mbsd.dynamics.measures.quantities import Motions
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated import Course, Outputs
 from mbsd.dynamics.runs.embed import POOR, Embedded, begin_at, embedded_at_start, embedding_scratch

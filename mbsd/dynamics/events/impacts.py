@@ -6,9 +6,9 @@ from collections.abc import Collection
 
 import numpy as np
 
-from mbsd.dynamics.many.contacts.arrays import TOUCHING
-from mbsd.dynamics.many.contacts.jumps import strike
-from mbsd.dynamics.many.contacts.made import contacts_of
+from mbsd.dynamics.events.arrays import TOUCHING
+from mbsd.dynamics.events.jumps import strike
+from mbsd.dynamics.events.packing import contacts_of
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.dynamics.state import start_state

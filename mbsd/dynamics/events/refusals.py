@@ -9,9 +9,9 @@ import numpy as np
 
 from mbsd.arrays.friction_along import REMEDY, jam
 from mbsd.base.errors import SimulationError
-from mbsd.dynamics.many.contacts.arrays import ALONE, FAILURE, NO_AGREEMENT, NOW, TAKING, Contacts
-from mbsd.dynamics.many.contacts.pushes import STIFF
-from mbsd.dynamics.many.contacts.steps import INSIDE
+from mbsd.dynamics.events.arrays import ALONE, FAILURE, NO_AGREEMENT, NOW, TAKING, Contacts
+from mbsd.dynamics.events.loop import INSIDE
+from mbsd.dynamics.events.pushes import STIFF
 from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import TIME, State
 

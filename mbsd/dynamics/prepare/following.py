@@ -2,7 +2,7 @@
 
 It takes one step at a time, moves the parameters of the points' feet on, and divides a step in which a foot goes too
 far (mbsd/arrays/curve_branches.py). Wheels: mbsd/kinematics/limits/free_wheels.py. The steps are those of
-mbsd/dynamics/many/contacts/wheels.py.
+mbsd/dynamics/events/following.py.
 """
 
 from __future__ import annotations

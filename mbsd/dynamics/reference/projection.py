@@ -7,10 +7,10 @@ Source: Eich 1993, SIAM J. Numer. Anal. 30 (projection after each step); Hairer,
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import inlined, kernel, merged
+from mbsd.compiling.jit import apart, inlined, kernel, merged
 from mbsd.dynamics.reference.pins import change_by_pins, factor_pins
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
-from mbsd.equations.assembly import evaluate_nu, evaluate_position
+from mbsd.equations.assembly import evaluate_nu, evaluate_position, position
 from mbsd.equations.laws import evaluate_laws
 
 LIFT = 1e-11
@@ -86,3 +86,11 @@ def close_step(dyn, scratch, t, state):
             return False
         project(dyn, scratch, t, state, 2)
     return not scratch.report[2] > OPEN
+
+
+@apart
+def measure(dyn, scratch, t, q):
+    """Fill scratch.ws.phi and scratch.ws.jac at q (3 nb,) and t (s)."""
+    if scratch.drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
+    position(dyn.system, q, scratch.drive, scratch.ws)

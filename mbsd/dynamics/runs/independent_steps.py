@@ -9,8 +9,8 @@ from mbsd.compiling.jit import Often
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
 from mbsd.dynamics.embedding.equations import write_alone
-from mbsd.dynamics.many.indexing.made import genevas_of
-from mbsd.dynamics.many.indexing.steps import run_indexed
+from mbsd.dynamics.genevas.packing import genevas_of
+from mbsd.dynamics.genevas.steps import run_indexed
 from mbsd.dynamics.runs.embed import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, embedding_scratch
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.reference_steps import advance

@@ -6,18 +6,16 @@ reference coordinates carried across singular poses (carried_steps.py), or from 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
-from mbsd.dynamics.many.contacts.arrays import Contacts
-from mbsd.dynamics.many.contacts.made import contacts_of
 from mbsd.dynamics.prepare.prepared import OUTPUTS_LONGEST, PreparedDynamics
 from mbsd.dynamics.reference.arrays import Scratch
-from mbsd.dynamics.state import Output, State, output_for
-from mbsd.model.event import Event
+from mbsd.dynamics.state import Output, output_for
 
 AUTO, REFERENCE, INDEPENDENT = FORMULATIONS = "auto", "reference", "independent"
 """Which coordinates are integrated; "auto" takes independent ones where it can."""
@@ -53,7 +51,8 @@ class Run:
         self.method = method
         self.tolerance = tolerance
         self.steps_at_once = steps_at_once(ready.packed.coordinates, method.matrices[0] > 0)
-        self._contacts: Contacts | None = None
+        self.contacts: Any = None
+        """Arrays of contacts and events for the loop, once it has met some; the same ones whenever the run goes on."""
         ready.refuse_method(method)
         self.settings = ready.settings(method, tolerance, step, duration, options)
 
@@ -70,12 +69,6 @@ class Run:
     def scratch(self) -> Scratch:
         """In reference coordinates."""
         return self.ready.scratch(self.method)
-
-    def contacts_of(self, state: State, events: Sequence[Event]) -> Contacts:
-        """Return arrays of contacts and events for the compiled loop: the same ones whenever the run goes on."""
-        if self._contacts is None:
-            self._contacts = contacts_of(self.ready, state, events, self.settings.longest, self.method, log=True)
-        return self._contacts
 
     @cached_property
     def nowhere(self) -> Output:

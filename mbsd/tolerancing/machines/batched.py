@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.measures.kinds import Measure
 from mbsd.kinematics.batch import parameters
 from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, Push, in_closed_form
 from mbsd.kinematics.prepare import prepare

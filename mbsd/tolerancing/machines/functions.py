@@ -12,7 +12,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.base.shown import shown
-from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.measures.kinds import Measure
 from mbsd.model.mechanism import Model
 from mbsd.tolerancing.dimensions.named import numbers_of
 from mbsd.tolerancing.machines.one_by_one import computed

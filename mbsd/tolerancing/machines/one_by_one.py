@@ -19,7 +19,7 @@ import numpy as np
 
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.quiet import quiet
-from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.measures.kinds import Measure
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number, lengthened, number_in, place_in, put_together

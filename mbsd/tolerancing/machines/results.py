@@ -10,8 +10,8 @@ import numpy as np
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
-from mbsd.dynamics.many.measures import Measure
-from mbsd.dynamics.many.quantities import Quantity, quantity_named
+from mbsd.dynamics.measures.kinds import Measure
+from mbsd.dynamics.measures.quantities import Quantity, quantity_named
 from mbsd.model.mechanism import Model
 
 NAME = "result"

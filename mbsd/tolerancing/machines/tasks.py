@@ -12,7 +12,7 @@ import numpy as np
 from mbsd.base.arguments import whole_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
-from mbsd.dynamics.many.measures import Measure
+from mbsd.dynamics.measures.kinds import Measure
 from mbsd.kinematics.batch import MOST_THREADS
 from mbsd.tolerancing.dimensions.dimension import Dimension, LoosePlay
 from mbsd.tolerancing.dimensions.named import dimensions_of, pushed

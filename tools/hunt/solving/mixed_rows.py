@@ -14,8 +14,8 @@ import numpy as np
 
 from mbsd import Mechanism
 from mbsd.base.errors import MechanismError
-from mbsd.dynamics.many.quantities import Quantity, quantity_named
-from mbsd.dynamics.many.simulate_many import Simulations
+from mbsd.dynamics.batch.simulate_many import Simulations
+from mbsd.dynamics.measures.quantities import Quantity, quantity_named
 from mbsd.measures import samples
 from mbsd.model.mechanism import connections
 from mbsd.numbers.names import Number, known_numbers, number_in, number_named, with_values

@@ -1,0 +1,123 @@
+"""Multipliers of least norm of joints that repeat others, of many simulations; see dynamics/simulate.py."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.reactions import rows_of_joints
+from mbsd.dynamics.batch.base import Base
+from mbsd.dynamics.batch.block import content, laid_out
+from mbsd.dynamics.batch.outputs import Outputs, Reacting, until
+from mbsd.dynamics.batch.patches import Patches
+from mbsd.dynamics.batch.single_run import SingleRun
+from mbsd.dynamics.batch.tabulated_reactions import tabulate_reactions
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.start.large import MANY_COORDINATES
+
+NEGLIGIBLE = 1e-9
+"""Singular values of J below this part of the largest are zero."""
+
+
+def shares(ready: PreparedDynamics) -> bool:
+    """Whether joints share loads in many ways, and those of least norm are meant.
+
+    Friction came from those of the rows that held.
+    """
+    if len(ready.dynamics.loads.friction) or ready.packed.coordinates > MANY_COORDINATES:
+        return False
+    return bool(ready.mobility.redundant_rows)
+
+
+def shared(
+    packed: list[Packed],
+    y: np.ndarray,
+    jacobians: np.ndarray,
+    lam: np.ndarray,
+    times: np.ndarray,
+    joints: np.ndarray,
+    gone: np.ndarray | None = None,
+) -> Reacting:
+    """Reactions in ``joints`` (k,); jacobians (R, T, rows of all joints and drivers, 6) are compact, lam (R, T, m).
+
+    ``gone`` (R, T, rows): which rows hold no more.
+    """  # fmt: skip
+    first, rows = packed[0], jacobians.shape[2]
+    if gone is not None:
+        jacobians[gone] = 0.0
+    out = lam.copy()
+    for mine, compact, multipliers in zip(out, jacobians, lam, strict=True):
+        j = _spread(first, compact)
+        forces = np.einsum("trc,tr->tc", j, multipliers[:, :rows])
+        mine[:, :rows] = np.einsum("trc,tc->tr", np.linalg.pinv(j.transpose(0, 2, 1), rcond=NEGLIGIBLE), forces)
+    own = rows_of_joints(first, joints)
+    return Reacting(packed, y, jacobians[:, :, own], out, times, joints, own)
+
+
+def _spread(packed: Packed, compact: np.ndarray) -> np.ndarray:
+    """(T, rows, n) of the first rows of J, compact (T, rows, 6)."""
+    whole = np.zeros((len(compact), len(packed.ws.phi), 6))
+    whole[:, : compact.shape[1]] = compact
+    return packed.spread(whole)[:, : compact.shape[1]]
+
+
+class Reactions:
+    """Reactions in some joints (k,) of rows that are like one run, in one thread."""
+
+    def __init__(self, run: SingleRun, patches: Patches | None, joints: np.ndarray) -> None:
+        self.run, self.joints = run, joints
+        packed = run.ready.packed
+        self.least = shares(run.ready)
+        self.rows = np.arange(packed.contact_rows) if self.least else rows_of_joints(packed, joints)
+        self.room = np.zeros((0, 0, 0, 6))
+        arguments, block, layout = laid_out(self._arguments(run))
+        self.base = Base(run, arguments, block, layout, (), block[None].copy())
+        self.patches = None if patches is None else Patches(patches.designs, self.base, starts=False)
+
+    @staticmethod
+    def _arguments(run: SingleRun) -> tuple:
+        return run.ready.dynamics, run.run.scratch
+
+    def of_rows(self, rows: range, out: Outputs, times: np.ndarray) -> Reacting:
+        """Those of rows that differ by numbers alone."""
+        assert self.patches is not None
+        return self._filled(self.base.fresh, self.patches.place, self.patches(rows)[0], [self.run], out, times)
+
+    def of_runs(self, runs: Sequence[SingleRun], out: Outputs, times: np.ndarray) -> Reacting:
+        """Those of runs that were prepared."""
+        fresh = np.array([content(self._arguments(run)) for run in runs])
+        return self._filled(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), runs, out, times)
+
+    def _filled(
+        self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, runs: Sequence[SingleRun], out: Outputs,
+        times: np.ndarray,
+    ) -> Reacting:  # fmt: skip
+        count, known = len(out.lam), self.run.independent is None
+        if len(self.room) < count:
+            self.room = np.zeros((*out.lam.shape[:2], len(self.rows), 6))
+        jacobians = self.room[:count]
+        if len(self.rows) or not known:
+            tabulate_reactions(
+                *self.base.arguments, self.base.block, fresh, place, value, times, out.over, out.y, out.status,
+                self.rows, jacobians, out.lam, known,
+            )  # fmt: skip
+        packed = [run.ready.packed for run in runs]
+        if self.least:
+            gone = self._gone(out, times)
+            return shared(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, gone)
+        return Reacting(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, self.rows)
+
+    def _gone(self, out: Outputs, times: np.ndarray) -> np.ndarray | None:
+        """(R, T, rows) which rows of joints and drivers events have released; None where they release none."""
+        packed, events = self.run.ready.packed, self.run.events
+        if not any(event.releases for event in events):
+            return None
+        names = [joint.name for joint in packed.joints]
+        gone = np.zeros((len(out.lam), len(times), len(self.rows)), bool)
+        for when, event in zip(out.released.T[..., None], events, strict=True):
+            since = (times > when) | (out.over[:, None] <= times) & (when <= out.over[:, None])
+            for joint in map(names.index, event.releases):
+                gone[..., packed.first_row[joint] : packed.first_row[joint + 1]] |= since[..., None]
+        return gone

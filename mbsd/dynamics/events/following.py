@@ -1,0 +1,150 @@
+"""Steps while wheels may run into each other, and points follow curves that cross themselves: prepare/following.py.
+
+A step takes two centres at most half their way to each other, and a foot no farther than its curve allows; where wheels
+meet, a single simulation says so.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.callback import call
+from mbsd.compiling.jit import internal, lazy
+from mbsd.dynamics.events.arrays import HALF, LAST_STEP, METHOD, SHORTEST, TRYING
+from mbsd.dynamics.integrators.advance import copy_state, through
+from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STEP_TOO_SMALL, TIME
+from mbsd.equations.relative.curve_pieces import CLOSED, FARTHEST, SPAN, U, X, Y, find_foot
+from mbsd.equations.system import LAST
+
+
+@internal
+def _line(system, y, i, j):
+    """From marker i to marker j (m) in the world at y (2, 3 nb), and how that changes (m/s)."""
+    x0 = 0.0
+    x1 = 0.0
+    v0 = 0.0
+    v1 = 0.0
+    for side in range(2):
+        marker = j if side == 0 else i
+        sign = 1.0 if side == 0 else -1.0
+        b = 3 * system.marker_body[marker]
+        c = math.cos(y[0, b + 2])
+        s = math.sin(y[0, b + 2])
+        px = c * system.marker_arm[marker, 0] - s * system.marker_arm[marker, 1]
+        py = s * system.marker_arm[marker, 0] + c * system.marker_arm[marker, 1]
+        x0 += sign * (y[0, b] + px)
+        x1 += sign * (y[0, b + 1] + py)
+        v0 += sign * (y[1, b] - y[1, b + 2] * py)
+        v1 += sign * (y[1, b + 1] + y[1, b + 2] * px)
+    return x0, x1, v0, v1
+
+
+@internal
+def _approach(system, wheels, before, after, h):
+    """How far centres came nearer to each other in a step of h (s) between two y, over how far they may."""
+    most = 0.0
+    for k in range(wheels.markers.shape[0]):
+        x0, x1, v0, v1 = _line(system, before, wheels.markers[k, 0], wheels.markers[k, 1])
+        z0, z1, _, _ = _line(system, after, wheels.markers[k, 0], wheels.markers[k, 1])
+        w0 = z0 - x0
+        w1 = z1 - x1
+        apart = math.sqrt(x0 * x0 + x1 * x1)
+        part = min(max(-(x0 * w0 + x1 * w1) / max(w0 * w0 + w1 * w1, 1e-300), 0.0), 1.0)
+        n0 = x0 + part * w0
+        n1 = x1 + part * w1
+        nearer = max(apart - math.sqrt(n0 * n0 + n1 * n1), -h * (x0 * v0 + x1 * v1) / apart)
+        most = max(most, nearer / (wheels.bounds[HALF] * apart))
+    return most
+
+
+@internal
+def _met(system, wheels, y):
+    """Whether the centres of two wheels have met at y (2, 3 nb)."""
+    met = False
+    for k in range(wheels.markers.shape[0]):
+        x0, x1, _, _ = _line(system, y, wheels.markers[k, 0], wheels.markers[k, 1])
+        met = met or math.sqrt(x0 * x0 + x1 * x1) < wheels.near[k]
+    return met
+
+
+@internal
+def _find_feet(system, ws, curves, q):
+    """Fill curves.feet at q (3 nb,); returns the farthest that one of them goes, as part of how far it may."""
+    most = 0.0
+    for k in range(curves.place.shape[0]):
+        i = curves.place[k, 1]
+        j = curves.place[k, 2]
+        relative = ws.relative[curves.place[k, 0]]
+        numbers = curves.numbers[curves.place[k, 3] :]
+        b = 3 * system.marker_body[i]
+        d = 3 * system.marker_body[j]
+        c = math.cos(q[b + 2])
+        s = math.sin(q[b + 2])
+        e = math.cos(q[d + 2])
+        f = math.sin(q[d + 2])
+        px = q[b] + (c * system.marker_arm[i, 0] - s * system.marker_arm[i, 1])
+        py = q[b + 1] + (s * system.marker_arm[i, 0] + c * system.marker_arm[i, 1])
+        dx = q[d] + (e * system.marker_arm[j, 0] - f * system.marker_arm[j, 1]) - px
+        dy = q[d + 1] + (f * system.marker_arm[j, 0] + e * system.marker_arm[j, 1]) - py
+        ux = c * system.marker_axis[i, 0] - s * system.marker_axis[i, 1]
+        uy = s * system.marker_axis[i, 0] + c * system.marker_axis[i, 1]
+        relative[X] = ux * dx + uy * dy
+        relative[Y] = ux * dy - uy * dx
+        find_foot(numbers, relative)
+        curves.feet[k] = relative[U]
+        way = abs(curves.feet[k] - relative[LAST])
+        if numbers[CLOSED] != 0.0:
+            way = min(way, abs(numbers[SPAN] - way))
+        most = max(most, way / numbers[FARTHEST])
+    return most
+
+
+@lazy(int)
+def _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, before, after):
+    wheels = contacts.wheels
+    curves = contacts.curves
+    kept = wheels.before
+    while True:
+        copy_state(kept, state)
+        target = end
+        while True:
+            status = through(dyn, scratch, state, out, settings, target, 1, before, after, int(contacts.clock[METHOD]))
+            if status != REACHED and status != PAUSED:
+                return status
+            taken = state.clock[TIME] - kept.clock[TIME]
+            farthest = _approach(dyn.system, wheels, kept.y, state.y, taken)
+            farthest = max(farthest, _find_feet(dyn.system, scratch.ws, curves, state.y[0]))
+            if farthest <= 1.0 or taken <= wheels.bounds[SHORTEST] * settings.longest:
+                break
+            copy_state(state, kept)
+            target = kept.clock[TIME] + taken / (2.0 * farthest)
+        for k in range(curves.place.shape[0]):
+            scratch.ws.relative[curves.place[k, 0], LAST] = curves.feet[k]
+        wheels.bounds[LAST_STEP] = taken
+        if _met(dyn.system, wheels, state.y):
+            return STEP_TOO_SMALL
+        steps -= state.count[ACCEPTED] - kept.count[ACCEPTED]
+        if state.clock[TIME] >= end:
+            return REACHED
+        if steps <= 0:
+            return PAUSED
+
+
+@lazy(int)
+def _advance_outside(contacts, end, steps):
+    """``through`` by an integrator in Python."""
+    outside = contacts.outside
+    outside.asked[0] = steps
+    outside.asked[1] = contacts.clock[TRYING]
+    call(outside.address[0], end, outside.asked, outside.answer)  # pyright: ignore[reportCallIssue]
+    return int(outside.answer[0])
+
+
+@internal
+def advance_to(dyn, scratch, state, out, settings, contacts, end, steps, before, after):
+    """``through``, a step at a time where wheels may meet or points follow curves."""
+    if contacts.clock[METHOD] < 0.0:
+        return _advance_outside(contacts, end, steps)
+    if contacts.wheels.markers.shape[0] > 0 or contacts.curves.place.shape[0] > 0:
+        return _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, before, after)
+    return through(dyn, scratch, state, out, settings, end, steps, before, after, int(contacts.clock[METHOD]))

@@ -1,0 +1,1 @@
+"""Contacts with friction: forces, and what slides or sticks."""

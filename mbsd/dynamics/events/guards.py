@@ -1,0 +1,173 @@
+"""What is looked at within a step, on its quintic, which shows where to look, and of the motion itself.
+
+    open contact    its gap (of a clutch its rate)      closed contact    its normal force N
+    it slides       its speed, sign kept                it sticks         mu_s N - |T|
+    user's event    its value, sign kept
+
+Each is that of a row of Contacts: of a gap, or of a way; sticking/ways.py says what those of joints are. Scalars are
+not negative now, and mean an event where they fall through zero.
+
+    q(x) = q_0 + h v_0 x + h^2 a_0 x^2 / 2 + ... x^5        x = (t - t_0) / h
+
+The quintic has places, velocities and accelerations of both ends of the step; the motion itself is found by going on
+from the start of the step.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import apart, internal, merged
+from mbsd.dynamics.events.arrays import (
+    BEYOND,
+    CLOSED,
+    CLUTCH,
+    FAILURE,
+    KIND,
+    LENGTH,
+    PARTS,
+    ROW,
+    SIGN,
+    START,
+    STATIC,
+    TRYING,
+    VALUE,
+)
+from mbsd.dynamics.events.following import advance_to
+from mbsd.dynamics.events.rows import along, any_held, gaps, gaps_of, measure_gaps, without_contacts
+from mbsd.dynamics.events.sticking.ways import read_ways
+from mbsd.dynamics.events.users.values import signed
+from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.state import NEXT, REACHED, TIME
+
+
+@internal
+def fit(contacts, state):
+    """The quintic from contacts.before to ``state``."""
+    before = contacts.before
+    start = before.clock[TIME]
+    h = state.clock[TIME] - start
+    contacts.clock[START] = start
+    contacts.clock[LENGTH] = h
+    for c in range(state.y.shape[1]):
+        q0 = before.y[0, c]
+        v0 = h * before.y[1, c]
+        a0 = h * h * before.dy[1, c]
+        rise = state.y[0, c] - q0 - v0 - a0 / 2
+        slope = h * state.y[1, c] - v0 - a0
+        bend = h * h * state.dy[1, c] - a0
+        contacts.quintic[0, c] = q0
+        contacts.quintic[1, c] = v0
+        contacts.quintic[2, c] = a0 / 2
+        contacts.quintic[3, c] = 10 * rise - 4 * slope + bend / 2
+        contacts.quintic[4, c] = -15 * rise + 7 * slope - bend
+        contacts.quintic[5, c] = 6 * rise - 3 * slope + bend / 2
+
+
+@internal
+def stand_at(contacts, x):
+    """Fill contacts.pose at the part x of the step; returns the time (s)."""
+    k = contacts.quintic
+    h = contacts.clock[LENGTH]
+    for c in range(k.shape[1]):
+        contacts.pose[0, c] = k[0, c] + x * (k[1, c] + x * (k[2, c] + x * (k[3, c] + x * (k[4, c] + x * k[5, c]))))
+        rate = k[1, c] + x * (2 * k[2, c] + x * (3 * k[3, c] + x * (4 * k[4, c] + x * 5 * k[5, c])))
+        contacts.pose[1, c] = rate / h
+    return contacts.clock[START] + h * x
+
+
+@merged
+def _values(dyn, scratch, contacts, y, forces):
+    """Fill vector[VALUE] at a state y (2, 3 nb) that was measured; what depends on forces only with ``forces``."""
+    friction = contacts.friction
+    count = gaps_of(contacts)
+    for k in range(count):
+        row = contacts.place[k, ROW]
+        if contacts.number[k, CLOSED] > 0.0:
+            contacts.vector[VALUE, k] = -contacts.lam[row]
+        elif contacts.place[k, KIND] == CLUTCH:
+            contacts.vector[VALUE, k] = along(dyn, scratch, row, y[1])
+        else:
+            contacts.vector[VALUE, k] = scratch.ws.phi[row]
+    for w in range(friction.gap.shape[0]):
+        row = contacts.place[count + w, ROW]
+        if contacts.number[count + w, CLOSED] > 0.0:
+            normal = -contacts.lam[contacts.place[friction.gap[w], ROW]]
+            contacts.vector[VALUE, count + w] = friction.number[w, STATIC] * normal - abs(contacts.lam[row])
+        else:
+            contacts.vector[VALUE, count + w] = contacts.number[count + w, SIGN] * along(dyn, scratch, row, y[1])
+    if contacts.sticks.vector.shape[1] > 0:
+        read_ways(dyn, scratch, contacts, y, forces)
+
+
+@internal
+def read(dyn, scratch, contacts, t, y, forces):
+    """Fill vector[VALUE] at a state y (2, 3 nb); what depends on forces only with ``forces``."""
+    if forces:
+        derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
+    else:
+        measure_gaps(dyn, scratch, t, y[0])
+    _values(dyn, scratch, contacts, y, forces)
+
+
+@merged
+def sample(dyn, scratch, contacts):
+    """Fill contacts.samples."""
+    forces = False
+    for k in range(contacts.place.shape[0]):
+        forces = forces or contacts.number[k, CLOSED] > 0.0
+    for i in range(PARTS.shape[0]):
+        t = stand_at(contacts, PARTS[i])
+        if forces:
+            derivative(dyn, scratch, t, contacts.pose, contacts.rates, contacts.lam)
+        else:
+            gaps(dyn, scratch, t, contacts.pose[0])
+        _values(dyn, scratch, contacts, contacts.pose, forces)
+        for k in range(contacts.place.shape[0]):
+            contacts.samples[k, i] = contacts.vector[VALUE, k]
+
+
+@internal
+def _value(dyn, scratch, contacts, t, y, k):
+    """What is looked at of row k at a state y (2, 3 nb); behind the last row are events of the user."""
+    if k >= contacts.place.shape[0]:
+        return signed(contacts.events, k - contacts.place.shape[0], t, y)
+    read(dyn, scratch, contacts, t, y, contacts.number[k, CLOSED] > 0.0)
+    return contacts.vector[VALUE, k]
+
+
+@apart
+def on_quintic(dyn, scratch, contacts, k, x):
+    """What is looked at of row k at the part x of the step, on the quintic."""
+    t = stand_at(contacts, x)
+    return _value(dyn, scratch, contacts, t, contacts.pose, k)
+
+
+@internal
+def at_state(dyn, scratch, contacts, state, k):
+    """The same of a state."""
+    return _value(dyn, scratch, contacts, state.clock[TIME], state.y, k)
+
+
+@apart
+def of_motion(dyn, scratch, settings, contacts, out, before, after, k, t):
+    """The same at a time (s) within the step, by the motion itself; not a number where it gets nowhere."""
+    trial = contacts.trial
+    copy_state(trial, contacts.before)
+    if t > trial.clock[TIME]:
+        trial.count[NEXT] = out.t.shape[0]
+        own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
+        contacts.clock[TRYING] = 1.0
+        status = advance_to(own, scratch, trial, out, settings, contacts, t, NO_LIMIT, before, after)
+        contacts.clock[TRYING] = 0.0
+        if status != REACHED:
+            contacts.clock[FAILURE] = status
+            return math.nan
+    return at_state(dyn, scratch, contacts, trial, k)
+
+
+@internal
+def beyond_time(contacts):
+    """(s) where what was met is beyond zero."""
+    return contacts.clock[START] + contacts.clock[LENGTH] * contacts.clock[BEYOND]

@@ -1,0 +1,342 @@
+"""What changes where contacts close, open, slide or stick: impacts, then what each does from now on.
+
+By Poisson's law with Coulomb friction in both phases of an impact:
+
+    compression   0 <= N_c  complementary to  g' >= 0,    |T_c| <= mu N_c
+    expansion     N_e = e N_c + N,  0 <= N complementary to g' >= 0,   |T_e| <= mu N_e
+
+For one contact without friction this is Newton's law, g'+ = -e g'-. Impacts pass on in rounds: a round takes the
+contacts that approach, all at once; those that approach by its impulses are the next round, as in Newton's cradle.
+Friction of joints is left out of impacts. Then contacts that do not separate push so that gaps do not close
+(pushes.py), and slide or stick (friction/decisions.py). A rebound too slow to count ends here: its rate must not go on
+into accelerations, which would turn bodies that two contacts hold.
+
+Source: Pfeiffer, Glocker, Multibody Dynamics with Unilateral Contacts, ch. 8; Glocker, Simulation von harten
+Kontakten, on rounds and on laws that keep the energy from growing (sure where all coefficients of restitution in a
+round are equal).
+"""
+
+from __future__ import annotations
+
+from mbsd.compiling.jit import apart, internal, kernel
+from mbsd.dynamics.events.arrays import (
+    BESIDE,
+    CLOSED,
+    CLUTCH,
+    ENERGY,
+    FREE,
+    GAP,
+    GIVEN,
+    HELD,
+    KEPT,
+    KIND,
+    KINETIC,
+    LOGGED,
+    NEAR,
+    NORMAL,
+    PUSH,
+    RATE,
+    RELEASED,
+    REST,
+    RESTITUTION,
+    ROW,
+    SETTLE,
+    SIGN,
+    STAYING,
+    TAKING,
+    TOUCHING,
+)
+from mbsd.dynamics.events.bounds import AT_LIMIT, BEGINS, CREEP, ROUNDS
+from mbsd.dynamics.events.friction.decisions import (
+    begin_touched,
+    find_friction,
+    note_met,
+    slide_or_stick,
+)
+from mbsd.dynamics.events.friction.pushes import solve_with_friction
+from mbsd.dynamics.events.pushes import find_compliance, solve_pushes
+from mbsd.dynamics.events.rows import (
+    along,
+    find_rates,
+    gaps_of,
+    give,
+    hold_rows,
+    keep_independent,
+    move_zero,
+    release_rows,
+    stop,
+)
+from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.state import TIME
+
+CLOSE = 1e2
+"""Gaps that are closed with another, in those that count as zero."""
+FAINT = 1e-12
+"""Part of the largest load below which a normal force is none."""
+
+
+@internal
+def take_ways(contacts, flags):
+    """Put the ways of contacts in ``flags`` (c,) there as well, and none of joints."""
+    gap = contacts.friction.gap
+    gaps = gaps_of(contacts)
+    for k in range(gaps, flags.shape[0]):
+        flags[k] = flags[gap[k - gaps]] if k - gaps < gap.shape[0] else 0
+
+
+@internal
+def find_touching(scratch, contacts, met):
+    """Fill chosen[TOUCHING] with the gaps that are closed, of ``met`` at any rate; returns how many."""
+    gap = contacts.friction.gap
+    gaps = gaps_of(contacts)
+    struck = gap[met - gaps] if gaps <= met < gaps + gap.shape[0] else met
+    touching = 0
+    for k in range(gaps):
+        near = scratch.ws.phi[contacts.place[k, ROW]] <= CLOSE * contacts.number[k, NEAR]
+        clutch = contacts.place[k, KIND] == CLUTCH
+        contacts.chosen[TOUCHING, k] = 1 if near or k == struck or clutch else 0
+        touching += contacts.chosen[TOUCHING, k]
+    take_ways(contacts, contacts.chosen[TOUCHING])
+    return touching
+
+
+@internal
+def find_staying(contacts, opens):
+    """Fill chosen[STAYING] with the touching gaps that do not separate by vector[RATE]; returns how many.
+
+    ``opens``: the gap that has just opened, -1 if none has.
+    """
+    staying = 0
+    for k in range(gaps_of(contacts)):
+        slow = contacts.vector[RATE, k] <= max(contacts.number[k, SETTLE], contacts.number[k, REST])
+        contacts.chosen[STAYING, k] = 1 if contacts.chosen[TOUCHING, k] != 0 and slow and k != opens else 0
+        staying += contacts.chosen[STAYING, k]
+    take_ways(contacts, contacts.chosen[STAYING])
+    return staying
+
+
+@internal
+def _push(contacts):
+    """Fill vector[NORMAL] with impulses of the rows in chosen[TAKING], for the rates in vector[RATE]."""
+    if contacts.friction.gap.shape[0] > 0:
+        vector = contacts.vector
+        return solve_with_friction(contacts, contacts.compliance, vector[RATE], KINETIC, vector[NORMAL])
+    return solve_pushes(contacts, contacts.vector[RATE])
+
+
+@apart
+def _strike(dyn, scratch, contacts, v):
+    """Let the contacts in chosen[TOUCHING] that approach push, in rounds; returns False where none can."""
+    count = contacts.place.shape[0]
+    friction = contacts.friction
+    gaps = gaps_of(contacts)
+    taking = contacts.chosen[TAKING]
+    vector = contacts.vector
+    for k in range(gaps, count):
+        vector[GIVEN, k] = 0.0
+    for turn in range(ROUNDS + 1):
+        find_rates(dyn, scratch, contacts, v)
+        approaching = False
+        for k in range(gaps):
+            fast = contacts.chosen[TOUCHING, k] != 0 and vector[RATE, k] < -contacts.number[k, REST]
+            taking[k] = 1 if fast else 0
+            approaching = approaching or fast
+        if not approaching:
+            return True
+        last = turn == ROUNDS
+        bounces = False
+        for k in range(gaps):
+            if last:
+                taking[k] = contacts.chosen[TOUCHING, k]
+            rebound = -vector[RATE, k] * contacts.number[k, RESTITUTION]
+            none = last or rebound < contacts.number[k, SETTLE]
+            vector[GIVEN, k] = 0.0 if none else contacts.number[k, RESTITUTION]
+            bounces = bounces or (taking[k] != 0 and vector[GIVEN, k] != 0.0)
+        take_ways(contacts, taking)
+        for w in range(friction.gap.shape[0]):
+            friction.number[w, BESIDE] = 0.0
+        if not _push(contacts):
+            return False
+        give(contacts, v, vector[NORMAL])
+        since = int(contacts.clock[LOGGED])
+        _log_pushes(contacts, since)
+        if not bounces:
+            continue
+        for k in range(gaps):
+            vector[GIVEN, k] *= vector[NORMAL, k]
+        for w in range(friction.gap.shape[0]):
+            friction.number[w, BESIDE] = friction.number[w, KINETIC] * vector[GIVEN, friction.gap[w]]
+        find_rates(dyn, scratch, contacts, v)
+        for k in range(count):
+            for j in range(gaps):
+                if taking[k] != 0 and taking[j] != 0:
+                    vector[RATE, k] += contacts.compliance[k, j] * vector[GIVEN, j]
+        if not _push(contacts):
+            return False
+        for k in range(count):
+            vector[PUSH, k] = vector[GIVEN, k] + vector[NORMAL, k]
+        give(contacts, v, vector[PUSH])
+        for i in range(since, int(contacts.clock[LOGGED])):
+            contacts.log[i, 1] += vector[PUSH, int(contacts.log[i, 0])]
+    return True
+
+
+@internal
+def _log_pushes(contacts, since):
+    """Write the impulses of a round in vector[NORMAL] to the log, behind its first ``since`` rows."""
+    if contacts.log.shape[0] == 0:
+        return
+    for k in range(gaps_of(contacts)):
+        if contacts.chosen[TAKING, k] != 0:
+            contacts.log[since, 0] = k
+            contacts.log[since, 1] = contacts.vector[NORMAL, k]
+            since += 1
+    contacts.clock[LOGGED] = since
+
+
+@internal
+def _kinetic_energy(dyn, v):
+    energy = 0.0
+    for c in range(v.shape[0]):
+        energy += dyn.inertia[c] * v[c] ** 2
+    return 0.5 * energy
+
+
+@internal
+def impacts(dyn, scratch, contacts, v):
+    """Change velocities v (3 nb,) by the impacts of the contacts in chosen[TOUCHING]; False where none are possible."""
+    before = _kinetic_energy(dyn, v)
+    if not _strike(dyn, scratch, contacts, v):
+        return False
+    contacts.clock[ENERGY] = _kinetic_energy(dyn, v) - before
+    return True
+
+
+@apart
+def _decide(dyn, scratch, contacts, t, y, touched):
+    """Fill vector[NORMAL] with the normal forces of the contacts in chosen[STAYING]; whether there are some.
+
+    All contacts are released, and a state y (2, 3 nb) is what they begin with; ``touched``: the gap that has closed.
+    """
+    count = contacts.place.shape[0]
+    ways = contacts.friction.gap.shape[0]
+    schur = dyn.schur
+    jac = scratch.ws.jac
+    derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
+    force = contacts.force
+    for c in range(force.shape[0]):
+        force[c] = scratch.force[c]
+    for b in range(schur.rows.shape[0]):
+        for s in range(2):
+            r = schur.rows[b, s]
+            if r >= 0:
+                for side in range(2):
+                    at = 3 * dyn.system.row_body[r, side]
+                    for c in range(3):
+                        force[at + c] += jac[r, 3 * side + c] * contacts.lam[r]
+    largest = 0.0
+    for c in range(3, force.shape[0]):
+        largest = max(largest, abs(force[c]))
+    for k in range(count):
+        contacts.chosen[TAKING, k] = contacts.chosen[STAYING, k]
+        row = contacts.place[k, ROW]
+        contacts.vector[FREE, k] = along(dyn, scratch, row, contacts.rates[1]) - scratch.ws.right[0, row]
+    if ways > 0:
+        if not find_friction(dyn, scratch, contacts, y[1], FAINT * largest):
+            return False
+    elif not solve_pushes(contacts, contacts.vector[FREE]):
+        return False
+    compliance = contacts.friction.compliance if ways > 0 else contacts.compliance
+    begin_touched(contacts, compliance, touched, FAINT * largest, AT_LIMIT)
+    for k in range(gaps_of(contacts)):
+        if contacts.vector[NORMAL, k] != BEGINS and not contacts.vector[NORMAL, k] > FAINT * largest:
+            contacts.vector[NORMAL, k] = 0.0
+    return True
+
+
+@apart
+def resolve(dyn, scratch, contacts, state, met):
+    """Impacts, and what contacts do from now on, after the scalar of row ``met`` fell through zero; -1: at the start.
+
+    Returns False where that is impossible, which a single simulation says.
+    """
+    count = contacts.place.shape[0]
+    gaps = gaps_of(contacts)
+    number = contacts.number
+    chosen = contacts.chosen
+    v = state.y[1]
+    opens = met if 0 <= met < gaps and number[met, CLOSED] > 0.0 else -1
+    t = state.clock[TIME]
+    if gaps < count:
+        note_met(contacts, met, state.lam)
+    release_rows(dyn, contacts)
+    derivative(dyn, scratch, t, state.y, contacts.rates, contacts.lam)
+    touching = find_touching(scratch, contacts, met)
+    find_compliance(dyn, scratch, contacts, chosen[TOUCHING])
+    if touching > 0 and not impacts(dyn, scratch, contacts, v):
+        return False
+    find_rates(dyn, scratch, contacts, v)
+    staying = find_staying(contacts, opens)
+    for k in range(gaps):
+        chosen[TAKING, k] = 0
+    if staying > 0:
+        touched = met if met >= 0 and contacts.place[met, KIND] == GAP and opens < 0 else -1
+        if not _decide(dyn, scratch, contacts, t, state.y, touched):
+            return False
+        for _ in range(staying):
+            if not moving(dyn, scratch, contacts, v):
+                break
+            stop(dyn, scratch, contacts, v)
+            if not _decide(dyn, scratch, contacts, t, state.y, touched):
+                return False
+        for k in range(gaps):
+            chosen[TAKING, k] = 1 if contacts.vector[NORMAL, k] > 0.0 else 0
+    for k in range(gaps):
+        number[k, CLOSED] = 1.0 * chosen[TAKING, k]
+        if chosen[TAKING, k] != 0 and contacts.place[k, KIND] == CLUTCH:
+            move_zero(scratch, contacts, k)
+    if gaps < count:
+        slide_or_stick(scratch, contacts)
+    keep_independent(contacts, chosen[TAKING])
+    for k in range(count):
+        number[k, HELD] = 1.0 * chosen[KEPT, k]
+    hold_rows(dyn, contacts)
+    return True
+
+
+@internal
+def moving(dyn, scratch, contacts, v):
+    """Whether contacts that hold still move, or others creep; then chosen[KEPT] are the rows that are to be stopped.
+
+    Joints that stick are among them.
+    """
+    moving = False
+    find_rates(dyn, scratch, contacts, v)
+    gap = contacts.friction.gap
+    gaps = gaps_of(contacts)
+    for k in range(gaps):
+        holds = contacts.vector[NORMAL, k] > 0.0
+        rate, rest = contacts.vector[RATE, k], contacts.number[k, REST]
+        creeps = contacts.chosen[STAYING, k] != 0 and not holds and rate < -CREEP * rest
+        contacts.chosen[TAKING, k] = 1 if holds or creeps else 0
+        moving = moving or creeps or (holds and abs(rate) > rest)
+    for w in range(gap.shape[0]):
+        p = gaps + w
+        rests = contacts.vector[NORMAL, gap[w]] > 0.0 and abs(contacts.vector[RATE, p]) <= contacts.number[p, REST]
+        contacts.chosen[TAKING, p] = 1 if rests else 0
+    for k in range(gaps + gap.shape[0], contacts.place.shape[0]):
+        sticks = contacts.number[k, SIGN] == 0.0 and contacts.number[k, RELEASED] == 0.0
+        contacts.chosen[TAKING, k] = 1 if sticks else 0
+    if moving:
+        keep_independent(contacts, contacts.chosen[TAKING])
+    return moving
+
+
+@kernel
+def strike(dyn, scratch, contacts, t, y):
+    """Change velocities y[1] by the impacts of the contacts in chosen[TOUCHING]; False where none are possible."""
+    release_rows(dyn, contacts)
+    take_ways(contacts, contacts.chosen[TOUCHING])
+    derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
+    find_compliance(dyn, scratch, contacts, contacts.chosen[TOUCHING])
+    return impacts(dyn, scratch, contacts, y[1])

@@ -1,0 +1,286 @@
+"""Steps of a row with contacts: one by one, back to the start of the step where something happens, and on from there.
+
+    step     one step of the integrator; does a scalar fall through zero within it?
+    root     from the state before the step, integrate to shorter and shorter ends, until the scalar is zero
+    jump     what changes there: an action of the user, impacts, what contacts and joints do from now on
+    restart  from the new state
+
+The integrator itself steps to the event, so that it is met as exactly as the motion is known. The loop returns before
+and after each event where PAUSES asks for it: what a single simulation records is then in these arrays.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.alternatives import alternatives
+from mbsd.compiling.jit import inlined, internal, kernel, lazy
+from mbsd.dynamics.embedding.arrays import Embedding
+from mbsd.dynamics.events.arrays import (
+    ACTED,
+    AT_ONCE,
+    BEFORE_AND_AFTER,
+    BEGUN,
+    BEGUN_NOW,
+    CLOSED,
+    ENERGY,
+    FAILURE,
+    GAP,
+    HELD,
+    KIND,
+    LOAD,
+    LOGGED,
+    MET,
+    NEVER,
+    NOT_BEGUN,
+    PAUSES,
+    PENDING,
+    RESUMED,
+    ROW,
+    SCALE,
+    SHARING,
+    WHEN,
+    WHICH,
+)
+from mbsd.dynamics.events.following import advance_to
+from mbsd.dynamics.events.guards import fit
+from mbsd.dynamics.events.jumps import resolve
+from mbsd.dynamics.events.rows import any_held, hold_rows, without_contacts
+from mbsd.dynamics.events.search import event_time, first_met
+from mbsd.dynamics.events.sticking.jumps import resolve_friction
+from mbsd.dynamics.events.sticking.ways import share_here, share_outputs
+from mbsd.dynamics.events.user_actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
+from mbsd.dynamics.events.users.values import begin_sides, find_sides, first_reached
+from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state, cross
+from mbsd.dynamics.reference.arrays import Dynamics
+from mbsd.dynamics.reference.projection import measure
+from mbsd.dynamics.repeated_rows.exchange import hold_independent, look
+from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, begin, record_here
+
+NOT_SOLVED = -7
+"""Status of rows with an event at which nothing is possible."""
+OVER = -8
+"""Status of rows that an event of the user has ended."""
+FOUND, JUMPED, ACTING, TOO_MANY = 11, 12, 13, 14
+"""Status of rows that stand right before an event, right after one, at one whose action is one of Python, and of those
+with more events than are allowed."""
+INSIDE = 1e-6
+"""A contact that starts deeper than this part of the size (rad) inside is refused."""
+AT_ONE_TIME, MOST = 500, 20_000
+"""Events that may happen without time going on, and altogether where none looks at the pace meanwhile."""
+
+
+@internal
+def _restart(dyn, scratch, contacts, state):
+    """Forget the derivative, which belongs to the motion before."""
+    state.count[STARTED] = 0
+    state.clock[STEP] = 0.0
+    begin(dyn, scratch, state)
+    load = 1e-300
+    for c in range(3, dyn.weight.shape[0]):
+        load = max(load, abs(dyn.weight[c]))
+    for r in range(state.lam.shape[0]):
+        load = max(load, abs(state.lam[r]))
+    contacts.clock[LOAD] = load
+    if contacts.events.table.shape[0] > 0:
+        find_sides(contacts.events, state)
+
+
+@internal
+def _resolve(dyn, scratch, contacts, state, met):
+    contacts.clock[LOGGED] = 0.0
+    contacts.clock[ENERGY] = 0.0
+    contacts.clock[FAILURE] = 0.0
+    if contacts.place.shape[0] == 0:
+        return True
+    if contacts.sticks.vector.shape[1] > 0:  # friction of joints, or contacts that lose some once they slide
+        return resolve_friction(dyn, scratch, contacts, state, met)
+    return resolve(dyn, scratch, contacts, state, met)
+
+
+@internal
+def _find_reached(contacts, state):
+    """Let the first event happen next whose value has come to zero and stays there."""
+    if contacts.events.table.shape[0] > 0:
+        reached = first_reached(contacts.events, state)
+        if reached >= 0:
+            contacts.clock[PENDING] = 1.0 + contacts.place.shape[0] + reached
+
+
+@internal
+def _begin(dyn, scratch, contacts, state):
+    """Close contacts at the start and resolve velocities that they forbid; False if that is impossible."""
+    contacts.clock[BEGUN] = BEGUN_NOW
+    measure(dyn, scratch, state.clock[TIME], state.y[0])
+    for k in range(contacts.place.shape[0]):
+        contacts.number[k, CLOSED] = 0.0
+        contacts.number[k, HELD] = 0.0
+        gap = contacts.place[k, KIND] == GAP
+        if gap and scratch.ws.phi[contacts.place[k, ROW]] * contacts.number[k, SCALE] < -INSIDE:
+            return False
+    if contacts.events.table.shape[0] > 0:
+        begin_sides(contacts.events, state)
+    if not _resolve(dyn, scratch, contacts, state, -1):
+        return False
+    _restart(dyn, scratch, contacts, state)
+    _find_reached(contacts, state)
+    return True
+
+
+@internal
+def _has_room(contacts, t):
+    """Count an event at a time (s); False if there are too many."""
+    contacts.clock[AT_ONCE] = contacts.clock[AT_ONCE] + 1.0 if contacts.clock[WHEN] == t else 1.0
+    contacts.clock[WHEN] = t
+    contacts.clock[MET] += 1.0
+    few = contacts.clock[MET] <= MOST or contacts.clock[PAUSES] != NEVER
+    return contacts.clock[AT_ONCE] <= AT_ONE_TIME and few
+
+
+@internal
+def _go_to(own, scratch, state, settings, contacts, out, t, before, after):
+    """Bring the state to the time t (s) within its step, at which contacts.trial often stands already."""
+    following = contacts.before.count[NEXT]
+    outputs = following < out.t.shape[0] and out.t[following] <= t
+    if contacts.clock[FAILURE] == 0.0 and contacts.trial.clock[TIME] == t and not outputs:
+        copy_state(state, contacts.trial)
+        state.count[NEXT] = following
+        return
+    copy_state(state, contacts.before)
+    if contacts.clock[FAILURE] == 0.0 and t > state.clock[TIME]:
+        status = advance_to(own, scratch, state, out, settings, contacts, t, NO_LIMIT, before, after)
+        if status != REACHED and status != PAUSED:
+            contacts.clock[FAILURE] = status
+
+
+@internal
+def _end(dyn, scratch, state, contacts, out):
+    """Make the outputs that are left the state itself, at which an event of the user ends the simulation."""
+    first = state.count[NEXT]
+    while state.count[NEXT] < out.t.shape[0]:
+        record_here(scratch, state, out)
+    if contacts.clock[SHARING] > 0.0:
+        share_outputs(dyn, scratch, contacts, out, first, state.count[NEXT])
+
+
+@internal
+def _step(dyn, scratch, state, settings, contacts, out, end, before, after):
+    """Take one step, or part of one up to an event, which then is PENDING; returns a status."""
+    if contacts.repeated.place.shape[0] > 0:
+        look(dyn, scratch, contacts.repeated, state, 1)
+    own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
+    cross(state, before, after)
+    begin(own, scratch, state)
+    if contacts.events.table.shape[0] > 0:
+        find_sides(contacts.events, state)
+    copy_state(contacts.before, state)
+    status = advance_to(own, scratch, state, out, settings, contacts, end, 1, before, after)
+    if status != REACHED and status != PAUSED:
+        return status
+    met = -1
+    contacts.clock[FAILURE] = 0.0
+    if state.clock[TIME] > contacts.before.clock[TIME]:
+        fit(contacts, state)
+        contacts.trial.clock[TIME] = -math.inf
+        met = first_met(dyn, scratch, state, settings, contacts, out, before, after)
+    if met >= 0:
+        t = event_time(dyn, scratch, settings, contacts, out, before, after, met)
+        _go_to(own, scratch, state, settings, contacts, out, t, before, after)
+    if contacts.clock[SHARING] > 0.0:
+        share_outputs(dyn, scratch, contacts, out, contacts.before.count[NEXT], state.count[NEXT])
+    if contacts.clock[FAILURE] != 0.0:
+        return int(contacts.clock[FAILURE])
+    if met < 0:
+        return REACHED if status == REACHED and state.clock[TIME] >= end else PAUSED
+    begin(own, scratch, state)
+    contacts.clock[PENDING] = 1.0 + met
+    return FOUND
+
+
+@internal
+def _jump(dyn, scratch, state, contacts, out):
+    """Let what is PENDING happen at the state; returns a status."""
+    clock = contacts.clock
+    count = contacts.place.shape[0]
+    met = int(clock[PENDING]) - 1
+    passed = HAPPENED
+    if met >= count and clock[ACTED] != 0.0:
+        finish_action(dyn, scratch, contacts, state, met - count)
+    elif met >= count:
+        passed = happen(dyn, scratch, contacts, state, met - count)
+        if passed == ACTS:
+            return ACTING
+    clock[WHICH] = 0.0 if passed == PASSED else 1.0 + met
+    clock[PENDING] = 0.0
+    clock[ACTED] = 0.0
+    if passed == ENDED:
+        if clock[PAUSES] == NEVER:
+            _end(dyn, scratch, state, contacts, out)
+        else:
+            share_here(dyn, scratch, contacts, state)
+        return OVER
+    if passed != PASSED:
+        if not _has_room(contacts, state.clock[TIME]):
+            return TOO_MANY
+        if not _resolve(dyn, scratch, contacts, state, met if met < count else -1):
+            return NOT_SOLVED
+    _restart(dyn, scratch, contacts, state)
+    _find_reached(contacts, state)
+    return JUMPED
+
+
+@lazy(int)
+def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
+    clock = contacts.clock
+    hold_rows(dyn, contacts)
+    hold_independent(dyn, contacts.repeated)
+    if contacts.events.release.shape[0] > 0:
+        hold_joints(dyn, contacts)
+    if clock[BEGUN] == RESUMED:
+        clock[BEGUN] = BEGUN_NOW
+        _restart(dyn, scratch, contacts, state)
+    if clock[BEGUN] == NOT_BEGUN:
+        if not _begin(dyn, scratch, contacts, state):
+            return NOT_SOLVED
+        if clock[PAUSES] != NEVER:
+            return JUMPED
+    taken = 0
+    while True:
+        if clock[PENDING] == 0.0:
+            if taken >= steps:
+                return PAUSED
+            taken += 1
+            status = _step(dyn, scratch, state, settings, contacts, out, end, before, after)
+            if status == PAUSED:
+                continue
+            if status != FOUND:
+                return status
+            if clock[PAUSES] == BEFORE_AND_AFTER:
+                share_here(dyn, scratch, contacts, state)
+                return FOUND
+        status = _jump(dyn, scratch, state, contacts, out)
+        if status != JUMPED:
+            return status
+        if clock[PAUSES] != NEVER:
+            share_here(dyn, scratch, contacts, state)
+            return JUMPED
+
+
+@inlined
+def _meet(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
+    return _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after)
+
+
+@inlined
+def _none(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
+    return NOT_SOLVED
+
+
+go_on = alternatives({Dynamics: _meet, Embedding: _none})
+"""Go on to ``end`` (s), ``steps`` steps at most, meeting events; returns a status of ``advance``, or one of these."""
+
+
+@kernel
+def run_events(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
+    """``go_on`` in reference coordinates, called from Python."""
+    return _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after)

@@ -1,0 +1,204 @@
+"""Rows of J that events switch, at a pose: their rates, impulses along them, and which of them hold."""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import apart, inlined, internal, merged
+from mbsd.dynamics.events.arrays import (
+    BLOCK,
+    CLOSED,
+    HELD,
+    KEPT,
+    KINETIC,
+    RATE,
+    RELATIVE,
+    ROW,
+    SHIFT,
+    SIDE,
+    SIGN,
+    TAKING,
+)
+from mbsd.dynamics.events.bounds import DEPENDENT
+from mbsd.dynamics.reference.arrays import Dynamics
+from mbsd.equations.constraints.relative import rows as relative_rows
+from mbsd.equations.laws import evaluate_laws
+from mbsd.equations.markers import place
+from mbsd.equations.system import ZERO, System
+
+
+@merged
+def gaps(dyn, scratch, t, q):
+    """``measure`` of the rows that events switch alone, which are all constraints of relative pose."""
+    if scratch.drive.shape[0] > 1:
+        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
+    place(dyn.system, q, scratch.ws)
+    relative_rows(dyn.system, q, scratch.drive, scratch.ws)
+
+
+@apart
+def measure_gaps(dyn, scratch, t, q):
+    """``gaps`` as a call."""
+    gaps(dyn, scratch, t, q)
+
+
+@internal
+def along(dyn, scratch, row, u):
+    """Row of J times u (3 nb,), where scratch.ws.jac is."""
+    out = 0.0
+    for side in range(2):
+        at = 3 * dyn.system.row_body[row, side]
+        for c in range(3):
+            out += scratch.ws.jac[row, 3 * side + c] * u[at + c]
+    return out
+
+
+@internal
+def gaps_of(contacts):
+    """Number of gaps, the first rows of Contacts; those of ways of contacts, then of joints, are behind them."""
+    return contacts.place.shape[0] - contacts.friction.gap.shape[0] - contacts.sticks.joint.shape[0]
+
+
+@internal
+def hold_rows(dyn, contacts):
+    """Let the rows hold that should, and contacts slide as they do."""
+    for k in range(contacts.place.shape[0]):
+        held = contacts.number[k, HELD] > 0.0
+        dyn.schur.rows[contacts.place[k, BLOCK], contacts.place[k, SIDE]] = contacts.place[k, ROW] if held else -1
+    gaps = gaps_of(contacts)
+    for w in range(contacts.friction.gap.shape[0]):
+        dyn.sliding.table[w, 0] = contacts.friction.number[w, KINETIC] * contacts.number[gaps + w, SIGN]
+
+
+@internal
+def release_rows(dyn, contacts):
+    """Let none of them hold, and no contact have friction."""
+    for k in range(contacts.place.shape[0]):
+        dyn.schur.rows[contacts.place[k, BLOCK], contacts.place[k, SIDE]] = -1
+    for w in range(dyn.sliding.table.shape[0]):
+        dyn.sliding.table[w, 0] = 0.0
+
+
+@internal
+def move_zero(scratch, contacts, k):
+    """Count the way of row k from the pose of scratch.ws.phi."""
+    scratch.ws.relative[contacts.place[k, RELATIVE], ZERO] += scratch.ws.phi[contacts.place[k, ROW]]
+
+
+@internal
+def find_rates(dyn, scratch, contacts, v):
+    """Fill vector[RATE] at velocities v (3 nb,)."""
+    for k in range(contacts.place.shape[0]):
+        contacts.vector[RATE, k] = along(dyn, scratch, contacts.place[k, ROW], v)
+
+
+@internal
+def give(contacts, v, pushes):
+    """Change velocities v (3 nb,) by impulses (c,) along the rows in chosen[TAKING]."""
+    for k in range(contacts.place.shape[0]):
+        if contacts.chosen[TAKING, k] != 0 and pushes[k] != 0.0:
+            for c in range(3, v.shape[0]):
+                v[c] += contacts.answer[k, c] * pushes[k]
+
+
+@apart
+def keep_independent(contacts, flags):
+    """Fill chosen[KEPT] with the rows in ``flags`` (c,) that do not follow from earlier ones, and their factor."""
+    count = contacts.place.shape[0]
+    kept = contacts.chosen[KEPT]
+    factor = contacts.factor
+    for k in range(count):
+        kept[k] = 0
+        own = contacts.compliance[k, k]
+        if flags[k] == 0 or not own > 0.0:
+            continue
+        left = own
+        for j in range(k):
+            if kept[j] == 0:
+                continue
+            value = contacts.compliance[k, j]
+            for i in range(j):
+                if kept[i] != 0:
+                    value -= factor[k, i] * factor[j, i]
+            factor[k, j] = value / factor[j, j]
+            left -= factor[k, j] ** 2
+        if left > DEPENDENT * own:
+            kept[k] = 1
+            factor[k, k] = math.sqrt(left)
+
+
+@apart
+def stop(dyn, scratch, contacts, v):
+    """Take the rates of the rows in chosen[KEPT] off velocities v (3 nb,) by impulses along them."""
+    count = contacts.place.shape[0]
+    kept = contacts.chosen[KEPT]
+    factor = contacts.factor
+    push = contacts.vector[SHIFT]
+    find_rates(dyn, scratch, contacts, v)
+    for k in range(count):
+        push[k] = 0.0
+        if kept[k] != 0:
+            push[k] = -contacts.vector[RATE, k]
+            for j in range(k):
+                if kept[j] != 0:
+                    push[k] -= factor[k, j] * push[j]
+            push[k] /= factor[k, k]
+    for k in range(count - 1, -1, -1):
+        if kept[k] != 0:
+            for j in range(k + 1, count):
+                if kept[j] != 0:
+                    push[k] -= factor[j, k] * push[j]
+            push[k] /= factor[k, k]
+            for c in range(3, v.shape[0]):
+                v[c] += contacts.answer[k, c] * push[k]
+
+
+@inlined
+def without_contacts(dyn, contacts):
+    """The mechanism without its contacts: a fifth less to do in steps in which all are open."""
+    system = dyn.system
+    bare = System(
+        system.mass,
+        system.inertia,
+        system.gravity,
+        system.marker_body,
+        system.marker_arm,
+        system.marker_axis,
+        system.moving,
+        system.directed,
+        system.point,
+        system.angle,
+        system.slot,
+        system.along,
+        system.distance,
+        contacts.special,
+        system.address,
+        system.numbers,
+        system.driven,
+        system.row_body,
+        system.angle_offset,
+        system.distance_length,
+    )
+    return Dynamics(
+        bare,
+        dyn.laws,
+        dyn.loads,
+        contacts.schur,
+        contacts.friction.none,
+        dyn.inertia,
+        dyn.inverse,
+        dyn.metric,
+        dyn.weight,
+        dyn.passes,
+        dyn.baumgarte,
+        dyn.per_size,
+    )
+
+
+@internal
+def any_held(contacts):
+    """Whether a contact is closed, or a joint sticks."""
+    held = False
+    for k in range(contacts.place.shape[0]):
+        held = held or contacts.number[k, CLOSED] > 0.0
+    return held

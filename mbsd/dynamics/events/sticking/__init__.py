@@ -1,0 +1,1 @@
+"""Joints that stick, and friction of joints beside contacts."""

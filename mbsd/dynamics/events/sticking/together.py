@@ -1,0 +1,221 @@
+"""What contacts that stick and joints at rest carry together, and how near they are to giving way.
+
+One set of rows holds them, which says nothing of what each carries: where a ball lies between floor and face of a
+slider that sticks in its guide, any of the three may stick less. Of all forces that keep them at rest those are found
+that need the smallest part s of what Coulomb's law allows (events/laws/least_part.py); limits of joints depend on
+reactions, so it is done again until both agree. They hold while s <= 1, whatever rows hold them.
+"""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.jit import apart, internal
+from mbsd.dynamics.events.arrays import (
+    ALONE,
+    CLOSED,
+    FOUND,
+    FRICTION,
+    HELD,
+    KIND,
+    KINETIC,
+    RESTING,
+    ROW,
+    SIGN,
+    STATIC,
+    UNSHARED,
+    WAY,
+)
+from mbsd.dynamics.events.bounds import AGREED_TOGETHER, PASSES
+from mbsd.dynamics.events.laws import least_part as least
+from mbsd.dynamics.events.laws.least_part import PULLED, least_part
+from mbsd.dynamics.events.rows import gaps_of, hold_rows, release_rows
+from mbsd.dynamics.events.sticking.answers import factor, find_answers
+from mbsd.dynamics.events.sticking.sharing import limit_of
+from mbsd.dynamics.events.sticking.sliding import (
+    add_beside,
+    add_beside_lam,
+    find_changes,
+    note_beside,
+    press_beside,
+)
+from mbsd.equations.joint_friction import normal_forces
+
+RAW, UNIT, OWN, FORCE = least.RAW, least.UNIT, least.OWN, least.FORCE
+
+
+@internal
+def list_rows(contacts, flags, coefficient):
+    """List the rows in ``flags`` (c,) in sticks.together, with what friction of contacts may be.
+
+    ``coefficient``: column of Friction.number. Returns numbers of gaps and of ways.
+    """
+    work = contacts.sticks.together
+    gaps = gaps_of(contacts)
+    gap = contacts.friction.gap
+    n = 0
+    first = 0
+    for k in range(flags.shape[0]):
+        if flags[k] != 0:
+            work.row[n] = k
+            work.number[UNIT, n] = 1.0 / math.sqrt(contacts.vector[ALONE, k])
+            n += 1
+            if k < gaps:
+                first = n
+    for i in range(first, n):
+        w = work.row[i] - gaps
+        work.number[OWN, i - first] = 0.0
+        for j in range(first):
+            own = w < gap.shape[0] and gap[w] == work.row[j]
+            work.pick[i - first, j] = contacts.friction.number[w, coefficient] if own else 0.0
+    return first, n - first
+
+
+@internal
+def _begin(dyn, scratch, contacts, flags):
+    """Fill ``flags`` (c,) with closed gaps and ways at rest, with answers, also of ways that slide."""
+    friction = contacts.friction
+    gaps = gaps_of(contacts)
+    for k in range(flags.shape[0]):
+        flags[k] = 1 if contacts.number[k, CLOSED] > 0.0 else 0
+    for w in range(friction.gap.shape[0]):
+        if flags[friction.gap[w]] != 0:
+            flags[gaps + w] = 1
+    release_rows(dyn, contacts)
+    factor(dyn, scratch)
+    find_answers(dyn, scratch, contacts, flags)
+    for w in range(friction.gap.shape[0]):
+        if contacts.number[gaps + w, CLOSED] == 0.0:
+            flags[gaps + w] = 0
+
+
+@internal
+def _pushes(contacts, k):
+    """The way along which the friction of gap k pushes as well, -1 if there is none, and how much of it."""
+    gap = contacts.friction.gap
+    gaps = gaps_of(contacts)
+    for w in range(gap.shape[0]):
+        sign = contacts.number[gaps + w, SIGN]
+        if gap[w] == k and sign != 0.0 and contacts.number[gaps + w, CLOSED] == 0.0:
+            return gaps + w, contacts.friction.number[w, KINETIC] * sign
+    return -1, 0.0
+
+
+@internal
+def _fill(contacts, lam, n):
+    """Fill compliance, sticks.vector[UNSHARED] and held of the n rows that are listed."""
+    work = contacts.sticks.together
+    for i in range(n):
+        k = work.row[i]
+        work.held[i] = 1 if contacts.number[k, HELD] > 0.0 else 0
+        contacts.sticks.vector[UNSHARED, i] = -lam[contacts.place[k, ROW]] if work.held[i] != 0 else 0.0
+        way, part = _pushes(contacts, k)
+        for j in range(n):
+            value = contacts.compliance[work.row[j], k]
+            if way >= 0:
+                value -= part * contacts.compliance[work.row[j], way]
+            work.compliance[j, i] = value
+
+
+@internal
+def _put(contacts, lam, before, n, beside):
+    """Fill lam (m,) with what multipliers ``before`` (m,) become under number[FORCE] of the n rows.
+
+    ``beside``: and under the friction of joints that slide.
+    """
+    work = contacts.sticks.together
+    borne = contacts.sticks.borne
+    for r in range(lam.shape[0]):
+        lam[r] = before[r]
+    if beside:
+        add_beside_lam(contacts, lam)
+    for i in range(n):
+        way, part = _pushes(contacts, work.row[i])
+        change = work.number[FORCE, i] - contacts.sticks.vector[UNSHARED, i]
+        for r in range(lam.shape[0]):
+            lam[r] += borne[work.row[i], r] * change
+            if way >= 0:
+                lam[r] -= part * borne[way, r] * change
+    for i in range(n):
+        lam[contacts.place[work.row[i], ROW]] = -work.number[FORCE, i]
+        way, part = _pushes(contacts, work.row[i])
+        if way >= 0:
+            lam[contacts.place[way, ROW]] = part * work.number[FORCE, i]
+
+
+@internal
+def _agree(dyn, scratch, contacts, c, k, beside, lam):
+    """Divide again until limits agree, under the friction ``beside`` of joints that slide; returns s.
+
+    lam (m,) begins with what presses joints at first.
+    """
+    work = contacts.sticks.together
+    normal = contacts.sticks.normal[FOUND]
+    before = contacts.sticks.lam[0]
+    part = 1.0
+    for _ in range(PASSES):
+        normal_forces(dyn.loads, scratch.ws, scratch.ws.jac, lam, normal)
+        for i in range(c + k):
+            raw = contacts.sticks.vector[UNSHARED, i]
+            work.number[RAW, i] = add_beside(contacts, i, raw) if beside else raw
+        for i in range(c, c + k):
+            row = work.row[i]
+            if contacts.place[row, KIND] == WAY:
+                work.number[OWN, i - c] = limit_of(dyn, contacts.place[row, FRICTION], normal)
+        part = least_part(work, c, k, 1.0)
+        change = 0.0
+        largest = 0.0
+        for i in range(c + k):
+            change = max(change, abs(work.number[FORCE, i] + lam[contacts.place[work.row[i], ROW]]))
+            largest = max(largest, abs(work.number[FORCE, i]))
+        _put(contacts, lam, before, c + k, beside)
+        if part == PULLED or change <= AGREED_TOGETHER * largest:
+            break
+    return part
+
+
+@apart
+def carry_together(dyn, scratch, contacts, v, lam, asked):
+    """Divide the multipliers lam (m,) among all that is at rest, at the pose of scratch.ws.
+
+    Returns the part s of their limits that they need, PULLED where contacts would have to pull; if it is ``asked`` for,
+    under the friction of joints that slide at velocities v (3 nb,).
+    """
+    flags = contacts.chosen[RESTING]
+    work = contacts.sticks.together
+    before = contacts.sticks.lam[0]
+    _begin(dyn, scratch, contacts, flags)
+    c, k = list_rows(contacts, flags, STATIC)
+    hold_rows(dyn, contacts)
+    _fill(contacts, lam, c + k)
+    for r in range(lam.shape[0]):
+        before[r] = lam[r]
+    part = _agree(dyn, scratch, contacts, c, k, False, lam)
+    if not asked or not press_beside(dyn, scratch, contacts, v, before, False):
+        return part
+    for i in range(c + k):
+        if work.held[i] != 0:
+            note_beside(dyn, scratch, contacts, i, contacts.place[work.row[i], ROW])
+    find_changes(contacts, work.compliance, work.held, c + k)
+    other = contacts.sticks.lam[1]
+    for r in range(lam.shape[0]):
+        other[r] = lam[r]
+    return _agree(dyn, scratch, contacts, c, k, True, other)
+
+
+@internal
+def divide_together(contacts, flags, force, limit, coefficient):
+    """Divide N and T in ``force`` (c,) among the rows in ``flags`` (c,) that stay at rest; ``limit`` (c,) of joints."""
+    work = contacts.sticks.together
+    pressed = contacts.friction.compliance
+    c, k = list_rows(contacts, flags, coefficient)
+    for i in range(c + k):
+        work.held[i] = 1
+        work.number[RAW, i] = force[work.row[i]]
+        if i >= c and contacts.place[work.row[i], KIND] == WAY:
+            work.number[OWN, i - c] = limit[work.row[i]]
+        for j in range(c + k):
+            work.compliance[i, j] = pressed[work.row[i], work.row[j]]
+    if least_part(work, c, k, 1.0) != PULLED:
+        for i in range(c + k):
+            force[work.row[i]] = work.number[FORCE, i]

@@ -1,0 +1,1 @@
+"""Events of the user in the compiled loop."""

@@ -1,0 +1,132 @@
+"""Values of events at a state: their functions get places and rates of frames."""
+
+from __future__ import annotations
+
+import math
+
+from mbsd.compiling.callback import call
+from mbsd.compiling.jit import apart, internal, lazy
+from mbsd.dynamics.events.bounds import AHEAD, BEYOND
+from mbsd.dynamics.events.users.arrays import FIRST, FRAMES, LEVEL, SIDE, VALUE, WHOLE
+from mbsd.dynamics.state import TIME
+
+
+@internal
+def read_frames(events, first, count, q, v):
+    """Fill events.inputs with places and rates of frames at q, v (3 nb,), as events/moment.py gives them.
+
+    With a count of WHOLE they are q and v themselves.
+    """
+    inputs = events.inputs
+    if count == WHOLE:
+        for c in range(q.shape[0]):
+            inputs[c] = q[c]
+            inputs[q.shape[0] + c] = v[c]
+        return
+    for i in range(count):
+        b = 3 * events.body[first + i]
+        arm = events.arm[first + i]
+        c = math.cos(q[b + 2])
+        s = math.sin(q[b + 2])
+        x = c * arm[0] - s * arm[1]
+        y = s * arm[0] + c * arm[1]
+        at = 3 * i
+        inputs[at] = q[b] + x
+        inputs[at + 1] = q[b + 1] + y
+        inputs[at + 2] = q[b + 2] + arm[2]
+        at += 3 * count
+        inputs[at] = v[b] - v[b + 2] * y
+        inputs[at + 1] = v[b + 1] + v[b + 2] * x
+        inputs[at + 2] = v[b + 2]
+
+
+@apart
+def value_of(events, e, t, q, v):
+    """The value of event e at q, v (3 nb,) and t (s)."""
+    read_frames(events, events.table[e, FIRST], events.table[e, FRAMES], q, v)
+    call(events.table[e, VALUE], t, events.inputs, events.outputs)  # pyright: ignore[reportCallIssue]
+    return events.outputs[0] - events.number[e, LEVEL]
+
+
+@internal
+def signed(events, e, t, y):
+    """The same at y (2, 3 nb), with the sign of its side: it is not negative now, and falls through zero."""
+    side = -1.0 if events.number[e, SIDE] < 0.0 else 1.0
+    return side * value_of(events, e, t, y[0], y[1])
+
+
+@apart
+def rounding_of(events, e, t, y, part):
+    """Return how much the value of event e at t (s) and y (2, 3 nb) changes with ``part`` of what counts as nothing."""
+    value = value_of(events, e, t, y[0], y[1])
+    pose = events.pose
+    most = 0.0
+    for k in range(events.away.shape[0]):
+        for side in range(2):
+            for c in range(pose.shape[1]):
+                pose[side, c] = y[side, c] + part * events.away[k, c]
+        most = max(most, abs(value_of(events, e, t * (1.0 + part * events.near[k]), pose[0], pose[1]) - value))
+    return most
+
+
+@apart
+def _side(events, e, t, y):
+    value = value_of(events, e, t, y[0], y[1])
+    if abs(value) <= rounding_of(events, e, t, y, 1.0) or value == 0.0:
+        return 0.0
+    return 1.0 if value > 0.0 else -1.0
+
+
+@apart
+def _side_ahead(events, e, t, y, a):
+    """The sign that an event whose value is zero has next; 0 if it stays zero. a: accelerations (3 nb,)."""
+    side = _side(events, e, t, y)
+    if side != 0.0:
+        return side
+    rounding = rounding_of(events, e, t, y, 1.0)
+    pose = events.pose
+    last = AHEAD[-1] * events.span[0]
+    for k in range(len(AHEAD) + len(BEYOND)):
+        s = AHEAD[k] * events.span[0] if k < len(AHEAD) else BEYOND[k - len(AHEAD)]
+        if k >= len(AHEAD) and s <= last:
+            continue
+        for c in range(pose.shape[1]):
+            pose[0, c] = y[0, c] + s * y[1, c] + s * s / 2 * a[c]
+            pose[1, c] = y[1, c] + s * a[c]
+        ahead = value_of(events, e, t + s, pose[0], pose[1])
+        if abs(ahead) > 10.0 * rounding:
+            return 1.0 if ahead > 0.0 else -1.0
+    return 0.0
+
+
+@lazy(int)
+def first_reached(events, state):
+    """The first event that is watched and whose value has come to zero and stays there, as _meet_reached; -1: none."""
+    for e in range(events.table.shape[0]):
+        if events.number[e, SIDE] == 0.0:
+            continue
+        if _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1]) == 0.0:
+            return e
+    return -1
+
+
+@internal
+def turn_side(events, e, state):
+    """The side of an event that has just passed zero: none where its value stays there."""
+    stays = _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1]) == 0.0
+    events.number[e, SIDE] = 0.0 if stays else -events.number[e, SIDE]
+
+
+@lazy(None)
+def begin_sides(events, state):
+    """On which side all events are at the start."""
+    for e in range(events.table.shape[0]):
+        events.number[e, SIDE] = _side(events, e, state.clock[TIME], state.y)
+
+
+@lazy(None)
+def find_sides(events, state):
+    """To which side those go that are zero; none of those that stay so."""
+    for e in range(events.table.shape[0]):
+        if events.number[e, SIDE] == 0.0:
+            events.number[e, SIDE] = _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1])

@@ -1,0 +1,1 @@
+"""Genevas in independent coordinates: steps that end where their pins enter or leave."""

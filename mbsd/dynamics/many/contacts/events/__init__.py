@@ -1,1 +1,0 @@
-"""Events of the user within steps of the compiled loop: where they pass zero, and what they do then."""

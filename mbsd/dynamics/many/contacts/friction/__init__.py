@@ -1,1 +1,0 @@
-"""Contacts with friction in the compiled loop: normal forces and friction together, which contacts slide and stick."""

@@ -1,1 +1,0 @@
-"""Joints that stick, and friction of joints beside contacts, in the compiled loop."""

@@ -1,0 +1,1 @@
+"""Quantities of simulations, measures of them, and rows that may end early."""

@@ -1,0 +1,1 @@
+"""Rows of joints that repeat others: which of them hold."""

@@ -307,7 +307,7 @@ record-numbers: install ## record them anew, where a change of numbers is meant
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.numbers record
 
-check-events: install ## 590 runs with contacts, stops and events against those recorded, within their bounds; ONLY="rope"
+check-events: install ## 580 runs with contacts, stops and events against those recorded, within their bounds; ONLY="rope"
 	$(ALL_KERNELS)
 	@$(PYTHON) -m tools.numbers events check "$$ONLY"
 

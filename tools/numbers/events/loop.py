@@ -45,7 +45,7 @@ def _beside(case: Case, outcome: Outcome, within: float) -> Beside:
     m, given = case.build(), dict(case.options)
     rows = given.pop("event_rows", False)
     times = [moment.t for moment in outcome.between]
-    names = {f"{body}.{part}": (body, part) for body in m.bodies for part in PARTS}
+    names = {f"{name}.{part}": (name, part) for name, body in m.bodies.items() if body != m.ground for part in PARTS}
     steps = int(given.pop("steps", case.steps))
     measure = {name: final(name) for name in names} | {"work": final("work")}
     grid = np.linspace(0.0, case.duration, steps + 1)

@@ -21,7 +21,6 @@ SMOOTH = (
     "clutch that holds and overruns",
     "stop that holds at a jump",
     "swing",
-    "twin hinges",
     "geneva with a stop",
 )
 """Runs by every integrator."""

@@ -161,6 +161,8 @@ def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:
     if events and asked.formulation == INDEPENDENT:
         raise NotCompiled("formulation='independent' does not know events")
     ready = prepare_dynamics(m, float(times[0]), float(times[-1]), contacts=True)
+    if asked.formulation == INDEPENDENT and (ready.switches.contacts or ready.sticks):
+        raise NotCompiled("formulation='independent' does not know contacts, limits and joints that stick")
     _refuse(ready)
     if reactive and ready.approaches:
         raise NotCompiled("reactions where the damping of a contact remembers how fast it approached")

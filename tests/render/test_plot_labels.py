@@ -31,9 +31,13 @@ def test_many_bodies_and_joints_stay_readable() -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 8, 9, 12])
 @pytest.mark.parametrize("name", ["J", "pin_of_the_combination_lever_"])
-def test_titles_of_hodographs_stay_clear_of_the_row_above(count: int, name: str) -> None:
+def test_words_of_a_hodograph_stay_clear_of_the_others(count: int, name: str) -> None:
     motion = msgspec.structs.replace(MOTION, joints={f"{name}{i}": MOTION.joints["A"] for i in range(count)})
-    assert overlaps(figure("hodographs", motion)) == []
+    drawn = figure("hodographs", motion)
+    assert overlaps(drawn) == []
+    for axes in drawn.axes:
+        label = axes.yaxis.label.get_window_extent()
+        assert not any(label.overlaps(other.get_window_extent()) for other in drawn.axes if other.get_visible())
 
 
 def test_words_of_neighbouring_marks_do_not_meet() -> None:

@@ -100,12 +100,15 @@ class Packed:
         }
 
     def holds_position(self) -> np.ndarray:
-        """Return (m,) True for the rows of J that hold a position; a row that sticks by friction holds a speed of 0."""
+        """Return (m,) True for the rows of J that hold a position.
+
+        A row that sticks by friction, and that of a locked one-way clutch, hold a speed of 0.
+        """
         out = np.ones(len(self.ws.phi), bool)
-        if self.contact_rows == len(out):
-            return out
         out[self.contact_rows :] = False
-        out[list(self.contact_gaps().values())] = True
+        for joint, row in zip(self.joints, self.first_row, strict=False):
+            if isinstance(joint.kind, ContactKind) and not joint.kind.always_closed:
+                out[row] = True
         return out
 
     def joint_of_row(self, row: int) -> Joint:

@@ -9,11 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
-from render.plots.style import QUIET
+from render.plots.style import QUIET, SIZE
 from shared.contract.quantity import angle_step, figures, labelled, prefixed, written
 
 TICKS = 5
 """On an axis at most, about; of angles one more."""
+LETTER = 5.6
+"""Points that a letter of an axis's words takes; words too long for a vertical axis have their unit below them."""
 PEAK, KEPT = 12.0, 3.0
 """A curve is cut where it is so many times higher than usual, at so many times that."""
 USUAL = 90.0
@@ -26,7 +28,9 @@ def dress_axis(axis: Axis, words: str, unit: str, ticks: int = TICKS) -> None:
     """Label an axis whose limits (SI, or degrees) are final, and write its numbers with one prefix."""
     low, high = axis.get_view_interval()
     factor, named = prefixed(max(abs(float(low)), abs(float(high))), unit)
-    axis.set_label_text(labelled(words, named))
+    text = labelled(words, named)
+    room = axis.axes.get_position().height * SIZE[1] * 72 / LETTER
+    axis.set_label_text(text.replace(" / ", "\n/ ", 1) if axis is axis.axes.yaxis and len(text) > room else text)
     axis.set_major_formatter(FuncFormatter(lambda value, _: figures(value * factor)))
     if unit == "°":
         axis.set_major_locator(MultipleLocator(angle_step(abs(float(high - low)), ticks + 1)))

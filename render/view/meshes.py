@@ -58,7 +58,7 @@ def shapes(files: list[Path]) -> Iterator[Shape]:
     for file in files:
         triangles = read_triangles(file)
         low = triangles.reshape(-1, 3).min(axis=0)
-        key = hashlib.sha256(np.round((triangles - low) * 1e7).astype(np.int32).tobytes()).digest()
+        key = hashlib.sha256(np.round((triangles - low) * 1e7).astype(np.int64).tobytes()).digest()
         if key not in known:
             known[key] = low, smooth(triangles)
         first, (positions, normals, corners) = known[key]

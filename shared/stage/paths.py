@@ -47,6 +47,7 @@ MECHANISMS = _machines()
 """The folder of machines: each a folder with a mechanism.py; in a user's own one also single files, or itself."""
 RESERVED = {
     **dict.fromkeys(("stages", "automatic"), "the package of the mechanisms has a module of this name"),
+    "out": "out holds the results",
     "films": "out/films holds the films",
     "showreel": "the film of all mechanisms has this name",
     "night": "out/night holds the log of the nights",

@@ -148,6 +148,8 @@ def test_a_one_way_clutch_holds_and_overruns() -> None:
     np.testing.assert_allclose(wheel_of.omega, expected, atol=1e-7)
     locked = (sol.t > math.pi + 1e-6) & (sol.t < 1.5 * math.pi - 1e-6)
     np.testing.assert_allclose(sol.contact("clutch").normal[locked], -3.0 * np.cos(sol.t[locked]), atol=1e-9)
+    assert wheel_of.theta[locked].min() > 2.9
+    assert sol.stats.position_residual < 1e-12, "how far it had turned when it locked is no residual"
 
 
 def test_a_clutch_takes_up_a_forbidden_start() -> None:

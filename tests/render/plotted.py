@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
@@ -30,9 +31,21 @@ def shown(drawn: Figure) -> set[str]:
     return {text.get_text() for text in drawn.findobj(Text) if isinstance(text, Text)}
 
 
+def _titles(axes: Axes) -> list[Text]:
+    """Titles of axes, wherever they stand."""
+    words = {axes.get_title(side) for side in ("left", "center", "right")}
+    return [text for text in axes.get_children() if isinstance(text, Text) and text.get_text() in words]
+
+
 def overlaps(drawn: Figure) -> list[tuple[str, str]]:
-    """Pairs of labels that cover each other."""
+    """Pairs of labels, titles and names of axes that cover each other."""
     drawn.canvas.draw()
-    texts = [t for axes in drawn.axes for t in axes.texts if t.get_text()]
+    texts = [
+        text
+        for axes in drawn.axes
+        if axes.get_visible()
+        for text in (*axes.texts, *_titles(axes), axes.xaxis.label, axes.yaxis.label)
+        if text.get_text()
+    ]
     boxes = [(t.get_text(), t.get_window_extent()) for t in texts]
     return [(a, b) for i, (a, box) in enumerate(boxes) for b, other in boxes[i + 1 :] if box.overlaps(other)]

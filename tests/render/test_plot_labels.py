@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from render.plots.style import spread
+from shared.contract import EventMark
 from tests.render.plotted import MOTION, NAMES, figure, overlaps
 
 
@@ -26,6 +27,32 @@ def test_many_bodies_and_joints_stay_readable() -> None:
     assert overlaps(figure("bodies", motion)) == []
     assert overlaps(figure("reactions", motion)) == []
     assert len([axes for axes in figure("hodographs", motion).axes if axes.get_visible()]) == 12
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 8, 9, 12])
+@pytest.mark.parametrize("name", ["J", "pin_of_the_combination_lever_"])
+def test_words_of_a_hodograph_stay_clear_of_the_others(count: int, name: str) -> None:
+    motion = msgspec.structs.replace(MOTION, joints={f"{name}{i}": MOTION.joints["A"] for i in range(count)})
+    drawn = figure("hodographs", motion)
+    assert overlaps(drawn) == []
+    for axes in drawn.axes:
+        label = axes.yaxis.label.get_window_extent()
+        assert not any(label.overlaps(other.get_window_extent()) for other in drawn.axes if other.get_visible())
+
+
+def test_words_of_neighbouring_marks_do_not_meet() -> None:
+    times = np.linspace(0.0, MOTION.time[-1], 9)
+    events = [
+        EventMark(time=float(t), energy=0.0, name=f"combination_lever_{k}", what="closes") for k, t in enumerate(times)
+    ]
+    drawn = figure("bodies", msgspec.structs.replace(MOTION, events=events))
+    assert overlaps(drawn) == []
+    words = [text for text in drawn.axes[0].texts if "combination lever" in text.get_text()]
+    assert len(words) > 1
+    frame = drawn.axes[0].get_window_extent()
+    assert all(
+        frame.x0 - 2 <= text.get_window_extent().x0 and text.get_window_extent().x1 <= frame.x1 + 2 for text in words
+    )
 
 
 def test_long_names_stay_on_the_page() -> None:

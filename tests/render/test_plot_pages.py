@@ -17,7 +17,7 @@ from tools.models.motions import plain_skeleton
 @pytest.mark.parametrize("plot", [name for name in NAMES if name not in ("path",)])
 def test_axes_carry_units(plot: str) -> None:
     drawn = figure(plot, MOTION)
-    labels = [axes.get_ylabel() for axes in drawn.axes] + [drawn.axes[-1].get_xlabel()]
+    labels = [axes.get_ylabel().replace("\n", " ") for axes in drawn.axes] + [drawn.axes[-1].get_xlabel()]
     assert all(re.fullmatch(r"[^/]+ / ([^\s/()]+|\([^()]+\))(; a turn takes 1 s)?", label) for label in labels), labels
 
 

@@ -57,7 +57,9 @@ def run(name: str, words: str) -> None:
         console.say("study", line)
     console.say("study", f"{name}: {save}: {len(table)} points")
     if len(table) and all(isinstance(reason, str) for reason in table["reason"]):
-        raise UserError(f"{name}: all {len(table)} points failed, the first for: {table['reason'].iloc[0]}")
+        failed = "its one point" if len(table) == 1 else f"all {len(table)} points"
+        first = "" if len(table) == 1 else ", the first"
+        raise UserError(f"{name}: {failed} failed{first} for: {_reason(name, table['reason'].iloc[0])}")
 
 
 def _client() -> AbstractContextManager[Any]:
@@ -117,10 +119,15 @@ def _summary(name: str, table: pandas.DataFrame, varied: list[str]) -> list[str]
         low, high = (choose(good, key=lambda row: row[column]) for choose in (min, max))
         ends = [f"{row[column]:.4g} ({_point(row, varied)})" for row in (low, high)]
         lines.append(f"{name}: {column}: {ends[0]} to {ends[1]}")
-    lines += [f"{name}: not at {_point(row, varied)}: {row['reason']}" for row in failed[:WORST]]
+    lines += [f"{name}: not at {_point(row, varied)}: {_reason(name, row['reason'])}" for row in failed[:WORST]]
     if len(failed) > WORST:
         lines.append(f"{name}: and {len(failed) - WORST} more of {len(rows)} points failed; the table has the reasons")
     return lines
+
+
+def _reason(name: str, reason: str) -> str:
+    """Return why a point failed, without the name of the mechanism and of the class of a refusal."""
+    return reason.removeprefix(f"{UserError.__name__}: ").removeprefix(f"{name}: ")
 
 
 def _point(row: dict[str, Any], varied: list[str]) -> str:

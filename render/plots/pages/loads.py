@@ -18,6 +18,10 @@ from shared.contract.quantity import written
 
 TITLE, LETTER = 9.5, 0.56
 """Size of a title (points), and the width of a letter in it."""
+BETWEEN = 0.62
+"""Inches between two rows of hodographs for the words below the upper and a line of title above the lower one."""
+BESIDE = 0.62
+"""Inches between two columns of hodographs for the numbers and words of the right one."""
 PANELS = 12
 """Hodographs on one page; of more joints, those with the largest reactions."""
 
@@ -99,8 +103,16 @@ def hodographs(motion: Motion) -> Figure:
         "tip of the force on the joint's second body, world axes; the dot marks the start, the arrow the largest",
     )
     columns = min(len(shown), max(3, math.ceil(math.sqrt(len(shown)))) if len(shown) != 4 else 2)
-    grid = figure.subplots(math.ceil(len(shown) / columns), columns, squeeze=False).ravel()
-    figure.subplots_adjust(left=0.07, right=0.975, top=0.83, bottom=0.085, wspace=0.22, hspace=0.34)
+    lines = math.ceil(len(shown) / columns)
+    grid = figure.subplots(lines, columns, squeeze=False).ravel()
+    heads = {name: f"{name}: {motion.joints[name].bodies[0]} on {motion.joints[name].bodies[1]}" for name in shown}
+    peaks = {name: f"at most {written(sizes[name], 'N')}" for name in shown}
+    figure.subplots_adjust(
+        left=0.07, right=0.975, top=0.83, bottom=0.085, wspace=_spacing(columns, BESIDE, 0.905 * SIZE[0])
+    )
+    room = grid[0].get_position().width * SIZE[0] * 72 / (LETTER * TITLE)
+    is_long = any(len(heads[name]) + len(peaks[name]) + 2 > room for name in shown)
+    figure.subplots_adjust(hspace=_spacing(lines, BETWEEN + TITLE * 1.2 / 72 * is_long, 0.745 * SIZE[1]))
     for axes, name in zip(grid, shown, strict=False):
         joint = motion.joints[name]
         fx, fy = without_noise(np.asarray(joint.fx), weak), without_noise(np.asarray(joint.fy), weak)
@@ -117,10 +129,8 @@ def hodographs(motion: Motion) -> Figure:
             arrowprops={"arrowstyle": "-|>", "color": INK, "linewidth": 1.1, "shrinkA": 0, "shrinkB": 0, "zorder": 1.5},
             zorder=1.5,
         )
-        head, peak = f"{name}: {joint.bodies[0]} on {joint.bodies[1]}", f"at most {written(sizes[name], 'N')}"
-        room = axes.get_position().width * SIZE[0] * 72 / (LETTER * TITLE)
         axes.set_title(
-            f"{head}, {peak}" if len(head) + len(peak) + 2 <= room else f"{_within(head, room)}\n{peak}",
+            f"{_within(heads[name], room)}\n{peaks[name]}" if is_long else f"{heads[name]}, {peaks[name]}",
             fontsize=TITLE, loc="left", color=ink,
         )  # fmt: skip
         axes.set_aspect("equal", adjustable="datalim")
@@ -130,6 +140,11 @@ def hodographs(motion: Motion) -> Figure:
     for axes in grid[len(shown) :]:
         axes.set_visible(False)
     return figure
+
+
+def _spacing(count: int, gap: float, room: float) -> float:
+    """Return the gap between ``count`` axes as a fraction of one, where both gap and room are in inches."""
+    return count * gap / (room - (count - 1) * gap)
 
 
 def _within(text: str, room: float) -> str:

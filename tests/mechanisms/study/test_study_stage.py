@@ -86,4 +86,6 @@ def test_a_study_without_a_good_point_fails_and_keeps_its_table(
     ):
         stage.run("four_bar", "rocker=0.02,0.01")
     assert len(pd.read_csv(tmp_path / "four_bar" / "study" / "study.csv")["reason"].dropna()) == 2
-    assert "not at rocker 0.02" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "not at rocker 0.02: " in said
+    assert "Error:" not in said, "the class of a refusal says nothing to a reader"

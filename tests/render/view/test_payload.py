@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -94,6 +95,16 @@ def test_meshes_lie_where_the_stl_files_do(out: Out) -> None:
         )
         normals = np.stack([u, v, z], axis=1) / np.linalg.norm([u, v, z], axis=0)[:, None]
         assert normals == pytest.approx(shape[1], abs=0.02)
+
+
+def test_shapes_of_hundreds_of_metres_are_told_apart(tmp_path: Path) -> None:
+    files = []
+    for length in (300.0, 400.0):
+        file = tmp_path / f"floor_{length:.0f}.stl"
+        trimesh.creation.box((1000.0 * length, 1000.0, 1000.0)).export(file)  # mm
+        files.append(file)
+    spans = [float(np.ptp(positions[:, 0])) for positions, *_ in shapes(files)]
+    assert spans == pytest.approx([300.0, 400.0], rel=1e-6)
 
 
 def test_a_skeleton_from_before_is_refused_with_the_remedy(out: Out) -> None:

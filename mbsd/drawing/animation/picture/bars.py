@@ -14,8 +14,10 @@ from mbsd.drawing.animation.words import KINETIC, POTENTIAL, TAKEN
 from mbsd.drawing.look import INK, QUIET
 
 ROWS = 4
-"""Number of powers that are shown, the largest ones."""
+"""Powers that are shown at most, the largest ones; fewer where there is no room."""
 TRACK = "#e6e9ed"
+WIDE, NARROW = 26.0, 14.0
+"""Pixels (at 100 dpi) from one power to the next: below WIDE words and bars are small, and NARROW is the least."""
 NOTHING = 1e-9
 """Fraction of the largest power: smaller ones are not shown."""
 
@@ -28,13 +30,17 @@ class Bars:
         peaks = {name: float(np.abs(power).max(initial=0.0)) for name, power in balance.powers.items()}
         most = max(peaks.values(), default=0.0)
         order = sorted(peaks, key=lambda name: -peaks[name])
-        self.powers = [name for name in order if peaks[name] > NOTHING * most][:ROWS] if most > 1e-15 else []
+        self.powers = [name for name in order if peaks[name] > NOTHING * most] if most > 1e-15 else []
         self.largest_power = most
         self.total = balance.kinetic + balance.potential
         self.largest = float(self.total.max(initial=0.0))
         px, (left, low, width, height) = dpi / 100, box
-        rows = len(self.powers) * 40 * px + (22 * px if self.powers else 0)
-        self.rows = min(rows, 0.52 * height)
+        head = 22 * px
+        self.powers = self.powers[: min(ROWS, max(1, int((0.52 * height - head) / (NARROW * px))))]
+        self.pitch = min(40 * px, (0.52 * height - head) / max(len(self.powers), 1))
+        is_narrow = self.pitch < WIDE * px
+        self.letters, self.half, self.above = (7.0, 1.5 * px, 7.5 * px) if is_narrow else (8.5, 5 * px, 15 * px)
+        self.rows = len(self.powers) * self.pitch + head if self.powers else 0.0
         self.columns = (left, low + self.rows + 30 * px, width, height - self.rows - 62 * px)
 
     @property
@@ -52,11 +58,11 @@ class Bars:
             _word(figure, renderer, "takes", left + 2 * px, low + self.rows - 8 * px, TAKEN, 8.5, "left")
             _word(figure, renderer, "gives", left + width - 2 * px, low + self.rows - 8 * px, KINETIC, 8.5, "right")
             for k, name in enumerate(self.powers):
-                _word(figure, renderer, name, left + 2 * px, self._row(k) + 15 * px, INK, 8.5, "left")
+                _word(figure, renderer, name, left + 2 * px, self._row(k) + self.above, INK, self.letters, "left")
 
     def draw(self, brush: Brush, k: int) -> None:
         """The bars at picture ``k``."""
-        px, (left, _, width, _) = self.dpi / 100, self.box
+        left, _, width, _ = self.box
         kinetic, potential = float(self.balance.kinetic[k]), float(self.balance.potential[k])
         if self.has_energy:
             stacks = (((kinetic, KINETIC),), ((potential, POTENTIAL),), ((potential, POTENTIAL), (kinetic, KINETIC)))
@@ -64,7 +70,7 @@ class Bars:
                 self._stack(brush, self._column(number), stack)
         for number, name in enumerate(self.powers):
             y, middle = self._row(number), left + width / 2
-            half = 5 * px
+            half = self.half
             _plate(brush, left, y - half, width, 2 * half, rgba(TRACK))
             part = float(self.balance.powers[name][k]) / self.largest_power * width / 2
             _plate(brush, middle + min(part, 0.0), y - half, abs(part), 2 * half, rgba(KINETIC if part > 0 else TAKEN))
@@ -81,15 +87,14 @@ class Bars:
                 lay(picture, sprite(in_joules(float(value)), 8.5, INK, self.dpi), self._column(number), top)
         in_watts = live([self.largest_power], "W", 3)
         for number, name in enumerate(self.powers):
-            word = sprite(in_watts(float(self.balance.powers[name][k])), 8.5, INK, self.dpi)
-            lay(picture, word, left + width - word.shape[1] / 2 - 2 * px, self._row(number) + 15 * px)
+            word = sprite(in_watts(float(self.balance.powers[name][k])), self.letters, INK, self.dpi)
+            lay(picture, word, left + width - word.shape[1] / 2 - 2 * px, self._row(number) + self.above)
 
     def _column(self, k: int) -> float:
         return self.columns[0] + self.columns[2] * (k + 0.5) / 3
 
     def _row(self, k: int) -> float:
-        px = self.dpi / 100
-        return self.box[1] + self.rows - 22 * px - (k + 0.72) * (self.rows - 22 * px) / max(len(self.powers), 1)
+        return self.box[1] + self.rows - 22 * self.dpi / 100 - (k + 0.72) * self.pitch
 
     def _stack(self, brush: Brush, x: float, stack: tuple[tuple[float, str], ...]) -> None:
         px, (_, low, _, height) = self.dpi / 100, self.columns

@@ -11,6 +11,7 @@ from mbsd import Mechanism
 from tools.numbers.events.case import Case
 from tools.numbers.events.commands import quick_cases, verdict
 from tools.numbers.events.condition import MOST
+from tools.numbers.events.loop import IN_LOOP, beside
 from tools.numbers.events.record import Record, read
 from tools.numbers.events.table import cases
 
@@ -41,6 +42,16 @@ def test_records_are_those_of_the_runs_and_bounds_have_a_reason() -> None:
         assert (record.outcome is None) == bool(record.same_as)
         assert record.moved <= MOST
         assert max(record.within, record.forces_within) <= 1e-9 or record.reason
+
+
+@pytest.mark.slow
+def test_rows_of_many_move_as_recorded() -> None:
+    """Steps of a fixed length end at outputs, which are others here."""
+    found = list(beside(""))
+    assert sum(each.way.startswith(IN_LOOP) for each in found) > 480
+    fixed = ("alpha", "rattle", "rk4", "symplectic", "baumgarte")
+    rows = [each for each in found if each.way.startswith(IN_LOOP) and not each.name.endswith(fixed)]
+    assert not [each for each in rows if not each.apart <= each.within]
 
 
 def _named(name: str) -> Case:

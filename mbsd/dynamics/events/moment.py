@@ -82,12 +82,14 @@ class Moment:
 
     def act(self, event: Event) -> None:
         """Let the action of an event act, and release its joints. Raises ModelError where it fails."""
+        action = event.action
+        assert action is not None
         try:
             if event.frames:
-                given = event.action(self.t, *self.numbers(event.frames))
+                given = action(self.t, *self.numbers(event.frames))
                 self.set_numbers(event.frames, as_numbers(given, 3 * len(event.frames)))
             else:
-                event.action(self)
+                action(self)
         except Exception as error:
             raise ModelError(
                 f"{self.packed.name}: event '{event.name}': its action fails at t = {self.t:.6g} s: {described(error)}"

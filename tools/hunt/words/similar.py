@@ -67,6 +67,8 @@ def mirrored(m: Mechanism) -> Mechanism | None:
             low, high = params["limits"]
             params["limits"] = _negative(high), _negative(low)
         sign = -1.0 if entry.kind.name in ANGULAR else 1.0
+        if "torque" in params:
+            params["torque"] = _negative(params["torque"])
         return _with_laws(replace(entry, params=params), sign)
 
     return _rebuilt(

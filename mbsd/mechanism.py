@@ -119,8 +119,8 @@ class Mechanism(Building):
         lengths. ``places``: joint names to (n, 2) places (m) of the joint's marker on ground, or else of its first
         marker, in that body's frame; or names of traced points to their places. A place that is given does not move
         with a length. Times are those of :meth:`sweep`.
-        Designs share the branch of the mechanism itself. Raises ModelError for a mechanism that is not made of driven
-        bodies and dyads.
+        Designs share the branch of the mechanism itself; those that come near a change point are swept each by itself.
+        Raises ModelError for a mechanism that is not made of driven bodies and dyads.
         """
         from mbsd.kinematics.batch import batch
 

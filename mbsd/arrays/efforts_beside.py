@@ -6,6 +6,8 @@ Cramer's rule. Where D has a root t_c,
     y(t_c) = 0     lam has a limit, and is smooth itself
     y(t_c) != 0    lam grows without bound as 1 / (t - t_c), and there is none at t_c
 
+Where several loops pass together, D has a root of a higher order n, and D^(k/n) with k below n may do in its place.
+
 Both follow from poses at which D is not small, on both sides of t_c, or on one side where the motion begins, ends or
 switches to the other assembly; polynomials through these give what is between. Reactions go with the multipliers.
 """
@@ -53,6 +55,26 @@ class Side:
 
         ``factor`` (N + R,): D at the nodes, then at the rows. ``arms`` (k,): 1 of forces, 1/m of torques.
         """
+        count = len(self.nodes)
+        out, order = self._with_factor(factor, beside, arms), self._order(factor[:count])
+        if order > 1:  # several loops pass together, and efforts may grow as the power of one of them
+            root = np.sign(self.nodes - self.time) * np.abs(factor[:count]) ** (1.0 / order)
+            simple = np.append(root, lagrange(self.nodes, self.rows) @ root)
+            for power in range(order - 1, 0, -1):
+                lower = self._with_factor(simple**power, beside, arms)
+                out = np.where(np.isnan(lower), out, lower)
+        return out
+
+    def _order(self, factor: np.ndarray) -> int:
+        """Return of which order the root of D is, from its values at the nodes (N,)."""
+        away = np.abs(self.nodes - self.time)
+        if not (away > 0.0).all() or not (factor != 0.0).all() or np.ptp(away) == 0.0:
+            return 1
+        slope = np.polynomial.Polynomial.fit(np.log(away), np.log(np.abs(factor)), 1).convert().coef[-1]
+        return max(1, round(float(slope)))
+
+    def _with_factor(self, factor: np.ndarray, beside: np.ndarray, arms: np.ndarray) -> np.ndarray:
+        """Return the values at the rows where ``factor`` (N + R,) times the multipliers is smooth; NaN elsewhere."""
         count = len(self.nodes)
         scaled = factor / np.abs(factor[:count]).max()
         y = scaled[:count, None] * beside

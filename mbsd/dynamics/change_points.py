@@ -16,6 +16,7 @@ import numpy as np
 
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.efforts_beside import Side, fill_beside, lagrange
+from mbsd.arrays.packing import Packed
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.kinematics.change_points.assemblies import APART
@@ -44,10 +45,27 @@ Motion = Callable[[np.ndarray], Solution]
 
 def near_singular(solution: Solution) -> np.ndarray:
     """Return (T,) True for outputs that may be near a change point, by their margins and multipliers."""
-    margin, largest = solution.singularity_margin, np.abs(solution.lam).max(axis=1, initial=0.0)
-    ordered, middle = largest.copy(), len(largest) // 2
-    ordered.partition(middle)
-    return ~((margin >= SUSPECT * np.fmax.reduce(margin, initial=0.0)) & (largest <= ODD * ordered[middle]))
+    return are_suspect(solution.singularity_margin, solution.lam)
+
+
+def are_suspect(margin: np.ndarray, lam: np.ndarray) -> np.ndarray:
+    """Return (..., T) True for outputs that may be near a change point, by margins (..., T) and lam (..., T, m)."""
+    largest = np.abs(lam).max(axis=-1, initial=0.0)
+    middle = largest.shape[-1] // 2
+    usual = np.partition(largest, middle, axis=-1)[..., middle, None]
+    widest = np.fmax.reduce(margin, axis=-1, initial=0.0, keepdims=True)
+    return ~((margin >= SUSPECT * widest) & (largest <= ODD * usual))
+
+
+def can_pass(packed: Packed) -> bool:
+    """Return True if reactions near change points are taken from poses beside: not in large mechanisms."""
+    return packed.coordinates <= MOST_COORDINATES and not packed.states
+
+
+def usual_output(margin: np.ndarray, suspects: np.ndarray) -> int:
+    """Return the output whose D is the usual one: the median by margin (T,) of those that are no ``suspects``."""
+    clear = np.setdiff1d(np.arange(len(margin)), suspects)
+    return int(clear[np.argsort(margin[clear])][len(clear) // 2])
 
 
 def with_efforts_beside(
@@ -59,15 +77,13 @@ def with_efforts_beside(
     (s), efforts as they come, and begins at no output near.
     """
     suspects = np.flatnonzero(is_near)
-    is_small = ready.packed.coordinates <= MOST_COORDINATES and not ready.packed.states
-    if not len(suspects) or len(suspects) == len(is_near) or not is_small:
+    if not len(suspects) or len(suspects) == len(is_near) or not can_pass(ready.packed):
         return solution
     margin = solution.singularity_margin.copy()
     lam, wrench = solution.lam.copy(), solution.wrench.copy()
     poses = [part.copy() for part in (solution.q, solution.v, solution.a)]
     closeness = _determinants(ready, solution, suspects)
-    clear = np.setdiff1d(np.arange(len(margin)), suspects)
-    usual = _determinants(ready, solution, clear[np.argsort(margin[clear])][len(clear) // 2 : len(clear) // 2 + 1])[0]
+    usual = _determinants(ready, solution, np.array([usual_output(margin, suspects)]))[0]
     filled, looked, beside = np.zeros(len(margin), bool), np.zeros(len(margin), bool), []
     for row, own in sorted(zip(suspects.tolist(), closeness.tolist(), strict=True), key=lambda pair: pair[1]):
         if looked[row] or not own < CLOSE * usual:
@@ -178,7 +194,13 @@ def _determinants(ready: PreparedDynamics, solution: Solution, rows: np.ndarray)
     compact = np.zeros((*phi.shape, 6))
     tabulate_along(packed, solution.drives[rows], q, v, phi, compact, gamma)
     held = np.ones(len(packed.ws.phi), bool) if solution.held is None else solution.held[rows[0]].astype(bool)
-    jac = packed.spread(compact)[:, held] * packed.row_scale()[held, None] * packed.column_scale()
+    return determinants(ready, packed.spread(compact), held)
+
+
+def determinants(ready: PreparedDynamics, jacobians: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """Return (T,) |D| of ``jacobians`` (T, m, 3 nb), of the rows that are ``held`` (m,)."""
+    packed = ready.packed
+    jac = jacobians[:, held] * packed.row_scale()[held, None] * packed.column_scale()
     if ready.dropped:
         rank = jac.shape[1] - len(ready.dropped)
         return np.prod(np.linalg.svd(jac, compute_uv=False)[:, :rank], axis=1)

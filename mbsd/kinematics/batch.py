@@ -13,6 +13,7 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.base.shown import shown
 from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, in_closed_form
+from mbsd.kinematics.doubted_designs import FINER, settle
 from mbsd.kinematics.prepare import prepare
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model, names_given
@@ -48,7 +49,10 @@ def batch(
     if not in_closed_form(ready):
         DesignSweeps(m, ready, grid, [])  # says why not
     values, moved = parameters(m, ready.packed, lengths, places)
-    return DesignSweeps(m, ready, grid, moved, angles)(values, threads)
+    sweeps = DesignSweeps(m, ready, grid, moved, angles)
+    out = sweeps(values, threads)
+    settle(sweeps, lambda: DesignSweeps(m, ready, grid, moved, angles, FINER), out, values, threads)
+    return out
 
 
 def parameters(

@@ -16,6 +16,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError
+from mbsd.equations.system import System
 from mbsd.kinematics.groups.blocks import BLOCK
 from mbsd.kinematics.groups.carrying.columns import COS
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
@@ -69,7 +70,7 @@ class Batch:
     closes: np.ndarray
     """(n,) whether the links close all the way."""
     doubted: np.ndarray
-    """(n,) whether a design was given up where its branches come near each other; sweep it alone to see more."""
+    """(n,) whether a design was given up where its branches come near each other (doubted_designs.py)."""
 
 
 def in_closed_form(ready: Prepared) -> bool:
@@ -101,7 +102,8 @@ class DesignSweeps:
             )
         assert ready.groups is not None
         packed = ready.packed
-        self.m, self.packed, self.groups, self.q0, self.grid = m, packed, ready.groups, ready.q0, grid
+        self.m, self.ready, self.packed, self.groups = m, ready, packed, ready.groups
+        self.q0, self.grid = ready.q0, grid
         self.moved, self.angles = list(moved), list(angles)
         self.slopes = slopes(packed, ready.q0, ready.groups, self.moved)
         self.bodies = np.array([packed.body_names.index(p.body.name) for p in m.traces.values()], np.int64)
@@ -120,7 +122,7 @@ class DesignSweeps:
             count * (len(grid) * (2 * traces + turned) + self.groups.number.size),
             "Take fewer designs or steps at once",
         )
-        numbers, arms = self._numbers(values), self._arms(values)
+        numbers, arms = self._numbers(values), self.arms_of(values)
         out = np.empty((count, traces, len(grid), 2))
         out_angles = np.empty((count, turned, len(grid)))
         status = np.zeros(count, np.int64)
@@ -150,7 +152,7 @@ class DesignSweeps:
         Each time is solved alone, on the branch of the mechanism itself, whose poses (T, 3 nb) angles are near.
         """
         count, times = len(values), len(self.grid)
-        base, arms = self._numbers(values), self._arms(values)
+        base, arms = self._numbers(values), self.arms_of(values)
         out = np.empty((times, count, len(self.bodies), 1, 2))
         out_angles = np.empty((times, count, len(self.turned), 1))
         status = np.zeros((times, count), np.int64)
@@ -175,13 +177,24 @@ class DesignSweeps:
         angles = {name: out_angles[:, :, k, 0].T for k, name in enumerate(self.angles)}
         return Batch(self.grid, points, angles, closes, (status == DOUBTED).any(axis=0))
 
-    def _arms(self, values: np.ndarray) -> np.ndarray:
+    def arms_of(self, values: np.ndarray) -> np.ndarray:
         """(n, points, 2) of the traced points, from centres of mass."""
         arms = np.tile(self.arms, (len(values), 1, 1))
         for column, change in enumerate(self.moved):
             if change.trace is not None:
                 arms[:, change.trace[0], change.trace[1]] += values[:, column]
         return arms
+
+    def system_of(self, values: np.ndarray) -> System:
+        """The arrays of one design whose numbers differ from the mechanism's own by ``values`` (moved,) (m)."""
+        system = self.packed.system
+        arms, lengths = system.marker_arm.copy(), system.distance_length.copy()
+        for value, change in zip(values.tolist(), self.moved, strict=True):
+            for number, axis in change.markers:
+                arms[number, axis] += value
+            if change.rod is not None:
+                lengths[change.rod] += value
+        return system.changed(marker_arm=arms, distance_length=lengths)
 
     def _place(
         self, numbers: np.ndarray, start: np.ndarray, steps: slice, every: int, arms: np.ndarray, out: np.ndarray,

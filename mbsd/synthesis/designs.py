@@ -20,7 +20,7 @@ from mbsd.kinematics.march import kinematics_at
 from mbsd.kinematics.prepare import prepare
 from mbsd.kinematics.prepared import Prepared
 from mbsd.model.mechanism import Model
-from mbsd.numbers.names import changed
+from mbsd.numbers.names import Number, changed
 from mbsd.synthesis.built import built
 from mbsd.synthesis.conditions import Pin, four_bar, grashof_excess, pins, transmission_angles
 from mbsd.synthesis.path_tangents import path_of, tangents_of_path
@@ -132,6 +132,19 @@ class Designs:
             return changed(self.m, values)
         return built(f"{self.m.name}: fit_path", self.build, values)
 
+    def numbers(self, apart: np.ndarray) -> list[Number]:
+        """What varies, as numbers in the middle of their bounds, which are ``apart`` (k,)."""
+        out, given = [], self.varied
+        for name, part, single in given.columns():
+            for k in range(part.start, part.stop):
+                middle = 0.5 * float(given.low[k] + given.high[k])
+                if self.build is not None:
+                    out.append(Number(name, middle, _unmoved, reach=float(apart[k])))
+                else:
+                    last = "length" if single else "xy"[k - part.start]
+                    out.append(Number(f"{name}.{last}", middle, _unmoved, is_place=not single))
+        return out
+
     def changes(self, x: np.ndarray) -> tuple[np.ndarray, list[Moved]]:
         """(n, p) differences from the mechanism itself, and what each moves."""
         packed = self.ready.packed
@@ -197,6 +210,10 @@ class Designs:
             for name, rows in angles.items():
                 rows[k] = q[:, ready.packed.body_names.index(name), 2]
         return path, angles, np.isfinite(path).all(axis=(1, 2))
+
+
+def _unmoved(m: Model, value: float) -> None:
+    """Leave the model; designs are moved as vectors."""
 
 
 def _numbers(packed: Packed, grid: np.ndarray) -> tuple[bytes, ...]:

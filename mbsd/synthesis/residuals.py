@@ -8,16 +8,18 @@ designs is all that a slope costs.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from mbsd.derivatives.numbers.number_steps import size_of, step_of
 from mbsd.synthesis.designs import Designs, Paths
 from mbsd.synthesis.target import Target
 
 MARGIN = 1e-4
 """Conditions are kept by so much more than asked for (rad, or part of the lengths)."""
 STEP = 1e-6
-"""Step of the differences that give the slopes, in parts of the bounds."""
+"""Step of the differences that give the slopes, as a part of what the mechanism notices."""
 WEIGHT = 10.0
 """Weight of errors of conditions (rad, or fraction of the lengths) against distances in extents."""
 SQUARE = 0.01
@@ -59,9 +61,17 @@ class Residuals:
     size: np.ndarray
     """(k,) lowest numbers, and how far the bounds are apart; the shift (s) is last where it is free."""
 
+    @cached_property
+    def steps(self) -> np.ndarray:
+        """(k,) steps of the numbers (m), and of the shift (s), whatever their bounds are."""
+        numbers = self.designs.numbers(self.size)
+        m, grid = self.designs.m, self.designs.grids[True]
+        sizes = [size_of(number, m, self.designs.ready.packed, (float(grid[0]), float(grid[-1]))) for number in numbers]
+        return np.array([step_of(STEP, size) for size in [*sizes, *self.size[len(sizes) :].tolist()]])
+
     def missed(self, u: np.ndarray, fine: bool) -> Missed:
         """Errors of designs u (n, k), on chords of the coarse motion or exactly on the fine one."""
-        paths, shifts = self._paths(u, fine)
+        paths, shifts = self._paths(self.low + self.size * u, fine)
         there = np.where(paths.closes[:, None, None], paths.path, 0.0)
         where = self.target.where(there, shifts, fine)
         rows = self._rows(paths, there, where, fine)
@@ -73,15 +83,15 @@ class Residuals:
     def slopes(self, u: np.ndarray, missed: Missed, fine: bool) -> np.ndarray:
         """(n, r, k) of the designs u (n, k) that missed so."""
         n, k = u.shape
-        steps = np.where(u < 0.5, STEP, -STEP)
-        changed = (u[:, None] + steps[:, None] * np.eye(k)).reshape(n * k, k)
-        paths, shifts = self._paths(changed, fine) if self.designs.at_once else self._beside(u, steps, fine)
+        x, steps = self.low + self.size * u, np.where(u < 0.5, self.steps, -self.steps)
+        changed = (x[:, None] + steps[:, None] * np.eye(k)).reshape(n * k, k)
+        paths, shifts = self._paths(changed, fine) if self.designs.at_once else self._beside(x, steps, fine)
         closes = paths.closes & np.repeat(np.isfinite(missed.cost), k)
         there = np.where(closes[:, None, None], paths.path, 0.0)
         held = np.repeat(missed.where, k, axis=0)
         where = held if self.target.times is None else self.target.where(there, shifts, fine)
         rows = self._rows(paths, there, where, fine).reshape(n, k, -1)
-        slope = (rows - missed.rows[:, None]) / steps[..., None]
+        slope = (rows - missed.rows[:, None]) * (self.size / steps)[..., None]
         slope[~closes.reshape(n, k)] = 0.0
         along = missed.along[:, None]
         at_points = slope[..., : 2 * along.shape[2]].reshape(n, k, -1, 2)
@@ -89,23 +99,22 @@ class Residuals:
         slope[..., : 2 * along.shape[2]] -= held_back.reshape(n, k, -1)
         return slope.transpose(0, 2, 1)
 
-    def _paths(self, u: np.ndarray, fine: bool) -> tuple[Paths, np.ndarray]:
-        x = self.low + self.size * u
+    def _paths(self, x: np.ndarray, fine: bool) -> tuple[Paths, np.ndarray]:
+        """Paths and shifts (s) of designs x (n, k)."""
         count = self.designs.varied.count
         return self.designs(x[:, :count], fine), x[:, count:].sum(axis=1)
 
-    def _beside(self, u: np.ndarray, steps: np.ndarray, fine: bool) -> tuple[Paths, np.ndarray]:
-        """The same of designs u (n, k) that differ by a step (n, k) in one number each, along exact tangents."""
-        count, k = self.designs.varied.count, u.shape[1]
-        x = self.low + self.size * u
-        shifts = (x[:, None] + (self.size * steps)[:, :, None] * np.eye(k))[..., count:].sum(axis=2).ravel()
-        paths = self.designs.beside(x[:, :count], (self.size * steps)[:, :count], fine)
+    def _beside(self, x: np.ndarray, steps: np.ndarray, fine: bool) -> tuple[Paths, np.ndarray]:
+        """The same of designs x (n, k) that differ by a step (n, k) in one number each, along exact tangents."""
+        count, k = self.designs.varied.count, x.shape[1]
+        shifts = (x[:, None] + steps[:, :, None] * np.eye(k))[..., count:].sum(axis=2).ravel()
+        paths = self.designs.beside(x[:, :count], steps[:, :count], fine)
         if count == k:
             return paths, shifts
-        own = np.arange(len(u))[:, None] * count + np.minimum(np.arange(k), count - 1)  # the shift leaves the path
+        own = np.arange(len(x))[:, None] * count + np.minimum(np.arange(k), count - 1)  # the shift leaves the path
         still = self.designs.beside(x[:, :count], 0.0 * steps[:, :count], fine)
         pick = own.ravel()
-        free = np.tile(np.arange(k) >= count, len(u))
+        free = np.tile(np.arange(k) >= count, len(x))
         return Paths(*(np.where(free.reshape(-1, *[1] * (a.ndim - 1)), b[pick], a[pick])
                        for a, b in zip(paths.parts(), still.parts(), strict=True))), shifts  # fmt: skip
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
+from mbsd.measures import largest, samples
 
 G = 9.80665
 RATE = 2 * math.pi
@@ -72,3 +73,27 @@ def test_other_actuators_pass_as_well(is_simulated: bool) -> None:
         actuated = m.inverse_dynamics(motion, [name])
         np.testing.assert_allclose(actuated.efforts[name], 0.2 * G * np.cos(motion.body("left").theta), atol=1e-6)
         assert np.isnan(actuated.solution.joint("C").fx).sum() == 2
+
+
+@pytest.mark.parametrize("formulation", ["auto", "reference"])
+def test_many_simulations_have_the_reactions_of_single_ones_near_change_points(formulation: str) -> None:
+    m, times = parallelogram(False), np.round(np.linspace(0.0, 1.0, 361), 4)
+    masses = np.array([0.5, 1.0, 1.7])
+    measures = {name: samples(name, times.tolist()) for name in ("C.fx", "C.fy", "A.fx", "coupler.ax")}
+    many = m.simulate_many(
+        times=times, vary={"coupler": {"mass": masses}}, measure=measures, tolerance=1e-9, formulation=formulation
+    )
+    assert all(why == "it came near a singular pose" for why in many.alone)
+    for k, mass in enumerate(masses):
+        m.change("coupler", mass=mass)
+        sol = m.simulate(times=times, tolerance=1e-9, formulation=formulation)
+        np.testing.assert_allclose(many["C.fx"][k], sol.joint("C").fx, rtol=1e-9)
+        np.testing.assert_allclose(many["A.fx"][k], sol.joint("A").fx, rtol=1e-9)
+        force = many["C.fx"][k] * np.sin(sol.body("right").theta)
+        assert np.nanmax(np.abs(np.diff(force, 2))) < 0.05 * np.nanmax(np.abs(force))
+
+
+def test_many_simulations_away_from_change_points_stay_together() -> None:
+    m = parallelogram(False)
+    many = m.simulate_many(0.1, vary={"coupler": {"mass": [0.5, 1.0]}}, measure={"f": largest("C.fx")}, steps=36)
+    assert many.alone == [None, None]

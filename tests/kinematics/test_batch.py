@@ -96,18 +96,43 @@ def test_few_outputs_give_the_same_motion(steps: int) -> None:
     np.testing.assert_allclose(few.angles["rocker"], many.angles["rocker"][:, :: 360 // steps], atol=1e-12)
 
 
-def test_designs_near_a_change_point_are_right_or_doubted() -> None:
+def test_designs_near_a_change_point_are_those_of_their_sweeps() -> None:
     """A crank of 0.1 m with ground 0.3 and coupler 0.25 m just turns, or just does not, with a rocker of 0.15 m."""
     more = np.array([-1e-2, -1e-6, -1e-9, 0.0, 1e-12, 1e-9, 1e-6, 1e-3, 1e-2])
     lengths = {"coupler": np.full(len(more), 0.25), "rocker": 0.15 + more}
     pivots = {"D": np.tile([0.3, 0.0], (len(more), 1))}
     for steps in (1, 12, 360):
         batch = four_bar().batch(lengths=lengths, places=pivots, angles=["rocker"], steps=steps)
-        assert not batch.closes[more < 0].any()
-        assert batch.closes[-1]
+        assert batch.closes.tolist() == (more >= 0).tolist()
+        assert not batch.doubted.any()
         for k in np.flatnonzero(batch.closes):
             m = four_bar(coupler=0.25, rocker=0.15 + more[k], x=0.3, y=0.0)
-            np.testing.assert_allclose(batch.angles["rocker"][k], m.sweep(steps=steps).body("rocker").theta, atol=1e-9)
+            sol = m.sweep(times=batch.t)
+            np.testing.assert_allclose(batch.angles["rocker"][k], sol.body("rocker").theta, atol=1e-9)
+            np.testing.assert_allclose(batch.points["P"][k][:, 0], sol.point("P").x, atol=1e-9)
+            np.testing.assert_allclose(batch.points["Q"][k][:, 1], sol.point("Q").y, atol=1e-9)
+
+
+@pytest.mark.parametrize("steps", [359, 360])
+def test_a_slider_crank_of_equal_lengths_among_others_goes_through(steps: int) -> None:
+    def slider_crank(rod: float) -> Mechanism:
+        m = Mechanism("slider-crank")
+        crank, coupler, slider = m.bar("crank", 0.1), m.bar("rod", rod), m.body("slider")
+        m.revolute("O", m.ground.at(0, 0), crank.start)
+        m.revolute("A", crank.end, coupler.start)
+        m.revolute("B", coupler.end, slider.origin)
+        m.prismatic("guide", m.ground.at(0, 0), slider.origin)
+        m.drive_angle("motor", crank, constant_rate(6.0, 0.5))
+        m.trace("S", slider.origin)
+        m.start_near(crank=30, rod=-30, slider=0)
+        return m
+
+    rods = [0.25, 0.1, 0.1 + 1e-13, 0.099]
+    batch = slider_crank(0.3).batch(lengths={"rod": rods}, angles=["rod"], steps=steps)
+    assert batch.closes.tolist() == [True, True, True, False]
+    assert not batch.doubted.any()
+    np.testing.assert_allclose(batch.points["S"][1][:, 0], 0.2 * np.cos(0.5 + 6.0 * batch.t), atol=1e-9)
+    np.testing.assert_allclose(batch.angles["rod"][1], -(0.5 + 6.0 * batch.t), atol=1e-9)
 
 
 def test_threads_change_nothing() -> None:

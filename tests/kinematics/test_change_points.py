@@ -161,6 +161,28 @@ def test_reactions_beside_a_change_point_grow_as_statics_says() -> None:
     np.testing.assert_allclose((sol.joint("C").fx * np.sin(sol.body("crank").theta))[1:-1], G, rtol=2e-3)
 
 
+def test_three_parallel_cranks_have_reactions_beside_the_pose_at_which_two_loops_are_flat() -> None:
+    """Two loops pass at once: det J has a double root, reactions grow as its square root."""
+    m = Mechanism("three cranks")
+    coupler = m.bar("coupler", 0.3, mass=1.0)
+    for k, place in enumerate((0.0, 0.2, 0.3)):
+        crank = m.bar(f"crank{k}", 0.1, mass=1.0)
+        m.revolute(f"foot{k}", m.ground.at(place, 0), crank.start)
+        m.revolute(f"head{k}", crank.end, coupler.at(place, 0))
+    m.drive_angle("motor", m.bodies["crank0"], constant_rate(RATE, math.radians(60)))
+    m.start_near(crank0=60, crank1=60, crank2=60, coupler=0)
+    sol = m.sweep(1.0, steps=1439)
+    theta = math.radians(60) + RATE * sol.t
+    assert np.abs(np.sin(theta)).min() < 0.01
+    assert sol.is_defined.all()
+    np.testing.assert_allclose(sol.driver("motor").torque, 0.25 * G * np.cos(theta), atol=1e-6)
+    heads = [sol.joint(f"head{k}") for k in range(3)]
+    assert np.abs(heads[0].fx).max() > 100.0, "pins wedge the coupler"
+    body = sol.body("coupler")
+    np.testing.assert_allclose(sum(head.fx for head in heads), body.ax, atol=1e-5)
+    np.testing.assert_allclose(sum(head.fy for head in heads), body.ay + G, atol=1e-5)
+
+
 def test_rows_without_efforts_are_nan_and_named() -> None:
     sol = linkage("parallelogram").sweep(1.0)
     rows = np.flatnonzero(~sol.is_defined)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import math
 import os
@@ -10,6 +11,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,10 +31,13 @@ from tools.hunt.mechanisms import extremes
 from tools.hunt.mechanisms.energy import audited
 from tools.hunt.outcome import AGREED, BASE, HUNG, WRONG, CaseResult, Outcome
 from tools.hunt.pool import results
+from tools.hunt.solving import moved_derivatives
 from tools.hunt.solving.free_case import TOLERANCE, Free, nudged
+from tools.hunt.solving.moved_derivatives import beside_its_own
 from tools.hunt.subject import Subject
 from tools.hunt.words.described import on_a_base, seen_from
 from tools.hunt.words.reordered import exchanged, shuffled
+from tools.hunt.words.similar import mirrored
 from tools.models.four_bars import angles, model
 
 LENGTHS = (0.4, 0.1, 0.38, 0.3)
@@ -144,6 +149,73 @@ def test_other_words_move_alike_and_other_numbers_do_not() -> None:
         assert verdict.compared == 91
     m.change("coil", stiffness=2.001)
     assert not compare_driven(first, m.sweep(steps=90)).agrees
+
+
+@pytest.mark.parametrize("machine", ["wheels by teeth and a torque", "gears with play", "an engine"])
+def test_numbers_of_wheels_torques_and_engines_go_with_the_words(machine: str) -> None:
+    m, frames = Mechanism("machine"), {"ground": (0.3, -2.0, 0.8), "rotor": (0.1, 0.2, -1.0)}
+    others: list[tuple[Mechanism | None, Words]]
+    if machine == "an engine":
+        module = importlib.import_module("mechanisms.v6.mechanism")
+        m = module.build(module.Params())
+        frames = {"crank": (0.01, 0.0, 0.7), "rod_1": (0.0, 0.01, -2.0)}
+        first = m.sweep(steps=72)
+        verdict = compare_driven(first, seen_from(m, frames).sweep(times=first.t), Words(frames))
+        assert verdict.agrees, verdict.words
+        return
+    rotor, wheel = m.body("rotor", mass=1.0, inertia=0.01), m.body("wheel", mass=2.0, inertia=0.04)
+    m.revolute("A", m.ground.at(0, 0), rotor.origin)
+    m.revolute("B", m.ground.at(0.08, 0), wheel.origin)
+    m.torsion_spring("load", m.ground, wheel, 0.3)
+    m.torque("push", rotor, 0.4)
+    if machine == "gears with play":
+        m.start_near(rotor=20, wheel=30)
+        m.start_moving(rotor=2.0)
+        m.gear_mesh("gears", rotor.origin, wheel.origin, 1e4, 1e-3, teeth=(20, 60), module=0.002, phase=(0.35, 0.52))
+        others = [(seen_from(m, frames), Words(frames)), (mirrored(m), Words(mirrored=True))]
+    else:
+        m.gear_pair("gears", rotor.origin, wheel.origin, teeth=(20, 60), module=0.002)
+        turned = [exchanged(m, np.random.default_rng(seed)) for seed in range(4)]
+        assert len({other.joints["gears"].i.body.name for other in turned}) == 2
+        others = [*((other, SAME) for other in turned), (mirrored(m), Words(mirrored=True))]
+    first = m.simulate(0.2, steps=20, tolerance=TOLERANCE)
+    growth = Growth.between(first, nudged(m).simulate(0.2, steps=20, tolerance=TOLERANCE))
+    for other, words in others:
+        if other is None:
+            assert machine == "gears with play", "a mesh has a side of its own"
+            continue
+        verdict = compare_free(first, other.simulate(0.2, steps=20, tolerance=TOLERANCE), growth, 2e-9, words)
+        assert verdict.agrees, verdict.words
+        assert verdict.compared == 21
+
+
+@pytest.mark.parametrize("is_driven", [True, False])
+def test_derivatives_of_the_moved_machine_are_its_own_and_those_of_another_are_not(
+    is_driven: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    m = model(LENGTHS, 6.0, {"coupler": (1.0, (0.1, 0.05), 0.2), "rocker": (0.5, (0.2, 0.0), 0.1)})
+    if not is_driven:
+        m.drivers.clear()
+        m.start_moving(crank=6.0)
+    first = m.sweep(1.0, steps=60) if is_driven else m.simulate(0.5, steps=60, tolerance=TOLERANCE)
+    again = None if is_driven else nudged
+    pose = (0.3, -2.0, 0.8)
+
+    def judged(seed: int) -> Outcome:
+        rng = np.random.default_rng(seed)
+        return beside_its_own("derivatives", m, rng, pose, first, not is_driven, again)
+
+    assert [judged(seed).state for seed in range(6)] == [AGREED] * 6
+    original = moved_derivatives.moved
+
+    def another(m: Mechanism, *given: Any) -> moved_derivatives.Moved:
+        m = seen_from(m, {})
+        m.gravity = 0.0, -9.0  # what free motions start with stays
+        m.joints["C"] = replace(m.joints["C"], i=m.bodies["coupler"].at(LENGTHS[2] + 0.004 * is_driven, 0.0))
+        return original(m, *given)
+
+    monkeypatch.setattr(moved_derivatives, "moved", another)
+    assert WRONG in [judged(seed).state for seed in range(6)]
 
 
 def _turned_back(pose: tuple[float, float, float]) -> tuple[float, float]:

@@ -10,9 +10,24 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mbsd.synthesis.designs import Designs
 from mbsd.synthesis.path_tangents import tangents_of_path
+from mbsd.synthesis.residuals import Residuals
+from mbsd.synthesis.target import Target
 from mbsd.synthesis.varied import varied
 
 GRID = np.linspace(0.0, 1.0, 25)
+
+
+def four_bar() -> Mechanism:
+    m = Mechanism("four-bar")
+    a, b, c = m.bar("crank", 0.1), m.bar("coupler", 0.38), m.bar("rocker", 0.3)
+    m.revolute("A", m.ground.at(0, 0), a.start)
+    m.revolute("B", a.end, b.start)
+    m.revolute("C", b.end, c.end)
+    m.revolute("D", m.ground.at(0.4, 0.02), c.start)
+    m.drive_angle("motor", a, constant_rate(2 * np.pi))
+    m.trace("P", b.at(0.2, 0.1))
+    m.start_near(crank=0, coupler=45, rocker=90)
+    return m
 
 
 def geared(far: float = 0.30, arm: float = 0.12, place: tuple[float, float] = (0.05, 0.0)) -> Mechanism:
@@ -64,3 +79,19 @@ def test_designs_beside_one_differ_as_their_sweeps_do() -> None:
     assert np.abs(beside.path - swept.path).max() < 1e-9
     assert np.abs(beside.transmission - swept.transmission).max() < 1e-8
     assert designs.evaluations == 2  # beside counts none
+
+
+def test_slopes_of_residuals_are_the_same_whatever_the_bounds() -> None:
+    """Bounds of kilometres about a linkage of a few decimetres: a part of them is no small step."""
+    grids = {True: np.linspace(0.0, 1.0, 61), False: np.linspace(0.0, 1.0, 25)}
+    target = Target(np.array([[0.2, 0.1], [0.3, 0.15], [0.25, 0.0]]), None, False, True, (0.0, 1.0))
+    x, slopes = np.array([0.31, 0.41, 0.01]), []
+    for half in (0.005, 5e3):
+        vary = varied("four-bar", {"rocker": (0.305, 0.305 + half), "D": ((x[1] - half, x[1] + half), (-half, half))})
+        designs = Designs(four_bar(), vary, None, "P", grids, False)
+        size = vary.high - vary.low
+        residuals = Residuals(designs, target, 0.0, vary.low, size)
+        u = ((x - vary.low) / size)[None]
+        slopes.append(residuals.slopes(u, residuals.missed(u, True), True)[0] / size)
+    assert np.abs(slopes[0]).max() > 1.0
+    np.testing.assert_allclose(slopes[1], slopes[0], atol=1e-4)

@@ -12,10 +12,13 @@ from mbsd.dynamics.batch.base import Base
 from mbsd.dynamics.batch.block import content, laid_out
 from mbsd.dynamics.batch.outputs import Outputs, Reacting, until
 from mbsd.dynamics.batch.patches import Patches
+from mbsd.dynamics.batch.rows import NEARLY_SINGULAR
 from mbsd.dynamics.batch.single_run import SingleRun
 from mbsd.dynamics.batch.tabulated_reactions import tabulate_reactions
+from mbsd.dynamics.change_points import CLOSE, are_suspect, can_pass, determinants, usual_output
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.start.large import MANY_COORDINATES
+from mbsd.dynamics.state import REACHED
 
 NEGLIGIBLE = 1e-9
 """Singular values of J below this part of the largest are zero."""
@@ -81,12 +84,12 @@ class Reactions:
         return run.ready.dynamics, run.run.scratch
 
     def of_rows(self, rows: range, out: Outputs, times: np.ndarray) -> Reacting:
-        """Those of rows that differ by numbers alone."""
+        """Those of rows that differ by numbers alone; see ``_filled`` for rows that are left out."""
         assert self.patches is not None
         return self._filled(self.base.fresh, self.patches.place, self.patches(rows)[0], [self.run], out, times)
 
     def of_runs(self, runs: Sequence[SingleRun], out: Outputs, times: np.ndarray) -> Reacting:
-        """Those of runs that were prepared."""
+        """Those of runs that were prepared; see ``_filled`` for rows that are left out."""
         fresh = np.array([content(self._arguments(run)) for run in runs])
         return self._filled(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), runs, out, times)
 
@@ -94,20 +97,56 @@ class Reactions:
         self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, runs: Sequence[SingleRun], out: Outputs,
         times: np.ndarray,
     ) -> Reacting:  # fmt: skip
+        """Reactions at all outputs; rows that come near a change point get the status NEARLY_SINGULAR.
+
+        There ``simulate`` takes reactions from poses beside (dynamics/change_points.py).
+        """
         count, known = len(out.lam), self.run.independent is None
         if len(self.room) < count:
             self.room = np.zeros((*out.lam.shape[:2], len(self.rows), 6))
-        jacobians = self.room[:count]
+        jacobians, numbers = self.room[:count], (fresh, place, value)
         if len(self.rows) or not known:
-            tabulate_reactions(
-                *self.base.arguments, self.base.block, fresh, place, value, times, out.over, out.y, out.status,
-                self.rows, jacobians, out.lam, known,
-            )  # fmt: skip
+            self._tabulate(numbers, times, out, self.rows, jacobians, known)
+        suspect = are_suspect(np.sqrt(np.maximum(out.margin, 0.0)), out.lam)
+        for row in np.flatnonzero((out.status == REACHED) & suspect.any(axis=1) & ~suspect.all(axis=1)).tolist():
+            if self._comes_near(row, np.flatnonzero(suspect[row]), runs[min(row, len(runs) - 1)], numbers, times, out):
+                out.status[row] = NEARLY_SINGULAR
         packed = [run.ready.packed for run in runs]
         if self.least:
             gone = self._gone(out, times)
             return shared(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, gone)
         return Reacting(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, self.rows)
+
+    def _tabulate(
+        self, numbers: tuple[np.ndarray, np.ndarray, np.ndarray], times: np.ndarray, out: Outputs, rows: np.ndarray,
+        jacobians: np.ndarray, known: bool,
+    ) -> None:  # fmt: skip
+        tabulate_reactions(
+            *self.base.arguments, self.base.block, *numbers, times, out.over, out.y, out.status, rows, jacobians,
+            out.lam, out.margin, known,
+        )  # fmt: skip
+
+    def _comes_near(
+        self, row: int, suspects: np.ndarray, run: SingleRun, numbers: tuple[np.ndarray, np.ndarray, np.ndarray],
+        times: np.ndarray, out: Outputs,
+    ) -> bool:  # fmt: skip
+        """Return True if some of the outputs ``suspects`` of a row are near a change point, as ``simulate`` sees it."""
+        packed = run.ready.packed
+        if not can_pass(packed):
+            return False
+        looked = np.append(suspects, usual_output(out.margin[row], suspects))
+        own = Outputs(times[looked], *(array[row : row + 1] for array in out.arrays))
+        own.y, own.lam, own.margin = own.y[:, looked], own.lam[:, looked], own.margin[:, looked]
+        fresh, place, value = numbers
+        joints = np.arange(packed.contact_rows)
+        compact = np.zeros((1, len(looked), len(joints), 6))
+        alone = fresh[min(row, len(fresh) - 1)][None], place, value[min(row, len(value) - 1)][None]
+        self._tabulate(alone, own.t, own, joints, compact, True)
+        whole = np.zeros((len(looked), len(packed.ws.phi), 6))
+        whole[:, : len(joints)] = compact[0]
+        held = np.arange(whole.shape[1]) < len(joints)
+        closeness = determinants(run.ready, packed.spread(whole), held)
+        return bool((closeness[:-1] < CLOSE * closeness[-1]).any())
 
     def _gone(self, out: Outputs, times: np.ndarray) -> np.ndarray | None:
         """(R, T, rows) which rows of joints and drivers events have released; None where they release none."""

@@ -9,8 +9,10 @@ from mbsd.equations.assembly import position
 
 
 @threaded
-def tabulate_reactions(dyn, scratch, block, fresh, place, value, t, over, y, status, rows, jacobians, lam, known):
-    """Fill ``rows`` (k,) of J into compact jacobians (R, T, k, 6) and, unless ``known``, lam (R, T, m).
+def tabulate_reactions(
+    dyn, scratch, block, fresh, place, value, t, over, y, status, rows, jacobians, lam, margin, known
+):
+    """Fill ``rows`` (k,) of J into compact jacobians (R, T, k, 6) and, unless ``known``, lam (R, T, m), margin (R, T).
 
     States are y (R, T, 2, 3 nb), at t (T,) (s) or, where that is earlier, at ``over`` (R,).
 
@@ -27,6 +29,7 @@ def tabulate_reactions(dyn, scratch, block, fresh, place, value, t, over, y, sta
         for k in range(t.shape[0]):
             if not known:
                 derivative(dyn, scratch, min(t[k], over[r]), y[r, k], scratch.stages[0], lam[r, k])
+                margin[r, k] = scratch.report[0]
             if rows.shape[0] == 0:
                 continue
             position(dyn.system, y[r, k, 0], scratch.drive, scratch.ws)

@@ -62,7 +62,7 @@ class IndependentSteps:
                 self._start_anew()
                 continue
             self._write_whole()
-            if not (status == run_state.CHOOSE and self._choose()) and not self._pass(out, end):
+            if not (status == run_state.CHOOSE and self._choose()) and not self._pass(out, end, pace):
                 return
 
     def one_step(self, out: run_state.Output, end: float) -> int | None:
@@ -138,8 +138,11 @@ class IndependentSteps:
         self.scratch.watch[LIMIT] = min(DOUBLED * now, POOR)
         return now < POOR
 
-    def _pass(self, out: run_state.Output, end: float) -> bool:
-        """Take some steps in reference coordinates; returns whether the end is still ahead."""
+    def _pass(self, out: run_state.Output, end: float, pace: Pace) -> bool:
+        """Take some steps in reference coordinates; returns whether the end is still ahead.
+
+        Raises SimulationError where they hardly advance.
+        """
         self._start_anew()
         near = self.whole.clock[TIME] - self._passed < AWAY * self.settings.longest
         self._passing = min(2 * self._passing, self.run.steps_at_once) if near else PASSING
@@ -152,3 +155,4 @@ class IndependentSteps:
             if made is not None:
                 self._take(made)
                 return True
+            pace.note()

@@ -13,20 +13,17 @@ import numpy as np
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.kinematics.batch import parameters
 from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, Push, in_closed_form
+from mbsd.kinematics.doubted_designs import FINER, settle
 from mbsd.kinematics.prepare import prepare
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import place_in, placed_side
 from mbsd.tolerancing.dimensions.dimension import Column
-from mbsd.tolerancing.machines.one_by_one import Answers, swept
+from mbsd.tolerancing.machines.one_by_one import Answers
 from mbsd.tolerancing.machines.results import called, measured, numbers_of_batch, placed
 
 NUMBERS_AT_ONCE = 8_000_000
 """Numbers of a batch's results, 64 MB."""
-FINER = 8
-"""Times more steps with which machines are swept again that were given up as doubted."""
-MOST_AGAIN = 500
-"""Machines of a part that are swept again one by one, where that was not enough."""
 OPEN = "the links do not close over the whole motion"
 DOUBTED = "two assemblies come near each other during the motion"
 
@@ -57,7 +54,6 @@ class Batched:
         self._angles = turned if isinstance(result, Measure) else [name for name in m.bodies if name != "ground"]
         self._sweeps: DesignSweeps | None = None
         self._finer: DesignSweeps | None = None
-        self._again = swept(m, columns, result, grid)
         width = len(grid) * (2 * len(self._m.traces) + len(self._angles)) + self._ready.groups.number.size  # pyright: ignore[reportOptionalMemberAccess]
         self.at_once = max(64, NUMBERS_AT_ONCE // width)
 
@@ -70,18 +66,7 @@ class Batched:
             values = measured(self._owner, self._result, batch.t, along)
         else:
             values = numbers_of_batch(self._owner, called(self._owner, self._result, batch), len(x))
-        values = np.where(batch.closes, values, np.nan)
-        return self._without_doubt(x, batch.doubted, Answers(values, +failures))
-
-    def _without_doubt(self, x: np.ndarray, doubted: np.ndarray, answers: Answers) -> Answers:
-        """Machines given up where two assemblies come near each other, swept one by one where these are few."""
-        if not isinstance(self._result, Measure) or self._pushes or not 0 < doubted.sum() <= MOST_AGAIN:
-            return answers
-        again = self._again(x[doubted])
-        answers.values[doubted] = again.values
-        del answers.failures[DOUBTED]
-        answers.failures += again.failures
-        return answers
+        return Answers(np.where(batch.closes, values, np.nan), +failures)
 
     def _along(self, batch: Batch, name: str) -> np.ndarray:
         _, whole, part = self._of[name]
@@ -94,9 +79,7 @@ class Batched:
             self._sweeps = self._made(moved)
         if not self._pushes:
             batch = self._sweeps(values, self._threads)
-            if batch.doubted.any():
-                self._finer = self._finer or self._made(moved, FINER)
-                _put(batch, batch.doubted.copy(), self._finer(values[batch.doubted], self._threads))
+            settle(self._sweeps, lambda: self._with_finer_steps(moved), batch, values, self._threads)
             return batch
         first = values.shape[1] - 2 * len(places)
         pushes = []
@@ -106,6 +89,10 @@ class Batched:
                 pushes += [Push(at + axis, x[:, k], self._pushes[column.name][:, axis]) for axis in (0, 1)]
         assert self._poses is not None
         return self._sweeps.pushed(values, pushes, self._poses, self._threads)
+
+    def _with_finer_steps(self, moved: Sequence[Moved]) -> DesignSweeps:
+        self._finer = self._finer or self._made(moved, FINER)
+        return self._finer
 
     def _made(self, moved: Sequence[Moved], finer: int = 1) -> DesignSweeps:
         return DesignSweeps(self._m, self._ready, self._grid, moved, self._angles, finer)
@@ -128,15 +115,6 @@ class Batched:
             if column.kind != "reaction":
                 places[column.name][:, "xy".index(column.key)] += x[:, k]
         return lengths, places
-
-
-def _put(batch: Batch, rows: np.ndarray, others: Batch) -> None:
-    """Give some rows the results of ``others``."""
-    for name, points in batch.points.items():
-        points[rows] = others.points[name]
-    for name, angles in batch.angles.items():
-        angles[rows] = others.angles[name]
-    batch.closes[rows], batch.doubted[rows] = others.closes, others.doubted
 
 
 def _followed(m: Model, result: Any) -> tuple[Model, dict[str, tuple[str, str, str]]]:

@@ -12,6 +12,8 @@ from tools.hunt.subject import Subject
 
 RESIDUAL = 1e-7
 """Largest gap of a joint, in sizes."""
+FLAT = 1e-6
+"""Part of the largest singularity margin below which a pose is a change point."""
 RESOLVED = 0.02
 """Singularity margin above which DENSE outputs show every bend of the motion."""
 DENSE = 90
@@ -24,8 +26,10 @@ FINER, FEW = 256, 3
 
 
 def finite(sol: Solution) -> list[str]:
-    """Numbers that are none."""
-    arrays = {"q": sol.q, "v": sol.v, "a": sol.a, "reactions": sol.wrench}
+    """Numbers that are none; reactions may be none at a change point itself."""
+    margin = sol.singularity_margin
+    is_clear = ~(margin <= FLAT * margin.max(initial=0.0))
+    arrays = {"q": sol.q, "v": sol.v, "a": sol.a, "reactions": sol.wrench[is_clear]}
     return [f"{name} is not finite" for name, array in arrays.items() if not np.isfinite(array).all()]
 
 

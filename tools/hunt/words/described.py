@@ -88,13 +88,8 @@ def seen_from(m: Mechanism, frames: Mapping[str, Pose]) -> Mechanism:
 
     for table, new in ((m.joints, out.joints), (m.drivers, out.drivers), (m.contacts, out.contacts)):
         for name, joint in table.items():
-            params = dict(joint.params)
+            params = _phased(joint, frames)
             i, j = marker(joint.i), marker(joint.j)
-            if params.get("phase") is not None:
-                params["phase"] = tuple(
-                    angle + frames.get(body, NOWHERE)[2] - ground[2]
-                    for angle, body in zip(params["phase"], joint.bodies, strict=True)
-                )
             motion = joint.motion
             if joint.kind.name in ("drive_angle", "drive_relative_angle"):
                 assert motion is not None
@@ -123,6 +118,17 @@ def _velocity(old: StartVelocity, start: Start | None, own: Pose, world: Pose) -
     return StartVelocity(old.omega, after((0.0, 0.0, world[2]), (*here, 0.0))[:2])
 
 
+def _phased(entry: Joint | Force, frames: Mapping[str, Pose]) -> dict[str, Any]:
+    """Return the numbers of a joint or a force with the angles of its bodies that belong together in the new frames."""
+    params, ground = dict(entry.params), frames.get("ground", NOWHERE)[2]
+    if params.get("phase") is not None:
+        params["phase"] = tuple(
+            angle + frames.get(body, NOWHERE)[2] - ground
+            for angle, body in zip(params["phase"], entry.bodies, strict=True)
+        )
+    return params
+
+
 def _force(
     m: Mechanism,
     force: Force,
@@ -132,9 +138,12 @@ def _force(
     frames: Mapping[str, Pose],
 ) -> Force:
     """A force in other words; what it says in the axes of the world is turned."""
-    params, laws = dict(force.params), dict(force.laws)
+    params, laws = _phased(force, frames), dict(force.laws)
     i, j = marker(force.i), marker(force.j)
     name = force.kind.name
+    if params.get("fires_at") is not None:
+        crank, cylinder = (frames.get(body, NOWHERE)[2] for body in (params["crank"], force.bodies[0]))
+        params["fires_at"] += crank - cylinder
     if name in ("torsion_spring", "bushing"):
         if "free_angle" in laws:
             laws["free_angle"] = raised(laws["free_angle"], grows)  # pyright: ignore[reportArgumentType]

@@ -68,8 +68,9 @@ def _turned_round(joint: Any) -> Any:
         return joint
     if "radius_i" in params:
         params["radius_i"], params["radius_j"] = params["radius_j"], params["radius_i"]
-    if params.get("phase") is not None:
-        params["phase"] = tuple(reversed(params["phase"]))
+    for pair in ("teeth", "phase"):
+        if params.get(pair) is not None:
+            params[pair] = tuple(reversed(params[pair]))
     if params.get("limits") is not None:
         low, high = params["limits"]
         params["limits"] = (None if high is None else -high, None if low is None else -low)

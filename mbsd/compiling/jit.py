@@ -26,7 +26,7 @@ from numba.core.registry import CPUDispatcher
 
 from mbsd.compiling.kernel_cache import KernelCache
 from mbsd.compiling.kernel_library import Apart
-from mbsd.compiling.kernel_pipeline import KernelCompiler
+from mbsd.compiling.kernel_pipeline import KernelCompiler, LinkedCompiler
 from mbsd.compiling.kernel_target import GENERIC
 from mbsd.compiling.lazy_kernel import by_cell
 from mbsd.compiling.notice import give_notice
@@ -57,7 +57,10 @@ class _Kernel(CPUDispatcher):
         """Add what was compiled or loaded."""
         if self.apart and "<" not in self.py_func.__qualname__:
             cres.library.apart = Apart(cres.fndesc.llvm_func_name, self, tuple(cres.signature.args))
-        super().add_overload(cres)
+        if cres.library.only_linked:
+            self.overloads[tuple(cres.signature.args)] = cres
+        else:
+            super().add_overload(cres)
 
 
 class _AtAddress(CFunc):
@@ -78,7 +81,8 @@ def _compiled(apart: bool, **more: Any) -> Callable[[Callable[..., Any]], Any]:
     def decorate(function: Callable[..., Any]) -> Any:
         if not COMPILED:
             return function
-        made = _Kernel(py_func=function, locals={}, targetoptions={**_OPTIONS, **more}, pipeline_class=KernelCompiler)
+        compiler = KernelCompiler if apart or "inline" in more else LinkedCompiler
+        made = _Kernel(py_func=function, locals={}, targetoptions={**_OPTIONS, **more}, pipeline_class=compiler)
         made.apart = apart
         made.enable_caching()
         return made

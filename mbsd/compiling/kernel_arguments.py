@@ -10,6 +10,7 @@ over to such a function is refused when it is compiled.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from numba.core import cgutils, types
@@ -138,6 +139,17 @@ def _getattr_of_record(context: Any, builder: Any, kind: Any, value: Any, name: 
     return context.data_model_manager[kind].read(builder, value, kind.fields.index(name))
 
 
+@dataclass(frozen=True, eq=False)
+class OnlyLinked:
+    """Stands for a kernel that only kernels call, which contain it."""
+
+    name: str
+
+    def __call__(self, *_: Any) -> Any:
+        """Raise TypeError."""
+        raise TypeError(f"{self.name} is called by kernels alone")
+
+
 class KernelContext(CPUContext):
     """numba's own target but for arrays as arguments, and for named tuples."""
 
@@ -163,6 +175,13 @@ class KernelContext(CPUContext):
         loaded = builder.load(ptr, align=align)
         mark(builder, loaded, ELEMENT)
         return self.data_model_manager[ty].from_data(builder, loaded)
+
+    def get_executable(self, library: Any, fndesc: Any, env: Any) -> Any:
+        """Return what Python calls; a mere name for kernels that are linked into their callers."""
+        if not library.only_linked:
+            return super().get_executable(library, fndesc, env)
+        library._ensure_finalized()
+        return OnlyLinked(fndesc.qualname)
 
     def insert_user_function(self, func: Any, fndesc: Any, libs: Any = ()) -> None:
         """Make a kernel known, so that whoever calls it hands arrays over as kernels do."""

@@ -16,7 +16,6 @@ from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
 from mbsd.compiling.kernel_arguments import refuse_others
 
-
 LINKED = "linked"
 """How a library is kept of which there is no machine code."""
 
@@ -111,7 +110,11 @@ class KernelLibrary(JITCodeLibrary):
         """Without what it calls, which has a file of its own."""
         self._ensure_finalized()
         module = self.own_module().as_bitcode()
-        return (self.name, LINKED, module) if self.only_linked else (self.name, "object", (self._get_compiled_object(), module))
+        return (
+            (self.name, LINKED, module)
+            if self.only_linked
+            else (self.name, "object", (self._get_compiled_object(), module))
+        )
 
     @classmethod
     def _unserialize(cls, codegen: Any, state: Any) -> Any:

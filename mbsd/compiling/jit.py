@@ -1,6 +1,7 @@
 """The one decorator for compiled kernels.
 
     kernel      called from Python and from kernels; its callers do not contain it (kernel_library.py)
+    shared      the same, where it is mostly kernels that call it: what Python calls is compiled when Python first does
     apart       the same for kernels alone: without a wrapper for Python it compiles in half the time
     internal    small, called by kernels alone, whose machine code contains it
     inlined     copied into the caller by numba: passing a System by value costs more than the work
@@ -15,7 +16,9 @@ What they compile is the same machine code on every processor of a kind (kernel_
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import numba
@@ -26,7 +29,7 @@ from numba.core.registry import CPUDispatcher
 
 from mbsd.compiling.kernel_cache import KernelCache
 from mbsd.compiling.kernel_library import Apart
-from mbsd.compiling.kernel_pipeline import KernelCompiler
+from mbsd.compiling.kernel_pipeline import KernelCompiler, LinkedCompiler
 from mbsd.compiling.kernel_target import GENERIC
 from mbsd.compiling.lazy_kernel import by_cell
 from mbsd.compiling.notice import give_notice
@@ -57,7 +60,46 @@ class _Kernel(CPUDispatcher):
         """Add what was compiled or loaded."""
         if self.apart and "<" not in self.py_func.__qualname__:
             cres.library.apart = Apart(cres.fndesc.llvm_func_name, self, tuple(cres.signature.args))
-        super().add_overload(cres)
+        if cres.library.only_linked:
+            self.overloads[tuple(cres.signature.args)] = cres
+        else:
+            super().add_overload(cres)
+
+    def for_python(self, arguments: tuple[Any, ...]) -> Any:
+        """Return what Python calls for arguments of these types of numba's."""
+        return self.compile(arguments)
+
+
+class _Shared(_Kernel):
+    """A kernel without a wrapper for Python, which a second one has that calls it."""
+
+    @cached_property
+    def _face(self) -> _Kernel:
+        """Return the kernel that Python calls."""
+        names = ", ".join(inspect.signature(self.py_func).parameters)
+        code, space = self.py_func.__code__, {"called": self, "__name__": self.py_func.__module__}
+        lines = f"def face({names}):\n    return called({names})\n"
+        exec(compile("\n" * (code.co_firstlineno - 1) + lines, code.co_filename, "exec"), space)
+        face: Any = space["face"]
+        face.__name__ = face.__qualname__ = f"{self.py_func.__name__}_for_python"
+        return _compiled(False)(face)
+
+    def _compile_for_args(self, *arguments: Any, **named: Any) -> Any:
+        """Return the result of the first call with arguments of some types."""
+        found = self._face._compile_for_args(*arguments, **named)
+        for kinds, made in self._face.overloads.items():
+            self._insert([kind._code for kind in kinds], made.entry_point)
+        return found
+
+    def add_overload(self, cres: Any) -> None:
+        """Add what was compiled or loaded; Python does not call it."""
+        if "<" not in self.py_func.__qualname__:
+            cres.library.apart = Apart(cres.fndesc.llvm_func_name, self, tuple(cres.signature.args))
+        self.overloads[tuple(cres.signature.args)] = cres
+
+    def for_python(self, arguments: tuple[Any, ...]) -> Any:
+        """Return what Python calls for arguments of these types of numba's."""
+        return self._face.compile(arguments)
 
 
 class _AtAddress(CFunc):
@@ -74,11 +116,12 @@ _OPTIONS = {"nopython": True, "error_model": "numpy", "_nrt": False, "no_cfunc_w
 # _nrt off: kernels allocate nothing, and without it numba counts references to every array of a tuple (2x slower)
 
 
-def _compiled(apart: bool, **more: Any) -> Callable[[Callable[..., Any]], Any]:
+def _compiled(apart: bool, kind: type[_Kernel] = _Kernel, **more: Any) -> Callable[[Callable[..., Any]], Any]:
     def decorate(function: Callable[..., Any]) -> Any:
         if not COMPILED:
             return function
-        made = _Kernel(py_func=function, locals={}, targetoptions={**_OPTIONS, **more}, pipeline_class=KernelCompiler)
+        compiler = LinkedCompiler if "no_cpython_wrapper" in more and not apart else KernelCompiler
+        made = kind(py_func=function, locals={}, targetoptions={**_OPTIONS, **more}, pipeline_class=compiler)
         made.apart = apart
         made.enable_caching()
         return made
@@ -95,6 +138,10 @@ internal = _compiled(False, no_cpython_wrapper=True)
 
 apart = _compiled(True, no_cpython_wrapper=True)
 """The same for large ones: callers do not contain them, so that each is optimised once."""
+
+shared = _compiled(True, _Shared, no_cpython_wrapper=True)
+"""The same for large ones that Python calls, too, but not in most runs: reading the arrays of a run costs as much to
+compile as a small kernel."""
 
 _RETURNED = {int: types.int64, float: types.float64, bool: types.boolean, None: types.none}
 
@@ -156,5 +203,5 @@ class Often:
         """As the kernel does."""
         self._calls += 1
         if self._calls == OFTEN and isinstance(self._function, Dispatcher):
-            self._function = self._function.compile(tuple(map(self._function.typeof_pyval, arguments)))
+            self._function = self._function.for_python(tuple(map(self._function.typeof_pyval, arguments)))
         return self._function(*arguments)

@@ -225,7 +225,10 @@ class _Results(CompileResultCacheImpl):
         library = cres.library
         called = {name: (*_place(call.dispatcher), call.arguments) for name, call in library.calls.items()}
         cells = [(*_place(cell.dispatcher), cell.arguments, cell.returns) for cell in library.cells.values()]
-        return called, cells, super().reduce(cres)
+        own = super().reduce(cres)
+        if library.only_linked:
+            own = (*own[:-1], ())  # places in machine code, of which there is none
+        return called, cells, own
 
     def rebuild(self, target_context: Any, payload: Any) -> Any:
         """From what was read."""

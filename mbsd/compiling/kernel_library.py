@@ -11,9 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import llvmlite.binding as llvm
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
 from mbsd.compiling.kernel_arguments import refuse_others
+
+LINKED = "linked"
+"""How a library is kept of which there is no machine code."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,8 @@ class KernelLibrary(JITCodeLibrary):
 
     def __init__(self, codegen: Any, name: str) -> None:
         super().__init__(codegen, name)
+        self.only_linked = False
+        """Whether it is linked into its callers and never run itself."""
         self.apart: Apart | None = None
         """What this library is to its callers, if it is not linked into them."""
         self.calls: dict[str, Apart] = {}
@@ -77,6 +83,14 @@ class KernelLibrary(JITCodeLibrary):
         self._linking_libraries = linked
         super().finalize()
 
+    def _finalize_final_module(self) -> None:
+        """Make machine code, unless nobody runs it where it stands."""
+        if not self.only_linked:
+            super()._finalize_final_module()
+            return
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
     def own_module(self) -> Any:
         """For linking into another library of ours."""
         return super()._get_module_for_linking()
@@ -95,7 +109,24 @@ class KernelLibrary(JITCodeLibrary):
     def serialize_using_object_code(self) -> Any:
         """Without what it calls, which has a file of its own."""
         self._ensure_finalized()
-        return self.name, "object", (self._get_compiled_object(), self.own_module().as_bitcode())
+        module = self.own_module().as_bitcode()
+        return (
+            (self.name, LINKED, module)
+            if self.only_linked
+            else (self.name, "object", (self._get_compiled_object(), module))
+        )
+
+    @classmethod
+    def _unserialize(cls, codegen: Any, state: Any) -> Any:
+        """From what was kept."""
+        name, kind, data = state
+        if kind != LINKED:
+            return super()._unserialize(codegen, state)
+        library = codegen.create_library(name)
+        library.only_linked = True
+        library._final_module = llvm.parse_bitcode(data)
+        library._finalize_final_module()
+        return library
 
     def _optimize_functions(self, ll_module: Any) -> None:
         """Not here: the whole module is optimised once, at the end."""

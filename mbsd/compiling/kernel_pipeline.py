@@ -141,6 +141,9 @@ def _untyped(state: Any) -> Any:
 class KernelCompiler(compiler.Compiler):
     """numba's pipeline but for names and inlining."""
 
+    only_linked = False
+    """Whether callers contain what is compiled, and nobody else runs it."""
+
     def define_pipelines(self) -> list[Any]:
         """One."""
         managers = [_with_ours(manager) for manager in super().define_pipelines()]
@@ -159,4 +162,13 @@ class KernelCompiler(compiler.Compiler):
         ExtractByteCode().run_pass(self.state)
         self.state.lifted = ()
         self.state.lifted_from = None
+        if self.only_linked:
+            self.state.library = self.state.targetctx.codegen().create_library(identity.func_qualname)
+            self.state.library.only_linked = True
         return self._compile_bytecode()
+
+
+class LinkedCompiler(KernelCompiler):
+    """The same for kernels that their callers contain: no machine code is made of them alone."""
+
+    only_linked = True

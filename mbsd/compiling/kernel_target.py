@@ -11,6 +11,7 @@ import threading
 from typing import Any
 
 from numba.core import registry, types
+from numba.core.datamodel.models import OpaqueModel
 from numba.core.registry import CPUTarget
 from numba.core.targetconfig import ConfigStack
 from numba.core.typing import Context
@@ -21,25 +22,64 @@ from mbsd.compiling.kernel_library import KernelCode
 _LOCK = threading.Lock()
 
 
-class _Types(Context):
-    """numba's own types; what a call in one function gives is found once for the same arguments.
+class _Function(types.Function):
+    """A function of numba's; what a call of it gives is found once for the same arguments and flags.
 
-    numba looks through all that is known of ``+`` and ``[]`` at each place where they stand.
+    numba looks through all that is known of ``+`` and ``[]`` at each place where they stand, and again when it writes
+    the code.
     """
+
+    def __init__(self, template: Any) -> None:
+        super().__init__(template)
+        self._found: dict[Any, Any] = {}
+
+    def get_call_type(self, context: Any, args: Any, kws: Any) -> Any:
+        """Return the signature of a call."""
+        if kws or not isinstance(context, _Types):
+            return super().get_call_type(context, args, kws)
+        key = context.kind_of_flags(), tuple(args)
+        if key not in self._found:
+            self._found[key] = super().get_call_type(context, args, kws)
+        return self._found[key]
+
+
+MODELS.register(_Function, OpaqueModel)
+
+
+class _Types(Context):
+    """numba's own types, with functions that remember."""
 
     def __init__(self, shared: Any) -> None:
         self.__dict__.update(shared.__dict__)
+        self._ours: dict[Any, _Function] = {}
         self._found: dict[Any, Any] = {}
+        self._flags: dict[int, tuple[Any, int]] = {}
+        self._kinds: dict[Any, int] = {}
+
+    def _get_global_type(self, gv: Any) -> Any:
+        found = super()._get_global_type(gv)
+        if type(found) is not types.Function:
+            return found
+        if found not in self._ours:
+            self._ours[found] = _Function(found.templates)
+        return self._ours[found]
 
     def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
-        """The signature of a call."""
+        """Return the signature of a call."""
         if kws or isinstance(func, types.Dispatcher):
             return super().resolve_function_type(func, args, kws)
-        flags = ConfigStack.top_or_none()
-        key = id(flags), func, tuple(args)
+        key = self.kind_of_flags(), func, tuple(args)
         if key not in self._found:
-            self._found[key] = super().resolve_function_type(func, args, kws), flags  # flags stay, and so does their id
-        return self._found[key][0]
+            self._found[key] = super().resolve_function_type(func, args, kws)
+        return self._found[key]
+
+    def kind_of_flags(self) -> int:
+        """Return the number of the flags with which a kernel is compiled; equal ones have the same."""
+        flags = ConfigStack.top_or_none()
+        if id(flags) not in self._flags:
+            kind = self._kinds.setdefault(None if flags is None else flags.copy(), len(self._kinds))
+            self._flags[id(flags)] = flags, kind  # flags stay, and so does their id
+        return self._flags[id(flags)][1]
 
 
 class _GenericTarget(CPUTarget):

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.compiling.jit import inlined, kernel
+from mbsd.compiling.jit import inlined, shared
 from mbsd.dynamics.reference.acceleration import accelerate, derivative
 from mbsd.dynamics.reference.projection import bring_back
 
@@ -100,7 +100,7 @@ def output_for(times: np.ndarray, coordinates: int, rows: int) -> Output:
     )
 
 
-@kernel
+@shared
 def record(dyn, scratch, out, k, work):
     """Write output k from scratch.state, projected first."""
     state = scratch.state
@@ -115,7 +115,7 @@ def record(dyn, scratch, out, k, work):
         out.margin[k] = scratch.report[0]
 
 
-@kernel
+@shared
 def record_here(scratch, state, out):
     """Write the next output from the state itself, which stands at its time and is projected."""
     k = state.count[NEXT]

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import kernel, lazy, merged
+from mbsd.compiling.jit import lazy, merged, shared
 from mbsd.dynamics.reference.pins import factor_pins, solve_pins
 from mbsd.dynamics.reference.refinement import MOST_MORE, SHRINKS, refine, unbalanced
 from mbsd.dynamics.reference.schur import factor_schur, times_jacobian
@@ -147,7 +147,7 @@ def accelerate(dyn, scratch, t, state, a, lam):
     return power
 
 
-@kernel
+@shared
 def derivative(dyn, scratch, t, state, out, lam):
     """out (2, 3 nb) = d(state)/dt, lam (m,); returns the power of loads and drivers (W)."""
     for c in range(3, state.shape[1]):

@@ -7,7 +7,7 @@ Source: Eich 1993, SIAM J. Numer. Anal. 30 (projection after each step); Hairer,
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart, inlined, kernel, merged
+from mbsd.compiling.jit import apart, inlined, merged, shared
 from mbsd.dynamics.reference.pins import change_by_pins, factor_pins
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.equations.assembly import evaluate_nu, evaluate_position, position
@@ -65,7 +65,7 @@ def bring_back(dyn, scratch, t, state, passes):
             scratch.report[1] = largest
 
 
-@kernel
+@shared
 def project(dyn, scratch, t, state, passes):
     """Project coordinates and velocities of a state (2, 3 nb) in place, ``passes`` times.
 

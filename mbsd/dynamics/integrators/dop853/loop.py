@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import inlined, kernel
+from mbsd.compiling.jit import inlined, shared
 from mbsd.dynamics.integrators.dop853.crossing import LANDED, crossing, nearness
 from mbsd.dynamics.integrators.dop853.dense import interpolant, write_outputs
 from mbsd.dynamics.integrators.dop853.sums import sum_stages, sum_step
@@ -183,7 +183,7 @@ def outputs_passed(dyn, scratch, state, out, h, reached):
     return clear
 
 
-@kernel
+@shared
 def advance(dyn, scratch, state, out, settings, end, max_steps):
     """Go on to ``end`` (s), ``max_steps`` accepted steps at most, writing the outputs passed. Returns a status."""
     switch = dyn.loads.switch

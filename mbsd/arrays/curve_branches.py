@@ -112,6 +112,18 @@ class CurveBranches:
         off = tx * (y - at[CY]) - ty * (x - at[CX]) - row.numbers[DISTANCE]
         return abs(tx * vy - ty * vx) if abs(off) < NEAR * self.packed.size else math.inf
 
+    def moved(self, q: np.ndarray) -> tuple[list[float], float]:
+        """Parameters of the feet at q (3 nb,), and the farthest that one of them goes, as part of how far it may."""
+        feet, farthest = [], 0.0
+        for i, j, numbers, own in self.rows:
+            x, y, _, _ = self._relative(q, np.zeros_like(q), i, j)
+            feet.append(foot(numbers, x, y, own))
+            way = abs(feet[-1] - own[LAST])
+            if numbers[CLOSED]:
+                way = min(way, abs(numbers[SPAN] - way))
+            farthest = max(farthest, way / numbers[FARTHEST])
+        return feet, farthest
+
     def accept(self, feet: list[float]) -> None:
         """Go on from these parameters of the feet."""
         for row, u in zip(self.rows, feet, strict=True):

@@ -58,7 +58,7 @@ from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.recording import Snapshot
 from mbsd.dynamics.runs.reference_steps import advance, check_callbacks
 from mbsd.dynamics.runs.refusal import refusal
-from mbsd.dynamics.state import NEXT, NOT_FINITE, PAUSED, REACHED, STEP_TOO_SMALL, TIME, WORK, Output, State
+from mbsd.dynamics.state import NEXT, NOT_FINITE, PAUSED, REACHED, TIME, WORK, Output, State
 from mbsd.equations.system import ZERO
 from mbsd.model.event import Event, Happening
 
@@ -306,10 +306,9 @@ class EventSteps:
         tried = contacts.trial if contacts.clock[FAILURE] != 0.0 else state
         if status == CHANCE:
             raise self._chance()
-        if status == STEP_TOO_SMALL:
-            wheels, before = self.ready.following.wheels, contacts.wheels.before
-            wheels.refuse_met(time, state.y[0])
-            wheels.refuse_meeting(float(before.clock[TIME]), before.y, AHEAD * float(contacts.wheels.bounds[LAST_STEP]))
+        wheels, before = self.ready.following.wheels, contacts.wheels.before
+        wheels.refuse_met(time, state.y[0])
+        wheels.refuse_meeting(float(before.clock[TIME]), before.y, AHEAD * float(contacts.wheels.bounds[LAST_STEP]))
         raise refusal(self.run, status, tried)
 
     def _warn_of(self, event: Event, count: int) -> None:

@@ -55,9 +55,7 @@ class Moment:
 
     def point(self, marker: Marker) -> Frame:
         """A marker; one at the end of a bar is where the bar ends in this mechanism, a copy with another length."""
-        own, length = self.packed.bars.get(marker.body.name), marker.body.length
-        x = own if own is not None and length is not None and at_end(marker, length) else marker.x
-        return self._frame(self._number(marker.body.name), (x, marker.y), marker.angle)
+        return self._frame(self._number(marker.body.name), place_of(self.packed, marker), marker.angle)
 
     def numbers(self, frames: Sequence[Marker]) -> tuple[np.ndarray, np.ndarray]:
         """x, y, theta of each frame in turn (m, rad), and their rates: (3 f,) and (3 f,)."""
@@ -166,6 +164,13 @@ class Moment:
             float(vy + omega * x),
             float(omega),
         )
+
+
+def place_of(packed: Packed, marker: Marker) -> tuple[float, float]:
+    """Return the place (m) of a marker in its body; at the end of a bar it is where the bar ends in this mechanism."""
+    own, length = packed.bars.get(marker.body.name), marker.body.length
+    x = own if own is not None and length is not None and at_end(marker, length) else marker.x
+    return x, marker.y
 
 
 def value_at(packed: Packed, event: Event, moment: Moment) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from mbsd.compiling.callback import Callback
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics.events.bounds import MOST_VALUES, NEAR, PER_SHORTEST, ROUNDINGS
-from mbsd.dynamics.events.moment import Moment, value_at
+from mbsd.dynamics.events.moment import Moment, place_of, value_at
 from mbsd.dynamics.events.users import ready_made
 from mbsd.dynamics.events.users.arrays import ACTION_FRAMES, BY_PYTHON, ITS_FRICTION, UNKNOWN, WHOLE, Events
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -156,7 +156,8 @@ def _address(ready: PreparedDynamics, function: Any, frames: Sequence[Marker], o
 
 def _arm(ready: PreparedDynamics, marker: Marker) -> tuple[float, float, float]:
     x, y = ready.packed.com[ready.packed.body_names.index(marker.body.name)]
-    return marker.x - x, marker.y - y, marker.angle
+    own_x, own_y = place_of(ready.packed, marker)
+    return own_x - x, own_y - y, marker.angle
 
 
 def _away(ready: PreparedDynamics) -> np.ndarray:

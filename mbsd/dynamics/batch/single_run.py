@@ -147,7 +147,10 @@ class SingleRun:
     @cached_property
     def genevas(self) -> Genevas:
         """Genevas at whose jumps steps end."""
-        return no_genevas(self.state) if self.independent is None else self.independent.genevas
+        own = self.independent
+        if own is None or own.genevas is None:
+            return no_genevas(self.state if own is None else own.own)
+        return own.genevas
 
 
 def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:

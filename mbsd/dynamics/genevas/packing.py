@@ -13,18 +13,18 @@ _NOTHING = tuple(np.zeros((0,) * dimensions) for dimensions in (2, 2, 2, 1, 2, 1
 """In place of what steps in independent coordinates predict from."""
 
 
-def genevas_of(packed: Packed, state: State, arrays: Embedding, scratch: EmbeddingScratch) -> Genevas:
-    """Return the Genevas of a run in independent coordinates at its start."""
+def genevas_of(packed: Packed, state: State, arrays: Embedding, scratch: EmbeddingScratch) -> Genevas | None:
+    """Return the Genevas of a run in independent coordinates at its start, or None without any."""
     rows = _rows(packed)
     if not rows:
-        return no_genevas(state)
+        return None
     memory = arrays.number, scratch.base, scratch.coordinate, scratch.block_work, scratch.body, scratch.watch
     width = state.y.shape[1]
     return _genevas(rows, 3 * len(packed.body_names), width, State(*(np.zeros_like(part) for part in state)), memory)
 
 
 def no_genevas(state: State) -> Genevas:
-    """Return none, as in reference coordinates, where steps end anywhere."""
+    """Return empty arrays, as for runs in reference coordinates, where steps end anywhere."""
     return _genevas([], 0, 0, State(*(np.zeros((0,) * part.ndim, part.dtype) for part in state)), _NOTHING)
 
 

@@ -32,7 +32,6 @@ class IndependentSteps:
 
     def __init__(self, run: Run, made: Embedded, state: run_state.State) -> None:
         self.run, self.ready, self.whole = run, run.ready, state
-        self._run_indexed = Often(run_indexed)
         self._passing, self._passed = PASSING, -math.inf
         self._take(made)
 
@@ -87,9 +86,10 @@ class IndependentSteps:
     def _advance(self, out: run_state.Output, end: float, steps: int) -> int:
         """The integrator's own, from jump to jump where there are Genevas."""
         arrays = self.arrays, self.scratch, self.own, out, self.settings
-        if len(self.genevas.body):
+        if self.genevas is not None:
             stops = self.ready.stops
-            return self._run_indexed(*arrays, self.genevas, end, steps, stops.before, stops.after)
+            run = self.ready.advancing.setdefault((run_indexed.__name__, type(self.arrays)), Often(run_indexed))
+            return run(*arrays, self.genevas, end, steps, stops.before, stops.after)
         return self.ready.advance(self.run.method, *arrays, end, steps)
 
     def leave(self) -> None:

@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,7 +31,9 @@ from tools.hunt.mechanisms import extremes
 from tools.hunt.mechanisms.energy import audited
 from tools.hunt.outcome import AGREED, BASE, HUNG, WRONG, CaseResult, Outcome
 from tools.hunt.pool import results
+from tools.hunt.solving import moved_derivatives
 from tools.hunt.solving.free_case import TOLERANCE, Free, nudged
+from tools.hunt.solving.moved_derivatives import beside_its_own
 from tools.hunt.subject import Subject
 from tools.hunt.words.described import on_a_base, seen_from
 from tools.hunt.words.reordered import exchanged, shuffled
@@ -184,6 +187,35 @@ def test_numbers_of_wheels_torques_and_engines_go_with_the_words(machine: str) -
         verdict = compare_free(first, other.simulate(0.2, steps=20, tolerance=TOLERANCE), growth, 2e-9, words)
         assert verdict.agrees, verdict.words
         assert verdict.compared == 21
+
+
+@pytest.mark.parametrize("is_driven", [True, False])
+def test_derivatives_of_the_moved_machine_are_its_own_and_those_of_another_are_not(
+    is_driven: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    m = model(LENGTHS, 6.0, {"coupler": (1.0, (0.1, 0.05), 0.2), "rocker": (0.5, (0.2, 0.0), 0.1)})
+    if not is_driven:
+        m.drivers.clear()
+        m.start_moving(crank=6.0)
+    first = m.sweep(1.0, steps=60) if is_driven else m.simulate(0.5, steps=60, tolerance=TOLERANCE)
+    again = None if is_driven else nudged
+    pose = (0.3, -2.0, 0.8)
+
+    def judged(seed: int) -> Outcome:
+        rng = np.random.default_rng(seed)
+        return beside_its_own("derivatives", m, rng, pose, first, not is_driven, again)
+
+    assert [judged(seed).state for seed in range(6)] == [AGREED] * 6
+    original = moved_derivatives.moved
+
+    def another(m: Mechanism, *given: Any) -> moved_derivatives.Moved:
+        m = seen_from(m, {})
+        m.gravity = 0.0, -9.0  # what free motions start with stays
+        m.joints["C"] = replace(m.joints["C"], i=m.bodies["coupler"].at(LENGTHS[2] + 0.004 * is_driven, 0.0))
+        return original(m, *given)
+
+    monkeypatch.setattr(moved_derivatives, "moved", another)
+    assert WRONG in [judged(seed).state for seed in range(6)]
 
 
 def _turned_back(pose: tuple[float, float, float]) -> tuple[float, float]:

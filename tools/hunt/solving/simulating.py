@@ -18,6 +18,7 @@ from tools.hunt.judging.refusals import cannot_be_saved
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
 from tools.hunt.solving.free_case import OUTPUTS, TOLERANCE, Free, nudged
 from tools.hunt.solving.mixed_rows import beside_single_ones, mixed_rows
+from tools.hunt.solving.moved_derivatives import beside_its_own
 from tools.hunt.solving.sweeping import HEALTHY, random_frames, random_pose
 from tools.hunt.solving.variations import Variations
 from tools.hunt.words.changed import there_and_back
@@ -173,6 +174,15 @@ def _rows(case: Free) -> Outcome:
     if rows is None or case.first is None:
         return Outcome(name, UNCLEAR, "nothing to vary, or refused as built")
     return beside_single_ones(name, rows, case.subject.duration, TOLERANCE, nudged)
+
+
+@variation("derivatives of the moved machine")
+def _derivatives(case: Free) -> Outcome:
+    name = "derivatives of the moved machine"
+    if case.first is None or case.margin < HEALTHY or {"bifurcates", "jumps"} & case.subject.traits:
+        return Outcome(name, UNCLEAR, "refused as built, near a singular pose, or accelerations jump")
+    pose = random_pose(case.rng, _size(case))
+    return beside_its_own(name, case.built, case.rng, pose, case.first, is_free=True, nudged=nudged)
 
 
 @variation("from the middle on")

@@ -17,6 +17,7 @@ from tools.hunt.judging.checks import driven_problems
 from tools.hunt.judging.refusals import cannot_be_saved, expected_refusal
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
 from tools.hunt.solving.mixed_rows import designs_beside_sweeps
+from tools.hunt.solving.moved_derivatives import beside_its_own
 from tools.hunt.solving.variations import Variations
 from tools.hunt.subject import Subject
 from tools.hunt.words.changed import there_and_back
@@ -294,6 +295,14 @@ def _pickled(case: Driven) -> Outcome:
 @variation("designs at once")
 def _designs(case: Driven) -> Outcome:
     return designs_beside_sweeps("designs at once", case.m, case.rng, case.subject.duration, HEALTHY)
+
+
+@variation("derivatives of the moved machine")
+def _derivatives(case: Driven) -> Outcome:
+    name = "derivatives of the moved machine"
+    if case.first is None or case.doubtful or "jumps" in case.subject.traits:
+        return Outcome(name, UNCLEAR, "refused as built, near a singular pose, or accelerations jump")
+    return beside_its_own(name, case.m, case.rng, random_pose(case.rng, _size(case)), case.first, is_free=False)
 
 
 @variation("simulated with its drivers")

@@ -100,14 +100,16 @@ def in_units(m: Mechanism, length: float, mass: float) -> Mechanism | None:
     )
 
 
-def renamed(m: Mechanism) -> Mechanism | None:
-    """The same with other names for everything; None where no file could hold the model.
-
-    New names come in another order of the alphabet.
-    """
+def new_names(m: Mechanism) -> dict[str, str]:
+    """Return other names for everything, by the old ones, in another order of the alphabet."""
     tables = (m.bodies, m.joints, m.drivers, m.forces, m.contacts, m.traces)
     names = [name for name in dict.fromkeys(name for table in tables for name in table) if name != "ground"]
-    new = {name: f"{chr(ord('z') - k % 26)} {len(names) - k} {name}" for k, name in enumerate(names)}
+    return {name: f"{chr(ord('z') - k % 26)} {len(names) - k} {name}" for k, name in enumerate(names)}
+
+
+def renamed(m: Mechanism) -> Mechanism | None:
+    """The same with other names for everything (``new_names``); None where no file could hold the model."""
+    new = new_names(m)
 
     def with_new_names(value: Any) -> Any:
         if isinstance(value, dict):

@@ -22,6 +22,7 @@ import numpy as np
 from mbsd import Mechanism
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.base.errors import MechanismError
+from mbsd.model.laws.function import Function
 from mbsd.model.numbers import known_numbers, number_named, with_values
 from mbsd.results.solution import Solution
 from tools.hunt.judging.agreement import NUDGE, SLACK
@@ -172,6 +173,9 @@ def beside_its_own(
     """Derivatives of the machine in other words beside its own; ``first``: a solution of it."""
     if CurveBranches(first.packed).rows:
         return Outcome(name, UNCLEAR, "points on curves that cross themselves take minutes")
+    laws = [driver.motion for driver in m.drivers.values()]
+    if any(isinstance(law, Function) for law in [*laws, *(law for f in m.forces.values() for law in f.laws.values())]):
+        return Outcome(name, UNCLEAR, "a law known by its values has other digits in other words")
     m = seen_from(m, {})  # inertias do not follow masses there
     asked = asked_of(m, rng)
     if asked is None:

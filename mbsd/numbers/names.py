@@ -410,9 +410,11 @@ def known_numbers(m: Model, whole: str) -> list[str]:
     for table in connections(m):
         if whole in table:
             entry: Any = table[whole]
-            out += [key for key, value in given(entry).items() if _is_number(value)]
+            arguments = given(entry)
+            out += [key for key, value in arguments.items() if _is_number(value)]
             law = entry.motion if isinstance(entry, Joint) else next(iter(entry.laws.values()), None)
-            out += numbers_within(law)
+            own = next((key for key, value in arguments.items() if value is law), "")
+            out += [f"{own}.{number}" if number in arguments else number for number in numbers_within(law)]
             if isinstance(entry, Joint):
                 out += PLACE
             out += [f"{side}.{axis}" for side in ("i", "j") for axis in PLACE]

@@ -22,7 +22,8 @@ import numpy as np
 from mbsd import Mechanism
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.base.errors import MechanismError
-from mbsd.numbers.names import known_numbers, number_named
+from mbsd.model.laws.function import Function
+from mbsd.numbers.names import known_numbers, number_named, with_values
 from mbsd.results.solution import Solution
 from tools.hunt.judging.agreement import NUDGE, SLACK
 from tools.hunt.outcome import AGREED, REFUSED, UNCLEAR, WRONG, Outcome, attempt
@@ -38,6 +39,8 @@ STEPS = 1e-5
 """Part of the largest derivative that steps of differences may leave."""
 LOOSE = 0.03
 """Part of the largest derivative beyond which a bound tells nothing."""
+AWAY = 2e-3
+"""Part of the size by which a place is moved that must be possible: more than what radii may be rounded by."""
 TOLERANCE = 1e-9
 HEALTHY = 0.02
 """Singularity margin above which nothing gives reason to refuse."""
@@ -170,10 +173,15 @@ def beside_its_own(
     """Derivatives of the machine in other words beside its own; ``first``: a solution of it."""
     if CurveBranches(first.packed).rows:
         return Outcome(name, UNCLEAR, "points on curves that cross themselves take minutes")
+    laws = [driver.motion for driver in m.drivers.values()]
+    if any(isinstance(law, Function) for law in [*laws, *(law for f in m.forces.values() for law in f.laws.values())]):
+        return Outcome(name, UNCLEAR, "a law known by its values has other digits in other words")
     m = seen_from(m, {})  # inertias do not follow masses there
     asked = asked_of(m, rng)
     if asked is None:
         return Outcome(name, UNCLEAR, "no joint has a place of its own")
+    if not _can_be_elsewhere(m, asked, first.packed.size, is_free):
+        return Outcome(name, UNCLEAR, "a place is where another thing has it, as the centre of a gear")
     times, words = np.linspace(first.t[0], first.t[-1], OUTPUTS + 1), moved(m, rng, pose)
     same = Moved(m, np.eye(2), np.eye(2))
 
@@ -195,6 +203,19 @@ def beside_its_own(
     if is_free and nearby is None:
         return Outcome(name, UNCLEAR, "a nudged motion has no derivatives")
     return _judged(name, asked, times, (own, other, nearby), asked.kinds(first), margin)
+
+
+def _can_be_elsewhere(m: Mechanism, asked: Asked, size: float, is_free: bool) -> bool:
+    """Return True if the places that are asked for may be others while all else stays."""
+    for joint, _ in asked.places:
+        for axis in "xy":
+            number = number_named(m, f"{joint}.{axis}")
+            try:
+                other = with_values(m, [number], [number.value + AWAY * size])
+                other.simulate(1e-9, 1) if is_free else other.sweep(times=[0.0])
+            except MechanismError:
+                return False
+    return True
 
 
 def _judged(

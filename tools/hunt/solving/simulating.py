@@ -179,8 +179,8 @@ def _rows(case: Free) -> Outcome:
 @variation("derivatives of the moved machine")
 def _derivatives(case: Free) -> Outcome:
     name = "derivatives of the moved machine"
-    if case.first is None or case.margin < HEALTHY:
-        return Outcome(name, UNCLEAR, "refused as built, or near a singular pose")
+    if case.first is None or case.margin < HEALTHY or {"bifurcates", "jumps"} & case.subject.traits:
+        return Outcome(name, UNCLEAR, "refused as built, near a singular pose, or accelerations jump")
     pose = random_pose(case.rng, _size(case))
     return beside_its_own(name, case.built, case.rng, pose, case.first, is_free=True, nudged=nudged)
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from mbsd.model.numbers import known_numbers, number_named
 
 from mbsd import Mechanism, harmonic
 from mbsd.base.errors import ModelError
 from mbsd.model.joint import JointKind
 from mbsd.model.mechanism import connections
+from mbsd.numbers.names import known_numbers, number_named
 from mbsd.testing import force_kinds, joint_kinds
 from mbsd.testing.forces import example as of_force
 from mbsd.testing.joints import example as of_joint

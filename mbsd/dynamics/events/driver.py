@@ -106,6 +106,7 @@ class EventSteps:
         self._told = 0
         self._unknown: set[str] = set()
         self._before: tuple | None = None
+        self._kept = tuple(part for part in self._changing() if part.size)
         self._states, self._senses, self._holding = self._read()
 
     # -- going on -----------------------------------------------------------------------------------------------
@@ -117,7 +118,7 @@ class EventSteps:
     def resume(self, snapshot: Snapshot, work: float) -> None:
         """Go on from where another run was, with its contacts as they were."""
         pauses = self.contacts.clock[PAUSES]
-        for own, given in zip(self._changing(), snapshot.held, strict=True):
+        for own, given in zip(self._kept, snapshot.held, strict=True):
             own[...] = given
         self.switches.released = set(snapshot.released)
         self.contacts.clock[PAUSES] = pauses
@@ -145,7 +146,8 @@ class EventSteps:
             ready.stops.before, ready.stops.after,
         )  # fmt: skip
         self._check(status)
-        ready.dropped = tuple(sorted({*ready.dropped, *opened(contacts.repeated)}))
+        if len(contacts.repeated.place):
+            ready.dropped = tuple(sorted({*ready.dropped, *opened(contacts.repeated)}))
         ready.approaches.note(float(state.clock[TIME]))
         self._note_outputs()
         if status == FOUND:
@@ -175,8 +177,10 @@ class EventSteps:
     def _read(self) -> tuple[list[str], tuple[float, ...], np.ndarray]:
         """Return states of contacts and of joints that stick, directions of sliding, and rows (m,) that hold."""
         contacts, switches = self.contacts, self.switches
-        gone = contacts.events.release[contacts.events.gone[contacts.events.release[:, GROUP]] < np.inf]
-        switches.released.update(gone[:, ROW].tolist())
+        release = contacts.events.release
+        if len(release):
+            gone = release[contacts.events.gone[release[:, GROUP]] < np.inf]
+            switches.released.update(gone[:, ROW].tolist())
         number, gaps = contacts.number, len(switches.contacts)
         states, way = [], gaps
         for k, contact in enumerate(switches.contacts):
@@ -254,7 +258,7 @@ class EventSteps:
 
     def snapshot(self) -> Snapshot:
         """This moment, to go on from."""
-        held = tuple(part.copy() for part in self._changing())
+        held = tuple(part.copy() for part in self._kept)
         released = frozenset(self.switches.released)
         return Snapshot(
             self.state.y.copy(), float(self.state.clock[TIME]), float(self.state.clock[WORK]), held, released
@@ -288,10 +292,8 @@ class EventSteps:
         for callback in self._watched:
             callback.check()
         check_callbacks(self.run, state, status in GOES_ON)
-        for event, values in zip(self.events, contacts.events.number[:, UNKNOWN].tolist(), strict=True):
-            if values:
-                self._warn_of(event, int(values))
-        contacts.events.number[:, UNKNOWN] = 0.0
+        if self.events:
+            self._warn_of_unknown()
         if status in GOES_ON:
             return
         if status == TOO_MANY:
@@ -310,6 +312,13 @@ class EventSteps:
         wheels.refuse_met(time, state.y[0])
         wheels.refuse_meeting(float(before.clock[TIME]), before.y, AHEAD * float(contacts.wheels.bounds[LAST_STEP]))
         raise refusal(self.run, status, tried)
+
+    def _warn_of_unknown(self) -> None:
+        unknown = self.contacts.events.number[:, UNKNOWN]
+        for event, values in zip(self.events, unknown.tolist(), strict=True):
+            if values:
+                self._warn_of(event, int(values))
+        unknown[:] = 0.0
 
     def _warn_of(self, event: Event, count: int) -> None:
         """Say once of each event that its function is not resolved."""

@@ -107,7 +107,8 @@ class Switches:
         """Return (m,) which rows hold; joints' redundant rows do too."""
         rows = self.rows[self.rows >= 0]
         out = np.arange(len(self.packed.ws.phi)) < self.packed.contact_rows
-        out[sorted(self.released)] = False
+        if self.released:
+            out[sorted(self.released)] = False
         out[rows] = True
         return out
 

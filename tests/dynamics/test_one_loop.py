@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism
+from mbsd.base.errors import SimulationError
 from mbsd.compiling.jit import kernel
+from mbsd.dynamics.events.refusals import taking_turns
 from mbsd.dynamics.events.sticking.giving_way import solve_least
 from mbsd.measures import final, samples
+from mbsd.model.event import Happening
 
 
 def discs(count: int) -> Mechanism:
@@ -54,6 +59,17 @@ def test_every_integrator_meets_a_bounce(method: str) -> None:
     assert [event.what for event in sol.events] == [event.what for event in exact.events]
     np.testing.assert_allclose([event.time for event in sol.events], [event.time for event in exact.events], atol=1e-6)
     np.testing.assert_allclose(sol.body("d0").y, exact.body("d0").y, atol=1e-6)
+
+
+def test_contacts_that_carry_in_turns_are_named() -> None:
+    feet = [("left", "opens"), ("right", "closes"), ("left", "closes"), ("right", "opens")]
+    found = [Happening(0.5 + 1e-9 * k, *feet[k % 4]) for k in range(150)]
+    with pytest.raises(SimulationError, match=r"walker: near t = 0.5 s 'right' and 'left' carry in turns"):
+        raise taking_turns("walker", found, 1.0) or AssertionError
+    slow = [replace(happening, time=0.5 + 1e-3 * k) for k, happening in enumerate(found)]
+    assert taking_turns("walker", slow, 1.0) is None
+    assert taking_turns("walker", found[:50], 1.0) is None
+    assert taking_turns("walker", [replace(happening, what="impact") for happening in found], 1.0) is None
 
 
 @kernel

@@ -50,7 +50,7 @@ from mbsd.dynamics.events.loop import (
 )
 from mbsd.dynamics.events.moment import Moment, value_at
 from mbsd.dynamics.events.packing import contacts_of
-from mbsd.dynamics.events.refusals import jam_at, refuse_inside
+from mbsd.dynamics.events.refusals import jam_at, refuse_inside, taking_turns
 from mbsd.dynamics.events.search import CHANCE
 from mbsd.dynamics.events.users.arrays import GROUP, ROW, UNKNOWN
 from mbsd.dynamics.repeated_rows.packing import opened
@@ -133,7 +133,10 @@ class EventSteps:
         steps = 1 if self.ready.approaches else self.run.steps_at_once
         while not self.ended:
             status = self._call(end, steps)
-            pace.note(extra=0 if status in (REACHED, PAUSED) else EVENT_STEPS)
+            try:
+                pace.note(extra=0 if status in (REACHED, PAUSED) else EVENT_STEPS)
+            except SimulationError as error:
+                raise taking_turns(self.packed.name, self.happenings, end) or error from None
             if status == REACHED and self.state.clock[TIME] >= end:
                 return True
         return False

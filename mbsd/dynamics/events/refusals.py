@@ -14,6 +14,10 @@ from mbsd.dynamics.events.loop import INSIDE
 from mbsd.dynamics.events.pushes import STIFF
 from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import TIME, State
+from mbsd.model.event import Happening
+
+TURNS, BRIEF = 100, 1e-4
+"""Changes of contacts that follow each other within this part of the time that is left, where they take turns."""
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -69,4 +73,22 @@ def _paradox(where: str, taking: Sequence[RunContact], why: str) -> SimulationEr
         "Coulomb's friction the equations of motion have no solution in this pose, whatever the step or the method. "
         "Take less friction, or a contact that yields: m.contact(...) in place of m.rigid_contact(...), see "
         "docs/events.md."
+    )
+
+
+def taking_turns(model: str, happenings: Sequence[Happening], end: float) -> SimulationError | None:
+    """Return the error of contacts that open and close in turns without end, or None for other events.
+
+    ``end``: of the simulation (s).
+    """
+    last = happenings[-TURNS:]
+    brief = len(last) == TURNS and last[-1].time - last[0].time < BRIEF * (end - last[0].time)
+    if not brief or not all(each.what in ("opens", "closes", "sticks", "slides") for each in last):
+        return None
+    names = " and ".join(f"'{name}'" for name in dict.fromkeys(each.name for each in last))
+    return SimulationError(
+        f"{model}: near t = {last[-1].time:.6g} s {names} carry in turns: the last {TURNS} changes took "
+        f"{last[-1].time - last[0].time:.2g} s. With rigid bodies and Coulomb's friction more than one motion is "
+        "possible there, as where feet wedge each other. Take less friction, or contacts that yield: m.contact(...) in place of "
+        "m.rigid_contact(...), see docs/events.md."
     )

@@ -89,6 +89,6 @@ def taking_turns(model: str, happenings: Sequence[Happening], end: float) -> Sim
     return SimulationError(
         f"{model}: near t = {last[-1].time:.6g} s {names} carry in turns: the last {TURNS} changes took "
         f"{last[-1].time - last[0].time:.2g} s. With rigid bodies and Coulomb's friction more than one motion is "
-        "possible there, as where feet wedge each other. Take less friction, or contacts that yield: m.contact(...) in place of "
-        "m.rigid_contact(...), see docs/events.md."
+        "possible there, as where feet wedge each other. Take less friction, or contacts that yield: m.contact(...) in "
+        "place of m.rigid_contact(...), see docs/events.md."
     )

@@ -86,10 +86,10 @@ class _Shared(_Kernel):
 
     def _compile_for_args(self, *arguments: Any, **named: Any) -> Any:
         """Return the result of the first call with arguments of some types."""
-        found = self._face._compile_for_args(*arguments, **named)
+        overload = self._face._compile_for_args(*arguments, **named)
         for kinds, made in self._face.overloads.items():
             self._insert([kind._code for kind in kinds], made.entry_point)
-        return found
+        return overload
 
     def add_overload(self, cres: Any) -> None:
         """Add what was compiled or loaded; Python does not call it."""

@@ -6,7 +6,7 @@ shape, and its owner is the caller's concern: kernels keep no array.
 
 A named tuple goes by the address of its fields, which the kernel that made it holds in its frame; nobody changes them.
 So a kernel cannot return one. numba hands over all fields, a run's two hundred arrays in every call: most of what it
-took to compile a small kernel was to take them apart and put them together again. LLVM is told that what is written to
+took to compile a small kernel was to take them apart and put them together again. LLVM knows that what is written to
 arrays changes no field.
 
 Functions of numba's own target may call kernels, which then get their arguments in this way. A kernel that hands an

@@ -57,12 +57,12 @@ class _Types(Context):
         self._kinds: dict[Any, int] = {}
 
     def _get_global_type(self, gv: Any) -> Any:
-        found = super()._get_global_type(gv)
-        if type(found) is not types.Function:
-            return found
-        if found not in self._ours:
-            self._ours[found] = _Function(found.templates)
-        return self._ours[found]
+        kind = super()._get_global_type(gv)
+        if type(kind) is not types.Function:
+            return kind
+        if kind not in self._ours:
+            self._ours[kind] = _Function(kind.templates)
+        return self._ours[kind]
 
     def resolve_function_type(self, func: Any, args: Any, kws: Any) -> Any:
         """Return the signature of a call."""

@@ -63,13 +63,13 @@ def test_every_integrator_meets_a_bounce(method: str) -> None:
 
 def test_contacts_that_carry_in_turns_are_named() -> None:
     feet = [("left", "opens"), ("right", "closes"), ("left", "closes"), ("right", "opens")]
-    found = [Happening(0.5 + 1e-9 * k, *feet[k % 4]) for k in range(150)]
+    changes = [Happening(0.5 + 1e-9 * k, *feet[k % 4]) for k in range(150)]
     with pytest.raises(SimulationError, match=r"walker: near t = 0.5 s 'left' and 'right' carry in turns"):
-        raise taking_turns("walker", found, 1.0) or AssertionError
-    slow = [replace(happening, time=0.5 + 1e-3 * k) for k, happening in enumerate(found)]
+        raise taking_turns("walker", changes, 1.0) or AssertionError
+    slow = [replace(happening, time=0.5 + 1e-3 * k) for k, happening in enumerate(changes)]
     assert taking_turns("walker", slow, 1.0) is None
-    assert taking_turns("walker", found[:50], 1.0) is None
-    assert taking_turns("walker", [replace(happening, what="impact") for happening in found], 1.0) is None
+    assert taking_turns("walker", changes[:50], 1.0) is None
+    assert taking_turns("walker", [replace(happening, what="impact") for happening in changes], 1.0) is None
 
 
 @kernel

@@ -24,15 +24,15 @@ ALL = [case for case in cases() if not case.quick]
 
 @pytest.mark.parametrize("case", QUICK, ids=lambda case: case.name)
 def test_some_runs_of_each_kind_are_as_recorded(case: Case) -> None:
-    found = verdict(case, RECORDS)
-    assert found.is_good, found
+    compared = verdict(case, RECORDS)
+    assert compared.is_good, compared
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, len(ALL), GROUP), ids=lambda first: ALL[first].name)
 def test_all_others_are_as_recorded(first: int) -> None:
-    found = [verdict(case, RECORDS) for case in ALL[first : first + GROUP]]
-    assert not [str(each) for each in found if not each.is_good]
+    verdicts = [verdict(case, RECORDS) for case in ALL[first : first + GROUP]]
+    assert not [str(each) for each in verdicts if not each.is_good]
 
 
 def test_records_are_those_of_the_runs_and_bounds_have_a_reason() -> None:
@@ -47,10 +47,10 @@ def test_records_are_those_of_the_runs_and_bounds_have_a_reason() -> None:
 @pytest.mark.slow
 def test_rows_of_many_move_as_recorded() -> None:
     """Steps of a fixed length end at outputs, which are others here."""
-    found = list(beside(""))
-    assert sum(each.way.startswith(IN_LOOP) for each in found) > 480
+    verdicts = list(beside(""))
+    assert sum(each.way.startswith(IN_LOOP) for each in verdicts) > 480
     fixed = ("alpha", "rattle", "rk4", "symplectic", "baumgarte")
-    rows = [each for each in found if each.way.startswith(IN_LOOP) and not each.name.endswith(fixed)]
+    rows = [each for each in verdicts if each.way.startswith(IN_LOOP) and not each.name.endswith(fixed)]
     assert not [each for each in rows if not each.apart <= each.within]
 
 
@@ -78,9 +78,9 @@ def test_a_number_that_is_changed_by_a_millionth_is_found(name: str) -> None:
         CHANGES[name](m)
         return m
 
-    found = verdict(replace(case, build=changed), RECORDS)
-    assert not found.is_good
-    assert found.difference.motion > found.within
+    compared = verdict(replace(case, build=changed), RECORDS)
+    assert not compared.is_good
+    assert compared.difference.motion > compared.within
 
 
 def test_what_else_happens_is_found_and_said() -> None:
@@ -102,8 +102,8 @@ def _with_held(record: Record, held: list[tuple[int, str]]) -> Record:
 
 def test_a_refusal_without_its_words_is_found() -> None:
     case = _named("event without a number")
-    found = verdict(replace(case, refused=("'other event'",)), RECORDS)
-    assert not found.is_good
-    assert "does not say" in str(found)
+    compared = verdict(replace(case, refused=("'other event'",)), RECORDS)
+    assert not compared.is_good
+    assert "does not say" in str(compared)
     moving = replace(case, build=_named("ball 0.5 from 1").build)
     assert not verdict(moving, RECORDS).is_good

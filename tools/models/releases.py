@@ -80,7 +80,7 @@ def twin_hinges() -> Mechanism:
 
 
 def broken_cranks(m: Mechanism) -> Mechanism:
-    """Of three equal cranks each breaks in turn; then the coupler is free."""
+    """Three equal cranks of which each breaks in turn; then the coupler is free."""
     for k, (angle, joints) in enumerate(((-75, "A1"), (-80, ("B0", "A2")))):
         m.event(f"breaks {k}", angle_reaches(m.bodies["crank0"], math.radians(angle)), releases=joints)
     m.event("last", speed_reaches(m.bodies["crank2"], 0.5), releases="B2")

@@ -139,7 +139,7 @@ def happen(dyn, scratch, contacts, state, e):
 
 @lazy(None)
 def finish_action(dyn, scratch, contacts, state, e):
-    """Release the joints that the Python action of event e has let go, and bring velocities onto the others."""
+    """Release the joints that the Python action of event e released, and bring velocities onto the others."""
     events = contacts.events
     t = state.clock[TIME]
     for group in range(events.gone.shape[0]):

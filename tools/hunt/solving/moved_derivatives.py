@@ -187,10 +187,10 @@ def beside_its_own(
 
     def slopes(words: Moved, m: Mechanism) -> tuple[np.ndarray | None, MechanismError | None]:
         of = asked.of(words)
-        found, error = attempt(
+        derived, error = attempt(
             lambda: m.sensitivities(of, asked.to(words), times=times, simulate=is_free, tolerance=TOLERANCE)
         )
-        every = None if found is None else np.stack([found[label] for label in of], axis=1)
+        every = None if derived is None else np.stack([derived[label] for label in of], axis=1)
         return (None if every is None else asked.carried_back(every, words)), error
 
     own, refused = slopes(same, m)
@@ -219,10 +219,10 @@ def _can_be_elsewhere(m: Mechanism, asked: Asked, size: float, is_free: bool) ->
 
 
 def _judged(
-    name: str, asked: Asked, times: np.ndarray, found: tuple[np.ndarray, np.ndarray, np.ndarray | None],
+    name: str, asked: Asked, times: np.ndarray, derived: tuple[np.ndarray, np.ndarray, np.ndarray | None],
     kinds: list[tuple[list[int], list[float], slice, float]], margin: float,
 ) -> Outcome:  # fmt: skip
-    own, other, nearby = found
+    own, other, nearby = derived
     compared = 0
     for rows, units, column, number in kinds:
         unit = np.array(units)[:, None] / number

@@ -58,12 +58,12 @@ def _other(before: Outcome, now: Outcome) -> str:
     """What makes them outcomes of another kind, or nothing."""
     if before.error != now.error:
         return f"{before.error or 'no error'} before, {now.error or 'no error'} now {now.text}"
-    told, tells = ([(e[1], e[2]) for e in each.happened] for each in (before, now))
-    if told != tells:
-        pairs = enumerate(zip(told, tells, strict=False))
-        first = next((k for k, (a, b) in pairs if a != b), min(len(told), len(tells)))
-        other = tells[first] if first < len(tells) else "nothing"
-        return f"{len(told)} events before, {len(tells)} now; number {first} is {other} now"
+    before_words, now_words = ([(e[1], e[2]) for e in each.happened] for each in (before, now))
+    if before_words != now_words:
+        pairs = enumerate(zip(before_words, now_words, strict=False))
+        first = next((k for k, (a, b) in pairs if a != b), min(len(before_words), len(now_words)))
+        other = now_words[first] if first < len(now_words) else "nothing"
+        return f"{len(before_words)} events before, {len(now_words)} now; number {first} is {other} now"
     if before.outputs != now.outputs:
         return f"{before.outputs} outputs before, {now.outputs} now"
     if before.held != now.held:
@@ -79,7 +79,7 @@ def _moments(outcome: Outcome) -> list[Moment]:
 
 
 def _scales(sizes: Sizes, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Of places and velocities (count,)."""
+    """Differences of places and velocities (count,)."""
     places, rates = sizes.of_bodies()
     return np.tile(places, count // 3), np.tile(rates, count // 3)
 

@@ -30,7 +30,7 @@ class Moment(msgspec.Struct):
     t: float
     """s"""
     q: list[float]
-    """Of each body, or of some of many: m, rad"""
+    """Numbers of each body, or of some of many: m, rad"""
     v: list[float]
     """m/s, rad/s"""
     forces: list[float]

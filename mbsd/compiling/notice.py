@@ -11,8 +11,8 @@ LOG = logging.getLogger("mbsd")
 PATIENCE = 3.0
 """s of one kernel before the notice."""
 SUBJECTS = {
-    "mbsd.dynamics.batch": ("batches of simulations", "a minute"),
-    "mbsd.dynamics.events": ("simulations with contacts, stops and events", "a minute"),
+    "mbsd.dynamics.batch": ("batches of simulations", "20 s"),
+    "mbsd.dynamics.events": ("simulations with contacts, stops and events", "20 s"),
     "mbsd.dynamics": ("simulations", "15 s"),
     "mbsd.derivatives": ("derivatives", "20 s"),
     "mbsd.kinematics": ("sweeps", "10 s"),

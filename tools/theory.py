@@ -70,7 +70,12 @@ SECTIONS = (
             "mbsd/dynamics/rows",
             "mbsd/dynamics/runs",
             "mbsd/dynamics/events",
+            "mbsd/dynamics/events/friction",
+            "mbsd/dynamics/events/sticking",
             "mbsd/dynamics/events/laws",
+            "mbsd/dynamics/events/users",
+            "mbsd/dynamics/repeated_rows",
+            "mbsd/dynamics/genevas",
         ),
     ),
     (

@@ -28,8 +28,8 @@ SKIPPED, TOUCHING, STAYING, TAKING, KEPT, RESTING = range(6)
 """Rows of Contacts.chosen."""
 (
     BEGUN, WHEN, AT_ONCE, MET, LOAD, START, LENGTH, WHERE, BEYOND, FAILURE, SHARING, PENDING, ACTED, PAUSES, LOGGED,
-    ENERGY, WHICH, METHOD, TRYING,
-) = range(19)  # fmt: skip
+    ENERGY, WHICH, METHOD, TRYING, DIVIDES,
+) = range(20)  # fmt: skip
 """Entries of Contacts.clock: NOT_BEGUN, BEGUN_NOW or RESUMED; time of the last event (s), events at that time, events
 so far; the largest load; the step's start and length (s); where in it something was met, and a part where it is beyond;
 the status with which a step to some time within it failed; whether what is at rest shares its forces: APART, JOINTS
@@ -37,7 +37,8 @@ among themselves, or joints and contacts TOGETHER; 1 + the row or event that is 
 1 once a Python action has changed the state there; NEVER, AFTER or BEFORE_AND_AFTER, when the loop returns at events;
 rows of Contacts.log in use; kinetic energy (J) that the last impacts added; 1 + the row or event that happened last, 0
 where it passed zero the other way; the number of the integrator, OUTSIDE for one in Python; 1 while a step to some time
-is tried."""
+is tried; 1 where what is at rest may always share its forces: with friction of joints, or of contacts that lose some
+once they slide."""
 NOT_BEGUN, BEGUN_NOW, RESUMED = 0.0, 1.0, 2.0
 NEVER, AFTER, BEFORE_AND_AFTER = 0.0, 1.0, 2.0
 OUTSIDE = -1.0
@@ -156,7 +157,7 @@ class Contacts(NamedTuple):
     number: Any
     """(c, 9)"""
     clock: Any
-    """(19,)"""
+    """(20,)"""
     before: Any
     """mbsd.dynamics.state.State: where the step began."""
     trial: Any

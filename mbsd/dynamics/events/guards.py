@@ -19,14 +19,17 @@ import math
 
 from mbsd.compiling.jit import apart, internal, merged
 from mbsd.dynamics.events.arrays import (
+    APART,
     BEYOND,
     CLOSED,
     CLUTCH,
+    DIVIDES,
     FAILURE,
     KIND,
     LENGTH,
     PARTS,
     ROW,
+    SHARING,
     SIGN,
     START,
     STATIC,
@@ -97,7 +100,7 @@ def _values(dyn, scratch, contacts, y, forces):
             contacts.vector[VALUE, count + w] = friction.number[w, STATIC] * normal - abs(contacts.lam[row])
         else:
             contacts.vector[VALUE, count + w] = contacts.number[count + w, SIGN] * along(dyn, scratch, row, y[1])
-    if contacts.sticks.vector.shape[1] > 0:
+    if contacts.clock[DIVIDES] > 0.0 or contacts.clock[SHARING] != APART:
         read_ways(dyn, scratch, contacts, y, forces)
 
 

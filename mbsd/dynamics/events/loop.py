@@ -18,11 +18,13 @@ from mbsd.compiling.jit import inlined, internal, kernel, lazy
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.events.arrays import (
     ACTED,
+    APART,
     AT_ONCE,
     BEFORE_AND_AFTER,
     BEGUN,
     BEGUN_NOW,
     CLOSED,
+    DIVIDES,
     ENERGY,
     FAILURE,
     GAP,
@@ -43,6 +45,7 @@ from mbsd.dynamics.events.arrays import (
     WHICH,
 )
 from mbsd.dynamics.events.following import advance_to
+from mbsd.dynamics.events.friction.decisions import one_by_one
 from mbsd.dynamics.events.guards import fit
 from mbsd.dynamics.events.jumps import resolve
 from mbsd.dynamics.events.rows import any_held, hold_rows, without_contacts
@@ -93,8 +96,10 @@ def _resolve(dyn, scratch, contacts, state, met):
     contacts.clock[FAILURE] = 0.0
     if contacts.place.shape[0] == 0:
         return True
-    if contacts.sticks.vector.shape[1] > 0:  # friction of joints, or contacts that lose some once they slide
+    again = contacts.friction.gap.shape[0] > 1 and not one_by_one(contacts)  # contacts come to their limits without end
+    if contacts.clock[DIVIDES] > 0.0 or again:
         return resolve_friction(dyn, scratch, contacts, state, met)
+    contacts.clock[SHARING] = APART
     return resolve(dyn, scratch, contacts, state, met)
 
 

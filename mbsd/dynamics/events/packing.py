@@ -10,6 +10,7 @@ from mbsd.arrays.curve_branches import CURVES
 from mbsd.dynamics.events.arrays import (
     BASIS,
     CLUTCH,
+    DIVIDES,
     FRICTION,
     GAP,
     GIVES,
@@ -24,7 +25,6 @@ from mbsd.dynamics.events.arrays import (
     SHIFT,
     SLIDE,
     STATIC,
-    TRYING,
     WAY,
     Contacts,
     Curves,
@@ -77,7 +77,8 @@ def contacts_of(
 
     bare = _without(ready, events)
     number = None if method is None else number_of(method)
-    clock = np.zeros(TRYING + 1)
+    clock = np.zeros(DIVIDES + 1)
+    clock[DIVIDES] = c > 0 and _divides(ready)
     clock[METHOD] = OUTSIDE if number is None else number
 
     def another() -> State:
@@ -148,8 +149,7 @@ def _numbers(ready: PreparedDynamics) -> list[tuple[float, ...]]:
 
 def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Sticks:
     frictions = len(ready.dynamics.loads.friction) if c else 0
-    losing = any(contact.static_friction > contact.friction for _, contact in _rough(ready))
-    own = c if frictions or losing else 0
+    own = c if _divides(ready) or len(_rough(ready)) > 1 else 0
     return Sticks(
         np.arange(c - len(ready.sticks), c),
         np.zeros((GIVES + 1, own)),
@@ -163,6 +163,12 @@ def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Sticks:
         division_of(own),
         together_of(own),
     )
+
+
+def _divides(ready: PreparedDynamics) -> bool:
+    """Return True if joints have friction beside contacts, or contacts lose some once they slide."""
+    losing = any(contact.static_friction > contact.friction for _, contact in _rough(ready))
+    return losing or bool(len(ready.dynamics.loads.friction))
 
 
 def _friction_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Friction:

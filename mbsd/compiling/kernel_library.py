@@ -55,7 +55,7 @@ class KernelLibrary(JITCodeLibrary):
     def __init__(self, codegen: Any, name: str) -> None:
         super().__init__(codegen, name)
         self.only_linked = False
-        """Whether it is linked into its callers and never run itself."""
+        """True if it is linked into its callers and never run itself."""
         self.apart: Apart | None = None
         """What this library is to its callers, if it is not linked into them."""
         self.calls: dict[str, Apart] = {}

@@ -142,7 +142,7 @@ class KernelCompiler(compiler.Compiler):
     """numba's pipeline but for names and inlining."""
 
     only_linked = False
-    """Whether callers contain what is compiled, and nobody else runs it."""
+    """Return True if callers contain the compiled kernel and nobody else runs it."""
 
     def define_pipelines(self) -> list[Any]:
         """One."""

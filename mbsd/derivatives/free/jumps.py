@@ -11,6 +11,7 @@ Leine, Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems (20
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -22,9 +23,13 @@ from mbsd.derivatives.free.guards import USER, End, Guard, guards_of, times_move
 from mbsd.derivatives.free.indexing import is_index
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import Variants, Variation
-from mbsd.dynamics.events.impacts import velocities_after
+from mbsd.dynamics.events.arrays import TOUCHING
+from mbsd.dynamics.events.jumps import strike
+from mbsd.dynamics.events.packing import contacts_of
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.reference.arrays import scratch_for
+from mbsd.dynamics.state import start_state
 from mbsd.numbers.names import with_value
 from mbsd.results.solution import Solution
 
@@ -205,3 +210,21 @@ def _jump(whole: Whole, sol: Solution, along: Along, row: int, ends: bool) -> Ju
     names = dict.fromkeys(event.name for event in here if event.what == "event")
     guards += [Guard(USER, name, event=users[name]) for name in names if is_index(users.get(name))]
     return Jump(whole, along, row, struck, guards, ends)
+
+
+def velocities_after(
+    ready: PreparedDynamics, t: float, q: np.ndarray, v: np.ndarray, names: Collection[str]
+) -> np.ndarray:
+    """Return velocities (3 nb,) after the impacts of contacts by name, at t (s) and q, v (3 nb,).
+
+    Raises ArithmeticError where no impulses are possible.
+    """
+    packed = ready.packed
+    state = start_state(np.stack([q, v]), len(packed.ws.phi), t)
+    contacts = contacts_of(ready, state, [], ready.end - ready.start, None)
+    for k, contact in enumerate(ready.switches.contacts):
+        contacts.chosen[TOUCHING, k] = contact.name in names
+    scratch = scratch_for(ready.dynamics, packed.ws, len(packed.motions), 1, (0, 0))
+    if not strike(ready.dynamics, scratch, contacts, t, state.y):
+        raise ArithmeticError(f"{packed.name}: at t = {t:.6g} s no impulses of contacts are possible")
+    return state.y[1]

@@ -48,7 +48,7 @@ class Designs:
 
     @cached_property
     def numbers(self) -> list[tuple[Varied, Number]]:
-        """What ``change`` does not take as a whole: places, numbers of laws."""
+        """Return numbers that ``change`` does not take as a whole: places, numbers of laws."""
         return [(each, each.number) for each in self.columns if each.number is not None]
 
     @cached_property

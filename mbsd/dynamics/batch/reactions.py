@@ -25,7 +25,7 @@ NEGLIGIBLE = 1e-9
 
 
 def shares(ready: PreparedDynamics) -> bool:
-    """Whether joints share loads in many ways, and those of least norm are meant.
+    """Return True if joints share loads in many ways, of which those of least norm are meant.
 
     Friction came from those of the rows that held.
     """
@@ -84,12 +84,12 @@ class Reactions:
         return run.ready.dynamics, run.run.scratch
 
     def of_rows(self, rows: range, out: Outputs, times: np.ndarray) -> Reacting:
-        """Those of rows that differ by numbers alone; see ``_filled`` for rows that are left out."""
+        """Return reactions of rows that differ by numbers alone; see ``_filled`` for rows that are left out."""
         assert self.patches is not None
         return self._filled(self.base.fresh, self.patches.place, self.patches(rows)[0], [self.run], out, times)
 
     def of_runs(self, runs: Sequence[SingleRun], out: Outputs, times: np.ndarray) -> Reacting:
-        """Those of runs that were prepared; see ``_filled`` for rows that are left out."""
+        """Return reactions of runs that were prepared; see ``_filled`` for rows that are left out."""
         fresh = np.array([content(self._arguments(run)) for run in runs])
         return self._filled(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), runs, out, times)
 

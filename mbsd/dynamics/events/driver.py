@@ -77,7 +77,7 @@ GOES_ON = (REACHED, PAUSED, FOUND, JUMPED, ACTING, OVER)
 
 
 class EventSteps:
-    """Steps from ``state``; what happened is in ``happenings``, points to go on from in ``snapshots``."""
+    """Steps of a simulation with events; ``happenings`` lists what happened, ``snapshots`` are points to go on from."""
 
     def __init__(
         self, ready: PreparedDynamics, run: Run, state: State, out: Output, events: list[Event], rows: bool = False
@@ -332,7 +332,7 @@ class EventSteps:
         warn(
             f"{self.packed.name}: event '{event.name}' changes too often to be looked at closely: {count} values "
             f"between t = {start:.6g} and {start + length:.6g} s do not tell how it goes, so that events may be "
-            "missed. Give shortest= (s), or how long the shortest thing in it lasts",
+            "missed. Give shortest= (s), how long the shortest thing in it lasts",
             ModelWarning,
         )
 

@@ -1,7 +1,7 @@
-"""Steps while wheels may run into each other, and points follow curves that cross themselves: prepare/following.py.
+"""Steps while wheels may run into each other, and points follow curves that cross themselves.
 
 A step takes two centres at most half their way to each other, and a foot no farther than its curve allows; where wheels
-meet, a single simulation says so.
+meet, the run ends and driver.py names them.
 """
 
 from __future__ import annotations

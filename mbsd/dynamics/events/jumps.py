@@ -1,4 +1,4 @@
-"""What changes where contacts close, open, slide or stick: impacts, then what each does from now on.
+"""Changes where contacts close, open, slide or stick: impacts, then the state of each from now on.
 
 By Poisson's law with Coulomb friction in both phases of an impact:
 
@@ -258,7 +258,7 @@ def _decide(dyn, scratch, contacts, t, y, touched):
 def resolve(dyn, scratch, contacts, state, met):
     """Impacts, and what contacts do from now on, after the scalar of row ``met`` fell through zero; -1: at the start.
 
-    Returns False where that is impossible, which a single simulation says.
+    Returns False where that is impossible; refusals.py says why.
     """
     count = contacts.place.shape[0]
     gaps = gaps_of(contacts)

@@ -15,7 +15,7 @@ WORN = 1e3
 
 
 def why_not(ready: PreparedDynamics) -> str | None:
-    """Why a mechanism whose joints repeat others is left to single simulations, or None."""
+    """Return why a mechanism whose joints repeat others does not go in a batch, or None."""
     if ready.switches.spare or not ready.dropped:
         return None
     return f"joints repeat others in a mechanism of {ready.packed.coordinates} coordinates; {MANY_COORDINATES} at most"

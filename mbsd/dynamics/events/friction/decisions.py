@@ -1,4 +1,4 @@
-"""Which contacts with friction slide from now on and which stick.
+"""Decisions of contacts with friction: slide or stick from now on.
 
 0 <= N complementary to g'' >= 0;   sliding: T = -mu N sign(s');   s' = 0: |T| <= mu_s N, s'' = 0 or against T
 """

@@ -110,7 +110,7 @@ def _set(dyn, scratch, contacts):
 def resolve_friction(dyn, scratch, contacts, state, met):
     """Impacts, and what contacts and joints do from now on, after row ``met`` came to an event; -1: at the start.
 
-    Returns False where that is impossible, or not decided here: a single simulation says why.
+    Returns False where that is impossible; refusals.py says why.
     """
     chosen = contacts.chosen
     v = state.y[1]

@@ -26,7 +26,7 @@ MOST = 20_000
 
 
 def why_not(events: Sequence[Event], longest: float) -> str | None:
-    """Why these events are left to single simulations, or None. ``longest``: of all steps (s)."""
+    """Return why these events do not go in a batch, or None. ``longest``: the longest step (s)."""
     for event in events:
         if _looks(event, longest) > MOST:
             return f"event '{event.name}': its shortest is less than 1/{MOST // 2} of the longest step"

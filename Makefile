@@ -334,9 +334,7 @@ schema: install ## write docs/schema/ from shared/contract/ and the solver's joi
 	@$(PYTHON) -m tools.schema
 	@$(PYTHON) -m mbsd.saving.schema docs/schema/model.schema.json
 
-docs: install ## docs/theory.md and the map of rooms from docstrings, pictures, the lecture's outputs, the site
-	@$(PYTHON) tools/theory.py
-	@$(PYTHON) tools/rooms.py
+docs: install ## the pictures of docs/, the lecture's outputs, the site
 	@$(PYTHON) -m tools.figures
 	@$(PYTHON) -m tools.lecture
 	@$(PYTHON) -m tools.site

@@ -16,11 +16,11 @@ def test_every_section_of_the_page_is_filled_from_its_sources() -> None:
     kept = (ROOT / PAGE).read_text()
     filled = with_equations(kept, ROOT)
     sections = re.split(r"^## ", filled, flags=re.MULTILINE)[1:]
-    assert len(sections) == kept.count("Sources: ") == len(re.findall(r"^## ", kept, re.MULTILINE)) > 10
+    assert len(sections) == kept.count("Sources: [") == len(re.findall(r"^## ", kept, re.MULTILINE)) > 10
     for section in sections:
         assert "\n### " in section
         assert "```text" in section
-    assert "Sources:" not in filled
+    assert "Sources: [" not in filled
     assert filled.startswith(kept.partition("Sources:")[0])
 
 
@@ -29,7 +29,7 @@ def test_a_source_is_shown_with_its_equations(tmp_path: Path) -> None:
     (tmp_path / "joints").mkdir()
     (tmp_path / "joints" / "pin.py").write_text('"""A pin.\n\n    x1 = x2\n    y1 = y2\n"""\n')
     (tmp_path / "joints" / "short.py").write_text('"""No equations."""\n')
-    page = "# T\n\n## Joints\n\nWords.\n\nSources: [joints](../joints), [pin](../joints/pin.py)\n"
+    page = "# T\n\n## Joints\n\nWords.\n\nSources: [joints](../joints)\n"
     assert with_equations(page, tmp_path) == (
         "# T\n\n## Joints\n\nWords.\n\n### Pin\n\nA pin.\n\n```text\nx1 = x2\ny1 = y2\n```\n\n`joints/pin.py`\n"
     )

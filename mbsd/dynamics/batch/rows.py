@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.events.loop import NOT_SOLVED, OVER, go_on
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.genevas.steps import index
 from mbsd.dynamics.integrators.advance import through
-from mbsd.dynamics.integrators.formulation import derivative
 from mbsd.dynamics.repeated_rows.exchange import again, opens
 from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, TIME, Output
 

@@ -48,17 +48,17 @@ from mbsd.dynamics.events.following import advance_to
 from mbsd.dynamics.events.friction.decisions import one_by_one
 from mbsd.dynamics.events.guards import fit
 from mbsd.dynamics.events.jumps import resolve
-from mbsd.dynamics.events.rows import any_held, hold_rows, without_contacts
+from mbsd.dynamics.events.rows import any_held, hold_rows
 from mbsd.dynamics.events.search import event_time, first_met
 from mbsd.dynamics.events.sticking.jumps import resolve_friction
 from mbsd.dynamics.events.sticking.ways import share_here, share_outputs
 from mbsd.dynamics.events.user_actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
 from mbsd.dynamics.events.users.values import begin_sides, find_sides, first_reached
+from mbsd.dynamics.formulation import begin_run, measure, without_contacts
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state, cross
 from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.dynamics.reference.projection import measure
 from mbsd.dynamics.repeated_rows.exchange import hold_independent, look
-from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, begin, record_here
+from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, record_here
 
 NOT_SOLVED = -7
 """Status of rows with an event at which nothing is possible."""
@@ -78,7 +78,7 @@ def _restart(dyn, scratch, contacts, state):
     """Forget the derivative, which belongs to the motion before."""
     state.count[STARTED] = 0
     state.clock[STEP] = 0.0
-    begin(dyn, scratch, state)
+    begin_run(dyn, scratch, state)
     load = 1e-300
     for c in range(3, dyn.weight.shape[0]):
         load = max(load, abs(dyn.weight[c]))
@@ -86,7 +86,7 @@ def _restart(dyn, scratch, contacts, state):
         load = max(load, abs(state.lam[r]))
     contacts.clock[LOAD] = load
     if contacts.events.table.shape[0] > 0:
-        find_sides(contacts.events, state)
+        find_sides(dyn, contacts.events, state)
 
 
 @internal
@@ -104,10 +104,10 @@ def _resolve(dyn, scratch, contacts, state, met):
 
 
 @internal
-def _find_reached(contacts, state):
+def _find_reached(dyn, contacts, state):
     """Let the first event happen next whose value has come to zero and stays there."""
     if contacts.events.table.shape[0] > 0:
-        reached = first_reached(contacts.events, state)
+        reached = first_reached(dyn, contacts.events, state)
         if reached >= 0:
             contacts.clock[PENDING] = 1.0 + contacts.place.shape[0] + reached
 
@@ -128,7 +128,7 @@ def _begin(dyn, scratch, contacts, state):
     if not _resolve(dyn, scratch, contacts, state, -1):
         return False
     _restart(dyn, scratch, contacts, state)
-    _find_reached(contacts, state)
+    _find_reached(dyn, contacts, state)
     return True
 
 
@@ -175,9 +175,9 @@ def _step(dyn, scratch, state, settings, contacts, out, end, before, after):
         look(dyn, scratch, contacts.repeated, state, 1)
     own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
     cross(state, before, after)
-    begin(own, scratch, state)
+    begin_run(own, scratch, state)
     if contacts.events.table.shape[0] > 0:
-        find_sides(contacts.events, state)
+        find_sides(dyn, contacts.events, state)
     copy_state(contacts.before, state)
     status = advance_to(own, scratch, state, out, settings, contacts, end, 1, before, after)
     if status != REACHED and status != PAUSED:
@@ -185,7 +185,7 @@ def _step(dyn, scratch, state, settings, contacts, out, end, before, after):
     met = -1
     contacts.clock[FAILURE] = 0.0
     if state.clock[TIME] > contacts.before.clock[TIME]:
-        fit(contacts, state)
+        fit(dyn, contacts, state)
         contacts.trial.clock[TIME] = -math.inf
         met = first_met(dyn, scratch, state, settings, contacts, out, before, after)
     if met >= 0:
@@ -197,7 +197,7 @@ def _step(dyn, scratch, state, settings, contacts, out, end, before, after):
         return int(contacts.clock[FAILURE])
     if met < 0:
         return REACHED if status == REACHED and state.clock[TIME] >= end else PAUSED
-    begin(own, scratch, state)
+    begin_run(own, scratch, state)
     contacts.clock[PENDING] = 1.0 + met
     return FOUND
 
@@ -230,7 +230,7 @@ def _jump(dyn, scratch, state, contacts, out):
         if not _resolve(dyn, scratch, contacts, state, met if met < count else -1):
             return NOT_SOLVED
     _restart(dyn, scratch, contacts, state)
-    _find_reached(contacts, state)
+    _find_reached(dyn, contacts, state)
     return JUMPED
 
 

@@ -34,22 +34,20 @@ from mbsd.dynamics.events.arrays import (
 )
 from mbsd.dynamics.events.bounds import LESS
 from mbsd.dynamics.events.guards import (
-    along,
     at_state,
     beyond_time,
-    measure_gaps,
     of_motion,
     on_quintic,
     sample,
     stand_at,
 )
 from mbsd.dynamics.events.roots import MOST_ROOTS, SAMPLES, dips_before, may_dip, root_between
-from mbsd.dynamics.events.rows import gaps_of
+from mbsd.dynamics.events.rows import gaps_of, read_gaps
 from mbsd.dynamics.events.user_search import first_event
 from mbsd.dynamics.events.users.arrays import SIDE
 from mbsd.dynamics.events.users.values import rounding_of
+from mbsd.dynamics.formulation import along, derivative
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.state import TIME
 
 CHANCE = 15
@@ -74,11 +72,11 @@ def _leaves(dyn, scratch, contacts, k):
     """
     row = contacts.place[k, ROW]
     rest = -contacts.number[k, REST]
-    t = stand_at(contacts, 1.0)
-    measure_gaps(dyn, scratch, t, contacts.pose[0])
+    t = stand_at(dyn, contacts, 1.0)
+    read_gaps(dyn, scratch, t, contacts.pose[0])
     if not along(dyn, scratch, row, contacts.pose[1]) > rest:
         return False
-    t = stand_at(contacts, 0.0)
+    t = stand_at(dyn, contacts, 0.0)
     derivative(dyn, scratch, t, contacts.pose, contacts.rates, contacts.lam)
     if not along(dyn, scratch, row, contacts.pose[1]) > rest:
         return False

@@ -16,8 +16,8 @@ Source: Andersen 1983, J. Comput. Phys. 52; Hairer, Lubich, Wanner, Geometric Nu
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel
+from mbsd.dynamics.formulation import begin_run, derivative
 from mbsd.dynamics.integrators.kind import Integrator, register, without_sliding
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.projection import LIFT
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.dynamics.state import (
@@ -30,7 +30,6 @@ from mbsd.dynamics.state import (
     REACHED,
     TIME,
     WORK,
-    begin,
     fixed_step,
     record_here,
 )
@@ -211,7 +210,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
 def march(dyn, scratch, state, out, settings, end, max_steps, parts):
     """``advance`` by RATTLE (1 part) or by its composition of order 4 (5 parts)."""
     y = state.y
-    begin(dyn, scratch, state)
+    begin_run(dyn, scratch, state)
     power = _stand(dyn, scratch, state.clock[TIME], y)
     fresh = True
     accepted = 0

@@ -13,9 +13,8 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, kernel
+from mbsd.dynamics.formulation import begin_run, close_step, derivative
 from mbsd.dynamics.integrators.kind import Integrator, register
-from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.projection import close_step
 from mbsd.dynamics.state import (
     ACCEPTED,
     EVALUATIONS,
@@ -27,7 +26,6 @@ from mbsd.dynamics.state import (
     REACHED,
     TIME,
     WORK,
-    begin,
     fixed_step,
     record_here,
 )
@@ -42,7 +40,7 @@ def march(dyn, scratch, state, out, settings, end, max_steps, projected):
     k = scratch.stages
     trial = scratch.state
     n3 = y.shape[1]
-    begin(dyn, scratch, state)
+    begin_run(dyn, scratch, state)
     accepted = 0
     while True:
         t = state.clock[TIME]

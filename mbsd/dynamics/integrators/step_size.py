@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, inlined
-from mbsd.dynamics.integrators.formulation import derivative
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.state import EVALUATIONS, TIME
 
 WITHIN = 1e-3

@@ -19,9 +19,9 @@ import math
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, inlined, internal, lazy
 from mbsd.dynamics.embedding.arrays import Embedding
+from mbsd.dynamics.formulation import measure, push
 from mbsd.dynamics.integrators.advance import through
 from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.dynamics.reference.projection import measure
 from mbsd.dynamics.repeated_rows.arrays import (
     BETTER,
     BLOCK,
@@ -60,10 +60,9 @@ def find_rows(dyn, scratch, repeated, t, q):
         row = repeated.place[i, ROW]
         for c in range(jac.shape[1]):
             jac[i, c] = 0.0
-        for side in range(2):
-            at = 3 * dyn.system.row_body[row, side]
-            for c in range(3):
-                jac[i, at + c] += scratch.ws.jac[row, 3 * side + c] * repeated.number[i, SCALE] * size[at + c]
+        push(dyn, scratch, row, repeated.number[i, SCALE], jac[i])
+        for c in range(jac.shape[1]):
+            jac[i, c] *= size[c]
 
 
 @apart

@@ -44,7 +44,7 @@ from mbsd.dynamics.events.friction.pushes import solve_with_friction
 from mbsd.dynamics.events.friction.resting import find_resting, gives, holds
 from mbsd.dynamics.events.jumps import FAINT
 from mbsd.dynamics.events.laws.division import divide
-from mbsd.dynamics.events.rows import along, gaps_of
+from mbsd.dynamics.events.rows import gaps_of
 from mbsd.dynamics.events.sticking.answers import stand
 from mbsd.dynamics.events.sticking.giving_way import (
     begin_giving,
@@ -56,7 +56,7 @@ from mbsd.dynamics.events.sticking.giving_way import (
 )
 from mbsd.dynamics.events.sticking.sharing import limit_of
 from mbsd.dynamics.events.sticking.together import divide_together
-from mbsd.dynamics.reference.refinement import respond
+from mbsd.dynamics.formulation import along, respond
 from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import FAINT as FAINT_LOAD
 from mbsd.equations.joint_friction import MOST_PASSES, SENSE, SETTLED, X, apply_friction, normal_forces

@@ -14,8 +14,7 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.arrays import BASIS, FOUND, NOW
-from mbsd.dynamics.events.rows import along
-from mbsd.dynamics.reference.refinement import respond
+from mbsd.dynamics.formulation import along, respond
 from mbsd.dynamics.reference.sliding import slide
 from mbsd.equations.gauss import eliminate
 from mbsd.equations.joint_friction import apply_friction, normal_forces

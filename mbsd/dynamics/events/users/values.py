@@ -8,6 +8,7 @@ from mbsd.compiling.callback import call
 from mbsd.compiling.jit import apart, internal, lazy
 from mbsd.dynamics.events.bounds import AHEAD, BEYOND
 from mbsd.dynamics.events.users.arrays import FIRST, FRAMES, LEVEL, SIDE, VALUE, WHOLE
+from mbsd.dynamics.formulation import bends
 from mbsd.dynamics.state import TIME
 
 
@@ -78,21 +79,23 @@ def _side(events, e, t, y):
 
 
 @apart
-def _side_ahead(events, e, t, y, a):
-    """The sign that an event whose value is zero has next; 0 if it stays zero. a: accelerations (3 nb,)."""
+def _side_ahead(dyn, events, e, t, y, dy):
+    """Return the sign that an event whose value is zero has next; 0 if it stays zero. dy (2, n) is d(y)/dt."""
     side = _side(events, e, t, y)
     if side != 0.0:
         return side
     rounding = rounding_of(events, e, t, y, 1.0)
     pose = events.pose
+    bend = events.bend
+    bends(dyn, y, dy, bend)
     last = AHEAD[-1] * events.span[0]
     for k in range(len(AHEAD) + len(BEYOND)):
         s = AHEAD[k] * events.span[0] if k < len(AHEAD) else BEYOND[k - len(AHEAD)]
         if k >= len(AHEAD) and s <= last:
             continue
         for c in range(pose.shape[1]):
-            pose[0, c] = y[0, c] + s * y[1, c] + s * s / 2 * a[c]
-            pose[1, c] = y[1, c] + s * a[c]
+            pose[0, c] = y[0, c] + s * dy[0, c] + s * s / 2 * bend[c]
+            pose[1, c] = y[1, c] + s * dy[1, c]
         ahead = value_of(events, e, t + s, pose[0], pose[1])
         if abs(ahead) > 10.0 * rounding:
             return 1.0 if ahead > 0.0 else -1.0
@@ -100,20 +103,20 @@ def _side_ahead(events, e, t, y, a):
 
 
 @lazy(int)
-def first_reached(events, state):
-    """The first event that is watched and whose value has come to zero and stays there, as _meet_reached; -1: none."""
+def first_reached(dyn, events, state):
+    """Return the first event that is watched and whose value has come to zero and stays there; -1: none."""
     for e in range(events.table.shape[0]):
         if events.number[e, SIDE] == 0.0:
             continue
-        if _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1]) == 0.0:
+        if _side_ahead(dyn, events, e, state.clock[TIME], state.y, state.dy) == 0.0:
             return e
     return -1
 
 
 @internal
-def turn_side(events, e, state):
-    """The side of an event that has just passed zero: none where its value stays there."""
-    stays = _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1]) == 0.0
+def turn_side(dyn, events, e, state):
+    """Turn the side of an event that has just passed zero; none where its value stays there."""
+    stays = _side_ahead(dyn, events, e, state.clock[TIME], state.y, state.dy) == 0.0
     events.number[e, SIDE] = 0.0 if stays else -events.number[e, SIDE]
 
 
@@ -125,8 +128,8 @@ def begin_sides(events, state):
 
 
 @lazy(None)
-def find_sides(events, state):
-    """To which side those go that are zero; none of those that stay so."""
+def find_sides(dyn, events, state):
+    """Find to which side events go that are zero; none where they stay so."""
     for e in range(events.table.shape[0]):
         if events.number[e, SIDE] == 0.0:
-            events.number[e, SIDE] = _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1])
+            events.number[e, SIDE] = _side_ahead(dyn, events, e, state.clock[TIME], state.y, state.dy)

@@ -12,8 +12,8 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import inlined, lazy
+from mbsd.dynamics.formulation import bends, derivative
 from mbsd.dynamics.integrators.dop853.dense import interpolant, interpolate
-from mbsd.dynamics.integrators.formulation import derivative
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
 from mbsd.dynamics.integrators.step_size import allowed
 from mbsd.dynamics.state import EVALUATIONS, TIME
@@ -75,6 +75,8 @@ def step_after(dyn, scratch, state, settings, t):
     trial = scratch.dense[7]
     gain = scratch.stages[LANDED]
     changed = scratch.stages[15]
+    bend_of = scratch.dense[6, 0]
+    bends(dyn, y, gain, bend_of)
     reach = REACH * settings.relative**0.125
     h = settings.longest
     wanted = h
@@ -83,7 +85,7 @@ def step_after(dyn, scratch, state, settings, t):
         way = 0.0
         bend = 0.0
         for c in range(3, y.shape[1]):
-            trial[0, c] = y[0, c] + h * (y[1, c] + 0.5 * h * gain[1, c])
+            trial[0, c] = y[0, c] + h * (gain[0, c] + 0.5 * h * bend_of[c])
             trial[1, c] = y[1, c] + h * gain[1, c]
             way += ((trial[0, c] - y[0, c]) / settings.absolute[0, c]) ** 2
         power = derivative(dyn, scratch, t + h, trial, changed, scratch.multipliers)

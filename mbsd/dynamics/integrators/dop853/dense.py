@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal, lazy
+from mbsd.dynamics.formulation import derivative, join_rows, keep_row, record, record_all
 from mbsd.dynamics.integrators.dop853.tableau import A, C, D
-from mbsd.dynamics.integrators.formulation import derivative, join_rows, keep_row, record, record_all
 from mbsd.dynamics.state import NEXT, TIME, WORK
 
 BESIDE = 1e-3

@@ -22,10 +22,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from mbsd.dynamics.formulation import derivative, project, record_output
 from mbsd.dynamics.integrators.kind import Option
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, Scratch
-from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.state import (
     ACCEPTED,
     EVALUATIONS,
@@ -42,7 +41,6 @@ from mbsd.dynamics.state import (
     Output,
     Settings,
     State,
-    record,
     record_here,
 )
 
@@ -179,7 +177,7 @@ def _march(scratch: Scratch, stepper: Stepper, rates: Rates, state: State, out: 
         while state.count[NEXT] < len(out.t) and out.t[state.count[NEXT]] < state.clock[TIME]:
             y = stepper.between(float(out.t[state.count[NEXT]]))
             scratch.state[:, 3:] = y[:-1].reshape(2, -1)
-            record(rates.dyn, scratch, out, state.count[NEXT], y[-1])
+            record_output(rates.dyn, scratch, out, state.count[NEXT], y[-1])
             rates.count += 1
             state.count[NEXT] += 1
         if done:

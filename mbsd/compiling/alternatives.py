@@ -26,8 +26,9 @@ _ADDED: dict[type, set[str]] = {}
 class Alternatives:
     """Kernels by the class of their first argument."""
 
-    def __init__(self, kernels: Mapping[type, Any]) -> None:
-        self.kernels = dict(kernels)
+    def __init__(self, kernels: Mapping[type, Any], otherwise: Any = None) -> None:
+        """``otherwise``: the kernel of all classes that have none of their own."""
+        self.kernels, self.otherwise = dict(kernels), otherwise
 
     def __call__(self, first: Any, *rest: Any) -> Any:
         """Call the kernel of the first argument's class, where nothing is compiled."""
@@ -43,15 +44,15 @@ class Alternatives:
 
     def kernel_of(self, kind: type) -> Any:
         """Return the kernel of a class; raises TypeError where there is none."""
-        if kind not in self.kernels:
+        if kind not in self.kernels and self.otherwise is None:
             names = ", ".join(known.__name__ for known in self.kernels)
             raise TypeError(f"there is no kernel for {kind.__name__}, only for {names}")
-        return self.kernels[kind]
+        return self.kernels.get(kind, self.otherwise)
 
 
-def alternatives(kernels: Mapping[type, Any]) -> Any:
-    """Return a name for kernels by the class of their first argument."""
-    return Alternatives(kernels)
+def alternatives(kernels: Mapping[type, Any], otherwise: Any = None) -> Any:
+    """Return a name for kernels by the class of their first argument, and for one that serves all other classes."""
+    return Alternatives(kernels, otherwise)
 
 
 def kernel_for(name: Any, arguments: Sequence[Any]) -> Any:

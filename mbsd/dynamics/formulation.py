@@ -129,17 +129,17 @@ def _differentiate(dyn, scratch, t, state, out, lam):
 
 accelerate = alternatives({Dynamics: acceleration.accelerate, Embedding: equations.accelerate})
 project = alternatives({Dynamics: projection.project, Embedding: _stay})
-derivative = alternatives({Dynamics: _differentiate, Embedding: equations.derivative})
-rates = alternatives({Dynamics: _copy_velocities, Embedding: _copy_velocities})
-bends = alternatives({Dynamics: _copy_accelerations, Embedding: _copy_accelerations})
-speeds = alternatives({Dynamics: _keep_rate})
-shift = alternatives({Dynamics: _shift})
-settle = alternatives({Dynamics: _settle, Embedding: equations.settle})
-record = alternatives({Dynamics: _record, Embedding: records.record})
-record_all = alternatives({Dynamics: _record, Embedding: records.record_all})
-keep_row = alternatives({Dynamics: _keep_row, Embedding: records.keep_row})
-join_rows = alternatives({Dynamics: _join_rows, Embedding: records.join_rows})
-record_here = alternatives({Dynamics: _record_here, Embedding: records.record_here})
+derivative = alternatives({Embedding: equations.derivative}, _differentiate)
+rates = alternatives({}, _copy_velocities)
+bends = alternatives({}, _copy_accelerations)
+speeds = alternatives({}, _keep_rate)
+shift = alternatives({}, _shift)
+settle = alternatives({Embedding: equations.settle}, _settle)
+record = alternatives({Embedding: records.record}, _record)
+record_all = alternatives({Embedding: records.record_all}, _record)
+keep_row = alternatives({Embedding: records.keep_row}, _keep_row)
+join_rows = alternatives({Embedding: records.join_rows}, _join_rows)
+record_here = alternatives({Embedding: records.record_here}, _record_here)
 measure = alternatives({Dynamics: projection.measure})
 measure_gaps = alternatives({Dynamics: rows.measure_gaps})
 along = alternatives({Dynamics: rows.along})
@@ -153,28 +153,17 @@ _WORDS: dict[str, Alternatives] = {
 
 
 def add_formulation(kind: type, **kernels: Any) -> None:
-    """Add a class of named tuples with its kernels by word; words that are left out and have a default are the plane's.
+    """Add a class of named tuples with its kernels by word; words that have a default may be left out.
 
-    Raises TypeError for an unknown word, or one without a default that is missing.
+    Raises TypeError for an unknown word or a missing one, and ValueError for a class that was added before.
     """
-    unknown = [name for name in kernels if name not in _WORDS]
-    missing = [name for name in ("accelerate", "project") if name not in kernels]
-    if unknown or missing:
-        raise TypeError(f"{kind.__name__}: no word {', '.join(unknown)}" if unknown else f"no {', '.join(missing)}")
-    defaults = {
-        "derivative": _differentiate,
-        "rates": _copy_velocities,
-        "bends": _copy_accelerations,
-        "speeds": _keep_rate,
-        "shift": _shift,
-        "settle": _settle,
-        "record": _record,
-        "record_all": _record,
-        "keep_row": _keep_row,
-        "join_rows": _join_rows,
-        "record_here": _record_here,
-    }
-    for name, kernel in (defaults | kernels).items():
+    for name in kernels:
+        if name not in _WORDS:
+            raise TypeError(f"{kind.__name__}: there is no word '{name}'")
+    for name in ("accelerate", "project"):
+        if name not in kernels:
+            raise TypeError(f"{kind.__name__}: '{name}' is missing")
+    for name, kernel in kernels.items():
         _WORDS[name].add(kind, kernel)
 
 

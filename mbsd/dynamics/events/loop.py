@@ -56,7 +56,6 @@ from mbsd.dynamics.events.user_actions import ACTS, ENDED, HAPPENED, PASSED, fin
 from mbsd.dynamics.events.users.values import begin_sides, find_sides, first_reached
 from mbsd.dynamics.formulation import begin_run, measure, without_contacts
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state, cross
-from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.repeated_rows.exchange import hold_independent, look
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, record_here
 
@@ -281,7 +280,7 @@ def _none(dyn, scratch, state, settings, contacts, out, end, steps, before, afte
     return NOT_SOLVED
 
 
-go_on = alternatives({Dynamics: _meet, Embedding: _none})
+go_on = alternatives({Embedding: _none}, _meet)
 """Go on to ``end`` (s), ``steps`` steps at most, meeting events; returns a status of ``advance``, or one of these."""
 
 

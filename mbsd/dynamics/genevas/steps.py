@@ -28,7 +28,6 @@ from mbsd.dynamics.genevas.arrays import (
     WHEEL,
 )
 from mbsd.dynamics.integrators.advance import USUAL, copy_state, through
-from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import ACCEPTED, ERROR, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK
 
 SHORT = 1e-3
@@ -278,7 +277,7 @@ def _never(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
     return PAUSED
 
 
-index = alternatives({Dynamics: _never, Embedding: _index_here})
+index = alternatives({Embedding: _index_here}, _never)
 """``through`` by the usual integrator, from jump to jump of Genevas; never in reference coordinates."""
 
 

@@ -14,7 +14,6 @@ from mbsd.dynamics.integrators.dop853.loop import DOP853
 from mbsd.dynamics.integrators.dop853.loop import advance as advance_dop853
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.integrators.radau import loop as radau
-from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STARTED, STEP, TIME
 
 INTEGRATORS = (
@@ -94,7 +93,7 @@ def _usual(dyn, scratch, state, out, settings, end, most, method):
     return advance_dop853(dyn, scratch, state, out, settings, end, most)
 
 
-advance = alternatives({Dynamics: _by_number, Embedding: _usual})
+advance = alternatives({Embedding: _usual}, _by_number)
 """advance(dyn, scratch, state, out, settings, end, most, method): as an integrator's own, with its number behind."""
 
 

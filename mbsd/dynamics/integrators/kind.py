@@ -50,6 +50,8 @@ class Integrator:
     """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/reference/full_matrix.py)."""
     independent: bool = False
     """Whether ``advance`` integrates independent coordinates as well: ``dyn`` is then an Embedding."""
+    general: bool = False
+    """Whether ``advance`` steps q' = N(q) v of any formulation; the others step q' = v."""
     refusal: Callable[[Dynamics], str | None] = lambda dynamics: None
     """Why this method cannot simulate a mechanism, or None."""
     meets_switches: bool = False

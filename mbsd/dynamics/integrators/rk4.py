@@ -88,4 +88,4 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     return march(dyn, scratch, state, out, settings, end, max_steps, True)
 
 
-RK4 = register(Integrator("rk4", advance, STAGES, order=4, fixed_step=True))
+RK4 = register(Integrator("rk4", advance, STAGES, order=4, fixed_step=True, general=True))

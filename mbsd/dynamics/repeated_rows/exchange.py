@@ -21,7 +21,6 @@ from mbsd.compiling.jit import apart, inlined, internal, lazy
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.formulation import measure, push
 from mbsd.dynamics.integrators.advance import through
-from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.repeated_rows.arrays import (
     BETTER,
     BLOCK,
@@ -255,9 +254,9 @@ def _go_again(dyn, scratch, state, out, settings, repeated, end, steps, before, 
     return _again(dyn, scratch, state, out, settings, repeated, end, steps, before, after, method)
 
 
-again = alternatives({Dynamics: _go_again, Embedding: _never})
+again = alternatives({Embedding: _never}, _go_again)
 """``through``, with a look at the rows now and then; never in independent coordinates."""
-opens = alternatives({Dynamics: _opens_where, Embedding: _no_row_opens})
+opens = alternatives({Embedding: _no_row_opens}, _opens_where)
 """Whether a row that did not hold once is open in one of the outputs ``first`` to ``end`` (left out)."""
 
 

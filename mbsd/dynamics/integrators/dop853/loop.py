@@ -268,6 +268,7 @@ DOP853 = register(
         order=8,
         fixed_step=False,
         independent=True,
+        general=True,
         meets_switches=True,
     )
 )

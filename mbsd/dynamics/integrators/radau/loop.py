@@ -238,4 +238,6 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         refused = False
 
 
-RADAU = register(Integrator("radau", advance, STAGES, order=5, fixed_step=False, matrices=(4, 2), refusal=too_large))
+RADAU = register(
+    Integrator("radau", advance, STAGES, order=5, fixed_step=False, general=True, matrices=(4, 2), refusal=too_large)
+)

@@ -67,7 +67,6 @@ SECTIONS = (
             "mbsd/dynamics/prepare",
             "mbsd/dynamics/reference",
             "mbsd/dynamics/start",
-            "mbsd/dynamics/rows",
             "mbsd/dynamics/runs",
             "mbsd/dynamics/events",
             "mbsd/dynamics/events/friction",

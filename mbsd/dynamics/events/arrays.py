@@ -138,6 +138,19 @@ class Sticks(NamedTuple):
     """mbsd.dynamics.events.laws.least_part.Together, of c rows."""
 
 
+class Stepping(NamedTuple):
+    """What steps need beside a state: tolerances, outputs, and the times of jumps."""
+
+    settings: Any
+    """mbsd.dynamics.state.Settings"""
+    out: Any
+    """mbsd.dynamics.state.Output"""
+    before: Any
+    """(j,) times (s) right before loads or laws jump, rising."""
+    after: Any
+    """(j,) times right after."""
+
+
 class Outside(NamedTuple):
     """An integrator in Python, which the loop calls where METHOD is OUTSIDE."""
 

@@ -157,15 +157,15 @@ def at_state(dyn, scratch, contacts, state, k):
 
 
 @apart
-def of_motion(dyn, scratch, settings, contacts, out, before, after, k, t):
+def of_motion(dyn, scratch, contacts, stepping, k, t):
     """The same at a time (s) within the step, by the motion itself; not a number where it gets nowhere."""
     trial = contacts.trial
     copy_state(trial, contacts.before)
     if t > trial.clock[TIME]:
-        trial.count[NEXT] = out.t.shape[0]
+        trial.count[NEXT] = stepping.out.t.shape[0]
         own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
         contacts.clock[TRYING] = 1.0
-        status = advance_to(own, scratch, trial, out, settings, contacts, t, NO_LIMIT, before, after)
+        status = advance_to(own, scratch, trial, contacts, stepping, t, NO_LIMIT)
         contacts.clock[TRYING] = 0.0
         if status != REACHED:
             contacts.clock[FAILURE] = status

@@ -43,6 +43,7 @@ from mbsd.dynamics.events.arrays import (
     SHARING,
     WHEN,
     WHICH,
+    Stepping,
 )
 from mbsd.dynamics.events.following import advance_to
 from mbsd.dynamics.events.friction.decisions import one_by_one
@@ -52,7 +53,7 @@ from mbsd.dynamics.events.rows import any_held, hold_rows
 from mbsd.dynamics.events.search import event_time, first_met
 from mbsd.dynamics.events.sticking.jumps import resolve_friction
 from mbsd.dynamics.events.sticking.ways import share_here, share_outputs
-from mbsd.dynamics.events.user_actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
+from mbsd.dynamics.events.users.actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
 from mbsd.dynamics.events.users.values import begin_sides, find_sides, first_reached
 from mbsd.dynamics.formulation import begin_run, measure, without_contacts
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state, cross
@@ -142,17 +143,18 @@ def _has_room(contacts, t):
 
 
 @internal
-def _go_to(own, scratch, state, settings, contacts, out, t, before, after):
+def _go_to(own, scratch, state, contacts, stepping, t):
     """Bring the state to the time t (s) within its step, at which contacts.trial often stands already."""
     following = contacts.before.count[NEXT]
-    outputs = following < out.t.shape[0] and out.t[following] <= t
+    t_out = stepping.out.t
+    outputs = following < t_out.shape[0] and t_out[following] <= t
     if contacts.clock[FAILURE] == 0.0 and contacts.trial.clock[TIME] == t and not outputs:
         copy_state(state, contacts.trial)
         state.count[NEXT] = following
         return
     copy_state(state, contacts.before)
     if contacts.clock[FAILURE] == 0.0 and t > state.clock[TIME]:
-        status = advance_to(own, scratch, state, out, settings, contacts, t, NO_LIMIT, before, after)
+        status = advance_to(own, scratch, state, contacts, stepping, t, NO_LIMIT)
         if status != REACHED and status != PAUSED:
             contacts.clock[FAILURE] = status
 
@@ -168,17 +170,17 @@ def _end(dyn, scratch, state, contacts, out):
 
 
 @internal
-def _step(dyn, scratch, state, settings, contacts, out, end, before, after):
+def _step(dyn, scratch, state, contacts, stepping, end):
     """Take one step, or part of one up to an event, which then is PENDING; returns a status."""
     if contacts.repeated.place.shape[0] > 0:
         look(dyn, scratch, contacts.repeated, state, 1)
     own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
-    cross(state, before, after)
+    cross(state, stepping.before, stepping.after)
     begin_run(own, scratch, state)
     if contacts.events.table.shape[0] > 0:
         find_sides(dyn, contacts.events, state)
     copy_state(contacts.before, state)
-    status = advance_to(own, scratch, state, out, settings, contacts, end, 1, before, after)
+    status = advance_to(own, scratch, state, contacts, stepping, end, 1)
     if status != REACHED and status != PAUSED:
         return status
     met = -1
@@ -186,12 +188,12 @@ def _step(dyn, scratch, state, settings, contacts, out, end, before, after):
     if state.clock[TIME] > contacts.before.clock[TIME]:
         fit(dyn, contacts, state)
         contacts.trial.clock[TIME] = -math.inf
-        met = first_met(dyn, scratch, state, settings, contacts, out, before, after)
+        met = first_met(dyn, scratch, state, contacts, stepping)
     if met >= 0:
-        t = event_time(dyn, scratch, settings, contacts, out, before, after, met)
-        _go_to(own, scratch, state, settings, contacts, out, t, before, after)
+        t = event_time(dyn, scratch, contacts, stepping, met)
+        _go_to(own, scratch, state, contacts, stepping, t)
     if contacts.clock[SHARING] > 0.0:
-        share_outputs(dyn, scratch, contacts, out, contacts.before.count[NEXT], state.count[NEXT])
+        share_outputs(dyn, scratch, contacts, stepping.out, contacts.before.count[NEXT], state.count[NEXT])
     if contacts.clock[FAILURE] != 0.0:
         return int(contacts.clock[FAILURE])
     if met < 0:
@@ -236,6 +238,7 @@ def _jump(dyn, scratch, state, contacts, out):
 @lazy(int)
 def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
     clock = contacts.clock
+    stepping = Stepping(settings, out, before, after)
     hold_rows(dyn, contacts)
     hold_independent(dyn, contacts.repeated)
     if contacts.events.release.shape[0] > 0:
@@ -254,7 +257,7 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
             if taken >= steps:
                 return PAUSED
             taken += 1
-            status = _step(dyn, scratch, state, settings, contacts, out, end, before, after)
+            status = _step(dyn, scratch, state, contacts, stepping, end)
             if status == PAUSED:
                 continue
             if status != FOUND:

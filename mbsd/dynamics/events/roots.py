@@ -69,7 +69,7 @@ def root_between(dyn, scratch, contacts, k, left, right, at_left, at_right, stil
 
 @apart
 def dips_before(
-    dyn, scratch, settings, contacts, out, before, after, k, x, values, count, still, where, negative
+    dyn, scratch, contacts, stepping, k, x, values, count, still, where, negative
 ):  # fmt: skip
     """Where it first falls through zero, and a part where it is negative: in a dip, or else as given; -1, -1: never.
 
@@ -80,7 +80,7 @@ def dips_before(
         while known < count and x[known] <= where:
             known += 1
         count = known
-    above, below = first_dip(dyn, scratch, settings, contacts, out, before, after, k, x, values, count, still)
+    above, below = first_dip(dyn, scratch, contacts, stepping, k, x, values, count, still)
     if below >= 0.0:
         high = on_quintic(dyn, scratch, contacts, k, above)
         low = on_quintic(dyn, scratch, contacts, k, below)
@@ -174,7 +174,7 @@ def _interval(dyn, scratch, contacts, k, x, values, i, count):
 
 
 @apart
-def _searched(dyn, scratch, settings, contacts, out, before, after, k, level, truly):
+def _searched(dyn, scratch, contacts, stepping, k, level, truly):
     """Parts above and below ``level`` from intervals[0] on; the second is -1 if there is none below."""
     pieces = contacts.intervals
     waiting = 1
@@ -195,7 +195,7 @@ def _searched(dyn, scratch, settings, contacts, out, before, after, k, level, tr
         x = min(max(x, a + INSIDE * width), b - INSIDE * width)
         if truly:
             t = contacts.clock[START] + contacts.clock[LENGTH] * x
-            fx = of_motion(dyn, scratch, settings, contacts, out, before, after, k, t)
+            fx = of_motion(dyn, scratch, contacts, stepping, k, t)
         else:
             fx = on_quintic(dyn, scratch, contacts, k, x)
         looks += 1
@@ -210,7 +210,7 @@ def _searched(dyn, scratch, settings, contacts, out, before, after, k, level, tr
 
 
 @apart
-def first_dip(dyn, scratch, settings, contacts, out, before, after, k, x, values, count, still):
+def first_dip(dyn, scratch, contacts, stepping, k, x, values, count, still):
     """Parts between which row k first falls below -``still`` among ``count`` values at x; -1: it does not."""
     low = values[0]
     high = low
@@ -224,15 +224,15 @@ def first_dip(dyn, scratch, settings, contacts, out, before, after, k, x, values
         kept_falls = contacts.intervals[0, FALLS]
         kept_rises = contacts.intervals[0, RISES]
         level = UNSURE * (high - low) - still
-        above, below = _searched(dyn, scratch, settings, contacts, out, before, after, k, level, False)
+        above, below = _searched(dyn, scratch, contacts, stepping, k, level, False)
         if below < 0.0:
             continue
         if on_quintic(dyn, scratch, contacts, k, below) < -still:
             t = contacts.clock[START] + contacts.clock[LENGTH] * below
-            if of_motion(dyn, scratch, settings, contacts, out, before, after, k, t) < -still:
+            if of_motion(dyn, scratch, contacts, stepping, k, t) < -still:
                 return above, below
         _put(contacts.intervals[0], x[i], values[i], x[i + 1], values[i + 1], kept_falls, kept_rises)
-        above, below = _searched(dyn, scratch, settings, contacts, out, before, after, k, -still, True)
+        above, below = _searched(dyn, scratch, contacts, stepping, k, -still, True)
         if below >= 0.0:
             return above, below
     return 0.0, -1.0

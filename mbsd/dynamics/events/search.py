@@ -43,8 +43,8 @@ from mbsd.dynamics.events.guards import (
 )
 from mbsd.dynamics.events.roots import MOST_ROOTS, SAMPLES, dips_before, may_dip, root_between
 from mbsd.dynamics.events.rows import gaps_of, read_gaps
-from mbsd.dynamics.events.user_search import first_event
 from mbsd.dynamics.events.users.arrays import SIDE
+from mbsd.dynamics.events.users.search import first_event
 from mbsd.dynamics.events.users.values import rounding_of
 from mbsd.dynamics.formulation import along, derivative
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
@@ -122,12 +122,12 @@ def _falls(dyn, scratch, contacts, k, until):
 
 
 @apart
-def _met_of(dyn, scratch, settings, contacts, out, before, after, k, until):
+def _met_of(dyn, scratch, contacts, stepping, k, until):
     """Where the scalar of row k first falls through zero, and a part where it is negative; -1, -1 where it does not."""
     where, negative = _falls(dyn, scratch, contacts, k, until)
     still = still_of(contacts, k)
     return dips_before(
-        dyn, scratch, settings, contacts, out, before, after, k, contacts.parts, contacts.samples[k], SAMPLES,
+        dyn, scratch, contacts, stepping, k, contacts.parts, contacts.samples[k], SAMPLES,
         still, where, negative,
     )  # fmt: skip
 
@@ -157,7 +157,7 @@ def _fallen(dyn, scratch, contacts, state):
 
 
 @apart
-def first_met(dyn, scratch, state, settings, contacts, out, before, after):
+def first_met(dyn, scratch, state, contacts, stepping):
     """The row whose scalar is the first to fall through zero within the step to ``state``; -1: none.
 
     What comes behind the last row is an event of the user. WHERE and BEYOND of the clock are set.
@@ -186,20 +186,20 @@ def first_met(dyn, scratch, state, settings, contacts, out, before, after):
             if contacts.chosen[SKIPPED, k] != 0 or resting != (turn >= count):
                 continue
             until = 2.0 if best < 0 else contacts.clock[BEYOND]
-            where, negative = _met_of(dyn, scratch, settings, contacts, out, before, after, k, until)
+            where, negative = _met_of(dyn, scratch, contacts, stepping, k, until)
             if where >= 0.0 and (best < 0 or where < contacts.clock[WHERE]):
                 best = k
                 contacts.clock[WHERE] = where
                 contacts.clock[BEYOND] = negative
         if events > 0:
-            best = first_event(dyn, scratch, settings, contacts, out, before, after, best)
+            best = first_event(dyn, scratch, contacts, stepping, best)
         if best < 0 or contacts.clock[WHERE] == 0.0:
             return best
         if contacts.clock[BEYOND] == 1.0:
             value = at_state(dyn, scratch, contacts, state, best)
         else:
             t = beyond_time(contacts)
-            value = of_motion(dyn, scratch, settings, contacts, out, before, after, best, t)
+            value = of_motion(dyn, scratch, contacts, stepping, best, t)
         if value < -still_of(contacts, best):
             if best >= count and _chance(contacts, state, best - count, value):
                 contacts.clock[FAILURE] = CHANCE
@@ -229,7 +229,7 @@ def _chance(contacts, state, e, value):
 
 
 @apart
-def _near_root(dyn, scratch, settings, contacts, out, before, after, k, first, reach):
+def _near_root(dyn, scratch, contacts, stepping, k, first, reach):
     """The root (s) within ``reach`` of ``first`` by secants, the first along the quintic; NaN where they leave it."""
     h = contacts.clock[LENGTH]
     part = (first - contacts.clock[START]) / h
@@ -237,7 +237,7 @@ def _near_root(dyn, scratch, settings, contacts, out, before, after, k, first, r
     rise = on_quintic(dyn, scratch, contacts, k, part + beside) - on_quintic(dyn, scratch, contacts, k, part - beside)
     slope = rise / (2.0 * beside * h)
     t = first
-    f = of_motion(dyn, scratch, settings, contacts, out, before, after, k, t)
+    f = of_motion(dyn, scratch, contacts, stepping, k, t)
     least = 1e-15 + 8.9e-16 * abs(t)
     for _ in range(6):
         if not slope < 0.0:
@@ -248,7 +248,7 @@ def _near_root(dyn, scratch, settings, contacts, out, before, after, k, first, r
         following = t + ahead
         if not abs(following - first) <= reach:
             break
-        value = of_motion(dyn, scratch, settings, contacts, out, before, after, k, following)
+        value = of_motion(dyn, scratch, contacts, stepping, k, following)
         if abs(ahead) > 1e3 * least:
             slope = (value - f) / ahead
         t = following
@@ -257,7 +257,7 @@ def _near_root(dyn, scratch, settings, contacts, out, before, after, k, first, r
 
 
 @apart
-def event_time(dyn, scratch, settings, contacts, out, before, after, k):
+def event_time(dyn, scratch, contacts, stepping, k):
     """When (s) what row k met happens, of the motion itself: as exactly as that is known."""
     start = contacts.clock[START]
     first = start + contacts.clock[LENGTH] * contacts.clock[WHERE]
@@ -265,27 +265,27 @@ def event_time(dyn, scratch, settings, contacts, out, before, after, k):
         return start
     high = beyond_time(contacts)
     reach = min(1e-3 * (high - start), 0.5 * (first - start))
-    near = _near_root(dyn, scratch, settings, contacts, out, before, after, k, first, reach)
+    near = _near_root(dyn, scratch, contacts, stepping, k, first, reach)
     if near <= first + reach:
         return near
     low = start
-    at_low = of_motion(dyn, scratch, settings, contacts, out, before, after, k, first - reach)
+    at_low = of_motion(dyn, scratch, contacts, stepping, k, first - reach)
     if at_low > 0.0:
         low = first - reach
-    at_high = of_motion(dyn, scratch, settings, contacts, out, before, after, k, first + reach)
+    at_high = of_motion(dyn, scratch, contacts, stepping, k, first + reach)
     if first + reach < high and at_high < 0.0:
         high = first + reach
     else:
-        at_high = of_motion(dyn, scratch, settings, contacts, out, before, after, k, high)
+        at_high = of_motion(dyn, scratch, contacts, stepping, k, high)
     if low == start:
-        at_low = of_motion(dyn, scratch, settings, contacts, out, before, after, k, low)
+        at_low = of_motion(dyn, scratch, contacts, stepping, k, low)
     if not at_low > 0.0 or not at_high < 0.0:
         return first  # it left zero at the start of the step: the quintic's root stands
-    return _true_root(dyn, scratch, settings, contacts, out, before, after, k, low, at_low, high, at_high)
+    return _true_root(dyn, scratch, contacts, stepping, k, low, at_low, high, at_high)
 
 
 @apart
-def _true_root(dyn, scratch, settings, contacts, out, before, after, k, low, at_low, high, at_high):
+def _true_root(dyn, scratch, contacts, stepping, k, low, at_low, high, at_high):
     """The root (s) between two times."""
     a = high
     fa = at_high
@@ -301,7 +301,7 @@ def _true_root(dyn, scratch, settings, contacts, out, before, after, k, low, at_
             break
         part = min(max(part, edge), 1.0 - edge)
         x = a + part * (b - a)
-        f = of_motion(dyn, scratch, settings, contacts, out, before, after, k, x)
+        f = of_motion(dyn, scratch, contacts, stepping, k, x)
         a, fa, b, fb, c, fc = narrowed(a, fa, b, fb, x, f)
         if f == 0.0:
             break

@@ -27,7 +27,7 @@ from mbsd.dynamics.genevas.arrays import (
     TO_Y,
     WHEEL,
 )
-from mbsd.dynamics.integrators.advance import USUAL, copy_state, through
+from mbsd.dynamics.integrators.advance import USUAL, advance_past_jumps, copy_state
 from mbsd.dynamics.state import ACCEPTED, ERROR, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK
 
 SHORT = 1e-3
@@ -179,7 +179,7 @@ def _meet(dyn, scratch, state, out, settings, genevas, wait, late, before, after
         if not target < late - least:
             target = now + 0.5 * (late - now)
         _keep(dyn, scratch, state, genevas)
-        status = through(dyn, scratch, state, out, settings, target, MOST, before, after, USUAL)
+        status = advance_past_jumps(dyn, scratch, state, out, settings, target, MOST, before, after, USUAL)
         if status != REACHED and status != PAUSED:
             return status
         later = _look(dyn, scratch, genevas, state, there)
@@ -239,7 +239,9 @@ def _index(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
         if not meets:
             _keep(dyn, scratch, state, genevas)
             ahead = int(min(max(wait / (4.0 * step), 1.0), MOST_UNSEEN))
-            status = through(dyn, scratch, state, out, settings, end, min(ahead, steps), before, after, USUAL)
+            status = advance_past_jumps(
+                dyn, scratch, state, out, settings, end, min(ahead, steps), before, after, USUAL
+            )
             later = _look(dyn, scratch, genevas, state, there)
             meets = _crossed(here, there)
             if meets:
@@ -252,7 +254,7 @@ def _index(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
             status = _meet(dyn, scratch, state, out, settings, genevas, wait, late, before, after)
             wait = _look(dyn, scratch, genevas, state, here)
         if status == PAUSED and state.clock[TIME] == now:  # it cannot be met: a step goes over it
-            status = through(dyn, scratch, state, out, settings, end, 1, before, after, USUAL)
+            status = advance_past_jumps(dyn, scratch, state, out, settings, end, 1, before, after, USUAL)
             wait = _look(dyn, scratch, genevas, state, here)
         if state.count[STARTED] == 0:
             state.clock[STEP] = step

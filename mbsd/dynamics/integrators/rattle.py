@@ -11,6 +11,14 @@ lam is found by Newton's method with S = J W^-1 J^T at q0 instead of J(q1) W^-1 
 about h omega. W is M, lifted a little where bodies lack mass, and what it has too much is balanced in the next pass.
 
 Source: Andersen 1983, J. Comput. Phys. 52; Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4.
+
+'symplectic' takes five steps of RATTLE as one of order 4, for long runs without friction:
+
+    h p, h p, h (1 - 4 p), h p, h p,      p = 1 / (4 - 4^(1/3)) = 0.4145
+
+The third goes back in time. Errors are far smaller than those of the composition of three.
+
+Source: Suzuki 1990, Phys. Lett. A 146; Hairer, Lubich, Wanner, Geometric Numerical Integration, II.4.
 """
 
 from __future__ import annotations
@@ -258,3 +266,14 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
 
 
 RATTLE = register(Integrator("rattle", advance, STAGES, order=2, fixed_step=True, refusal=without_sliding))
+
+
+@kernel
+def advance_symplectic(dyn, scratch, state, out, settings, end, max_steps):
+    """Go on to ``end`` (s), ``max_steps`` steps at most, writing the outputs passed. Returns a status."""
+    return march(dyn, scratch, state, out, settings, end, max_steps, 5)
+
+
+SYMPLECTIC = register(
+    Integrator("symplectic", advance_symplectic, STAGES, order=4, fixed_step=True, refusal=without_sliding)
+)

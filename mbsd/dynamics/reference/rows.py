@@ -12,6 +12,9 @@ from mbsd.equations.constraints.relative import rows as relative_rows
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.markers import place
 
+OPENED_BY = 1e-7
+"""Residuals (sizes, rad) above which a row that does not hold counts as open."""
+
 
 @internal
 def along(dyn, scratch, row, u):

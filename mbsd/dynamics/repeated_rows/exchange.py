@@ -20,7 +20,8 @@ from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, inlined, internal, lazy
 from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.formulation import measure, push
-from mbsd.dynamics.integrators.advance import through
+from mbsd.dynamics.integrators.advance import advance_past_jumps
+from mbsd.dynamics.reference.rows import OPENED_BY
 from mbsd.dynamics.repeated_rows.arrays import (
     BETTER,
     BLOCK,
@@ -34,9 +35,10 @@ from mbsd.dynamics.repeated_rows.arrays import (
     STEPS,
     UNTIL,
 )
-from mbsd.dynamics.rows.bounds import LOOK, OPENED_BY
 from mbsd.dynamics.state import PAUSED, TIME
 
+LOOK = 10
+"""Steps between two looks at which rows hold."""
 TURNS = 40
 """Turns of inverse iteration."""
 
@@ -229,7 +231,7 @@ def _again(dyn, scratch, state, out, settings, repeated, end, steps, before, aft
     while status == PAUSED and taken < steps:
         some = min(steps - taken, LOOK - int(repeated.clock[STEPS]) % LOOK)
         look(dyn, scratch, repeated, state, some)
-        status = through(dyn, scratch, state, out, settings, end, some, before, after, method)
+        status = advance_past_jumps(dyn, scratch, state, out, settings, end, some, before, after, method)
         taken += some
     return status
 

@@ -12,7 +12,7 @@ from mbsd.compiling.callback import Callback
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics.events.bounds import MOST_VALUES, NEAR, PER_SHORTEST, ROUNDINGS
 from mbsd.dynamics.events.moment import Moment, place_of, value_at
-from mbsd.dynamics.events.users import ready_made
+from mbsd.dynamics.events.users import values
 from mbsd.dynamics.events.users.arrays import ACTION_FRAMES, BY_PYTHON, ITS_FRICTION, UNKNOWN, WHOLE, Events
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.schur import Schur
@@ -20,7 +20,7 @@ from mbsd.equations.joint_friction import FIRST
 from mbsd.model.body import Marker
 from mbsd.model.event import Event, Reaching
 
-READY_MADE = {name: getattr(ready_made, name) for name in ("turned", "turning", "distance")}
+READY_MADE = {name: getattr(values, name) for name in ("turned", "turning", "distance")}
 MOST = 20_000
 """Values of an event in one step."""
 

@@ -1,11 +1,11 @@
-"""Values of events at a state: their functions get places and rates of frames."""
+"""Values of events at a state: their functions get positions and rates of frames; ready-made functions are below."""
 
 from __future__ import annotations
 
 import math
 
-from mbsd.compiling.callback import call
-from mbsd.compiling.jit import apart, internal, lazy
+from mbsd.compiling.callback import SIGNATURE, call
+from mbsd.compiling.jit import apart, at_address, internal, lazy
 from mbsd.dynamics.events.bounds import AHEAD, BEYOND
 from mbsd.dynamics.events.users.arrays import FIRST, FRAMES, LEVEL, SIDE, VALUE, WHOLE
 from mbsd.dynamics.formulation import bends
@@ -133,3 +133,21 @@ def find_sides(dyn, events, state):
     for e in range(events.table.shape[0]):
         if events.number[e, SIDE] == 0.0:
             events.number[e, SIDE] = _side_ahead(dyn, events, e, state.clock[TIME], state.y, state.dy)
+
+
+@at_address(SIGNATURE)
+def turned(t, inputs, outputs):
+    """Put out the angle of one frame (rad)."""
+    outputs[0] = inputs[2]
+
+
+@at_address(SIGNATURE)
+def turning(t, inputs, outputs):
+    """Put out the angular velocity of one frame (rad/s)."""
+    outputs[0] = inputs[5]
+
+
+@at_address(SIGNATURE)
+def distance(t, inputs, outputs):
+    """Put out the distance of two frames (m)."""
+    outputs[0] = math.hypot(inputs[3] - inputs[0], inputs[4] - inputs[1])

@@ -203,7 +203,7 @@ def look(dyn, scratch, contacts, e):
 
 
 @apart
-def _met_of(dyn, scratch, settings, contacts, out, before, after, e, until):
+def _met_of(dyn, scratch, contacts, stepping, e, until):
     """Where event e first passes zero, and a part where it is beyond; -1, -1 where it does not."""
     events = contacts.events
     k = contacts.place.shape[0] + e
@@ -222,17 +222,17 @@ def _met_of(dyn, scratch, settings, contacts, out, before, after, e, until):
         where, negative = root_between(
             dyn, scratch, contacts, k, x[first], x[first + 1], values[first], values[first + 1], 0.0, zero
         )
-    return dips_before(dyn, scratch, settings, contacts, out, before, after, k, x, values, count, 0.0, where, negative)
+    return dips_before(dyn, scratch, contacts, stepping, k, x, values, count, 0.0, where, negative)
 
 
 @lazy(int)
-def first_event(dyn, scratch, settings, contacts, out, before, after, best):
+def first_event(dyn, scratch, contacts, stepping, best):
     """The number of what is met first: ``best`` with WHERE and BEYOND of the clock, -1 for none, or an event."""
     for e in range(contacts.events.table.shape[0]):
         if contacts.events.skipped[e] != 0 or contacts.events.number[e, SIDE] == 0.0:  # it has stayed zero
             continue
         until = 2.0 if best < 0 else contacts.clock[BEYOND]
-        where, negative = _met_of(dyn, scratch, settings, contacts, out, before, after, e, until)
+        where, negative = _met_of(dyn, scratch, contacts, stepping, e, until)
         if where >= 0.0 and (best < 0 or where < contacts.clock[WHERE]):
             best = contacts.place.shape[0] + e
             contacts.clock[WHERE] = where

@@ -1,4 +1,4 @@
-"""What integrators work on: the running state, the results at output times, and the tolerances.
+"""State, outputs and settings of a run, as integrators read and write them.
 
 n: entries of a row of the state, in the plane three for each body; see formulation.py.
 """
@@ -58,7 +58,7 @@ class Output(NamedTuple):
 
 
 class Settings(NamedTuple):
-    """What steers the steps."""
+    """Tolerances and lengths of steps."""
 
     absolute: Any
     """(2, n) absolute tolerance of coordinates and velocities."""
@@ -119,7 +119,7 @@ def record_here(scratch, state, out):
 
 @inlined
 def fixed_step(state, out, settings, end):
-    """The next step (s) of a method with a fixed one, and where it ends: equal steps up to the next output or end."""
+    """Return the next step (s) of a method with a fixed one, and its end: equal steps up to the next output or end."""
     t = state.clock[TIME]
     target = end
     if state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] < end:

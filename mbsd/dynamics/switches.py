@@ -128,7 +128,7 @@ class Switches:
 
 
 def friction_rows(packed: Packed) -> np.ndarray:
-    """(c, 2) rows of the gap and of the sliding of the contacts with friction."""
+    """Return (c, 2) rows of the gap and of the sliding of contacts with friction."""
     rows = [
         (packed.first_row[k], packed.first_row[k] + 1)
         for k, joint in enumerate(packed.joints)

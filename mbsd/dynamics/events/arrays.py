@@ -111,7 +111,7 @@ where joints slide beside others at rest."""
 
 
 class Sticks(NamedTuple):
-    """What joints with friction add, for c rows and f joints with friction; contacts that lose friction once they slide
+    """Arrays of f joints with friction, for c rows; contacts that lose friction once they slide
     share with others, too. No rows where there is none of them."""
 
     joint: Any

@@ -19,7 +19,7 @@ from mbsd.equations.system import LAST
 
 @internal
 def _line(system, y, i, j):
-    """From marker i to marker j (m) in the world at y (2, 3 nb), and how that changes (m/s)."""
+    """Return the vector (m) from marker i to marker j in the world at y (2, 3 nb), and its rate (m/s)."""
     x0 = 0.0
     x1 = 0.0
     v0 = 0.0
@@ -41,7 +41,7 @@ def _line(system, y, i, j):
 
 @internal
 def _approach(system, wheels, before, after, h):
-    """How far centres came nearer to each other in a step of h (s) between two y, over how far they may."""
+    """Return how far centres approached each other in a step of h (s) between two y, over what is allowed."""
     most = 0.0
     for k in range(wheels.markers.shape[0]):
         x0, x1, v0, v1 = _line(system, before, wheels.markers[k, 0], wheels.markers[k, 1])
@@ -59,7 +59,7 @@ def _approach(system, wheels, before, after, h):
 
 @internal
 def _met(system, wheels, y):
-    """Whether the centres of two wheels have met at y (2, 3 nb)."""
+    """Return True if the centres of two wheels have met at y (2, 3 nb)."""
     met = False
     for k in range(wheels.markers.shape[0]):
         x0, x1, _, _ = _line(system, y, wheels.markers[k, 0], wheels.markers[k, 1])
@@ -141,7 +141,7 @@ def _step_by_step(dyn, scratch, state, contacts, stepping, end, steps):
 
 @lazy(int)
 def _advance_outside(contacts, end, steps):
-    """``advance_past_jumps`` by an integrator in Python."""
+    """Advance by an integrator in Python."""
     outside = contacts.outside
     outside.asked[0] = steps
     outside.asked[1] = contacts.clock[TRYING]
@@ -151,7 +151,7 @@ def _advance_outside(contacts, end, steps):
 
 @internal
 def advance_to(dyn, scratch, state, contacts, stepping, end, steps):
-    """``advance_past_jumps``, a step at a time where wheels may meet or points follow curves."""
+    """Advance to ``end`` (s), a step at a time where wheels may meet or points follow curves; returns a status."""
     if contacts.clock[METHOD] < 0.0:
         return _advance_outside(contacts, end, steps)
     if contacts.wheels.markers.shape[0] > 0 or contacts.curves.place.shape[0] > 0:

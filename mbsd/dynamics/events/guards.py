@@ -1,4 +1,4 @@
-"""What is looked at within a step, on its quintic, which shows where to look, and of the motion itself.
+"""Guards: scalars whose zeros within a step are events, on the step's quintic and along the motion itself.
 
     open contact    its gap (of a clutch its rate)      closed contact    its normal force N
     it slides       its speed, sign kept                it sticks         mu_s N - |T|
@@ -136,7 +136,7 @@ def sample(dyn, scratch, contacts):
 
 @internal
 def _value(dyn, scratch, contacts, t, y, k):
-    """What is looked at of row k at a state y (2, 3 nb); behind the last row are events of the user."""
+    """Return the guard of row k at a state y (2, 3 nb); behind the last row are events of the user."""
     if k >= contacts.place.shape[0]:
         return signed(contacts.events, k - contacts.place.shape[0], t, y)
     read(dyn, scratch, contacts, t, y, contacts.number[k, CLOSED] > 0.0)
@@ -145,20 +145,20 @@ def _value(dyn, scratch, contacts, t, y, k):
 
 @apart
 def on_quintic(dyn, scratch, contacts, k, x):
-    """What is looked at of row k at the part x of the step, on the quintic."""
+    """Return the guard of row k at the part x of the step, on the quintic."""
     t = stand_at(dyn, contacts, x)
     return _value(dyn, scratch, contacts, t, contacts.pose, k)
 
 
 @internal
 def at_state(dyn, scratch, contacts, state, k):
-    """The same of a state."""
+    """Return the guard of row k at a state."""
     return _value(dyn, scratch, contacts, state.clock[TIME], state.y, k)
 
 
 @apart
 def of_motion(dyn, scratch, contacts, stepping, k, t):
-    """The same at a time (s) within the step, by the motion itself; not a number where it gets nowhere."""
+    """Return the guard of row k along the motion itself at a time (s) within the step; NaN where it gets nowhere."""
     trial = contacts.trial
     copy_state(trial, contacts.before)
     if t > trial.clock[TIME]:
@@ -175,5 +175,5 @@ def of_motion(dyn, scratch, contacts, stepping, k, t):
 
 @internal
 def beyond_time(contacts):
-    """(s) where what was met is beyond zero."""
+    """Return the time (s) at which the guard that was met is beyond zero."""
     return contacts.clock[START] + contacts.clock[LENGTH] * contacts.clock[BEYOND]

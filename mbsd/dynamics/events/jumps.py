@@ -1,4 +1,4 @@
-"""Changes where contacts close, open, slide or stick: impacts, then the state of each from now on.
+"""Jumps where contacts close, open, slide or stick: impacts, then the state of each contact from now on.
 
 By Poisson's law with Coulomb friction in both phases of an impact:
 
@@ -251,9 +251,9 @@ def _decide(dyn, scratch, contacts, t, y, touched):
 
 @apart
 def resolve(dyn, scratch, contacts, state, met):
-    """Impacts, and what contacts do from now on, after the scalar of row ``met`` fell through zero; -1: at the start.
+    """Resolve impacts, and decide what contacts do from now on, after the guard of row ``met`` fell through zero.
 
-    Returns False where that is impossible; refusals.py says why.
+    ``met`` is -1 at the start. Returns False where that is impossible; refusals.py says why.
     """
     count = contacts.place.shape[0]
     gaps = gaps_of(contacts)
@@ -301,7 +301,7 @@ def resolve(dyn, scratch, contacts, state, met):
 
 @internal
 def moving(dyn, scratch, contacts, v):
-    """Whether contacts that hold still move, or others creep; then chosen[KEPT] are the rows that are to be stopped.
+    """Return True if contacts that hold still move, or others creep; then chosen[KEPT] are the rows to be stopped.
 
     Joints that stick are among them.
     """

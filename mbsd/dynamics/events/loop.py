@@ -1,4 +1,4 @@
-"""Steps of a row with contacts: one by one, back to the start of the step where something happens, and on from there.
+"""The loop of a run with events: step, look for an event within the step, step exactly to it, jump, and go on.
 
     step     one step of the integrator; does a scalar fall through zero within it?
     root     from the state before the step, integrate to shorter and shorter ends, until the scalar is zero
@@ -289,5 +289,5 @@ go_on = alternatives({Embedding: _none}, _meet)
 
 @kernel
 def run_events(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
-    """``go_on`` in reference coordinates, called from Python."""
+    """Call ``go_on`` in reference coordinates, from Python."""
     return _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after)

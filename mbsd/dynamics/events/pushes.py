@@ -114,7 +114,7 @@ def solve_pushes(contacts, rates):
 
 @internal
 def lowest_row(tableau, n):
-    """The row of a tableau (n, 2 n + 2) where its right-hand side is the lowest; -1 where none is negative."""
+    """Return the row of a tableau (n, 2 n + 2) with the lowest right-hand side; -1 where none is negative."""
     lowest = -1
     least = 0.0
     for i in range(n):
@@ -126,7 +126,7 @@ def lowest_row(tableau, n):
 
 @internal
 def pivot_to_end(tableau, basis, n, row):
-    """Pivot a tableau (n, 2 n + 2) to the end, the artificial variable entering at ``row``; whether it leaves."""
+    """Pivot a tableau (n, 2 n + 2) to the end, the artificial variable entering at ``row``; True if it leaves."""
     last = 2 * n + 1
     entering = 2 * n
     for i in range(n):
@@ -159,7 +159,7 @@ def pivot_to_end(tableau, basis, n, row):
 
 @internal
 def _leaving_row(tableau, basis, n, entering):
-    """The row of the least ratio, ties broken lexicographically; -1 if there is none."""
+    """Return the row of the least ratio, ties broken lexicographically; -1 if there is none."""
     left = 0
     chosen = -1
     for i in range(n):

@@ -32,7 +32,7 @@ def read_gaps(dyn, scratch, t, q):
 
 @internal
 def gaps_of(contacts):
-    """Number of gaps, the first rows of Contacts; those of ways of contacts, then of joints, are behind them."""
+    """Return the number of gaps, the first rows of Contacts; behind them are ways of contacts, then of joints."""
     return contacts.place.shape[0] - contacts.friction.gap.shape[0] - contacts.sticks.joint.shape[0]
 
 
@@ -132,7 +132,7 @@ def stop(dyn, scratch, contacts, v):
 
 @internal
 def any_held(contacts):
-    """Whether a contact is closed, or a joint sticks."""
+    """Return True if a contact is closed, or a joint sticks."""
     held = False
     for k in range(contacts.place.shape[0]):
         held = held or contacts.number[k, CLOSED] > 0.0

@@ -1,4 +1,4 @@
-"""Which contact closes, opens, slips or comes to rest first in a step, and when.
+"""The search for the first event within a step, and its time.
 
 Interior samples of the step's quintic also find scalars that dip below zero and come back, and those that leave zero
 at the start of the step (a bounce) and return within it. What dips between two samples is found by its minimum
@@ -58,7 +58,7 @@ ROUNDING = 1e-10
 
 @internal
 def still_of(contacts, k):
-    """Values of row k above minus this are rounding."""
+    """Return the size below which negative values of row k are rounding."""
     if k >= contacts.place.shape[0]:
         return 0.0
     return ROUNDING * contacts.clock[LOAD] if contacts.number[k, CLOSED] > 0.0 else contacts.number[k, NEAR]
@@ -86,7 +86,7 @@ def _leaves(dyn, scratch, contacts, k):
 
 @apart
 def _falls(dyn, scratch, contacts, k, until):
-    """Where samples of contact k show a fall through zero before ``until``, and a part where it is negative; -1, -1."""
+    """Return where samples of row k show a fall through zero before ``until``, and a part beyond; -1, -1: nowhere."""
     still = still_of(contacts, k)
     values = contacts.samples[k]
     first = 0
@@ -123,7 +123,7 @@ def _falls(dyn, scratch, contacts, k, until):
 
 @apart
 def _met_of(dyn, scratch, contacts, stepping, k, until):
-    """Where the scalar of row k first falls through zero, and a part where it is negative; -1, -1 where it does not."""
+    """Return where the guard of row k first falls through zero, and a part beyond; -1, -1 where it does not."""
     where, negative = _falls(dyn, scratch, contacts, k, until)
     still = still_of(contacts, k)
     return dips_before(
@@ -134,7 +134,7 @@ def _met_of(dyn, scratch, contacts, stepping, k, until):
 
 @internal
 def _may_meet(contacts, k):
-    """Whether samples of contact k leave it open that it falls through zero; most steps end here."""
+    """Return True if samples of row k do not rule out a fall through zero; most steps end here."""
     still = still_of(contacts, k)
     values = contacts.samples[k]
     may = False
@@ -158,7 +158,7 @@ def _fallen(dyn, scratch, contacts, state):
 
 @apart
 def first_met(dyn, scratch, state, contacts, stepping):
-    """The row whose scalar is the first to fall through zero within the step to ``state``; -1: none.
+    """Return the row whose guard is the first to fall through zero within the step to ``state``; -1: none.
 
     What comes behind the last row is an event of the user. WHERE and BEYOND of the clock are set.
     """
@@ -230,7 +230,7 @@ def _chance(contacts, state, e, value):
 
 @apart
 def _near_root(dyn, scratch, contacts, stepping, k, first, reach):
-    """The root (s) within ``reach`` of ``first`` by secants, the first along the quintic; NaN where they leave it."""
+    """Return the root (s) within ``reach`` of ``first`` by secants; a time beyond where they leave it."""
     h = contacts.clock[LENGTH]
     part = (first - contacts.clock[START]) / h
     beside = 1e-4
@@ -258,7 +258,7 @@ def _near_root(dyn, scratch, contacts, stepping, k, first, reach):
 
 @apart
 def event_time(dyn, scratch, contacts, stepping, k):
-    """When (s) what row k met happens, of the motion itself: as exactly as that is known."""
+    """Return the time (s) of the event of row k along the motion itself, as exactly as that is known."""
     start = contacts.clock[START]
     first = start + contacts.clock[LENGTH] * contacts.clock[WHERE]
     if not first > start:
@@ -286,7 +286,7 @@ def event_time(dyn, scratch, contacts, stepping, k):
 
 @apart
 def _true_root(dyn, scratch, contacts, stepping, k, low, at_low, high, at_high):
-    """The root (s) between two times."""
+    """Return the root (s) between two times."""
     a = high
     fa = at_high
     b = low

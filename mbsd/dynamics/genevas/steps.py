@@ -45,7 +45,7 @@ ROUNDING = 8
 
 @internal
 def _ulp(t):
-    """Between a number and the next larger one."""
+    """Return the distance to the next larger number."""
     return math.nextafter(abs(t), math.inf) - abs(t)
 
 
@@ -77,7 +77,7 @@ def _keep(dyn, scratch, state, genevas):
 
 @internal
 def _return(dyn, scratch, state, genevas):
-    """Stand there again."""
+    """Return to where the state was kept."""
     copy_state(state, genevas.before)
     kept = genevas.kept
     _copy_table(dyn.number, kept.number)
@@ -129,7 +129,7 @@ def _look(dyn, scratch, genevas, state, gap):
 
 @internal
 def _crossed(before, after):
-    """Whether a jump lies between them."""
+    """Return True if a jump lies between them."""
     crossed = False
     for k in range(before.shape[0]):
         crossed = crossed or before[k] * after[k] < 0.0
@@ -285,5 +285,5 @@ index = alternatives({Embedding: _index_here}, _never)
 
 @kernel
 def run_indexed(dyn, scratch, state, out, settings, genevas, end, steps, before, after):
-    """``index`` in independent coordinates, called from Python."""
+    """Call ``index`` in independent coordinates, from Python."""
     return _index(dyn, scratch, state, out, settings, genevas, end, steps, before, after)

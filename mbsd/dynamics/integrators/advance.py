@@ -36,37 +36,37 @@ def number_of(integrator: Integrator) -> int | None:
 
 @lazy(int)
 def later_rk4(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_rk4(dyn, scratch, state, out, settings, end, most)
 
 
 @lazy(int)
 def later_baumgarte(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_baumgarte(dyn, scratch, state, out, settings, end, most)
 
 
 @lazy(int)
 def later_rattle(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_rattle(dyn, scratch, state, out, settings, end, most)
 
 
 @lazy(int)
 def later_symplectic(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_symplectic(dyn, scratch, state, out, settings, end, most)
 
 
 @lazy(int)
 def later_alpha(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_alpha(dyn, scratch, state, out, settings, end, most)
 
 
 @lazy(int)
 def later_radau(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_radau(dyn, scratch, state, out, settings, end, most)
 
 

@@ -53,7 +53,7 @@ SLOW = 0.3
 
 @internal
 def _matrix(dyn, scratch, t, trial, a, h, rho):
-    """A new matrix at a trial state (2, 3 nb); returns the evaluations it took."""
+    """Factor the matrix at a trial state (2, 3 nb); returns the evaluations it took."""
     full = scratch.full
     m, f, g, b = _weights(rho)
     count = differentiate(dyn, scratch, t, trial, a, scratch.stages[3], scratch.stages[4])
@@ -68,7 +68,7 @@ def _matrix(dyn, scratch, t, trial, a, h, rho):
 
 @internal
 def _weights(rho):
-    """m, f, g, b."""
+    """Return m, f, g, b."""
     m = (2.0 * rho - 1.0) / (rho + 1.0)
     f = rho / (rho + 1.0)
     g = 0.5 + f - m

@@ -56,7 +56,7 @@ SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 
 @internal
 def _loads(dyn, scratch, t, y):
-    """Q at (t, y) into scratch.stages[1, 0], after _factor at the same pose; returns its power (W)."""
+    """Put Q at (t, y) into scratch.stages[1, 0], after _factor at the same pose; returns its power (W)."""
     load = scratch.stages[1, 0]
     for c in range(load.shape[0]):
         load[c] = dyn.weight[c]
@@ -67,7 +67,7 @@ def _loads(dyn, scratch, t, y):
 
 @internal
 def _factor(dyn, scratch, t, q):
-    """Laws and factors of S at (t, q)."""
+    """Evaluate laws and factor S at (t, q)."""
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
     position(dyn.system, q, scratch.drive, scratch.ws)
@@ -76,7 +76,7 @@ def _factor(dyn, scratch, t, q):
 
 @inlined
 def _stand(dyn, scratch, t, y):
-    """Factors of S and the loads at (t, y), where a step begins; returns the power of the loads (W)."""
+    """Factor S and find the loads at (t, y), where a step begins; returns the power of the loads (W)."""
     _factor(dyn, scratch, t, y[0])
     return _loads(dyn, scratch, t, y)
 
@@ -118,7 +118,7 @@ def _correct(dyn, scratch, v, lam):
 
 @inlined
 def _driver_work(dyn, scratch, lam):
-    """Work (J) of the impulses lam (m,) of drivers at the rates in scratch.drive."""
+    """Return the work (J) of the impulses lam (m,) of drivers at the rates in scratch.drive."""
     work = 0.0
     for k in range(dyn.system.driven.shape[0]):
         work -= lam[dyn.system.driven[k, 0]] * scratch.drive[dyn.system.driven[k, 1], 1]
@@ -127,7 +127,7 @@ def _driver_work(dyn, scratch, lam):
 
 @apart
 def rattle_step(dyn, scratch, t, h, y, power):
-    """One step of y (2, 3 nb) from t to t + h (s), h of either sign; _stand was called at its start, and is at its end.
+    """Step y (2, 3 nb) from t to t + h (s), h of either sign; _stand was called at its start, and is at its end.
 
     ``power`` is that of the loads at the start (W). Returns the power of the loads at the end and the work (J), in
     scratch.report[1:3], and whether lam and v1 were found.
@@ -216,7 +216,7 @@ def rattle_step(dyn, scratch, t, h, y, power):
 
 @apart
 def march(dyn, scratch, state, out, settings, end, max_steps, parts):
-    """``advance`` by RATTLE (1 part) or by its composition of order 4 (5 parts)."""
+    """Advance by RATTLE (1 part) or by its composition of order 4 (5 parts)."""
     y = state.y
     begin_run(dyn, scratch, state)
     power = _stand(dyn, scratch, state.clock[TIME], y)

@@ -48,7 +48,7 @@ STAGES = 4
 
 @apart
 def march(dyn, scratch, state, out, settings, end, max_steps, projected):
-    """``advance``, with the end of each step ``projected`` or as it is."""
+    """Advance with the end of each step ``projected``, or as it is."""
     y = state.y
     k = scratch.stages
     trial = scratch.state

@@ -17,7 +17,7 @@ WITHIN = 1e-3
 
 @inlined
 def allowed(settings, before, after, part, c):
-    """Tolerance of one entry of the state."""
+    """Return the tolerance of one entry of the state."""
     return settings.absolute[part, c] + settings.growing[part, c] * max(abs(before[part, c]), abs(after[part, c]))
 
 

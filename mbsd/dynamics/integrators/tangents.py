@@ -19,7 +19,7 @@ MANY = 600
 
 
 def too_large(dynamics: Dynamics) -> str | None:
-    """Why an implicit method with full matrices cannot simulate this mechanism, or None."""
+    """Return why an implicit method with full matrices cannot simulate this mechanism, or None."""
     count = len(dynamics.inertia) - 3
     if count <= MANY:
         return None

@@ -1,4 +1,4 @@
-"""How a mechanism answers forces at a pose, its joints and drivers holding and all rows that events switch released.
+"""Responses of a mechanism to forces at a pose, with joints and drivers holding and all switched rows released.
 
     M a + J^T lam = Q,   J a = gamma          M dv + J^T p = impulse,   J dv = 0
 
@@ -32,7 +32,7 @@ def stand(dyn, scratch, t, y):
 
 @apart
 def factor(dyn, scratch):
-    """Factors of the rows that hold now, at the pose of scratch.ws."""
+    """Factor the rows that hold now, at the pose of scratch.ws."""
     factor_schur(dyn.schur, dyn.inverse, scratch.ws.jac, scratch.factors, 0.0)
 
 
@@ -47,7 +47,7 @@ def find_answers(dyn, scratch, contacts, flags):
 
 @internal
 def answer_resting(dyn, scratch, contacts, flags):
-    """``find_answers`` of joints at rest, in ``flags`` (c,), where contacts hold and react, with their friction.
+    """Find answers of joints at rest, in ``flags`` (c,), where contacts hold and react, with their friction.
 
     The rows of joints are released. What contacts hold by themselves leaves ``flags``.
     """

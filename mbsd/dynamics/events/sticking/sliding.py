@@ -88,7 +88,7 @@ def find_changes(contacts, compliance, held, count):
 
 @internal
 def add_beside(contacts, i, force):
-    """``force`` of row i without sharing, with what the present normal forces of joints change of it."""
+    """Return ``force`` of row i without sharing, with what the present normal forces of joints change of it."""
     sticks = contacts.sticks
     for j in range(sticks.change.shape[1]):
         force += sticks.change[i, j] * (sticks.normal[FOUND, j] - sticks.normal[BASIS, j])

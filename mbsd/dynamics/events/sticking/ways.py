@@ -1,4 +1,4 @@
-"""What is looked at of joints that stick.
+"""Guards of joints that stick.
 
 slides    its speed, sign kept
 sticks    its limit less |T|; where what is at rest shares its forces  1 - s  of all of it, times the largest load

@@ -1,4 +1,4 @@
-"""What an event of the user does: it is noted, ends the simulation, changes velocities, or releases joints.
+"""Actions of the user's events: one is noted, ends the simulation, changes velocities, or releases joints.
 
 Rows of J of a released joint hold no more, for good, and it has no friction. Rows that repeat them hold instead.
 """

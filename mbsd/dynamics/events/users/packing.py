@@ -41,7 +41,7 @@ def why_not(events: Sequence[Event], longest: float) -> str | None:
 
 
 def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float, bare: Schur) -> Events:
-    """Those of a run, whose steps are ``longest`` (s) at most, at its start; ``bare``: without rows of contacts."""
+    """Return the user's events at the start of a run, whose steps are ``longest`` (s) at most."""
     packed, frames = ready.packed, list[Marker]()
     table, number = [], []
     for event in events:
@@ -95,7 +95,7 @@ def may_release(event: Event) -> bool:
 
 
 def _release(ready: PreparedDynamics, events: Sequence[Event], bare: Schur) -> np.ndarray:
-    """Rows of all joints that events release."""
+    """Return rows of all joints that events release; ``bare``: the sequence without rows of contacts."""
     packed, friction, out = ready.packed, ready.dynamics.loads.friction, []
     names = [joint.name for joint in packed.joints]
     groups = [
@@ -127,7 +127,7 @@ def _ready(events: Sequence[Event]) -> list[tuple[Marker, ...]]:
 
 
 def _looks(event: Event, longest: float) -> int:
-    """Room for the values of an event in one step."""
+    """Return room for the values of an event in one step."""
     asked = math.ceil(PER_SHORTEST * longest / event.shortest) if event.shortest else 0
     return 16 + max(MOST_VALUES, asked)
 

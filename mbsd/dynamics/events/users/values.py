@@ -43,7 +43,7 @@ def read_frames(events, first, count, q, v):
 
 @apart
 def value_of(events, e, t, q, v):
-    """The value of event e at q, v (3 nb,) and t (s)."""
+    """Return the value of event e at q, v (3 nb,) and t (s)."""
     read_frames(events, events.table[e, FIRST], events.table[e, FRAMES], q, v)
     call(events.table[e, VALUE], t, events.inputs, events.outputs)  # pyright: ignore[reportCallIssue]
     return events.outputs[0] - events.number[e, LEVEL]
@@ -51,7 +51,7 @@ def value_of(events, e, t, q, v):
 
 @internal
 def signed(events, e, t, y):
-    """The same at y (2, 3 nb), with the sign of its side: it is not negative now, and falls through zero."""
+    """Return the value of event e at y (2, 3 nb) with the sign of its side: not negative now, it falls through zero."""
     side = -1.0 if events.number[e, SIDE] < 0.0 else 1.0
     return side * value_of(events, e, t, y[0], y[1])
 
@@ -122,7 +122,7 @@ def turn_side(dyn, events, e, state):
 
 @lazy(None)
 def begin_sides(events, state):
-    """On which side all events are at the start."""
+    """Find on which side all events are at the start."""
     for e in range(events.table.shape[0]):
         events.number[e, SIDE] = _side(events, e, state.clock[TIME], state.y)
 

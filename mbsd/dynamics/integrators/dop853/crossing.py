@@ -57,7 +57,7 @@ REACH = 6.0
 
 @inlined
 def nearness(switch, settings):
-    """How far (m) beyond a switch the next step may go."""
+    """Return how far (m) beyond a switch the next step may go."""
     if switch[0, CUTS] == 1.0:
         return max(TIGHT, WIDE * settings.relative) * switch[0, SIZE]
     return TIGHT * switch[0, SIZE]
@@ -115,7 +115,7 @@ def step_after(dyn, scratch, state, settings, t):
 
 @lazy(float)
 def crossing(dyn, scratch, state, settings, h, reached, work):
-    """What part of the step that was tried is to be taken again, below 1; 1: all is well; 2: it ends at a switch.
+    """Return the part below 1 of the tried step that is to be taken again; 1: all is well; 2: it ends at a switch.
 
     The state evaluated last is the step's end, before and, for 1 and 2, after.
     """

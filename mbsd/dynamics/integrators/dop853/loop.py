@@ -95,7 +95,7 @@ def take_state(state, scratch, reached, work):
 
 @inlined
 def choose_step(state, settings, h, error, rejected, last):
-    """The length of the next step, from the errors of this one and the one before."""
+    """Choose the length of the next step from the errors of this one and the one before."""
     growth = 10.0
     if error > 0.0:
         growth = math.log(error)

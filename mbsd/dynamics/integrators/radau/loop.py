@@ -62,7 +62,7 @@ ROUNDING = 1e-9
 
 @internal
 def _extrapolate(scratch, ratio):
-    """First guess of Z from the polynomial of the step before, which was 1 / ratio as long."""
+    """Guess Z from the polynomial of the step before, which was 1 / ratio as long."""
     k = scratch.stages
     for part in range(2):
         for c in range(3, k.shape[2]):
@@ -81,7 +81,7 @@ def _extrapolate(scratch, ratio):
 
 @apart
 def _estimate(dyn, scratch, state, settings, h, again):
-    """Error of the step in tolerances; ``again`` filters it once more, after a step was refused."""
+    """Return the error of the step in tolerances; ``again`` filters it once more, after a step was refused."""
     k = scratch.stages
     y = state.y
     err = k[ERROR_ROW]

@@ -56,7 +56,7 @@ def factor_both(scratch, h, size):
 
 @internal
 def solve_real(dyn, scratch, q, h, x):
-    """x (2, n) becomes the solution with the real eigenvalue at q (n,)."""
+    """Solve for x (2, n), in place, with the real eigenvalue at q (n,)."""
     way = scratch.change[0]
     turned = scratch.change[1]
     for c in range(3, x.shape[1]):
@@ -81,7 +81,7 @@ def solve_real(dyn, scratch, q, h, x):
 
 @internal
 def solve_complex(dyn, scratch, q, h, x, z):
-    """x + i z (2, n each) becomes the solution with the complex eigenvalue at q (n,)."""
+    """Solve for x + i z (2, n each), in place, with the complex eigenvalue at q (n,)."""
     way = scratch.change[0]
     turned = scratch.change[1]
     for c in range(3, x.shape[1]):
@@ -118,7 +118,7 @@ def solve_complex(dyn, scratch, q, h, x, z):
 
 @inlined
 def norm(settings, y, after, x):
-    """Root mean square of x (2, 3 nb) in tolerances between two states."""
+    """Return the root mean square of x (2, n) in tolerances between two states."""
     total = 0.0
     for part in range(2):
         for c in range(3, y.shape[1]):

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs import independent_steps
 from mbsd.dynamics.runs.embed import embed, embedded_at_start

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.events.loop import NOT_SOLVED, OVER, go_on
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.genevas.steps import index
-from mbsd.dynamics.integrators.advance import through
-from mbsd.dynamics.integrators.formulation import derivative
+from mbsd.dynamics.integrators.advance import advance_past_jumps
 from mbsd.dynamics.repeated_rows.exchange import again, opens
 from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, TIME, Output
 
@@ -128,7 +128,7 @@ def run_rows(
             elif genevas.body.shape[0] > 0:
                 ended = index(dyn, scratch, state, out, settings, genevas, end, at_once, before, after)
             else:
-                ended = through(dyn, scratch, state, out, settings, end, at_once, before, after, method)
+                ended = advance_past_jumps(dyn, scratch, state, out, settings, end, at_once, before, after, method)
             if repeating and opens(dyn, scratch, contacts.repeated, out, written, state.count[NEXT]):
                 ended = NOT_SOLVED
             if near > 0.0 and ended != REACHED:

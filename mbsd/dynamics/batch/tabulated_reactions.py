@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mbsd.compiling.jit import threaded
-from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.state import REACHED
 from mbsd.equations.assembly import position
 

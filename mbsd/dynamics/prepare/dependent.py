@@ -14,7 +14,7 @@ import numpy as np
 from mbsd.base.errors import SingularPoseError
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.dynamics.reference.projection import project
-from mbsd.dynamics.rows.bounds import OPENED_BY
+from mbsd.dynamics.reference.rows import OPENED_BY
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics

@@ -25,9 +25,8 @@ from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.pins import with_pins
 from mbsd.dynamics.reference.sequence import elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
-from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
-from mbsd.dynamics.rows.switches import Switches, friction_rows
 from mbsd.dynamics.start.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
+from mbsd.dynamics.switches import Switches, friction_rows, joint_sticks, stuck_rows
 from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import Initial, consistent
 from mbsd.kinematics.pose.mobility import joint_mobility, rows_at

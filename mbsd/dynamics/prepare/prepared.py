@@ -18,8 +18,7 @@ from mbsd.dynamics.prepare.approaches import Approaches
 from mbsd.dynamics.prepare.following import Following
 from mbsd.dynamics.prepare.stops import Stops, stops_of
 from mbsd.dynamics.reference.arrays import Dynamics, Scratch, scratch_for
-from mbsd.dynamics.rows.joint_sticks import JointStick
-from mbsd.dynamics.rows.switches import Switches
+from mbsd.dynamics.switches import JointStick, Switches
 from mbsd.kinematics.pose.initial import Initial
 from mbsd.results.mobility import Mobility
 

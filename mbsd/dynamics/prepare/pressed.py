@@ -13,8 +13,8 @@ from collections.abc import Callable
 import numpy as np
 
 from mbsd.base.errors import MechanismError, SimulationError
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.kinematics.pose.ideal_joints import with_ideal_joints
 from mbsd.model.force import Press

@@ -14,7 +14,7 @@ import numpy as np
 
 from mbsd.arrays.laws import law_values
 from mbsd.arrays.states import columns_of, ones_of
-from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.results.measured import measured, measured_rate
 

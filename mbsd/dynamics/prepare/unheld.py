@@ -16,7 +16,7 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MobilityError, ModelError
-from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.results.mobility import Mobility

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.base.errors import SimulationError
-from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.runs.embed import can_embed, embed, embedded_at_start
 from mbsd.dynamics.runs.independent_steps import IndependentSteps
 from mbsd.dynamics.runs.pace import Pace

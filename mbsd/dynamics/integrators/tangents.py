@@ -1,6 +1,6 @@
 """How accelerations change with coordinates and velocities: forward differences, for implicit methods.
 
-    A = da/dq,   B = da/dv,      a(t, q, v) with the multipliers eliminated
+    A = da/dq N(q),   B = da/dv,      q' = N(q) v,   a(t, q, v) with the multipliers eliminated
 
 Loads of every kind, functions of the user too, and the turning of joints are in it. It costs two evaluations for each
 coordinate, and full matrices; Newton's method needs no more than a few digits of it.
@@ -9,7 +9,7 @@ coordinate, and full matrices; Newton's method needs no more than a few digits o
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart
-from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.formulation import derivative, shift
 from mbsd.dynamics.reference.arrays import Dynamics
 
 ROOT = 1.5e-8
@@ -19,7 +19,7 @@ MANY = 600
 
 
 def too_large(dynamics: Dynamics) -> str | None:
-    """Why an implicit method with full matrices cannot simulate this mechanism, or None."""
+    """Return why an implicit method with full matrices cannot simulate this mechanism, or None."""
     count = len(dynamics.inertia) - 3
     if count <= MANY:
         return None
@@ -45,10 +45,14 @@ def differentiate(dyn, scratch, t, y, a, trial, out):
             size = 1.0 / dyn.per_size[c]
             if part == 1 or c % 3 != 2:
                 size = max(size, abs(y[part, c]))
-            trial[part, c] = y[part, c] + ROOT * size
-            step = trial[part, c] - y[part, c]
+            if part == 0:
+                step = shift(dyn, y[0], c, ROOT * size, trial[0])
+            else:
+                trial[1, c] = y[1, c] + ROOT * size
+                step = trial[1, c] - y[1, c]
             derivative(dyn, scratch, t, trial, out, scratch.ws.right[1])
-            trial[part, c] = y[part, c]
+            for i in range(3, n3):
+                trial[part, i] = y[part, i]
             for r in range(3, n3):
                 matrix[r - 3, c - 3] = (out[1, r] - a[r]) / step
     return 2 * (n3 - 3)

@@ -123,6 +123,28 @@ def test_links_to_sections_lead_to_headings(document: Path) -> None:
         assert anchor in anchors(target), f"{document.name} links to {page}#{anchor}"
 
 
+WORDS = {
+    r"refus\w*": "raises an error",
+    r"made again|makes? again": "rebuilt",
+    r"(?<!virtual )machines?(?! code| addresses)": "mechanism, or computer",
+    r"strays?": "varies",
+}
+"""One word for one thing: words of our own, and what the pages say instead."""
+PAGES = [page for page in DOCUMENTS if page.parent == ROOT / "docs" or "decisions" in page.parts or page.parent == ROOT]
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_pages_have_one_word_for_one_thing(word: str) -> None:
+    uses = [
+        f"{page.name}: {line.strip()[:80]}"
+        for page in PAGES
+        if page.name not in ("CHANGELOG.md", "CONTRIBUTING.md", "benchmarks.md")
+        for line in re.sub(r"^```.*?^```|`[^`]*`|\]\([^)]*\)", "", page.read_text(), flags=re.M | re.S).splitlines()
+        if re.search(rf"\b(?:{word})\b", line)
+    ]
+    assert not uses, f"say {WORDS[word]}: " + "; ".join(uses)
+
+
 def test_pages_are_short_enough_to_be_finished() -> None:
     lines = {page: len(page.read_text().splitlines()) for page in DOCUMENTS if page.is_relative_to(ROOT / "docs")}
     assert sum(lines.values()) <= 7000

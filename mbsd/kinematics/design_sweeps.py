@@ -47,7 +47,7 @@ class Push(NamedTuple):
 
 
 class Moved(NamedTuple):
-    """What one parameter changes."""
+    """The change that one parameter makes."""
 
     markers: Sequence[tuple[int, int]] = ()
     """Marker and axis."""
@@ -74,7 +74,7 @@ class Batch:
 
 
 def in_closed_form(ready: Prepared) -> bool:
-    """Whether a mechanism is made of driven bodies and dyads without a redundant joint."""
+    """Return True if a mechanism is made of driven bodies and dyads without a redundant joint."""
     groups = ready.groups
     return groups is not None and not ready.mobility.redundant_rows and not (groups.kind >= BLOCK).any()
 

@@ -149,7 +149,7 @@ def _ends_close(determinant: np.ndarray) -> bool:
 
 
 def _all_close(ready: Prepared, steps: Steps, q: np.ndarray) -> bool:
-    """Whether joints that repeat others, which the groups leave out, hold at all poses q (T, 3 nb)."""
+    """Return True if joints that repeat others, which the groups leave out, hold at all poses q (T, 3 nb)."""
     packed = ready.packed
     if ready.proved or not ready.mobility.redundant_rows:
         return True

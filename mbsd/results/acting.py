@@ -64,7 +64,7 @@ def actions(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> list[A
 
 
 def felt(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> Action:
-    """Return the wrench of joint, driver or contact number ``k`` on its moving body: the first if the second is ground."""
+    """Return the wrench of joint, driver or contact ``k`` on its moving body: the first if the second is ground."""
     on, (first, second) = acting(packed, q, wrench, k), packed.joints[k].bodies
     body, sign = (first, -1.0) if second == "ground" else (second, 1.0)
     return Action(on.x, on.y, sign * on.fx, sign * on.fy, sign * on.torque, body)

@@ -14,6 +14,7 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.states import widened, with_states
 from mbsd.base.errors import MobilityError, ModelError
+from mbsd.base.quantity import counted
 from mbsd.dynamics.prepare.dependent import refuse_singular_start
 from mbsd.dynamics.prepare.lent_inertia import lift_inertia
 from mbsd.dynamics.prepare.mass_ratio import as_heavy_as_ground, passes_for
@@ -152,6 +153,6 @@ def _refuse_superfluous_drivers(packed: Packed, mobility: Mobility) -> None:
     drivers = len(packed.ws.phi) - packed.driver_rows
     if drivers > mobility.dof:
         raise MobilityError(
-            f"{packed.name}: {drivers} drivers for {mobility.dof} degree{'s' * (mobility.dof != 1)} of freedom; "
+            f"{packed.name}: {counted(drivers, 'driver')} for {counted(mobility.dof, 'degree')} of freedom; "
             "remove a driver or free a joint"
         )

@@ -66,7 +66,6 @@ SECTIONS = (
             "mbsd/kinematics/pose/initial.py",
             "mbsd/dynamics/prepare",
             "mbsd/dynamics/reference",
-            "mbsd/dynamics/start",
             "mbsd/dynamics/rows",
             "mbsd/dynamics/runs",
             "mbsd/dynamics/events",
@@ -82,8 +81,8 @@ SECTIONS = (
         "Independent coordinates",
         "What forward dynamics does where a mechanism falls apart into driven bodies and Assur groups.",
         (
-            "mbsd/dynamics/embedding",
-            "mbsd/dynamics/embedding/blocks/block.py",
+            "mbsd/dynamics/independent",
+            "mbsd/dynamics/independent/block.py",
         ),
     ),
     (

@@ -11,10 +11,10 @@ from mbsd.compiling.interrupts import kept
 from mbsd.dynamics.events.driver import EventSteps
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import fill_multipliers
+from mbsd.dynamics.runs.motion import to_end
 from mbsd.dynamics.runs.recording import Recording, Snapshot
-from mbsd.dynamics.runs.reference_steps import step_to
 from mbsd.dynamics.runs.run import INDEPENDENT, Run
-from mbsd.dynamics.runs.to_end import to_end
+from mbsd.dynamics.runs.steps import step_to
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
 from mbsd.model.event import Event
 

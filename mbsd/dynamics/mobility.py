@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mbsd.arrays.packing import pack
-from mbsd.dynamics.start.large import MANY_COORDINATES, mobility_large
+from mbsd.dynamics.prepare.large import MANY_COORDINATES, mobility_large
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.pose.mobility import joint_mobility
 from mbsd.model.mechanism import Model

@@ -26,13 +26,13 @@ from mbsd.dynamics.follow import follow, resumed
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from mbsd.dynamics.phase_rows import with_phase_changes
 from mbsd.dynamics.prepare.dependent import refuse_opened
+from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import multipliers_along
 from mbsd.dynamics.rows.joint_sticks import standing
 from mbsd.dynamics.runs.recording import Recording
 from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Run
-from mbsd.dynamics.start.large import MANY_COORDINATES
 from mbsd.equations.left_over import leave
 from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS

@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
+from mbsd.dynamics.independent import steps as independent_steps
+from mbsd.dynamics.independent.embedding import embed, embedded_at_start
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.multipliers import fill_multipliers
-from mbsd.dynamics.runs import independent_steps
-from mbsd.dynamics.runs.embed import embed, embedded_at_start
-from mbsd.dynamics.runs.to_end import integrate
+from mbsd.dynamics.runs.motion import integrate
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.registry import NAMES

@@ -12,7 +12,7 @@ import pytest
 from mbsd import Mechanism, ModelError, SimulationError
 from mbsd.dynamics.integrators.kind import INTEGRATORS, register
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.runs.to_end import integrate
+from mbsd.dynamics.runs.motion import integrate
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, TIME, output_for, start_state
 from mbsd.testing import check_integrator, integrators
 from mbsd.testing.integrators import (

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, SimulationError
-from mbsd.dynamics.runs import independent_steps, pace, run
+from mbsd.dynamics.independent import steps as independent_steps
+from mbsd.dynamics.runs import pace, run
 
 
 def pendulum() -> Mechanism:

@@ -107,7 +107,7 @@ m = Mechanism("pendulum")
 rod = m.bar("rod", 0.3, mass=0.2)
 m.revolute("A", m.ground.origin, rod.start)
 m.simulate(1.0, steps=20)
-from mbsd.dynamics.embedding import bridge, equations
+from mbsd.dynamics.independent import bridge, equations
 from mbsd.kinematics.groups.carrying.cases import PerCoordinate
 from mbsd.kinematics.groups.kinds import rrp
 from mbsd.dynamics.reference import acceleration, projection

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from mbsd.compiling.jit import internal, kernel
-from mbsd.dynamics.embedding.equations import accelerate, evaluate, put, settle
+from mbsd.dynamics.independent.equations import accelerate, evaluate, put, settle
 from mbsd.kinematics.groups.carrying.columns import BASE, NEAR, THETA
 
 FIRST = 3

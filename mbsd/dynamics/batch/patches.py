@@ -22,9 +22,9 @@ from mbsd.base.errors import MechanismError
 from mbsd.dynamics.batch.base import Base
 from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.starts import Starts, starts_of
-from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE
 from mbsd.dynamics.events.arrays import KINETIC, RESTITUTION, STATIC, Contacts
+from mbsd.dynamics.independent.arrays import Embedding
+from mbsd.dynamics.independent.places import KEPT_Q, KEPT_SIZE
 from mbsd.dynamics.prepare.mass_ratio import USUAL
 from mbsd.dynamics.prepare.pressed import presses
 from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA

@@ -16,8 +16,8 @@ from mbsd.dynamics.batch.rows import NEARLY_SINGULAR
 from mbsd.dynamics.batch.single_run import SingleRun
 from mbsd.dynamics.batch.tabulated_reactions import tabulate_reactions
 from mbsd.dynamics.change_points import CLOSE, are_suspect, can_pass, determinants, usual_output
+from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.start.large import MANY_COORDINATES
 from mbsd.dynamics.state import REACHED
 
 NEGLIGIBLE = 1e-9

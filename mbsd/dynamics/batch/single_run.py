@@ -11,23 +11,23 @@ import numpy as np
 
 from mbsd.dynamics.batch.block import kind_of
 from mbsd.dynamics.batch.cylinders import has_cylinders
-from mbsd.dynamics.embedding.blocks.places import KEPT_SIZE
-from mbsd.dynamics.embedding.coordinates import Coordinate
 from mbsd.dynamics.events.arrays import Contacts
 from mbsd.dynamics.events.packing import contacts_of
 from mbsd.dynamics.events.users import packing as users_packing
 from mbsd.dynamics.genevas.arrays import Genevas
 from mbsd.dynamics.genevas.packing import no_genevas
+from mbsd.dynamics.independent.coordinates import Coordinate
+from mbsd.dynamics.independent.embedding import embedded_at_start
+from mbsd.dynamics.independent.places import KEPT_SIZE
+from mbsd.dynamics.independent.steps import IndependentSteps
 from mbsd.dynamics.integrators.advance import number_of
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated_rows import packing as repeated_packing
 from mbsd.dynamics.runs.carried_steps import NEAR, can_carry
-from mbsd.dynamics.runs.embed import embedded_at_start
-from mbsd.dynamics.runs.independent_steps import IndependentSteps
+from mbsd.dynamics.runs.motion import independent_steps
 from mbsd.dynamics.runs.run import INDEPENDENT, REFERENCE, Run
-from mbsd.dynamics.runs.to_end import independent_steps
 from mbsd.dynamics.state import State
 from mbsd.equations.interactions.switching import SWITCHING
 from mbsd.kinematics.limits.joints import limits_of

@@ -56,8 +56,8 @@ from mbsd.dynamics.events.users.arrays import GROUP, ROW, UNKNOWN
 from mbsd.dynamics.repeated_rows.packing import opened
 from mbsd.dynamics.runs.pace import Pace
 from mbsd.dynamics.runs.recording import Snapshot
-from mbsd.dynamics.runs.reference_steps import advance, check_callbacks
 from mbsd.dynamics.runs.refusal import refusal
+from mbsd.dynamics.runs.steps import advance, check_callbacks
 from mbsd.dynamics.state import NEXT, NOT_FINITE, PAUSED, REACHED, TIME, WORK, Output, State
 from mbsd.equations.system import ZERO
 from mbsd.model.event import Event, Happening

@@ -24,8 +24,8 @@ from __future__ import annotations
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined
 from mbsd.dynamics import state as run_state
-from mbsd.dynamics.embedding import equations, records
-from mbsd.dynamics.embedding.arrays import Embedding
+from mbsd.dynamics.independent import equations, records
+from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.reference import acceleration, projection
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import EVALUATIONS, POWER, STARTED, TIME

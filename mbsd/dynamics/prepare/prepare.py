@@ -15,19 +15,19 @@ from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.states import widened, with_states
 from mbsd.base.errors import MobilityError, ModelError
 from mbsd.dynamics.prepare.dependent import refuse_singular_start
-from mbsd.dynamics.prepare.lent_inertia import lift_inertia
+from mbsd.dynamics.prepare.inertia import lift_inertia
+from mbsd.dynamics.prepare.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.dynamics.prepare.mass_ratio import as_heavy_as_ground, passes_for
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.prepare.pressed import refuse_pressed
+from mbsd.dynamics.prepare.refusals import refuse_unheld
 from mbsd.dynamics.prepare.start_states import take_start_states
-from mbsd.dynamics.prepare.unheld import refuse_unheld
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.pins import with_pins
 from mbsd.dynamics.reference.sequence import elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
 from mbsd.dynamics.rows.switches import Switches, friction_rows
-from mbsd.dynamics.start.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import Initial, consistent
 from mbsd.kinematics.pose.mobility import joint_mobility, rows_at

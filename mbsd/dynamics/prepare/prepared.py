@@ -52,7 +52,10 @@ class PreparedDynamics:
     dropped: tuple[int, ...] = ()
     """Rows left out because they repeat others."""
     independent: Any = UNKNOWN
-    """The mechanism in independent coordinates that suit its start, None where there are none; see runs/embed.py."""
+    """The mechanism in independent coordinates that suit its start, None where there are none.
+
+    See independent/embedding.py.
+    """
 
     def advance(self, method: Integrator, arrays: Any, *rest: Any) -> int:
         """Go on with ``method`` in reference coordinates (arrays: Dynamics) or in independent ones (Embedding)."""

@@ -18,7 +18,7 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, inlined, internal, lazy
-from mbsd.dynamics.embedding.arrays import Embedding
+from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.integrators.advance import through
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.projection import measure

@@ -11,12 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.base.errors import SimulationError
+from mbsd.dynamics.independent.embedding import can_embed, embed, embedded_at_start
+from mbsd.dynamics.independent.steps import IndependentSteps
 from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.runs.embed import can_embed, embed, embedded_at_start
-from mbsd.dynamics.runs.independent_steps import IndependentSteps
 from mbsd.dynamics.runs.pace import Pace
-from mbsd.dynamics.runs.reference_steps import advance
 from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.steps import advance
 from mbsd.dynamics.state import PAUSED, REACHED, TIME, Output, State, copied
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.registry import BRANCH

@@ -1,7 +1,7 @@
 """How fast a run advances: steps between two looks at the keyboard, word of long runs, and an end to stuck ones.
 
 A run is examined when it would take many more steps at its present pace. It ends where a force is found that jumps, or
-one so stiff that the steps are far shorter than the motion needs (stuck.py), where the motion grows without bound
+one so stiff that the steps are far shorter than the motion needs (diagnosis.py), where the motion grows without bound
 (runaway.py), and where the end is out of reach.
 Legitimate runs of many steps go on, with word of where they are. What is decided depends on steps alone, never on the
 clock.
@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 
 from mbsd.base.errors import SimulationError
 from mbsd.base.stopping import end_if_unwanted
+from mbsd.dynamics.runs.diagnosis import diagnosis
 from mbsd.dynamics.runs.runaway import Growth, growth_of, runaway
-from mbsd.dynamics.runs.stuck import diagnosis
 from mbsd.dynamics.state import ACCEPTED, REJECTED, TIME, State
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ import numpy as np
 from mbsd.arrays.friction_along import REMEDY, jam
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics import state as run_state
+from mbsd.dynamics.runs.diagnosis import jump
 from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.runs.runaway import runaway_at
-from mbsd.dynamics.runs.stuck import jump
 from mbsd.equations.joint_friction import FAILED, X
 
 JUMP_STEP = 1e-9

@@ -1,6 +1,6 @@
 """A run: an integrator with its tolerances over a prepared mechanism.
 
-It is made of steps: in reference coordinates (reference_steps.py), in independent ones (independent_steps.py), in
+It is made of steps: in reference coordinates (steps.py), in independent ones (independent/steps.py), in
 reference coordinates carried across singular poses (carried_steps.py), or from event to event (mbsd/dynamics/events/).
 """
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mbsd.dynamics.runs.stuck import loads_by_force, slope_at
+from mbsd.dynamics.runs.diagnosis import loads_by_force, slope_at
 from mbsd.dynamics.state import TIME, State
 
 if TYPE_CHECKING:

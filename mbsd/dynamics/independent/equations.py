@@ -11,10 +11,10 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
-from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
-from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE, Q
-from mbsd.dynamics.embedding.bridge import bridge
-from mbsd.dynamics.embedding.groups import embed_groups
+from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY
+from mbsd.dynamics.independent.bridge import bridge
+from mbsd.dynamics.independent.groups import embed_groups
+from mbsd.dynamics.independent.places import KEPT_Q, KEPT_SIZE, Q
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
 from mbsd.kinematics.groups.carrying.branch import WIDE, angle_of

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from mbsd.dynamics.embedding.blocks.places import BODIES, EQUATIONS
-from mbsd.dynamics.embedding.blocks.prediction import expected, expected_since
+from mbsd.dynamics.independent.places import BODIES, EQUATIONS
+from mbsd.dynamics.independent.prediction import expected, expected_since
 from mbsd.kinematics.groups.blocks import BODY, MOTION, SIZE
 from mbsd.kinematics.groups.carrying.columns import SPEED
 from mbsd.kinematics.groups.newton.fused import fused

@@ -11,7 +11,7 @@ a little before and after it, H seconds apart:
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, inlined
-from mbsd.dynamics.embedding.equations import evaluate, put, write
+from mbsd.dynamics.independent.equations import evaluate, put, write
 from mbsd.dynamics.state import NEXT, TIME, WORK
 
 

@@ -10,12 +10,12 @@ import numpy as np
 
 from mbsd.base.codes import LAW_VALUE, LINEAR, POWER, TURN
 from mbsd.base.kept import Kept
-from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY, Embedding, EmbeddingScratch
-from mbsd.dynamics.embedding.blocks.arrays import block_arrays, block_work
-from mbsd.dynamics.embedding.blocks.places import KEPT_SIZE
-from mbsd.dynamics.embedding.bridge import KEPT
-from mbsd.dynamics.embedding.coordinates import MOST, Choice, Coordinate, choices, coordinates_of
-from mbsd.dynamics.embedding.equations import look
+from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY, Embedding, EmbeddingScratch
+from mbsd.dynamics.independent.block_arrays import block_arrays, block_work
+from mbsd.dynamics.independent.bridge import KEPT
+from mbsd.dynamics.independent.coordinates import MOST, Choice, Coordinate, choices, coordinates_of
+from mbsd.dynamics.independent.equations import look
+from mbsd.dynamics.independent.places import KEPT_SIZE
 from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
 from mbsd.dynamics.state import Settings
 from mbsd.kinematics.groups.carrying.branch import FLOOR

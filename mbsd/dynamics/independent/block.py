@@ -14,8 +14,9 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import lazy
 from mbsd.compiling.views import table
-from mbsd.dynamics.embedding.blocks.coupled import move_coupled, place_coupled
-from mbsd.dynamics.embedding.blocks.places import (
+from mbsd.dynamics.independent.coupled import move_coupled, place_coupled
+from mbsd.dynamics.independent.past import Past
+from mbsd.dynamics.independent.places import (
     ARMS,
     ARMS_WIDTH,
     BODIES,
@@ -46,7 +47,6 @@ from mbsd.dynamics.embedding.blocks.places import (
     Q,
     V,
 )
-from mbsd.dynamics.embedding.blocks.records import Past
 from mbsd.kinematics.groups.blocks import BODY, LARGEST, SIZE
 from mbsd.kinematics.groups.carrying.branch import angle_of, predicted
 from mbsd.kinematics.groups.carrying.columns import BASE, COS, INERTIA, MASS, OMEGA, SIN, VALUE, X, Y

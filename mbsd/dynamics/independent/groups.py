@@ -7,7 +7,7 @@ once more for the convective accelerations, whose right-hand sides have the term
 from __future__ import annotations
 
 from mbsd.compiling.jit import inlined
-from mbsd.dynamics.embedding.blocks.block import embed_block
+from mbsd.dynamics.independent.block import embed_block
 from mbsd.kinematics.groups.blocks import BLOCK, TRAIN
 from mbsd.kinematics.groups.carrying.cases import PerCoordinate
 from mbsd.kinematics.groups.carrying.columns import INERTIA, MASS

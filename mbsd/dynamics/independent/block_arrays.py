@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mbsd.dynamics.embedding.blocks.places import (
+from mbsd.dynamics.independent.places import (
     ARMS,
     BODIES,
     DETERMINANT_AT,

@@ -28,9 +28,9 @@ from mbsd.arrays.start_state import copied
 from mbsd.base.errors import AssemblyError
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
 from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.reference.row_strength import factor_at
 from mbsd.dynamics.reference.sequence import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
-from mbsd.dynamics.start.row_strength import factor_at
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, rough_pose, unwind_angles
 from mbsd.kinematics.pose.ideal_joints import closed_ideally
 from mbsd.kinematics.pose.initial import Initial, given_coordinates, given_velocities, nearest_turn, tell_coordinates

@@ -20,7 +20,7 @@ import numpy as np
 from mbsd.arrays.directory import directory, slice_of
 from mbsd.arrays.friction_along import friction_under
 from mbsd.arrays.loads_along import loads_along
-from mbsd.dynamics.prepare.lent_inertia import LIFT
+from mbsd.dynamics.prepare.inertia import LIFT
 from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.state import TIME, State
 from mbsd.equations.joint_friction import X

@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.compiling.jit import internal, lazy
-from mbsd.dynamics.embedding.groups import embed_groups
+from mbsd.dynamics.independent.groups import embed_groups
 from mbsd.equations.laws import evaluate_laws
 from mbsd.kinematics.groups.carrying.branch import FLOOR
 from mbsd.kinematics.groups.carrying.columns import AVOID, COS, INERTIA, MASS, SIN, SPEED, TURNS, VALUE

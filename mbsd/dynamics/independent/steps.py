@@ -7,14 +7,14 @@ from collections.abc import Callable
 
 from mbsd.compiling.jit import Often
 from mbsd.dynamics import state as run_state
-from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
-from mbsd.dynamics.embedding.equations import write_alone
 from mbsd.dynamics.genevas.packing import genevas_of
 from mbsd.dynamics.genevas.steps import run_indexed
-from mbsd.dynamics.runs.embed import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, embedding_scratch
+from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY
+from mbsd.dynamics.independent.embedding import DOUBLED, GOOD, POOR, Embedded, begin_at, embed, embedding_scratch
+from mbsd.dynamics.independent.equations import write_alone
 from mbsd.dynamics.runs.pace import Pace
-from mbsd.dynamics.runs.reference_steps import advance
 from mbsd.dynamics.runs.run import Run
+from mbsd.dynamics.runs.steps import advance
 from mbsd.dynamics.state import NEXT, STARTED, STEP, TIME, WORK
 
 PASSING = 6

@@ -8,15 +8,15 @@ import numpy as np
 
 from mbsd.base.errors import ModelError, SimulationError
 from mbsd.dynamics import state as run_state
+from mbsd.dynamics.independent.embedding import NO_PLAN, Embedded, can_embed, embed, embedded_at_start
+from mbsd.dynamics.independent.steps import IndependentSteps
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs.carried_steps import CarriedSteps, can_carry
-from mbsd.dynamics.runs.embed import NO_PLAN, Embedded, can_embed, embed, embedded_at_start
-from mbsd.dynamics.runs.independent_steps import IndependentSteps
 from mbsd.dynamics.runs.pace import Pace
-from mbsd.dynamics.runs.reference_steps import advance
 from mbsd.dynamics.runs.run import AUTO, INDEPENDENT, REFERENCE, Run
+from mbsd.dynamics.runs.steps import advance
 
 
 def to_end(

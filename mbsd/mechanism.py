@@ -64,7 +64,7 @@ class Mechanism(Building):
 
     def mobility(self) -> Mobility:
         """Degrees of freedom, nominal and by rank, and redundant joints; does not need drivers."""
-        from mbsd.dynamics.mobility import mobility
+        from mbsd.dynamics.prepare.large import mobility
 
         return mobility(self)
 

@@ -80,10 +80,7 @@ SECTIONS = (
     (
         "Independent coordinates",
         "What forward dynamics does where a mechanism falls apart into driven bodies and Assur groups.",
-        (
-            "mbsd/dynamics/independent",
-            "mbsd/dynamics/independent/block.py",
-        ),
+        ("mbsd/dynamics/independent",),
     ),
     (
         "Integrators",

@@ -14,13 +14,19 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.states import without_states
-from mbsd.dynamics.between import Between
-from mbsd.dynamics.follow import follow, resumed
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.runs.recording import Recording
-from mbsd.dynamics.runs.run import Run
-from mbsd.dynamics.simulate import integrator_named, refuse_impossible, simulate, solution, warn_of_start
+from mbsd.dynamics.runs.run import Recording, Run
+from mbsd.dynamics.simulate import (
+    Between,
+    follow,
+    integrator_named,
+    refuse_impossible,
+    resumed,
+    simulate,
+    solution,
+    warn_of_start,
+)
 from mbsd.dynamics.state import Output
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution

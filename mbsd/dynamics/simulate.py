@@ -1,16 +1,22 @@
-"""Forward dynamics from start to end, as a Solution."""
+"""Forward dynamics from start to end, as a Solution, which can be asked for other times.
+
+A run is followed to its end, with or without events, and gone on with from the last point known before a time. A
+solution that was pickled is simulated once more when it is asked for such a time.
+"""
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 import mbsd.dynamics.integrators
-from mbsd.arrays.chambers import check_pistons
+from mbsd.arrays.chambers import check_pistons, phase_changes
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.friction_along import friction_along
 from mbsd.arrays.loads_along import loads_along
@@ -20,27 +26,210 @@ from mbsd.base.errors import InitialConditionWarning, ModelError, SimulationErro
 from mbsd.base.names import no_such
 from mbsd.base.progress import users_progress
 from mbsd.base.warn import warn
-from mbsd.dynamics.between import Between
+from mbsd.compiling.interrupts import kept
 from mbsd.dynamics.change_points import near_singular, with_efforts_beside
-from mbsd.dynamics.follow import follow, resumed
+from mbsd.dynamics.events.driver import EventSteps
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
-from mbsd.dynamics.phase_rows import with_phase_changes
-from mbsd.dynamics.prepare.dependent import refuse_opened
 from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.reference.multipliers import multipliers_along
+from mbsd.dynamics.prepare.refusals import refuse_opened
+from mbsd.dynamics.reference.multipliers import fill_multipliers, multipliers_along
 from mbsd.dynamics.rows.joint_sticks import standing
-from mbsd.dynamics.runs.recording import Recording
-from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Run
+from mbsd.dynamics.runs.motion import to_end
+from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Recording, Run, Snapshot
+from mbsd.dynamics.runs.steps import step_to
+from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
 from mbsd.equations.left_over import leave
 from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
+from mbsd.model.event import Event
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
+from mbsd.results.jump_rows import Asked, jumps_of
 from mbsd.results.solution import Solution
 from mbsd.results.states import check_states
 from mbsd.results.views import Stats
+
+Progress = Callable[[float], None] | None
+
+
+def follow(
+    ready: PreparedDynamics,
+    run: Run,
+    times: np.ndarray,
+    events: list[Event],
+    event_rows: bool,
+    progress: Progress,
+) -> Recording:
+    """Simulate from the consistent start to the last of ``times`` (s)."""
+    with kept():
+        return _followed(ready, run, times, events, event_rows, progress)
+
+
+def recording_of(met: EventSteps, event_rows: bool = False) -> Recording:
+    """Recording of steps with events that have ended: outputs that were reached, with rows at events if asked for."""
+    written = int(met.state.count[NEXT])
+    out, held = Output(*(part[:written] for part in met.out)), met.held[:written]
+    rows = met.rows if event_rows else met.rows[-1:] if met.ended else []
+    if rows:
+        parts = [np.stack(column) for column in zip(*(row[:-1] for row in rows), strict=True)]
+        both = [np.concatenate([a, b]) for a, b in zip(out, parts, strict=True)]
+        order = np.argsort(both[0], kind="stable")
+        out = Output(*(part[order] for part in both))
+        held = np.concatenate([held, np.stack([row[-1] for row in rows])])[order]
+    return Recording(
+        out, held, int(met.state.count[ACCEPTED]), met.happenings, met.snapshots, met.ready.approaches.copy()
+    )
+
+
+def resumed(
+    ready: PreparedDynamics,
+    run: Run,
+    recording: Recording,
+    times: np.ndarray,
+    events: list[Event],
+    passes_singular: bool = False,
+) -> Recording:
+    """The motion at other times (T,), rising and within the recording: each from the last point known before it.
+
+    ``passes_singular``: take the steps that pass singular poses at once, where the run was in independent coordinates.
+    """
+    passes_singular = passes_singular and recording.independent
+    smooth = not (events or ready.is_switched)
+    began = np.array([snapshot.time for snapshot in recording.snapshots])
+    which = np.maximum(np.searchsorted(began, times, side="right") - 1, 0)
+    outputs = np.searchsorted(recording.out.t, times, side="right") - 1
+    starts = [
+        (int(s), int(k) if k >= 0 and recording.out.t[k] > began[s] else -1)
+        for s, k in zip(which, outputs, strict=True)
+    ]
+    pieces, steps, first = [], 0, 0
+    while first < len(times):
+        last = first
+        while last < len(times) and starts[last] == starts[first]:
+            last += 1
+        s, k = starts[first]
+        snapshot = recording.snapshots[s]
+        state, out = ready.begun(times[first:last])
+        state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
+        state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
+        state.clock[WORK] = snapshot.work if k < 0 else recording.out.work[k]
+        if recording.approaches is not None:
+            recording.approaches.recall(float(state.clock[TIME]))
+        piece = None
+        if not smooth:
+            met = EventSteps(ready, run, state, out, events)
+            met.resume(snapshot, float(state.clock[WORK]))
+            met.to(float(times[last - 1]))
+            piece = recording_of(met)
+        elif not passes_singular:
+            try:
+                step_to(run, state, out, float(times[last - 1]))
+                held = np.broadcast_to(ready.switches.held(), out.lam.shape)
+                piece = Recording(out, held, int(state.count[ACCEPTED]))
+            except SimulationError:
+                piece = None
+        if piece is None:
+            # near a singular pose, which independent coordinates pass
+            state, out = ready.begun(times[first:last])
+            state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
+            state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
+            state.clock[WORK] = snapshot.work if k < 0 else recording.out.work[k]
+            if to_end(run.passing, state, out):
+                fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
+            held = np.broadcast_to(ready.switches.held(), out.lam.shape)
+            piece = Recording(out, held, int(state.count[ACCEPTED]))
+        pieces.append(piece)
+        steps += pieces[-1].steps
+        first = last
+    out = Output(*(np.concatenate(parts) for parts in zip(*(piece.out for piece in pieces), strict=True)))
+    held = np.concatenate([piece.held for piece in pieces])
+    return Recording(out, held, steps, approaches=recording.approaches)
+
+
+def _followed(
+    ready: PreparedDynamics,
+    run: Run,
+    times: np.ndarray,
+    events: list[Event],
+    event_rows: bool,
+    progress: Progress,
+) -> Recording:
+    state, out = ready.begun(times)
+    ready.approaches.forget()
+    if run.formulation == INDEPENDENT or not (events or ready.is_switched):
+        begun = Snapshot(state.y.copy(), float(state.clock[TIME]), float(state.clock[WORK]))
+        independent = to_end(run, state, out, progress)
+        held = ready.switches.held()[None].repeat(len(times), axis=0)
+        return Recording(out, held, int(state.count[ACCEPTED]), [], [begun], ready.approaches.copy(), independent)
+    met = EventSteps(ready, run, state, out, events, event_rows)
+    met.begin()
+    met.to(float(times[-1]), progress)
+    return recording_of(met, event_rows)
+
+
+class Between:
+    """Called with rising times (T,), it gives the motion there."""
+
+    def __init__(
+        self, at: Callable[[np.ndarray], Solution] | None, anew: Callable[[], Solution], last: np.ndarray
+    ) -> None:
+        """``anew`` simulates it again, to the same pose ``last`` (3 nb,) at its end."""
+        self.at, self.anew, self.last = at, anew, last
+
+    def __call__(self, times: np.ndarray) -> Solution:
+        """Raises ModelError where the mechanism was changed before it was pickled, and does not move so any more."""
+        if self.at is None:
+            again = self.anew()
+            assert isinstance(again.between, Between)
+            if not np.array_equal(again.between.last, self.last):
+                raise ModelError(
+                    f"{again.mechanism.name}: the mechanism was changed after this simulation, so its motion at other "
+                    "times is lost; simulate again"
+                )
+            self.at = again.between.at
+        assert self.at is not None
+        return self.at(times)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the run, which holds compiled functions of this process."""
+        return self.__dict__ | {"at": None}
+
+
+def with_phase_changes(
+    ready: PreparedDynamics,
+    run: Run,
+    recording: Recording,
+    events: list[Event],
+    grid: np.ndarray,
+    asked: Asked | None,
+) -> tuple[Recording, Asked | None]:
+    """The recording with rows beside each change of phase, and what was asked for with them.
+
+    ``grid`` (T,): output times (s); ``asked``: what was, with those beside jumps at known times.
+    """
+    out = recording.out
+
+    def motion(times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        y = resumed(ready, run, recording, times, events).out.y
+        return y[:, 0], y[:, 1]
+
+    changes = phase_changes(ready.packed, out.t, (out.y[:, 0], out.y[:, 1], out.a), motion)
+    if not changes:
+        return recording, asked
+    known = ready.stops.jumps
+    rows = [*zip(known.before.tolist(), known.after.tolist(), known.names, strict=True)]
+    asked = jumps_of([*rows, *((a, b, (name,)) for a, b, name in changes)]).among(grid)
+    new = asked.solved[~np.isin(asked.solved, out.t) & (asked.solved < out.t[-1])]
+    kept = ~np.isin(out.t, np.setdiff1d(grid, asked.solved))
+    more = resumed(ready, run, recording, new, events)
+    parts = zip(out, more.out, strict=True)
+    both = [np.concatenate([first[kept], second]) for first, second in parts]
+    held = np.concatenate([recording.held[kept], more.held])
+    order = np.argsort(both[0], kind="stable")
+    return replace(recording, out=Output(*(part[order] for part in both)), held=held[order]), asked
+
 
 LEAST_TOLERANCE = 1e-16
 MOST_STEPS = 1e12

@@ -14,9 +14,8 @@ from mbsd.dynamics.integrators.kind import register as register_integrator
 from mbsd.dynamics.integrators.others.outside import PULL, STAGES, Rates, Stepper, advance_with, tolerances
 from mbsd.dynamics.integrators.step_size import allowed, first_step
 from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
+from mbsd.dynamics.reference.full_matrix import differentiate, factor_full, solve_full, too_large
 from mbsd.dynamics.reference.projection import close_step, project
-from mbsd.dynamics.reference.tangents import differentiate, too_large
 from mbsd.dynamics.state import (
     ACCEPTED,
     ERROR,

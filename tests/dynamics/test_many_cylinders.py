@@ -12,7 +12,7 @@ import pytest
 from mbsd import Mechanism
 from mbsd.arrays.packing import pack
 from mbsd.base.errors import MechanismError
-from mbsd.dynamics.batch.cylinders import can_be
+from mbsd.dynamics.batch.single_run import can_be
 from mbsd.measures import final, largest, samples
 from tools.models.engines import UP, petrol, slider_crank
 

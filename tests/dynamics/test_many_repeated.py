@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism
 from mbsd.dynamics.batch import worker
-from mbsd.dynamics.batch.base import based_on
 from mbsd.dynamics.batch.simulate_many import asked_for
-from mbsd.dynamics.batch.single_run import single_run
+from mbsd.dynamics.batch.single_run import based_on, single_run
 from mbsd.dynamics.events import driver as steps
 from mbsd.dynamics.repeated_rows.arrays import Repeated
 from mbsd.dynamics.repeated_rows.packing import opened

@@ -2,19 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from mbsd.compiling.jit import Often
-from mbsd.dynamics.batch.base import Base
-from mbsd.dynamics.batch.early import STEPS, Known, all_outputs, window
+from mbsd.dynamics.batch.designs import Designs
+from mbsd.dynamics.batch.early import STEPS, Known, Plan, all_outputs, window
 from mbsd.dynamics.batch.outputs import MotionsOf, Outputs, room_for
+from mbsd.dynamics.batch.patches import Patches
 from mbsd.dynamics.batch.rows import KNOWN, UNDERWAY, WAITING, run_rows
-from mbsd.dynamics.batch.work import Work
+from mbsd.dynamics.batch.single_run import Asked, Base
 from mbsd.dynamics.integrators.advance import number_of
+from mbsd.dynamics.measures.kinds import Measure
+from mbsd.dynamics.measures.quantities import Quantity
 from mbsd.dynamics.state import NEXT, REACHED
+
+Measures = Mapping[str, Measure] | Callable[[Any], Any]
+
+
+@dataclass
+class Work:
+    """What all threads share."""
+
+    designs: Designs
+    asked: Asked
+    measures: Measures
+    quantities: Mapping[str, Quantity]
+    why: str | None
+    """Why none goes in the compiled loop, if so."""
+    stop: np.ndarray
+    """(1,) not zero where all is to stop."""
+    plan: Plan
+    """Which outputs are made; see early.py."""
+    reactive: bool = False
+    """Whether any measure reads reactions."""
+    looked: bool = False
+    """Whether it is known if rows must be prepared."""
+    patches: Patches | None = None
+    """Numbers of rows that need not be."""
+    note: str | None = None
+    """Why not, if so."""
+
+    def unwanted(self) -> bool:
+        """Whether all is to stop."""
+        return bool(self.stop[0])
+
 
 MOST_STEPS = 200_000
 """Steps after which a simulation is left to ``simulate``, which knows what to say of it."""

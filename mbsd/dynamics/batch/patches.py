@@ -19,14 +19,13 @@ from mbsd.arrays.directory import directory, made_of_masses, numbers_of
 from mbsd.base.arguments import SMALLEST
 from mbsd.base.codes import CYCLOIDAL, HARMONIC, POLYNOMIAL
 from mbsd.base.errors import MechanismError
-from mbsd.dynamics.batch.base import Base
 from mbsd.dynamics.batch.designs import Designs
+from mbsd.dynamics.batch.single_run import Base
 from mbsd.dynamics.batch.starts import Starts, starts_of
 from mbsd.dynamics.events.arrays import KINETIC, RESTITUTION, STATIC, Contacts
-from mbsd.dynamics.independent.arrays import Embedding
-from mbsd.dynamics.independent.places import KEPT_Q, KEPT_SIZE
-from mbsd.dynamics.prepare.mass_ratio import USUAL
-from mbsd.dynamics.prepare.pressed import presses
+from mbsd.dynamics.independent.arrays import KEPT_Q, KEPT_SIZE, Embedding
+from mbsd.dynamics.prepare.inertia import USUAL
+from mbsd.dynamics.prepare.refusals import presses
 from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA
 from mbsd.model.body import rod_inertia
 from mbsd.model.laws import Motion

@@ -8,13 +8,11 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import rows_of_joints
-from mbsd.dynamics.batch.base import Base
 from mbsd.dynamics.batch.block import content, laid_out
 from mbsd.dynamics.batch.outputs import Outputs, Reacting, until
 from mbsd.dynamics.batch.patches import Patches
-from mbsd.dynamics.batch.rows import NEARLY_SINGULAR
-from mbsd.dynamics.batch.single_run import SingleRun
-from mbsd.dynamics.batch.tabulated_reactions import tabulate_reactions
+from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, tabulate_reactions
+from mbsd.dynamics.batch.single_run import Base, SingleRun
 from mbsd.dynamics.change_points import CLOSE, are_suspect, can_pass, determinants, usual_output
 from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepared import PreparedDynamics

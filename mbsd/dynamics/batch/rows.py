@@ -2,7 +2,7 @@
 
 Between steps it does what Python does for a single simulation (prepare/stops.py, runs/): it ends steps where loads or
 laws jump, meets events (events/loop.py), and goes on after. What it cannot go on with it leaves to Python, by the
-status of the row.
+status of the row. A second loop finds multipliers and Jacobians of states that are known.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from mbsd.dynamics.integrators.advance import through
 from mbsd.dynamics.integrators.formulation import derivative
 from mbsd.dynamics.repeated_rows.exchange import again, opens
 from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, TIME, Output
+from mbsd.equations.assembly import position
 
 STOPPED, NEARLY_SINGULAR = -1, -3
 """Status of rows that were not computed because all was stopped, and of those that came near a singular pose."""
@@ -68,7 +69,7 @@ def run_rows(
     (advance.py). All arrays of numbers of the arguments before it stand in ``block`` (N,). Row r begins with row r of
     ``fresh`` (R or 1, N) there, with ``value`` (R, k) at ``place`` (k,). Steps end at ``before`` (s) and go on from
     ``after``. ``at_once`` steps are taken between two looks at ``stop`` (1,), ``most`` altogether. Where ``near`` is
-    above 0, a row ends where its margin falls below this part of the largest so far (runs/carried_steps.py). Rows whose
+    above 0, a row ends where its margin falls below this part of the largest so far (runs/motion.py). Rows whose
     status (R,) is WAITING begin, those UNDERWAY go on. With ``upto`` outputs, less than T, they are put away in
     ``kept`` (R, N + 1) and ``counts`` and are UNDERWAY. Each row of ``passed`` (k, 4) is the part of the state, the
     coordinate, a value and whether (1) outputs are to come below it, not above; where each was met by some output and
@@ -151,3 +152,33 @@ def run_rows(
             put_away(state, block, widest, kept[r], counts[r])
             status[r] = UNDERWAY
         steps[r] = state.count[ACCEPTED]
+
+
+@threaded
+def tabulate_reactions(
+    dyn, scratch, block, fresh, place, value, t, over, y, status, rows, jacobians, lam, margin, known
+):
+    """Fill ``rows`` (k,) of J into compact jacobians (R, T, k, 6) and, unless ``known``, lam (R, T, m), margin (R, T).
+
+    States are y (R, T, 2, 3 nb), at t (T,) (s) or, where that is earlier, at ``over`` (R,).
+
+    Rows of ``block``, ``fresh``, ``place`` and ``value`` are those of run_rows, for Dynamics and its scratch alone.
+    """
+    for r in range(y.shape[0]):
+        if status[r] != REACHED:
+            continue
+        own = min(r, fresh.shape[0] - 1)
+        for i in range(block.shape[0]):
+            block[i] = fresh[own, i]
+        for i in range(place.shape[0]):
+            block[place[i]] = value[r, i]
+        for k in range(t.shape[0]):
+            if not known:
+                derivative(dyn, scratch, min(t[k], over[r]), y[r, k], scratch.stages[0], lam[r, k])
+                margin[r, k] = scratch.report[0]
+            if rows.shape[0] == 0:
+                continue
+            position(dyn.system, y[r, k, 0], scratch.drive, scratch.ws)
+            for i in range(rows.shape[0]):
+                for c in range(6):
+                    jacobians[r, k, i, c] = scratch.ws.jac[rows[i], c]

@@ -23,8 +23,8 @@ from mbsd.base.shown import shown
 from mbsd.base.users_function import described, refuse_other_arguments
 from mbsd.dynamics.batch.designs import Designs, designs_of
 from mbsd.dynamics.batch.early import all_outputs, plan_of
+from mbsd.dynamics.batch.loop import Measures, Work
 from mbsd.dynamics.batch.single_run import Asked, NotCompiled, single_run
-from mbsd.dynamics.batch.work import Measures, Work
 from mbsd.dynamics.batch.worker import TRIED, Worker, simulated
 from mbsd.dynamics.integrators.advance import PAUSED_ANYWHERE
 from mbsd.dynamics.measures.columns import Done, joined, numbers_of

@@ -9,24 +9,25 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.dynamics.batch.block import kind_of
-from mbsd.dynamics.batch.cylinders import has_cylinders
+from mbsd.arrays.chambers import check_pistons
+from mbsd.arrays.packing import Packed
+from mbsd.arrays.states import states_of
+from mbsd.base.errors import MechanismError
+from mbsd.dynamics.batch.block import Layout, kind_of, laid_out
 from mbsd.dynamics.events.arrays import Contacts
 from mbsd.dynamics.events.packing import contacts_of
 from mbsd.dynamics.events.users import packing as users_packing
 from mbsd.dynamics.genevas.arrays import Genevas
 from mbsd.dynamics.genevas.packing import no_genevas
+from mbsd.dynamics.independent.arrays import KEPT_SIZE
 from mbsd.dynamics.independent.coordinates import Coordinate
 from mbsd.dynamics.independent.embedding import embedded_at_start
-from mbsd.dynamics.independent.places import KEPT_SIZE
-from mbsd.dynamics.independent.steps import IndependentSteps
 from mbsd.dynamics.integrators.advance import number_of
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated_rows import packing as repeated_packing
-from mbsd.dynamics.runs.carried_steps import NEAR, can_carry
-from mbsd.dynamics.runs.motion import independent_steps
+from mbsd.dynamics.runs.motion import NEAR, IndependentSteps, can_carry, independent_steps
 from mbsd.dynamics.runs.run import INDEPENDENT, REFERENCE, Run
 from mbsd.dynamics.state import State
 from mbsd.equations.interactions.switching import SWITCHING
@@ -34,6 +35,23 @@ from mbsd.kinematics.limits.joints import limits_of
 from mbsd.model.body import Marker
 from mbsd.model.event import Event
 from mbsd.model.mechanism import Model
+from mbsd.results.states import check_states
+
+
+def has_cylinders(packed: Packed) -> bool:
+    """Whether there is a force that says after a simulation whether that can be."""
+    return any(force.kind.chamber is not None or force.kind.states is not None for force in packed.forces)
+
+
+def can_be(packed: Packed, t: np.ndarray, y: np.ndarray) -> bool:
+    """Whether cylinders can be as they are along y (T, 2, 3 nb) at times (T,) (s)."""
+    q = np.ascontiguousarray(y[:, 0])
+    try:
+        check_pistons(packed, t, q, tell=False)
+        check_states(packed, t, q, states_of(packed, y[:, 1]))
+    except MechanismError:
+        return False
+    return True
 
 
 @dataclass(frozen=True)
@@ -151,6 +169,25 @@ class SingleRun:
         if own is None or own.genevas is None:
             return no_genevas(self.state if own is None else own.own)
         return own.genevas
+
+
+@dataclass
+class Base:
+    """A run laid out in a block, which all others of its kind share."""
+
+    run: SingleRun
+    arguments: tuple[Any, ...]
+    block: np.ndarray
+    layout: Layout
+    kind: tuple[Any, ...]
+    fresh: np.ndarray
+    """(1, N) the block before the first step."""
+
+
+def based_on(run: SingleRun) -> Base:
+    """Lay out a run that has not begun."""
+    arguments, block, layout = laid_out(run.arguments)
+    return Base(run, arguments, block, layout, run.kind, block[None].copy())
 
 
 def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:

@@ -20,8 +20,8 @@ from mbsd.arrays.inertias import inertia_of, least_energy, usual_inertia
 from mbsd.arrays.packing import pack
 from mbsd.base.errors import ModelError
 from mbsd.base.users_function import described
-from mbsd.dynamics.batch.base import Base
 from mbsd.dynamics.batch.designs import Designs
+from mbsd.dynamics.batch.single_run import Base
 from mbsd.equations.assembly import tabulate
 from mbsd.kinematics.pose.close import CLOSED
 from mbsd.kinematics.pose.initial import consistent, given_coordinates, given_velocities

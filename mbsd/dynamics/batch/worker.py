@@ -10,17 +10,23 @@ import numpy as np
 
 from mbsd.base.stopping import stops_when
 from mbsd.base.users_function import described
-from mbsd.dynamics.batch.base import Base, based_on
 from mbsd.dynamics.batch.block import content
-from mbsd.dynamics.batch.cylinders import can_be, has_cylinders
 from mbsd.dynamics.batch.designs import Built
-from mbsd.dynamics.batch.loop import MOST_STEPS, Loop
+from mbsd.dynamics.batch.loop import MOST_STEPS, Loop, Work
 from mbsd.dynamics.batch.outputs import MotionsOf, Outputs
 from mbsd.dynamics.batch.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.batch.reactions import Reactions
 from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, STOPPED
-from mbsd.dynamics.batch.single_run import Asked, NotCompiled, SingleRun, single_run
-from mbsd.dynamics.batch.work import Work
+from mbsd.dynamics.batch.single_run import (
+    Asked,
+    Base,
+    NotCompiled,
+    SingleRun,
+    based_on,
+    can_be,
+    has_cylinders,
+    single_run,
+)
 from mbsd.dynamics.events.loop import NOT_SOLVED
 from mbsd.dynamics.measures.columns import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.measures.quantities import Motions

@@ -24,7 +24,7 @@ from __future__ import annotations
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined
 from mbsd.dynamics import state as run_state
-from mbsd.dynamics.independent import equations, records
+from mbsd.dynamics.independent import equations
 from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.reference import acceleration, projection
 from mbsd.dynamics.reference.arrays import Dynamics
@@ -66,11 +66,11 @@ accelerate = alternatives({Dynamics: acceleration.accelerate, Embedding: equatio
 derivative = alternatives({Dynamics: acceleration.derivative, Embedding: equations.derivative})
 project = alternatives({Dynamics: projection.project, Embedding: _stay})
 settle = alternatives({Dynamics: _go_on, Embedding: equations.settle})
-record = alternatives({Dynamics: _record, Embedding: records.record})
-record_all = alternatives({Dynamics: _record, Embedding: records.record_all})
-keep_row = alternatives({Dynamics: _keep_row, Embedding: records.keep_row})
-join_rows = alternatives({Dynamics: _join_rows, Embedding: records.join_rows})
-record_here = alternatives({Dynamics: _record_here, Embedding: records.record_here})
+record = alternatives({Dynamics: _record, Embedding: equations.record})
+record_all = alternatives({Dynamics: _record, Embedding: equations.record_all})
+keep_row = alternatives({Dynamics: _keep_row, Embedding: equations.keep_row})
+join_rows = alternatives({Dynamics: _join_rows, Embedding: equations.join_rows})
+record_here = alternatives({Dynamics: _record_here, Embedding: equations.record_here})
 
 
 @inlined

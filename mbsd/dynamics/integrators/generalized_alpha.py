@@ -22,9 +22,8 @@ import math
 from mbsd.compiling.jit import internal, kernel
 from mbsd.dynamics.integrators.kind import Integrator, Option, register
 from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
+from mbsd.dynamics.reference.full_matrix import differentiate, factor_full, solve_full, too_large
 from mbsd.dynamics.reference.projection import close_step
-from mbsd.dynamics.reference.tangents import differentiate, too_large
 from mbsd.dynamics.state import (
     ACCEPTED,
     EVALUATIONS,

@@ -31,8 +31,8 @@ from mbsd.dynamics.integrators.radau.newton import (
 from mbsd.dynamics.integrators.radau.tableau import WEIGHTS, D, E
 from mbsd.dynamics.integrators.step_size import first_step
 from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.reference.full_matrix import differentiate, too_large
 from mbsd.dynamics.reference.projection import project
-from mbsd.dynamics.reference.tangents import differentiate, too_large
 from mbsd.dynamics.state import (
     ACCEPTED,
     EVALUATIONS,

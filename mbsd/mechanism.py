@@ -197,13 +197,12 @@ class Mechanism(Building):
         Simulations that fail have a reason there. Raises ModelError for what cannot be asked.
         """
         from mbsd.analyses.suspicious_units import tell
-        from mbsd.dynamics.batch.simulate_many import simulate_many
+        from mbsd.dynamics.batch.designs import designs_of
+        from mbsd.dynamics.batch.simulate_many import asked_for, simulations
 
         tell(self)
-        return simulate_many(
-            self, duration, vary, start, moving, measure, steps, times, method, tolerance, step, formulation, threads,
-            progress, options,
-        )  # fmt: skip
+        asked = asked_for(self, duration, steps, times, method, tolerance, step, formulation, options)
+        return simulations(designs_of(self, vary, start, moving), measure, asked, threads, progress)
 
     def sensitivities(
         self,

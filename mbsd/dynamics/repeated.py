@@ -46,7 +46,7 @@ class Course:
     steps: int
     """Steps of the integrator."""
     remembers: bool
-    """Whether contacts remember how fast they were approached."""
+    """True if contacts remember how fast they were approached."""
     q: np.ndarray | None = None
     """(T, 3 nb), where it moves smoothly."""
 
@@ -98,7 +98,7 @@ class Repeated:
     def _smooth(self, ready: PreparedDynamics, times: np.ndarray) -> Course:
         duration = self.span[1] - self.span[0]
         run = Run(ready, self.method, self.tolerance, float(np.diff(self.grid).max()), duration, {})
-        recording = follow(ready, run, times, [], event_rows=True, progress=None)
+        recording = follow(run, times, [], event_rows=True, progress=None)
         shown, out = without_states(ready.packed), recording.out
         q, v, a = (part[:, : 3 * len(shown.body_names)] for part in (out.y[:, 0], out.y[:, 1], out.a))
         if recording.independent:
@@ -116,7 +116,7 @@ class Repeated:
         refuse_impossible(ready, own)
 
         def at(times: np.ndarray) -> Solution:
-            return solution(self.m, ready, resumed(ready, run, own, times, []))
+            return solution(self.m, ready, resumed(run, own, times, []))
 
         anew = partial(simulate, self.m, None, 1, self.grid, "dop853", self.tolerance, None, None, {})
         traces, planes = dict(self.m.traces), planes_of(self.m.bodies.values())

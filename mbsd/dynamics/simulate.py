@@ -39,7 +39,7 @@ from mbsd.dynamics.rows.joint_sticks import standing
 from mbsd.dynamics.runs.motion import to_end
 from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Recording, Run, Snapshot
 from mbsd.dynamics.runs.steps import step_to
-from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output
+from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output, State
 from mbsd.equations.left_over import leave
 from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
@@ -54,21 +54,31 @@ from mbsd.results.views import Stats
 Progress = Callable[[float], None] | None
 
 
-def follow(
-    ready: PreparedDynamics,
-    run: Run,
-    times: np.ndarray,
-    events: list[Event],
-    event_rows: bool,
-    progress: Progress,
-) -> Recording:
+def follow(run: Run, times: np.ndarray, events: list[Event], event_rows: bool, progress: Progress) -> Recording:
     """Simulate from the consistent start to the last of ``times`` (s)."""
+    ready = run.ready
     with kept():
-        return _followed(ready, run, times, events, event_rows, progress)
+        state, out = ready.begun(times)
+        ready.approaches.forget()
+        if run.formulation == INDEPENDENT or not (events or ready.is_switched):
+            begun = Snapshot(state.y.copy(), float(state.clock[TIME]), float(state.clock[WORK]))
+            independent = to_end(run, state, out, progress)
+            plain = _plain(ready, state, out)
+            return replace(plain, snapshots=[begun], approaches=ready.approaches.copy(), independent=independent)
+        met = EventSteps(ready, run, state, out, events, event_rows)
+        met.begin()
+        met.to(float(times[-1]), progress)
+        return recording_of(met, event_rows)
+
+
+def _plain(ready: PreparedDynamics, state: State, out: Output) -> Recording:
+    """Return the recording of steps without events."""
+    held = ready.switches.held()[None].repeat(len(out.t), axis=0)
+    return Recording(out, held, int(state.count[ACCEPTED]))
 
 
 def recording_of(met: EventSteps, event_rows: bool = False) -> Recording:
-    """Recording of steps with events that have ended: outputs that were reached, with rows at events if asked for."""
+    """Return the recording of steps with events that have ended, with rows at events if asked for."""
     written = int(met.state.count[NEXT])
     out, held = Output(*(part[:written] for part in met.out)), met.held[:written]
     rows = met.rows if event_rows else met.rows[-1:] if met.ended else []
@@ -84,89 +94,57 @@ def recording_of(met: EventSteps, event_rows: bool = False) -> Recording:
 
 
 def resumed(
-    ready: PreparedDynamics,
-    run: Run,
-    recording: Recording,
-    times: np.ndarray,
-    events: list[Event],
-    passes_singular: bool = False,
+    run: Run, recording: Recording, times: np.ndarray, events: list[Event], passes_singular: bool = False
 ) -> Recording:
-    """The motion at other times (T,), rising and within the recording: each from the last point known before it.
+    """Return the motion at other times (T,), rising and within the recording: each from the last point known before it.
 
     ``passes_singular``: take the steps that pass singular poses at once, where the run was in independent coordinates.
     """
-    passes_singular = passes_singular and recording.independent
-    smooth = not (events or ready.is_switched)
-    began = np.array([snapshot.time for snapshot in recording.snapshots])
+    t, began = recording.out.t, np.array([snapshot.time for snapshot in recording.snapshots])
     which = np.maximum(np.searchsorted(began, times, side="right") - 1, 0)
-    outputs = np.searchsorted(recording.out.t, times, side="right") - 1
-    starts = [
-        (int(s), int(k) if k >= 0 and recording.out.t[k] > began[s] else -1)
-        for s, k in zip(which, outputs, strict=True)
+    outputs = np.searchsorted(t, times, side="right") - 1
+    outputs[(outputs >= 0) & (t[outputs] <= began[which])] = -1
+    cuts = np.flatnonzero((np.diff(which) != 0) | (np.diff(outputs) != 0)) + 1
+    at = [0, *cuts]
+    pieces = [
+        _gone_on(run, recording, recording.snapshots[s], k, part, events, passes_singular)
+        for s, k, part in zip(which[at].tolist(), outputs[at].tolist(), np.split(times, cuts), strict=True)
     ]
-    pieces, steps, first = [], 0, 0
-    while first < len(times):
-        last = first
-        while last < len(times) and starts[last] == starts[first]:
-            last += 1
-        s, k = starts[first]
-        snapshot = recording.snapshots[s]
-        state, out = ready.begun(times[first:last])
-        state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
-        state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
-        state.clock[WORK] = snapshot.work if k < 0 else recording.out.work[k]
-        if recording.approaches is not None:
-            recording.approaches.recall(float(state.clock[TIME]))
-        piece = None
-        if not smooth:
-            met = EventSteps(ready, run, state, out, events)
-            met.resume(snapshot, float(state.clock[WORK]))
-            met.to(float(times[last - 1]))
-            piece = recording_of(met)
-        elif not passes_singular:
-            try:
-                step_to(run, state, out, float(times[last - 1]))
-                held = np.broadcast_to(ready.switches.held(), out.lam.shape)
-                piece = Recording(out, held, int(state.count[ACCEPTED]))
-            except SimulationError:
-                piece = None
-        if piece is None:
-            # near a singular pose, which independent coordinates pass
-            state, out = ready.begun(times[first:last])
-            state.clock[TIME] = snapshot.time if k < 0 else recording.out.t[k]
-            state.y[...] = snapshot.y if k < 0 else recording.out.y[k]
-            state.clock[WORK] = snapshot.work if k < 0 else recording.out.work[k]
-            if to_end(run.passing, state, out):
-                fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
-            held = np.broadcast_to(ready.switches.held(), out.lam.shape)
-            piece = Recording(out, held, int(state.count[ACCEPTED]))
-        pieces.append(piece)
-        steps += pieces[-1].steps
-        first = last
     out = Output(*(np.concatenate(parts) for parts in zip(*(piece.out for piece in pieces), strict=True)))
     held = np.concatenate([piece.held for piece in pieces])
-    return Recording(out, held, steps, approaches=recording.approaches)
+    return Recording(out, held, sum(piece.steps for piece in pieces), approaches=recording.approaches)
 
 
-def _followed(
-    ready: PreparedDynamics,
-    run: Run,
-    times: np.ndarray,
-    events: list[Event],
-    event_rows: bool,
-    progress: Progress,
-) -> Recording:
-    state, out = ready.begun(times)
-    ready.approaches.forget()
-    if run.formulation == INDEPENDENT or not (events or ready.is_switched):
-        begun = Snapshot(state.y.copy(), float(state.clock[TIME]), float(state.clock[WORK]))
-        independent = to_end(run, state, out, progress)
-        held = ready.switches.held()[None].repeat(len(times), axis=0)
-        return Recording(out, held, int(state.count[ACCEPTED]), [], [begun], ready.approaches.copy(), independent)
-    met = EventSteps(ready, run, state, out, events, event_rows)
-    met.begin()
-    met.to(float(times[-1]), progress)
-    return recording_of(met, event_rows)
+def _gone_on(
+    run: Run, recording: Recording, snapshot: Snapshot, k: int, times: np.ndarray, events: list[Event],
+    passes_singular: bool,
+) -> Recording:  # fmt: skip
+    """Return the motion at ``times`` (s) from output k of a recording on, or from a snapshot where k is negative."""
+    ready, known = run.ready, recording.out
+
+    def begun() -> tuple[State, Output]:
+        state, out = ready.begun(times)
+        state.clock[TIME], state.clock[WORK] = (snapshot.time, snapshot.work) if k < 0 else (known.t[k], known.work[k])
+        state.y[...] = snapshot.y if k < 0 else known.y[k]
+        return state, out
+
+    state, out = begun()
+    if recording.approaches is not None:
+        recording.approaches.recall(float(state.clock[TIME]))
+    if events or ready.is_switched:
+        met = EventSteps(ready, run, state, out, events)
+        met.resume(snapshot, float(state.clock[WORK]))
+        met.to(float(times[-1]))
+        return recording_of(met)
+    if not (passes_singular and recording.independent):
+        try:
+            step_to(run, state, out, float(times[-1]))
+            return _plain(ready, state, out)
+        except SimulationError:  # near a singular pose, which independent coordinates pass
+            state, out = begun()
+    if to_end(run.passing, state, out):
+        fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
+    return _plain(ready, state, out)
 
 
 class Between:
@@ -212,7 +190,7 @@ def with_phase_changes(
     out = recording.out
 
     def motion(times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        y = resumed(ready, run, recording, times, events).out.y
+        y = resumed(run, recording, times, events).out.y
         return y[:, 0], y[:, 1]
 
     changes = phase_changes(ready.packed, out.t, (out.y[:, 0], out.y[:, 1], out.a), motion)
@@ -223,7 +201,7 @@ def with_phase_changes(
     asked = jumps_of([*rows, *((a, b, (name,)) for a, b, name in changes)]).among(grid)
     new = asked.solved[~np.isin(asked.solved, out.t) & (asked.solved < out.t[-1])]
     kept = ~np.isin(out.t, np.setdiff1d(grid, asked.solved))
-    more = resumed(ready, run, recording, new, events)
+    more = resumed(run, recording, new, events)
     parts = zip(out, more.out, strict=True)
     both = [np.concatenate([first[kept], second]) for first, second in parts]
     held = np.concatenate([recording.held[kept], more.held])
@@ -267,11 +245,11 @@ def simulate(
         )
     check_pistons(ready.packed, grid[:1], ready.initial.q[None], tell=False)
     asked = ready.stops.jumps.among(grid) if event_rows and ready.stops.jumps else None
-    recording = follow(ready, run, grid if asked is None else asked.solved, events, event_rows, progress)
+    recording = follow(run, grid if asked is None else asked.solved, events, event_rows, progress)
 
     def at(times: np.ndarray) -> Solution:
         try:
-            sol = solution(m, ready, resumed(ready, run, recording, times, events))
+            sol = solution(m, ready, resumed(run, recording, times, events))
         except SimulationError:
             if clear.all():
                 raise
@@ -279,7 +257,7 @@ def simulate(
         return with_efforts_beside(ready, sol, near_singular(sol), beside, span)
 
     def beside(times: np.ndarray) -> Solution:
-        return solution(m, ready, resumed(ready, run, recording.only(clear), times, events, True))
+        return solution(m, ready, resumed(run, recording.only(clear), times, events, True))
 
     refuse_impossible(ready, recording)
     if event_rows:

@@ -29,13 +29,13 @@ MOST = 100_000_000
 
 @dataclass
 class Designs:
-    """What varies, as arrays over ``count`` rows."""
+    """Numbers that vary, as arrays over ``count`` rows."""
 
     m: Model
     count: int
     columns: list[Varied]
     exact: bool = False
-    """Whether each has the digits of a simulation by itself, whichever others are beside it."""
+    """True if each has the digits of a simulation by itself, whichever others are beside it."""
 
     @cached_property
     def changes(self) -> dict[str, dict[str, np.ndarray]]:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import rows_of_joints
-from mbsd.dynamics.batch.block import content, laid_out
 from mbsd.dynamics.batch.outputs import Outputs, Reacting, until
 from mbsd.dynamics.batch.patches import Patches
-from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, tabulate_reactions
+from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, Numbers, tabulate_reactions
 from mbsd.dynamics.batch.single_run import Base, SingleRun
 from mbsd.dynamics.change_points import CLOSE, are_suspect, can_pass, determinants, usual_output
 from mbsd.dynamics.prepare.large import MANY_COORDINATES
@@ -64,6 +64,17 @@ def _spread(packed: Packed, compact: np.ndarray) -> np.ndarray:
     return packed.spread(whole)[:, : compact.shape[1]]
 
 
+class _Evaluated(NamedTuple):
+    """Arrays that an evaluation in reference coordinates reads and overwrites."""
+
+    dyn: Any
+    scratch: Any
+
+
+def _evaluated(run: SingleRun) -> _Evaluated:
+    return _Evaluated(run.ready.dynamics, run.run.scratch)
+
+
 class Reactions:
     """Reactions in some joints (k,) of rows that are like one run, in one thread."""
 
@@ -73,28 +84,19 @@ class Reactions:
         self.least = shares(run.ready)
         self.rows = np.arange(packed.contact_rows) if self.least else rows_of_joints(packed, joints)
         self.room = np.zeros((0, 0, 0, 6))
-        arguments, block, layout = laid_out(self._arguments(run))
-        self.base = Base(run, arguments, block, layout, (), block[None].copy())
+        self.base = Base(run, _evaluated)
         self.patches = None if patches is None else Patches(patches.designs, self.base, starts=False)
-
-    @staticmethod
-    def _arguments(run: SingleRun) -> tuple:
-        return run.ready.dynamics, run.run.scratch
 
     def of_rows(self, rows: range, out: Outputs, times: np.ndarray) -> Reacting:
         """Return reactions of rows that differ by numbers alone; see ``_filled`` for rows that are left out."""
         assert self.patches is not None
-        return self._filled(self.base.fresh, self.patches.place, self.patches(rows)[0], [self.run], out, times)
+        return self._filled(self.base.with_values(self.patches.place, self.patches(rows)[0]), [self.run], out, times)
 
     def of_runs(self, runs: Sequence[SingleRun], out: Outputs, times: np.ndarray) -> Reacting:
         """Return reactions of runs that were prepared; see ``_filled`` for rows that are left out."""
-        fresh = np.array([content(self._arguments(run)) for run in runs])
-        return self._filled(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), runs, out, times)
+        return self._filled(self.base.alike(runs), runs, out, times)
 
-    def _filled(
-        self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, runs: Sequence[SingleRun], out: Outputs,
-        times: np.ndarray,
-    ) -> Reacting:  # fmt: skip
+    def _filled(self, numbers: Numbers, runs: Sequence[SingleRun], out: Outputs, times: np.ndarray) -> Reacting:
         """Reactions at all outputs; rows that come near a change point get the status NEARLY_SINGULAR.
 
         There ``simulate`` takes reactions from poses beside (dynamics/change_points.py).
@@ -102,12 +104,12 @@ class Reactions:
         count, known = len(out.lam), self.run.independent is None
         if len(self.room) < count:
             self.room = np.zeros((*out.lam.shape[:2], len(self.rows), 6))
-        jacobians, numbers = self.room[:count], (fresh, place, value)
+        jacobians, out = self.room[:count], out._replace(t=times)
         if len(self.rows) or not known:
-            self._tabulate(numbers, times, out, self.rows, jacobians, known)
+            tabulate_reactions(*self.base.parts, numbers, out, self.rows, jacobians, known)
         suspect = are_suspect(np.sqrt(np.maximum(out.margin, 0.0)), out.lam)
         for row in np.flatnonzero((out.status == REACHED) & suspect.any(axis=1) & ~suspect.all(axis=1)).tolist():
-            if self._comes_near(row, np.flatnonzero(suspect[row]), runs[min(row, len(runs) - 1)], numbers, times, out):
+            if self._comes_near(row, np.flatnonzero(suspect[row]), runs[min(row, len(runs) - 1)], numbers, out):
                 out.status[row] = NEARLY_SINGULAR
         packed = [run.ready.packed for run in runs]
         if self.least:
@@ -115,31 +117,21 @@ class Reactions:
             return shared(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, gone)
         return Reacting(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, self.rows)
 
-    def _tabulate(
-        self, numbers: tuple[np.ndarray, np.ndarray, np.ndarray], times: np.ndarray, out: Outputs, rows: np.ndarray,
-        jacobians: np.ndarray, known: bool,
-    ) -> None:  # fmt: skip
-        tabulate_reactions(
-            *self.base.arguments, self.base.block, *numbers, times, out.over, out.y, out.status, rows, jacobians,
-            out.lam, out.margin, known,
-        )  # fmt: skip
-
-    def _comes_near(
-        self, row: int, suspects: np.ndarray, run: SingleRun, numbers: tuple[np.ndarray, np.ndarray, np.ndarray],
-        times: np.ndarray, out: Outputs,
-    ) -> bool:  # fmt: skip
+    def _comes_near(self, row: int, suspects: np.ndarray, run: SingleRun, numbers: Numbers, out: Outputs) -> bool:
         """Return True if some of the outputs ``suspects`` of a row are near a change point, as ``simulate`` sees it."""
         packed = run.ready.packed
         if not can_pass(packed):
             return False
         looked = np.append(suspects, usual_output(out.margin[row], suspects))
-        own = Outputs(times[looked], *(array[row : row + 1] for array in out.arrays))
-        own.y, own.lam, own.margin = own.y[:, looked], own.lam[:, looked], own.margin[:, looked]
-        fresh, place, value = numbers
+        own = Outputs(out.t[looked], *(array[row : row + 1] for array in out[1:]))
+        own = own._replace(y=own.y[:, looked], lam=own.lam[:, looked], margin=own.margin[:, looked])
+        fresh, value = numbers.fresh, numbers.value
         joints = np.arange(packed.contact_rows)
         compact = np.zeros((1, len(looked), len(joints), 6))
-        alone = fresh[min(row, len(fresh) - 1)][None], place, value[min(row, len(value) - 1)][None]
-        self._tabulate(alone, own.t, own, joints, compact, True)
+        alone = numbers._replace(
+            fresh=fresh[min(row, len(fresh) - 1)][None], value=value[min(row, len(value) - 1)][None]
+        )
+        tabulate_reactions(*self.base.parts, alone, own, joints, compact, True)
         whole = np.zeros((len(looked), len(packed.ws.phi), 6))
         whole[:, : len(joints)] = compact[0]
         held = np.arange(whole.shape[1]) < len(joints)

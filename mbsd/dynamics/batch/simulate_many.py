@@ -21,7 +21,7 @@ from mbsd.base.progress import users_progress
 from mbsd.base.quiet import quiet
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described, refuse_other_arguments
-from mbsd.dynamics.batch.designs import Designs, designs_of
+from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.early import all_outputs, plan_of
 from mbsd.dynamics.batch.loop import Measures, Work
 from mbsd.dynamics.batch.single_run import Asked, NotCompiled, single_run
@@ -52,7 +52,7 @@ LOOK = 0.2
 """s between two looks at the keyboard."""
 REASON = "reason"
 WRONGLY_WRITTEN = (NameError, AttributeError, TypeError, KeyError, ImportError, ModelError)
-"""What a function raises that is wrong for any simulation."""
+"""Errors of a function that is wrong for any simulation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,31 +114,6 @@ class Simulations:
         return f"<Simulations: {self.way}; {bad} failed; {', '.join(self.columns)}>"
 
 
-def simulate_many(
-    m: Model,
-    duration: float | None,
-    vary: Any,
-    start: Any,
-    moving: Any,
-    measure: Any,
-    steps: int,
-    times: Sequence[float] | np.ndarray | None,
-    method: str,
-    tolerance: float,
-    step: float | None,
-    formulation: str,
-    threads: int | None,
-    progress: Callable[[float], None] | None,
-    options: Mapping[str, float],
-) -> Simulations:
-    """See :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
-    asked = asked_for(m, duration, steps, times, method, tolerance, step, formulation, options)
-    if threads is not None and whole_number(f"{m.name}: threads", threads) > MOST_THREADS:
-        raise ModelError(f"{m.name}: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
-    progress = users_progress(f"{m.name}: progress", progress, "the part done, 0 .. 1")
-    return simulations(designs_of(m, vary, start, moving), measure, asked, threads, progress)
-
-
 def asked_for(
     m: Model,
     duration: float | None,
@@ -164,6 +139,9 @@ def simulations(
 ) -> Simulations:
     """Measures of all designs; see :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
     m, grid = designs.m, asked.times
+    if threads is not None and whole_number(f"{m.name}: threads", threads) > MOST_THREADS:
+        raise ModelError(f"{m.name}: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
+    progress = users_progress(f"{m.name}: progress", progress, "the part done, 0 .. 1")
     measures = checked_measures(m, measure, grid)
     quantities = {} if callable(measures) else quantities_of(designs, measures)
     why = _why_single(designs, asked, measures, quantities)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from operator import attrgetter
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from mbsd.arrays.chambers import check_pistons
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.states import states_of
 from mbsd.base.errors import MechanismError
-from mbsd.dynamics.batch.block import Layout, kind_of, laid_out
+from mbsd.dynamics.batch.block import content, kind_of, laid_out
+from mbsd.dynamics.batch.rows import Numbers
 from mbsd.dynamics.events.arrays import Contacts
 from mbsd.dynamics.events.packing import contacts_of
 from mbsd.dynamics.events.users import packing as users_packing
@@ -39,12 +41,12 @@ from mbsd.results.states import check_states
 
 
 def has_cylinders(packed: Packed) -> bool:
-    """Whether there is a force that says after a simulation whether that can be."""
+    """Return True if gas or oil must be checked after a simulation."""
     return any(force.kind.chamber is not None or force.kind.states is not None for force in packed.forces)
 
 
 def can_be(packed: Packed, t: np.ndarray, y: np.ndarray) -> bool:
-    """Whether cylinders can be as they are along y (T, 2, 3 nb) at times (T,) (s)."""
+    """Return True if cylinders have room and pressure along y (T, 2, 3 nb) at times (T,) (s)."""
     q = np.ascontiguousarray(y[:, 0])
     try:
         check_pistons(packed, t, q, tell=False)
@@ -67,6 +69,18 @@ class Asked:
     options: Mapping[str, float]
 
 
+class Parts(NamedTuple):
+    """Arrays that the loop reads and overwrites."""
+
+    dyn: Any
+    """Dynamics or Embedding."""
+    scratch: Any
+    state: Any
+    settings: Any
+    contacts: Contacts
+    genevas: Genevas
+
+
 class NotCompiled(Exception):
     """Why a simulation does not go in the compiled loop; the text says what it has."""
 
@@ -84,7 +98,7 @@ class SingleRun:
     traces: dict[str, Marker]
     """Traced points as they are now."""
     events: list[Event]
-    """Those of the user."""
+    """Events of the user."""
 
     @property
     def steps_at_once(self) -> int:
@@ -94,10 +108,10 @@ class SingleRun:
 
     @cached_property
     def kind(self) -> tuple[Any, ...]:
-        """What runs that share a block have in common."""
+        """Return all that runs which share a block have in common."""
         stops, dynamics = self.ready.stops, (self.ready.dynamics,)
         return (
-            kind_of(self.arguments),
+            kind_of(self.parts),
             None if self.independent is None else kind_of(dynamics),  # multipliers are found from it
             self.ready.mobility.redundant_rows,
             tuple((name, marker.body.name) for name, marker in self.traces.items()),
@@ -109,29 +123,29 @@ class SingleRun:
 
     @property
     def counts_turns(self) -> bool:
-        """Whether what it starts with decides of which whole turn limits of angles are."""
+        """Return True if limits of angles are counted from the turn of its start."""
         return bool(self.ready.switches.contacts) and any(limit.angular for limit in limits_of(self.ready.packed))
 
     @property
     def failed(self) -> bool:
-        """Whether a function of the user failed in this thread."""
+        """Return True if a function of the user failed in this thread."""
         return any(callback.failed for callback in self.ready.packed.specials.callbacks)
 
-    def forget(self) -> None:
-        """That it did."""
+    def forget_failures(self) -> None:
+        """Clear recorded failures of functions of the user."""
         for callback in self.ready.packed.specials.callbacks:
             callback.forget()
 
     @cached_property
     def outputs_count(self) -> bool:
-        """Whether forces at outputs count in later steps: friction goes on from the last one, others may remember."""
+        """Return True if forces at outputs count later: friction goes on from the last one, others may remember."""
         loads, sliding = self.ready.dynamics.loads, self.ready.dynamics.sliding
         switches = bool(loads.switch[0, SWITCHING] > 0.0)
         return switches or len(loads.friction) + len(loads.user) + len(sliding.rows) > 0
 
     @cached_property
     def outputs_alone(self) -> bool:
-        """Whether nobody but measures reads outputs, and no evaluation goes on from that of an output.
+        """Return True if outputs do not influence later steps and only measures read them.
 
         That is so of closed forms: Newton-Raphson begins where the last evaluation ended, and moves last digits.
         """
@@ -149,12 +163,12 @@ class SingleRun:
         return NEAR if carried else 0.0
 
     @property
-    def arguments(self) -> tuple[Any, ...]:
-        """dyn, scratch, state and settings of the integrator's loop, contacts, and Genevas."""
+    def parts(self) -> Parts:
+        """Return the arrays that the loop reads and overwrites."""
         if self.independent is not None:
             own = self.independent
-            return own.arrays, own.scratch, own.own, own.settings, self.contacts, self.genevas
-        return self.ready.dynamics, self.run.scratch, self.state, self.run.settings, self.contacts, self.genevas
+            return Parts(own.arrays, own.scratch, own.own, own.settings, self.contacts, self.genevas)
+        return Parts(self.ready.dynamics, self.run.scratch, self.state, self.run.settings, self.contacts, self.genevas)
 
     @cached_property
     def contacts(self) -> Contacts:
@@ -171,23 +185,24 @@ class SingleRun:
         return own.genevas
 
 
-@dataclass
 class Base:
-    """A run laid out in a block, which all others of its kind share."""
+    """A run before its first step, laid out in a block of numbers, which all others of its kind share."""
 
-    run: SingleRun
-    arguments: tuple[Any, ...]
-    block: np.ndarray
-    layout: Layout
-    kind: tuple[Any, ...]
-    fresh: np.ndarray
-    """(1, N) the block before the first step."""
+    def __init__(self, run: SingleRun, parts_of: Callable[[SingleRun], Any] = attrgetter("parts")) -> None:
+        """``parts_of`` gives what is laid out of a run."""
+        self.run, self._parts_of = run, parts_of
+        self.parts, self.block, self.layout = laid_out(parts_of(run))
+        self.fresh = self.block[None].copy()
+        """(1, N) the block before the first step."""
 
+    def alike(self, runs: Sequence[SingleRun]) -> Numbers:
+        """Return the numbers of runs of this kind that were prepared."""
+        fresh = np.array([content(self._parts_of(run)) for run in runs])
+        return Numbers(self.block, fresh, np.zeros(0, np.int64), np.zeros((1, 0)))
 
-def based_on(run: SingleRun) -> Base:
-    """Lay out a run that has not begun."""
-    arguments, block, layout = laid_out(run.arguments)
-    return Base(run, arguments, block, layout, run.kind, block[None].copy())
+    def with_values(self, place: np.ndarray, value: np.ndarray) -> Numbers:
+        """Return the numbers of rows that differ from this run by ``value`` (R, k) at ``place`` (k,)."""
+        return Numbers(self.block, self.fresh, place, value)
 
 
 def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:

@@ -1,4 +1,4 @@
-"""What one thread does: simulations in chunks, each in the compiled loop or by ``simulate``, and their measures."""
+"""The work of one thread: simulations in chunks, each in the compiled loop or by ``simulate``, and their measures."""
 
 from __future__ import annotations
 
@@ -16,13 +16,12 @@ from mbsd.dynamics.batch.loop import MOST_STEPS, Loop, Work
 from mbsd.dynamics.batch.outputs import MotionsOf, Outputs
 from mbsd.dynamics.batch.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.batch.reactions import Reactions
-from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, STOPPED
+from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, STOPPED, Numbers
 from mbsd.dynamics.batch.single_run import (
     Asked,
     Base,
     NotCompiled,
     SingleRun,
-    based_on,
     can_be,
     has_cylinders,
     single_run,
@@ -97,7 +96,7 @@ class Worker:
         """The first row that can be prepared."""
         for row in range(min(self.designs.count, TRIED)):
             try:
-                return based_on(self._run_of(row))
+                return Base(self._run_of(row))
             except Exception:
                 continue
         return None
@@ -127,8 +126,8 @@ class Worker:
                 run = self._run_of(row)
             except Exception:
                 continue
-            same = run.kind == base.kind
-            if not same or not agrees(patches, row, base.fresh[0], partial(content, run.arguments)):
+            same = run.kind == base.run.kind
+            if not same or not agrees(patches, row, base.fresh[0], partial(content, run.parts)):
                 self.work.note = "each is prepared anew: more than what varies depends on it"
                 return None
         return patches
@@ -142,7 +141,7 @@ class Worker:
         inertia = None if self.patches.inertia is None else self.patches.inertia[rows.start : rows.stop]
         runs, times = [self.base.run], self.work.asked.times
         motions = MotionsOf(runs, mass, inertia)
-        out = self._run(self.base.fresh, self.patches.place, value, motions, runs)
+        out = self._run(self.base.with_values(self.patches.place, value), motions, runs)
         if q is not None:  # closed forms may stand on another branch than the start does
             odd = np.abs(out.y[:, 0, 0] - q).max(axis=1) > NEAR * self.base.run.ready.packed.size
             out.status[odd] = OTHER
@@ -174,12 +173,11 @@ class Worker:
 
     def _of_kind(self, kind: tuple[Any, ...], runs: Mapping[int, SingleRun]) -> dict[int, Done]:
         """Rows that share a block, by their numbers."""
-        if self.base is None or self.base.kind != kind:
-            self.base, self.reactions = based_on(next(iter(runs.values()))), None
+        if self.base is None or self.base.run.kind != kind:
+            self.base, self.reactions = Base(next(iter(runs.values()))), None
         own, times = list(runs.values()), self.work.asked.times
         motions = MotionsOf(own, None, None)
-        fresh = np.array([content(run.arguments) for run in own])
-        out = self._run(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), motions, own)
+        out = self._run(self.base.alike(own), motions, own)
         reacting = self._reactions(None).of_runs(own, out, times) if self.work.reactive else None
         together = self._measured(list(runs), lambda which: motions(out, which, reacting), out)
         return {row: together.row(k) for k, row in enumerate(runs)}
@@ -191,19 +189,17 @@ class Worker:
             self.reactions = Reactions(self.base.run, patches, np.array(wanted, np.int64))
         return self.reactions
 
-    def _run(
-        self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, motions: MotionsOf, runs: Sequence[SingleRun]
-    ) -> Outputs:
+    def _run(self, numbers: Numbers, motions: MotionsOf, runs: Sequence[SingleRun]) -> Outputs:
         """Rows to their end, or as far as there is something to measure; they are those of ``runs``, or like it."""
         assert self.base is not None
         if self.loop is None or self.loop.base is not self.base:
             self.loop = Loop(self.base, self.work, None if self.loop is None else self.loop.room)
         run, packed = self.base.run, self.base.run.ready.packed
-        run.forget()
-        out, written = self.loop(fresh, place, value, motions)
+        run.forget_failures()
+        out, written = self.loop(numbers, motions)
         if run.failed:  # in some row, or in a trial step that was not taken: single simulations can tell
             out.status[out.status == REACHED] = FAILED
-            run.forget()
+            run.forget_failures()
         if has_cylinders(packed):
             for k in np.flatnonzero(out.status == REACHED).tolist():
                 own, end = runs[min(k, len(runs) - 1)].ready.packed, written[k]

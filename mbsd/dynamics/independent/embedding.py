@@ -40,7 +40,7 @@ from mbsd.dynamics.independent.arrays import (
     Embedding,
     EmbeddingScratch,
 )
-from mbsd.dynamics.independent.coordinates import MOST, Choice, Coordinate, choices, coordinates_of
+from mbsd.dynamics.independent.coordinates import MOST, Choice, Coordinate, choices, coordinates_along, coordinates_of
 from mbsd.dynamics.independent.equations import look
 from mbsd.dynamics.independent.groups import KEPT
 from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
@@ -141,7 +141,7 @@ class Embedded:
     sensitivity: float
     """The largest rate of a body for one unit of a coordinate, dimensionless, at the pose of the choice."""
     pays: bool = True
-    """Whether an evaluation costs less than in reference coordinates, as closed forms alone always do."""
+    """True if an evaluation costs less than in reference coordinates, as closed forms alone always do."""
 
     def copied(self, tolerance: float = math.inf) -> Embedding:
         """Arrays of one run, which changes branches, at a relative tolerance."""
@@ -151,11 +151,8 @@ class Embedded:
         return self.arrays._replace(number=number)
 
     def state(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """(2, 3 + f) of q, v (3 nb,)."""
-        out = np.zeros((2, 3 + len(self.coordinates)))
-        for k, coordinate in enumerate(self.coordinates):
-            out[0, 3 + k], out[1, 3 + k] = coordinate.at(q), coordinate.rate(q, v)
-        return out
+        """Return (2, 3 + f) of q, v (3 nb,)."""
+        return coordinates_along(self.coordinates, q[None], v[None])[0]
 
     def settings(self, settings: Settings) -> Settings:
         """The same tolerances for the coordinates."""
@@ -321,7 +318,7 @@ def _pays(choice: Choice, bodies: int) -> bool:
 
 
 def _of_dynamics(ready: PreparedDynamics) -> dict[str, Any]:
-    """What an Embedding has in common with a Dynamics."""
+    """Return the fields that an Embedding has in common with a Dynamics."""
     dynamics = ready.dynamics
     return {
         "laws": dynamics.laws,

@@ -49,7 +49,7 @@ class Following(CurveBranches):
 
 
 class Approaches:
-    """What the contacts of one mechanism remember, after each accepted step; kernels read and write the last of it."""
+    """Speeds that contacts of a mechanism remember, after each accepted step; kernels read and write the last."""
 
     def __init__(self, loads: Loads) -> None:
         self._now = loads.switch[1:, APPROACHED]
@@ -124,7 +124,7 @@ class PreparedDynamics:
     sticks: list[JointStick]
     """Joints that stick by events."""
     masses_apart: bool = False
-    """Whether masses of connected bodies are so far apart that the equations of motion are solved several times."""
+    """True if masses of connected bodies are so far apart that the equations of motion are solved several times."""
     advancing: dict[tuple[str, type], Often] = field(default_factory=dict)
     """The loops of integrators by name and formulation."""
     dropped: tuple[int, ...] = ()

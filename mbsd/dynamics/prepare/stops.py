@@ -65,7 +65,7 @@ class Stops:
 
     @property
     def jumps(self) -> Jumps:
-        """Those where something may jump."""
+        """Return the stops where something may jump."""
         rows = np.flatnonzero(self.after > self.before)
         return Jumps(self.before[rows], self.after[rows], tuple(self.names[k] for k in rows))
 
@@ -223,7 +223,7 @@ class _Column:
         return self._whole.count
 
     def once(self, times: np.ndarray) -> np.ndarray:
-        """Those looked at before."""
+        """Return the values that were looked at before."""
         return self._seen[:, self._column]
 
     def __call__(self, times: np.ndarray) -> np.ndarray:

@@ -22,7 +22,7 @@ def why_not(ready: PreparedDynamics) -> str | None:
 
 
 def repeated_of(ready: PreparedDynamics) -> Repeated:
-    """Those of a run at its start."""
+    """Return the rows of a run at its start."""
     packed, switches = ready.packed, ready.switches
     spare = set(switches.spare)
     rows = range(packed.contact_rows) if spare else []

@@ -67,7 +67,7 @@ class Stiffest(NamedTuple):
 
 
 def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
-    """What keeps steps at h (s), with the remedy, or None if the run may go on; ``left`` steps are still to do."""
+    """Return the cause of steps of h (s), with the remedy, or None if the run may go on; ``left`` steps remain."""
     cause = jump(run, state, h)
     slope = slope_at(run, state)
     if cause is not None or slope is None:
@@ -220,7 +220,7 @@ def growth_of(run: Run, state: State) -> Growth | None:
 
 
 def runaway(run: Run, state: State, before: Growth | None, now: Growth | None) -> str | None:
-    """What grows without bound, when and under which force, with the remedy; None where nothing does."""
+    """Return words on what grows without bound, when and under which force; None where nothing does."""
     if before is None or now is None or not (now.time > before.time and now.size > 2.0 * before.size):
         return None
     falling = (before.within - now.within) / (now.time - before.time)

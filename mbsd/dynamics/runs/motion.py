@@ -188,7 +188,7 @@ NEAR = 0.05
 
 
 def can_carry(run: Run) -> bool:
-    """Whether a run in reference coordinates has poses of this sort and independent coordinates to pass them."""
+    """Return True if a run in reference coordinates may meet such poses and has independent ones to pass them."""
     ready = run.ready
     if not run.method.independent or can_embed(ready) is not None:
         return False

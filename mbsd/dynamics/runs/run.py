@@ -56,7 +56,7 @@ class Recording:
 
 
 AUTO, REFERENCE, INDEPENDENT = FORMULATIONS = "auto", "reference", "independent"
-"""Which coordinates are integrated; "auto" takes independent ones where it can."""
+"""Coordinates that are integrated; "auto" takes independent ones where it can."""
 STEPS_AT_ONCE = 2000
 """Between two looks, of small mechanisms."""
 WORK_AT_ONCE = 3e6
@@ -76,7 +76,7 @@ def steps_at_once(coordinates: int, matrices: bool) -> int:
 
 
 class Run:
-    """What all steps of a run share."""
+    """Everything that the steps of a run share."""
 
     def __init__(
         self,

@@ -66,7 +66,6 @@ SECTIONS = (
             "mbsd/kinematics/pose/initial.py",
             "mbsd/dynamics/prepare",
             "mbsd/dynamics/reference",
-            "mbsd/dynamics/rows",
             "mbsd/dynamics/runs",
             "mbsd/dynamics/events",
             "mbsd/dynamics/events/friction",

@@ -29,7 +29,7 @@ from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
 
-from mbsd.compiling.alternatives import kernel_for
+from mbsd.compiling.alternatives import files_added, kernel_for
 from mbsd.compiling.kernel_files import KernelFiles
 from mbsd.compiling.kernel_library import Apart
 from mbsd.compiling.lazy_kernel import cell_of
@@ -271,6 +271,11 @@ class _Files(FunctionCache):
         super().__init__(py_func)
         locator = self._impl.locator
         self._cache_file = KernelFiles(locator.get_cache_path(), self._impl.filename_base, locator.get_source_stamp())
+
+    def _index_key(self, sig: Any, codegen: Any) -> Any:
+        """Return what code of a signature is found by: kernels of classes that were added belong to it."""
+        added = files_added(getattr(sig, "args", sig))  # a signature when it is saved, types when it is looked for
+        return super()._index_key(sig, codegen) + ((tuple(map(made_of, added)),) if added else ())
 
 
 @contextmanager

@@ -35,11 +35,11 @@ from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.prepare.refusals import refuse_opened
 from mbsd.dynamics.reference.multipliers import fill_multipliers, multipliers_along
-from mbsd.dynamics.rows.joint_sticks import standing
 from mbsd.dynamics.runs.motion import to_end
 from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Recording, Run, Snapshot
 from mbsd.dynamics.runs.steps import step_to
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output, State
+from mbsd.dynamics.switches import standing
 from mbsd.equations.left_over import leave
 from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS

@@ -19,10 +19,10 @@ import numpy as np
 from numba import typeof
 
 from mbsd.base.errors import ModelError
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.integrators.dop853 import DOP853
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.runs.run import REFERENCE, Run
 from mbsd.dynamics.state import State, output_for

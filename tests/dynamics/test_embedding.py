@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
-from mbsd.dynamics.independent.embedding import embed, embedded_at_start
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs import motion
+from mbsd.dynamics.runs.embedding import embed, embedded_at_start
 from mbsd.dynamics.runs.motion import integrate
 from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.simulate import integrator_named

@@ -22,7 +22,7 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import times_compact
-from mbsd.dynamics.rows.joint_sticks import standing
+from mbsd.dynamics.switches import standing
 from mbsd.equations.laws import Laws
 from mbsd.equations.left_over import leave
 from mbsd.equations.loads import Loads

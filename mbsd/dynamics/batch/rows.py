@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 from mbsd.compiling.jit import internal, threaded
 from mbsd.dynamics.events.loop import NOT_SOLVED, OVER, go_on
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.genevas.steps import index
-from mbsd.dynamics.integrators.advance import through
-from mbsd.dynamics.integrators.formulation import derivative
+from mbsd.dynamics.integrators.advance import advance_past_jumps
 from mbsd.dynamics.repeated_rows.exchange import again, opens
 from mbsd.dynamics.state import ACCEPTED, NEXT, PAUSED, REACHED, TIME, Output
 from mbsd.equations.assembly import position
@@ -183,7 +183,9 @@ def run_rows(dyn, scratch, state, settings, contacts, genevas, numbers, course, 
             elif genevas.body.shape[0] > 0:
                 ended = index(dyn, scratch, state, out, settings, genevas, end, steps, before, after)
             else:
-                ended = through(dyn, scratch, state, out, settings, end, steps, before, after, course.method)
+                ended = advance_past_jumps(
+                    dyn, scratch, state, out, settings, end, steps, before, after, course.method
+                )  # fmt: skip
             if repeating and opens(dyn, scratch, contacts.repeated, out, written, state.count[NEXT]):
                 ended = NOT_SOLVED
             if course.near > 0.0 and ended != REACHED:

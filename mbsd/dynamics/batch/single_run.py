@@ -23,12 +23,12 @@ from mbsd.dynamics.genevas.arrays import Genevas
 from mbsd.dynamics.genevas.packing import no_genevas
 from mbsd.dynamics.independent.arrays import KEPT_SIZE
 from mbsd.dynamics.independent.coordinates import Coordinate
-from mbsd.dynamics.independent.embedding import embedded_at_start
 from mbsd.dynamics.integrators.advance import number_of
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated_rows import packing as repeated_packing
+from mbsd.dynamics.runs.embedding import embedded_at_start
 from mbsd.dynamics.runs.motion import NEAR, IndependentSteps, can_carry, independent_steps
 from mbsd.dynamics.runs.run import INDEPENDENT, REFERENCE, Run
 from mbsd.dynamics.state import State

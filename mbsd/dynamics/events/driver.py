@@ -196,7 +196,7 @@ class EventSteps:
         return states, tuple(number[gaps:, SIGN].tolist()), switches.held()
 
     def _note_outputs(self) -> None:
-        """Outputs written since the last call were written with the rows that held then."""
+        """Note which rows held at the outputs that were written since the last call."""
         following = int(self.state.count[NEXT])
         self.held[self._told : following] = self._holding
         self._told = max(self._told, following)
@@ -259,7 +259,7 @@ class EventSteps:
     # -- points to go on from -----------------------------------------------------------------------------------
 
     def snapshot(self) -> Snapshot:
-        """This moment, to go on from."""
+        """Return this moment, to go on from."""
         held = tuple(part.copy() for part in self._kept)
         released = frozenset(self.switches.released)
         return Snapshot(

@@ -31,7 +31,7 @@ class Embedding(NamedTuple):
     number: Any
     """(g, 21) Groups.row."""
     block: Any
-    """Integers of blocks; mbsd/dynamics/independent/embedding.py."""
+    """Integers of blocks; mbsd/dynamics/runs/embedding.py."""
     block_number: Any
     """Their numbers."""
     numbers: Any
@@ -70,7 +70,7 @@ class EmbeddingScratch(NamedTuple):
     drive: Any
     """(drivers + 1, 3)"""
     block_work: Any
-    """Scratch of blocks; mbsd/dynamics/independent/embedding.py."""
+    """Scratch of blocks; mbsd/dynamics/runs/embedding.py."""
     force: Any
     """(3 nb,) forces beside the weight, zero where there are none."""
     watch: Any

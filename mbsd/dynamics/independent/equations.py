@@ -164,7 +164,7 @@ def evaluate(dyn, scratch, t, state, a, forces):
 
 @apart
 def derivative(dyn, scratch, t, state, out, lam):
-    """out (2, 3 + f) = d(state)/dt; returns the power of loads and drivers (W)."""
+    """Fill out (2, 3 + f) with d(state)/dt; returns the power of loads and drivers (W)."""
     for c in range(3, state.shape[1]):
         out[0, c] = state[1, c]
     return accelerate(dyn, scratch, t, state, out[1], lam)

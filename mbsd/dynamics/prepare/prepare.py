@@ -22,17 +22,16 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.states import columns_of, ones_of, widened, with_states
 from mbsd.base.errors import MobilityError, ModelError
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.inertia import as_heavy_as_ground, lift_inertia, passes_for
 from mbsd.dynamics.prepare.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.prepare.refusals import refuse_pressed, refuse_singular_start, refuse_unheld
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
 from mbsd.dynamics.reference.pins import with_pins
 from mbsd.dynamics.reference.schur import elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
-from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
-from mbsd.dynamics.rows.switches import Switches, friction_rows
+from mbsd.dynamics.switches import Switches, friction_rows, joint_sticks, stuck_rows
 from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import Initial, consistent
 from mbsd.kinematics.pose.mobility import joint_mobility, rows_at

@@ -21,9 +21,8 @@ from mbsd.compiling.jit import Often
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.prepare.stops import Stops, stops_of
 from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.dynamics.rows.joint_sticks import JointStick
-from mbsd.dynamics.rows.switches import Switches
 from mbsd.dynamics.state import PAUSED, TIME, State
+from mbsd.dynamics.switches import JointStick, Switches
 from mbsd.equations.interactions.switching import APPROACHED
 from mbsd.equations.loads import Loads
 from mbsd.kinematics.limits.free_wheels import FreeWheels
@@ -132,7 +131,7 @@ class PreparedDynamics:
     independent: Any = UNKNOWN
     """The mechanism in independent coordinates that suit its start, None where there are none.
 
-    See independent/embedding.py.
+    See runs/embedding.py.
     """
 
     def loop(self, name: tuple[str, type], kernel: Callable[..., int]) -> Often:

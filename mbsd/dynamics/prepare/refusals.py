@@ -26,11 +26,11 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MechanismError, MobilityError, ModelError, SimulationError, SingularPoseError
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.dynamics.reference.projection import project
-from mbsd.dynamics.rows.bounds import OPENED_BY
+from mbsd.dynamics.reference.rows import OPENED_BY
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.ideal_joints import with_ideal_joints
 from mbsd.model.force import Press

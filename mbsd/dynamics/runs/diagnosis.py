@@ -28,8 +28,8 @@ from mbsd.arrays.friction_along import REMEDY, friction_under, jam
 from mbsd.arrays.loads_along import loads_along
 from mbsd.base.errors import SimulationError
 from mbsd.dynamics import state as run_state
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.inertia import LIFT
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import TIME, State
 from mbsd.equations.joint_friction import FAILED, X

@@ -16,10 +16,15 @@ import numpy as np
 
 from mbsd.base.errors import ModelError, SimulationError
 from mbsd.dynamics import state as run_state
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.genevas.packing import genevas_of
 from mbsd.dynamics.genevas.steps import run_indexed
 from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY
-from mbsd.dynamics.independent.embedding import (
+from mbsd.dynamics.independent.equations import write_alone
+from mbsd.dynamics.integrators.kind import Integrator
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.reference.multipliers import fill_multipliers
+from mbsd.dynamics.runs.embedding import (
     DOUBLED,
     GOOD,
     NO_PLAN,
@@ -31,11 +36,6 @@ from mbsd.dynamics.independent.embedding import (
     embedded_at_start,
     embedding_scratch,
 )
-from mbsd.dynamics.independent.equations import write_alone
-from mbsd.dynamics.integrators.kind import Integrator
-from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.multipliers import fill_multipliers
 from mbsd.dynamics.runs.run import AUTO, INDEPENDENT, REFERENCE, Run
 from mbsd.dynamics.runs.steps import Pace, advance
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK, Output, State, copied

@@ -113,7 +113,7 @@ class Repeated:
         assert recording is not None
         warn_of_start(ready)
         own = replace(recording, out=Output(*(part[rows] for part in recording.out)), held=recording.held[rows])
-        refuse_impossible(ready, own)
+        refuse_impossible(ready.packed, own.out.t, own.out.y)
 
         def at(times: np.ndarray) -> Solution:
             return solution(self.m, ready, resumed(run, own, times, []))

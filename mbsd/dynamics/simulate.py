@@ -20,6 +20,7 @@ from mbsd.arrays.chambers import check_pistons, phase_changes
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.friction_along import friction_along
 from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.states import states_of, without_states
 from mbsd.base.errors import InitialConditionWarning, ModelError, SimulationError
@@ -30,11 +31,10 @@ from mbsd.compiling.interrupts import kept
 from mbsd.dynamics.change_points import near_singular, with_efforts_beside
 from mbsd.dynamics.events.driver import EventSteps
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
-from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.prepare.refusals import refuse_opened
-from mbsd.dynamics.reference.multipliers import fill_multipliers, multipliers_along
+from mbsd.dynamics.reference.multipliers import fill_multipliers, least_norm, multipliers_along
 from mbsd.dynamics.runs.motion import to_end
 from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Recording, Run, Snapshot
 from mbsd.dynamics.runs.steps import step_to
@@ -259,7 +259,7 @@ def simulate(
     def beside(times: np.ndarray) -> Solution:
         return solution(m, ready, resumed(run, recording.only(clear), times, events, True))
 
-    refuse_impossible(ready, recording)
+    refuse_impossible(ready.packed, recording.out.t, recording.out.y)
     if event_rows:
         recording, asked = with_phase_changes(ready, run, recording, events, grid, asked)
     anew = partial(simulate, m, None, 1, grid, method, tolerance, step, None, options, event_rows, formulation)
@@ -280,12 +280,12 @@ def warn_of_start(ready: PreparedDynamics) -> None:
         )
 
 
-def refuse_impossible(ready: PreparedDynamics, recording: Recording) -> None:
-    """Raise an error where outputs pass limits of joints or of cylinders, or states of forces what they can be."""
-    poses = np.ascontiguousarray(recording.out.y[:, 0])
-    refuse_passed(ready.packed, recording.out.t, poses)
-    check_pistons(ready.packed, recording.out.t, poses)
-    check_states(ready.packed, recording.out.t, poses, states_of(ready.packed, recording.out.y[:, 1]))
+def refuse_impossible(packed: Packed, t: np.ndarray, y: np.ndarray) -> None:
+    """Raise an error where y (T, 2, 3 nb) at t (T,) (s) passes limits of joints or cylinders, or a state its bounds."""
+    poses = np.ascontiguousarray(y[:, 0])
+    refuse_passed(packed, t, poses)
+    check_pistons(packed, t, poses)
+    check_states(packed, t, poses, states_of(packed, y[:, 1]))
 
 
 def refuse_bad_steps(m: Model, grid: np.ndarray, tolerance: float, step: float | None) -> None:
@@ -358,7 +358,7 @@ def solution(
                 packed, ready.dynamics, motion, compact, bend, None if approached is None else approached[at]
             )
         refuse_opened(ready, out.t[at], phi * held)
-        lam[at] = _least_norm(ready, compact, out.lam[at], held)
+        lam[at] = least_norm(packed, compact, out.lam[at], held) if ready.shares_loads else out.lam[at]
         wrench[at] = wrenches(packed, compact, q[at], lam[at])
         loads = loads_along(
             packed, ready.dynamics.loads, ready.dynamics.laws, out.t[at], q[at], v[at],
@@ -414,19 +414,3 @@ def _add_friction(
     """Add to out (T, 3 nb) that of the joints whose friction no multipliers hold, as long as they are not released."""
     for loads, at in standing(ready.dynamics.loads, held):
         out[at] += friction_along(ready.packed, loads, q[at], v[at], compact[at], lam[at])
-
-
-def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """Where joints are redundant the loads share in many ways; the multipliers of least norm are taken.
-
-    In large mechanisms one set of joints carries all instead: the others' multipliers are zero.
-    """
-    if not ready.mobility.redundant_rows or ready.packed.coordinates > MANY_COORDINATES:
-        return lam
-    if len(ready.dynamics.loads.friction):
-        return lam  # friction came from these
-    packed, out = ready.packed, lam.copy()
-    joints = slice(0, packed.contact_rows)
-    for k, j in enumerate(packed.spread(compact * held[..., None])[:, joints]):
-        out[k, joints] = np.linalg.lstsq(j.T, j.T @ lam[k, joints], rcond=1e-9)[0] * held[k, joints]
-    return out

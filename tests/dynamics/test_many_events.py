@@ -15,7 +15,7 @@ from mbsd.arrays.packing import pack
 from mbsd.base.errors import MechanismError
 from mbsd.dynamics.batch import worker
 from mbsd.dynamics.batch.simulate_many import asked_for
-from mbsd.dynamics.batch.single_run import Base, can_be, single_run
+from mbsd.dynamics.batch.single_run import Base, single_run
 from mbsd.dynamics.events import packing as made
 from mbsd.measures import final, first, largest, samples, smallest
 from tests.dynamics.many_models import air
@@ -157,10 +157,10 @@ def test_a_piston_without_room_is_a_reason() -> None:
 def test_room_is_looked_at_along_a_motion() -> None:
     packed, t = pack(air()), np.array([0.0, 0.1])
     y = np.zeros((2, 2, 6))
-    assert can_be(packed, t, y)
+    assert worker.is_possible(packed, t, y)
     y[1, 0, 3] = -0.2
-    assert not can_be(packed, t, y)
-    assert can_be(packed, t[:1], y[:1])
+    assert not worker.is_possible(packed, t, y)
+    assert worker.is_possible(packed, t[:1], y[:1])
 
 
 def test_bells_come_to_rest_from_any_angle_where_single_ones_do() -> None:

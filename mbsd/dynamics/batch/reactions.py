@@ -1,4 +1,4 @@
-"""Multipliers of least norm of joints that repeat others, of many simulations; see dynamics/simulate.py."""
+"""Reactions of many simulations: multipliers and Jacobians at outputs, found together by the compiled loop."""
 
 from __future__ import annotations
 
@@ -7,61 +7,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import rows_of_joints
 from mbsd.dynamics.batch.outputs import Outputs, Reacting, until
 from mbsd.dynamics.batch.patches import Patches
 from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, Numbers, tabulate_reactions
 from mbsd.dynamics.batch.single_run import Base, SingleRun
 from mbsd.dynamics.change_points import CLOSE, are_suspect, can_pass, determinants, usual_output
-from mbsd.dynamics.prepare.large import MANY_COORDINATES
-from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.reference.multipliers import least_norm
 from mbsd.dynamics.state import REACHED
-
-NEGLIGIBLE = 1e-9
-"""Singular values of J below this part of the largest are zero."""
-
-
-def shares(ready: PreparedDynamics) -> bool:
-    """Return True if joints share loads in many ways, of which those of least norm are meant.
-
-    Friction came from those of the rows that held.
-    """
-    if len(ready.dynamics.loads.friction) or ready.packed.coordinates > MANY_COORDINATES:
-        return False
-    return bool(ready.mobility.redundant_rows)
-
-
-def shared(
-    packed: list[Packed],
-    y: np.ndarray,
-    jacobians: np.ndarray,
-    lam: np.ndarray,
-    times: np.ndarray,
-    joints: np.ndarray,
-    gone: np.ndarray | None = None,
-) -> Reacting:
-    """Reactions in ``joints`` (k,); jacobians (R, T, rows of all joints and drivers, 6) are compact, lam (R, T, m).
-
-    ``gone`` (R, T, rows): which rows hold no more.
-    """  # fmt: skip
-    first, rows = packed[0], jacobians.shape[2]
-    if gone is not None:
-        jacobians[gone] = 0.0
-    out = lam.copy()
-    for mine, compact, multipliers in zip(out, jacobians, lam, strict=True):
-        j = _spread(first, compact)
-        forces = np.einsum("trc,tr->tc", j, multipliers[:, :rows])
-        mine[:, :rows] = np.einsum("trc,tc->tr", np.linalg.pinv(j.transpose(0, 2, 1), rcond=NEGLIGIBLE), forces)
-    own = rows_of_joints(first, joints)
-    return Reacting(packed, y, jacobians[:, :, own], out, times, joints, own)
-
-
-def _spread(packed: Packed, compact: np.ndarray) -> np.ndarray:
-    """(T, rows, n) of the first rows of J, compact (T, rows, 6)."""
-    whole = np.zeros((len(compact), len(packed.ws.phi), 6))
-    whole[:, : compact.shape[1]] = compact
-    return packed.spread(whole)[:, : compact.shape[1]]
 
 
 class _Evaluated(NamedTuple):
@@ -81,7 +34,7 @@ class Reactions:
     def __init__(self, run: SingleRun, patches: Patches | None, joints: np.ndarray) -> None:
         self.run, self.joints = run, joints
         packed = run.ready.packed
-        self.least = shares(run.ready)
+        self.least = run.ready.shares_loads
         self.rows = np.arange(packed.contact_rows) if self.least else rows_of_joints(packed, joints)
         self.room = np.zeros((0, 0, 0, 6))
         self.base = Base(run, _evaluated)
@@ -112,10 +65,14 @@ class Reactions:
             if self._comes_near(row, np.flatnonzero(suspect[row]), runs[min(row, len(runs) - 1)], numbers, out):
                 out.status[row] = NEARLY_SINGULAR
         packed = [run.ready.packed for run in runs]
-        if self.least:
-            gone = self._gone(out, times)
-            return shared(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, gone)
-        return Reacting(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, self.rows)
+        if not self.least:
+            return Reacting(packed, out.y, jacobians, out.lam, until(times, out.over), self.joints, self.rows)
+        first, own = packed[0], rows_of_joints(packed[0], self.joints)
+        whole = np.zeros((count, len(times), len(first.ws.phi), 6))
+        whole[:, :, : len(self.rows)] = jacobians
+        each = zip(whole, out.lam, self._held(out, times), strict=True)
+        lam = np.array([least_norm(first, *parts) for parts in each])
+        return Reacting(packed, out.y, jacobians[:, :, own], lam, until(times, out.over), self.joints, own)
 
     def _comes_near(self, row: int, suspects: np.ndarray, run: SingleRun, numbers: Numbers, out: Outputs) -> bool:
         """Return True if some of the outputs ``suspects`` of a row are near a change point, as ``simulate`` sees it."""
@@ -138,15 +95,13 @@ class Reactions:
         closeness = determinants(run.ready, packed.spread(whole), held)
         return bool((closeness[:-1] < CLOSE * closeness[-1]).any())
 
-    def _gone(self, out: Outputs, times: np.ndarray) -> np.ndarray | None:
-        """(R, T, rows) which rows of joints and drivers events have released; None where they release none."""
+    def _held(self, out: Outputs, times: np.ndarray) -> np.ndarray:
+        """Return (R, T, m) True for rows of J that no event has released."""
         packed, events = self.run.ready.packed, self.run.events
-        if not any(event.releases for event in events):
-            return None
         names = [joint.name for joint in packed.joints]
-        gone = np.zeros((len(out.lam), len(times), len(self.rows)), bool)
+        held = np.ones(out.lam.shape, bool)
         for when, event in zip(out.released.T[..., None], events, strict=True):
             since = (times > when) | (out.over[:, None] <= times) & (when <= out.over[:, None])
             for joint in map(names.index, event.releases):
-                gone[..., packed.first_row[joint] : packed.first_row[joint + 1]] |= since[..., None]
-        return gone
+                held[..., packed.first_row[joint] : packed.first_row[joint + 1]] &= ~since[..., None]
+        return held

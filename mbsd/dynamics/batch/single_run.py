@@ -10,10 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.arrays.chambers import check_pistons
 from mbsd.arrays.packing import Packed
-from mbsd.arrays.states import states_of
-from mbsd.base.errors import MechanismError
 from mbsd.dynamics.batch.block import content, kind_of, laid_out
 from mbsd.dynamics.batch.rows import Numbers
 from mbsd.dynamics.events.arrays import Contacts
@@ -37,23 +34,11 @@ from mbsd.kinematics.limits.joints import limits_of
 from mbsd.model.body import Marker
 from mbsd.model.event import Event
 from mbsd.model.mechanism import Model
-from mbsd.results.states import check_states
 
 
 def has_cylinders(packed: Packed) -> bool:
     """Return True if gas or oil must be checked after a simulation."""
     return any(force.kind.chamber is not None or force.kind.states is not None for force in packed.forces)
-
-
-def can_be(packed: Packed, t: np.ndarray, y: np.ndarray) -> bool:
-    """Return True if cylinders have room and pressure along y (T, 2, 3 nb) at times (T,) (s)."""
-    q = np.ascontiguousarray(y[:, 0])
-    try:
-        check_pistons(packed, t, q, tell=False)
-        check_states(packed, t, q, states_of(packed, y[:, 1]))
-    except MechanismError:
-        return False
-    return True
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from mbsd.arrays.packing import Packed
+from mbsd.base.errors import MechanismError
 from mbsd.base.stopping import stops_when
 from mbsd.base.users_function import described
 from mbsd.dynamics.batch.block import content
@@ -22,14 +24,13 @@ from mbsd.dynamics.batch.single_run import (
     Base,
     NotCompiled,
     SingleRun,
-    can_be,
     has_cylinders,
     single_run,
 )
 from mbsd.dynamics.events.loop import NOT_SOLVED
 from mbsd.dynamics.measures.columns import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.measures.quantities import Motions
-from mbsd.dynamics.simulate import simulate
+from mbsd.dynamics.simulate import refuse_impossible, simulate
 from mbsd.dynamics.state import CHOOSE, NO_CONVERGENCE, NOT_FINITE, PAUSED, REACHED, UNCLEAR
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
@@ -203,7 +204,7 @@ class Worker:
         if has_cylinders(packed):
             for k in np.flatnonzero(out.status == REACHED).tolist():
                 own, end = runs[min(k, len(runs) - 1)].ready.packed, written[k]
-                if not can_be(own, np.minimum(out.t[:end], out.over[k]), out.y[k, :end]):
+                if not is_possible(own, np.minimum(out.t[:end], out.over[k]), out.y[k, :end]):
                     out.status[k] = NO_ROOM
         return out
 
@@ -256,6 +257,15 @@ class Worker:
             return {name: np.array([value]) for name, value in numbers_of(sol.mechanism.name, measures(sol)).items()}
         along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}
         return columns_of(measures, sol.t, along)
+
+
+def is_possible(packed: Packed, t: np.ndarray, y: np.ndarray) -> bool:
+    """Return True if ``simulate`` takes y (T, 2, 3 nb) at times (T,) (s): cylinders have room and pressure."""
+    try:
+        refuse_impossible(packed, t, y)
+    except MechanismError:
+        return False
+    return True
 
 
 def simulated(m: Model, asked: Asked) -> Solution:

@@ -19,6 +19,7 @@ from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.arrays.packing import Packed
 from mbsd.compiling.jit import Often
 from mbsd.dynamics import state as run_state
+from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.stops import Stops, stops_of
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import PAUSED, TIME, State
@@ -142,6 +143,15 @@ class PreparedDynamics:
     def is_switched(self) -> bool:
         """True if steps are looked at one by one: rows of J come and go, or points and wheels are followed."""
         return bool(self.switches.contacts or self.sticks or self.switches.spare or self.following)
+
+    @property
+    def shares_loads(self) -> bool:
+        """True if joints share loads in many ways, of which that of least norm is meant.
+
+        Friction came from one of these ways; in large mechanisms one set of joints carries all.
+        """
+        large = self.packed.coordinates > MANY_COORDINATES
+        return bool(self.mobility.redundant_rows) and not large and not len(self.dynamics.loads.friction)
 
     @cached_property
     def following(self) -> Following:

@@ -198,10 +198,11 @@ class Mechanism(Building):
         """
         from mbsd.analyses.suspicious_units import tell
         from mbsd.dynamics.batch.designs import designs_of
-        from mbsd.dynamics.batch.simulate_many import asked_for, simulations
+        from mbsd.dynamics.batch.simulate_many import simulations
+        from mbsd.dynamics.simulate import request_for
 
         tell(self)
-        asked = asked_for(self, duration, steps, times, method, tolerance, step, formulation, options)
+        asked = request_for(self, duration, steps, times, method, tolerance, step, formulation, options)
         return simulations(designs_of(self, vary, start, moving), measure, asked, threads, progress)
 
     def sensitivities(

@@ -36,7 +36,7 @@ from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.prepare.refusals import refuse_opened
 from mbsd.dynamics.reference.multipliers import fill_multipliers, least_norm, multipliers_along
 from mbsd.dynamics.runs.motion import to_end
-from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Recording, Run, Snapshot
+from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Recording, Request, Run, Snapshot, run_of
 from mbsd.dynamics.runs.steps import step_to
 from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output, State
 from mbsd.dynamics.switches import standing
@@ -209,6 +209,7 @@ def with_phase_changes(
     return replace(recording, out=Output(*(part[order] for part in both)), held=held[order]), asked
 
 
+PART = "the part done, 0 .. 1"
 LEAST_TOLERANCE = 1e-16
 MOST_STEPS = 1e12
 
@@ -228,21 +229,42 @@ def simulate(
     ready: PreparedDynamics | None = None,
 ) -> Solution:
     """See :meth:`mbsd.mechanism.Mechanism.simulate`; ``ready``: what an earlier run has prepared over the same span."""
+    request = request_for(m, duration, steps, times, method, tolerance, step, formulation, options)
+    return simulated(m, request, users_progress(f"{m.name}: progress", progress, PART), event_rows, ready)
+
+
+def request_for(
+    m: Model,
+    duration: float | None,
+    steps: int,
+    times: Sequence[float] | np.ndarray | None,
+    method: str,
+    tolerance: float,
+    step: float | None,
+    formulation: str,
+    options: Mapping[str, float],
+) -> Request:
+    """Return how a mechanism is simulated. Raises ModelError for what cannot be asked."""
     integrator = integrator_named(m.name, method)
     integrator.numbers(m.name, options)
     grid = output_times(m, duration, steps, times)
     refuse_bad_steps(m, grid, tolerance, step)
-    progress = users_progress(f"{m.name}: progress", progress, "the part done, 0 .. 1")
     refuse_formulation(m, formulation, integrator)
+    return Request(grid, integrator, tolerance, step, formulation, options)
+
+
+def simulated(
+    m: Model,
+    request: Request,
+    progress: Progress = None,
+    event_rows: bool = False,
+    ready: PreparedDynamics | None = None,
+) -> Solution:
+    """Simulate as requested."""
+    grid, events = request.times, list(m.events.values())
     ready = ready or prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
     warn_of_start(ready)
-    longest = step or float((grid[1:] - grid[:-1]).max())
-    run = Run(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
-    events = list(m.events.values())
-    if formulation == INDEPENDENT and (events or ready.switches.contacts or ready.sticks):
-        raise ModelError(
-            f"{m.name}: formulation='independent' does not know events, contacts, limits and joints that stick"
-        )
+    run = run_of(m, request, ready)
     check_pistons(ready.packed, grid[:1], ready.initial.q[None], tell=False)
     asked = ready.stops.jumps.among(grid) if event_rows and ready.stops.jumps else None
     recording = follow(run, grid if asked is None else asked.solved, events, event_rows, progress)
@@ -262,7 +284,10 @@ def simulate(
     refuse_impossible(ready.packed, recording.out.t, recording.out.y)
     if event_rows:
         recording, asked = with_phase_changes(ready, run, recording, events, grid, asked)
-    anew = partial(simulate, m, None, 1, grid, method, tolerance, step, None, options, event_rows, formulation)
+    method, tolerance, step = request.integrator.name, request.tolerance, request.step
+    anew = partial(
+        simulate, m, None, 1, grid, method, tolerance, step, None, request.options, event_rows, request.formulation
+    )
     span = float(recording.out.t[0]), float(recording.out.t[-1])
     sol = solution(m, ready, recording, Between(at, anew, recording.out.y[-1, 0]))
     is_near = near_singular(sol)

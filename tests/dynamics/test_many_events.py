@@ -14,9 +14,9 @@ from mbsd import Mechanism, ModelError, SimulationError, angle_reaches, distance
 from mbsd.arrays.packing import pack
 from mbsd.base.errors import MechanismError
 from mbsd.dynamics.batch import worker
-from mbsd.dynamics.batch.simulate_many import asked_for
 from mbsd.dynamics.batch.single_run import Base, single_run
 from mbsd.dynamics.events import packing as made
+from mbsd.dynamics.simulate import request_for
 from mbsd.measures import final, first, largest, samples, smallest
 from tests.dynamics.many_models import air
 from tools.models.genevas import free
@@ -252,7 +252,7 @@ def test_a_bar_that_starts_where_it_breaks_and_leaves_breaks_when_it_comes_back(
 
 def test_rows_are_exchanged_for_steps_in_which_all_contacts_are_open_as_well() -> None:
     m = cranks(12.0, stops=True)
-    asked = asked_for(m, 1.0, STEPS, None, "dop853", 1e-9, None, "auto", {})
+    asked = request_for(m, 1.0, STEPS, None, "dop853", 1e-9, None, "auto", {})
     parts = Base(single_run(m, asked)).parts
     assert parts.contacts.schur.rows is parts.dyn.schur.rows
     assert parts.contacts.schur.rows.flags.writeable
@@ -311,7 +311,7 @@ def test_only_pins_that_are_all_rows_go_their_own_way() -> None:
         return len(contacts_of_run(m).schur.pins)
 
     def contacts_of_run(m: Mechanism) -> Any:
-        asked = asked_for(m, 0.5, 10, None, "dop853", 1e-7, None, "auto", {})
+        asked = request_for(m, 0.5, 10, None, "dop853", 1e-7, None, "auto", {})
         return single_run(m, asked).contacts
 
     assert pins(barrier(stops=True)) == 4

@@ -14,10 +14,11 @@ from mbsd.dynamics.batch.early import STEPS, Known, Plan, all_outputs, window
 from mbsd.dynamics.batch.outputs import MotionsOf, Outputs, room_for
 from mbsd.dynamics.batch.patches import Patches
 from mbsd.dynamics.batch.rows import KNOWN, UNDERWAY, WAITING, Course, Numbers, Target, run_rows
-from mbsd.dynamics.batch.single_run import Asked, Base
+from mbsd.dynamics.batch.single_run import Base
 from mbsd.dynamics.integrators.advance import number_of
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.dynamics.measures.quantities import Quantity
+from mbsd.dynamics.runs.run import Request
 from mbsd.dynamics.state import NEXT, REACHED
 
 Measures = Mapping[str, Measure] | Callable[[Any], Any]
@@ -28,7 +29,7 @@ class Work:
     """The work that all threads share."""
 
     designs: Designs
-    asked: Asked
+    asked: Request
     measures: Measures
     quantities: Mapping[str, Quantity]
     why: str | None

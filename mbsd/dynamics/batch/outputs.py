@@ -83,8 +83,8 @@ class Reacting:
     rows: np.ndarray
     """Their rows of J, one joint after the other."""
 
-    def of(self, which: np.ndarray) -> Reactive:
-        """Reactions of some rows."""
+    def reactions_of(self, which: np.ndarray) -> Reactive:
+        """Return the reactions of some rows."""
         packed, some = self.packed[0], slice(None) if len(which) == len(self.y) else which  # views, where all are meant
         jacobians, q, own = self.jacobians[some], self.y[some, :, 0], self.lam[some][..., self.rows]
         count, times = q.shape[:2]
@@ -142,5 +142,5 @@ class MotionsOf:
         traces = {name: (body, some(place), some(angle)) for name, (body, place, angle) in self.traces.items()}
         return Motions(
             self.names, q, v, a, out.work[own], some(self.com), some(self.mass), some(self.inertia), traces,
-            until(out.t, out.over[own]), None if reacting is None else reacting.of(which),
+            until(out.t, out.over[own]), None if reacting is None else reacting.reactions_of(which),
         )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import attrgetter
@@ -21,13 +21,12 @@ from mbsd.dynamics.genevas.packing import no_genevas
 from mbsd.dynamics.independent.arrays import KEPT_SIZE
 from mbsd.dynamics.independent.coordinates import Coordinate
 from mbsd.dynamics.integrators.advance import number_of
-from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated_rows import packing as repeated_packing
 from mbsd.dynamics.runs.embedding import embedded_at_start
 from mbsd.dynamics.runs.motion import NEAR, IndependentSteps, can_carry, independent_steps
-from mbsd.dynamics.runs.run import INDEPENDENT, REFERENCE, Run
+from mbsd.dynamics.runs.run import REFERENCE, Request, Run, run_of
 from mbsd.dynamics.state import State
 from mbsd.equations.interactions.switching import SWITCHING
 from mbsd.kinematics.limits.joints import limits_of
@@ -39,19 +38,6 @@ from mbsd.model.mechanism import Model
 def has_cylinders(packed: Packed) -> bool:
     """Return True if gas or oil must be checked after a simulation."""
     return any(force.kind.chamber is not None or force.kind.states is not None for force in packed.forces)
-
-
-@dataclass(frozen=True)
-class Asked:
-    """How each is simulated, as ``simulate`` takes it."""
-
-    times: np.ndarray
-    """(T,) s."""
-    integrator: Integrator
-    tolerance: float
-    step: float | None
-    formulation: str
-    options: Mapping[str, float]
 
 
 class Parts(NamedTuple):
@@ -190,7 +176,7 @@ class Base:
         return Numbers(self.block, self.fresh, place, value)
 
 
-def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:
+def single_run(m: Model, asked: Request, reactive: bool = False) -> SingleRun:
     """Prepare it as ``simulate`` does; ``reactive``: measures read reactions, too.
 
     Raises what ``simulate`` raises, and NotCompiled.
@@ -198,20 +184,13 @@ def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:
     if number_of(asked.integrator) is None:
         raise NotCompiled(f"method '{asked.integrator.name}' has no loop over many")
     times, events = asked.times, list(m.events.values())
-    if events and asked.formulation == INDEPENDENT:
-        raise NotCompiled("formulation='independent' does not know events")
     ready = prepare_dynamics(m, float(times[0]), float(times[-1]), contacts=True)
-    if asked.formulation == INDEPENDENT and (ready.switches.contacts or ready.sticks):
-        raise NotCompiled("formulation='independent' does not know contacts, limits and joints that stick")
     _refuse(ready)
     if reactive and ready.approaches:
         raise NotCompiled("reactions where the damping of a contact remembers how fast it approached")
     if reactive and ready.following.rows:
         raise NotCompiled("reactions where points are on curves that cross themselves")
-    longest = asked.step or float(np.diff(times).max())
-    run = Run(
-        ready, asked.integrator, asked.tolerance, longest, float(times[-1] - times[0]), asked.options, asked.formulation
-    )
+    run = run_of(m, asked, ready)
     why = users_packing.why_not(events, run.settings.longest)
     if why is not None:
         raise NotCompiled(why)

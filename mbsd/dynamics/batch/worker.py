@@ -20,7 +20,6 @@ from mbsd.dynamics.batch.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.batch.reactions import Reactions
 from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, STOPPED, Numbers
 from mbsd.dynamics.batch.single_run import (
-    Asked,
     Base,
     NotCompiled,
     SingleRun,
@@ -30,10 +29,8 @@ from mbsd.dynamics.batch.single_run import (
 from mbsd.dynamics.events.loop import NOT_SOLVED
 from mbsd.dynamics.measures.columns import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.measures.quantities import Motions
-from mbsd.dynamics.simulate import refuse_impossible, simulate
+from mbsd.dynamics.simulate import refuse_impossible, simulated
 from mbsd.dynamics.state import CHOOSE, NO_CONVERGENCE, NOT_FINITE, PAUSED, REACHED, UNCLEAR
-from mbsd.model.mechanism import Model
-from mbsd.results.solution import Solution
 
 TRIED = 64
 """Rows of which the first that can be prepared is what others go by."""
@@ -103,7 +100,7 @@ class Worker:
         return None
 
     def _run_of(self, row: int) -> SingleRun:
-        return single_run(self.models.of(row), self.work.asked, self.work.reactive)
+        return single_run(self.models(row), self.work.asked, self.work.reactive)
 
     def _patches(self) -> Patches | None:
         """Numbers of rows that need not be prepared, if none need; some are prepared for comparison."""
@@ -252,7 +249,7 @@ class Worker:
 
     def _simulated(self, row: int) -> dict[str, np.ndarray]:
         measures = self.work.measures
-        sol = simulated(self.models.of(row), self.work.asked)
+        sol = simulated(self.models(row), self.work.asked)
         if not isinstance(measures, Mapping):
             return {name: np.array([value]) for name, value in numbers_of(sol.mechanism.name, measures(sol)).items()}
         along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}
@@ -266,11 +263,3 @@ def is_possible(packed: Packed, t: np.ndarray, y: np.ndarray) -> bool:
     except MechanismError:
         return False
     return True
-
-
-def simulated(m: Model, asked: Asked) -> Solution:
-    """One simulation by itself."""
-    return simulate(
-        m, None, 1, asked.times, asked.integrator.name, asked.tolerance, asked.step, None, asked.options,
-        formulation=asked.formulation,
-    )  # fmt: skip

@@ -27,6 +27,7 @@ from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MechanismError, MobilityError, ModelError, SimulationError, SingularPoseError
 from mbsd.dynamics.formulation import derivative
+from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.dynamics.reference.projection import project
@@ -38,7 +39,7 @@ from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
 
 if TYPE_CHECKING:
-    from mbsd.dynamics.prepare.prepared import PreparedDynamics
+    from mbsd.dynamics.prepare.large import MANY_COORDINATES
 
 LOOSE = 1e-9
 """Singular values of the scaled Jacobian below this part of the largest are zero."""
@@ -49,8 +50,6 @@ BALANCED = 1e-8
 nothing holds it."""
 SLIGHT = 1e-6
 """Accelerations of usual inertias below this (sizes or rad per s^2) are no load."""
-MANY_COORDINATES = 600
-"""Up to so many coordinates are looked at, by full matrices."""
 NEAR = 0.02
 """How far poses near the start are (sizes, rad), and how fast they move (per s)."""
 ACTS = 1e-9

@@ -15,10 +15,12 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
+from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import Approaches, PreparedDynamics
 from mbsd.dynamics.reference.arrays import Scratch, scratch_for
 from mbsd.dynamics.state import Output, Settings
 from mbsd.model.event import Happening
+from mbsd.model.mechanism import Model
 
 
 @dataclass
@@ -73,6 +75,19 @@ def steps_at_once(coordinates: int, matrices: bool) -> int:
     """Steps for one call of a compiled loop, so that it comes back within a second or so."""
     work = max(coordinates, 1) * (EVALUATIONS + (6 * coordinates if matrices else 0))
     return int(min(max(WORK_AT_ONCE / work, 1), STEPS_AT_ONCE))
+
+
+@dataclass(frozen=True)
+class Request:
+    """How a mechanism is simulated; see :func:`mbsd.dynamics.simulate.request_for`."""
+
+    times: np.ndarray
+    """(T,) s."""
+    integrator: Integrator
+    tolerance: float
+    step: float | None
+    formulation: str
+    options: Mapping[str, float]
 
 
 class Run:
@@ -153,3 +168,17 @@ class Run:
             np.array([allowed, allowed]), float(self.tolerance), growing, longest, SMALLEST_STEP * longest, float(step),
             self.method.numbers(packed.name, options),
         )  # fmt: skip
+
+
+def run_of(m: Model, request: Request, ready: PreparedDynamics | None = None) -> Run:
+    """Return the run of a mechanism that is made ready for it, if it is not yet. Raises what ``simulate`` raises."""
+    times, formulation = request.times, request.formulation
+    start, end = float(times[0]), float(times[-1])
+    ready = ready or prepare_dynamics(m, start, end, contacts=True)
+    longest = request.step or float(np.diff(times).max())
+    run = Run(ready, request.integrator, request.tolerance, longest, end - start, request.options, formulation)
+    if formulation == INDEPENDENT and (m.events or ready.switches.contacts or ready.sticks):
+        raise ModelError(
+            f"{m.name}: formulation='independent' does not know events, contacts, limits and joints that stick"
+        )
+    return run

@@ -361,8 +361,8 @@ integrators: install ## measure the integrators again, for docs/integrators.md: 
 	@$(PYTHON) -m tools.integrators
 	@$(PYTHON) -m tools.figures integrators
 
-wheel: install ## mbsd with all rooms as sdist and wheel: dist/; KERNELS=1: a wheel with compiled kernels, too
-	@$(PYTHON) -m tools.wheel $${KERNELS:+--kernels}
+wheel: install ## sdist and wheels with compiled kernels: dist/; KERNELS="3.11 3.12 3.13 3.14", KERNELS=none
+	@case "$$KERNELS" in none) $(PYTHON) -m tools.wheel ;; *) $(PYTHON) -m tools.wheel --kernels $$KERNELS ;; esac
 
 release: install ## what must hold before a tag, looked at in a clean clone: archives, hashes, NOTES.md in dist/
 	@$(PYTHON) -m tools.release

@@ -316,7 +316,7 @@ class Mechanism(Building):
 
     @property
     def drawer(self) -> SkeletonDrawer:
-        """What draws its solutions, for :meth:`mbsd.results.solution.Solution.draw`, ``animate`` and ``view``."""
+        """The drawer of its solutions, for :meth:`mbsd.results.solution.Solution.draw`, ``animate`` and ``view``."""
         from mbsd.drawing.of_solution import SkeletonDrawer
 
         return SkeletonDrawer()

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def remembers(loads: Loads) -> bool:
-    """Whether any contact asks for the speed at which it began."""
+    """Return True if any contact asks for the speed at which it began."""
     return bool(loads.switch[0, REMEMBERS])
 
 

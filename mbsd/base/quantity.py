@@ -82,7 +82,7 @@ def live(values: Iterable[float], unit: str, digits: int = DIGITS) -> Callable[[
 
 
 def labelled(words: str, unit: str) -> str:
-    """What an axis says: ``force / kN``, ``velocity / (m/s)``, ``order`` of numbers without a unit (ISO 80000-1)."""
+    """Return the label of an axis: ``force / kN``, ``velocity / (m/s)``, ``order`` without a unit (ISO 80000-1)."""
     if unit in ("", "1"):
         return words
     return f"{words} / ({unit})" if set(unit) & set("/ ") else f"{words} / {unit}"

@@ -170,7 +170,7 @@ class _Locator(_CacheLocator):
         return self._path
 
     def get_source_stamp(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """What the code is made of."""
+        """Return the hash of all that the code is made of."""
         return self._stamp
 
     def get_disambiguator(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
@@ -221,7 +221,7 @@ class _Results(CompileResultCacheImpl):
     _locator_classes = [_Locator, *CompileResultCacheImpl._locator_classes[-2:]]  # numba's for notebooks and archives
 
     def reduce(self, cres: Any) -> Any:
-        """What is written."""
+        """Return what is written."""
         library = cres.library
         called = {name: (*_place(call.dispatcher), call.arguments) for name, call in library.calls.items()}
         cells = [(*_place(cell.dispatcher), cell.arguments, cell.returns) for cell in library.cells.values()]
@@ -256,7 +256,7 @@ def _place(dispatcher: Any) -> tuple[str, str]:
 
 
 def _at(module: str, function: str) -> Any:
-    """What stands at the place that ``_place`` tells."""
+    """Return the kernel at the module and name that ``_place`` gives."""
     return getattr(importlib.import_module(module), function)
 
 

@@ -1,4 +1,4 @@
-"""What an integrator of one's own works with; docs/extending.md shows one. Importing this loads the compiler.
+"""Names for an integrator of your own; docs/extending.md shows one. Importing this loads the compiler.
 
 derivative, project     rates of a state, and a state closed onto the constraints
 close_step              the same at the end of a step of fixed length, and whether it closes

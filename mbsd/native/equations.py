@@ -85,17 +85,17 @@ class NativeEquations:
 
     @property
     def switches(self) -> bool:
-        """Whether contacts by penalty begin and end."""
+        """True if contacts by penalty begin and end."""
         return bool(self.ready.dynamics.loads.switch[0, SWITCHING])
 
     @property
     def exchange(self) -> bool:
-        """Whether rates follow from the state alone: damping by restitution also needs the speed of the approach."""
+        """True if rates follow from the state alone: damping by restitution also needs the speed of the approach."""
         return not self.ready.approaches
 
     @property
     def left_out(self) -> list[str]:
-        """What programs without Python do not get, by name."""
+        """Names of what programs without Python do not get."""
         out = []
         if self.ready.mobility.redundant_rows:
             out.append("reactions of redundant joints as they are shared least: one set of joints carries all")

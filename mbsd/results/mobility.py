@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Mobility:
-    """What the joints leave free."""
+    """Freedoms that the joints leave."""
 
     nominal: int
     """By counting rows."""

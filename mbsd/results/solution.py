@@ -211,7 +211,7 @@ class Solution(Suggesting, Generic[AnyModel]):
         return friction_view(self.packed, name, self.q, self.v, self.lam, self.held)
 
     def force(self, name: str) -> ForceView:
-        """What a force did: force, torque and point on each of its bodies, what it measures, its power.
+        """Return the results of a force: force, torque and point on each body, what it measures, its power.
 
         Of every force of ``m.forces``: springs, contacts by penalty, friction, functions of the user. A contact
         without give is ``contact(name)``, a joint ``joint(name)``. Raises ModelError where a user's function fails.

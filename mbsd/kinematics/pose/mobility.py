@@ -55,7 +55,7 @@ def rows_at(packed: Packed, q: np.ndarray) -> list[int]:
 
 
 def _key(packed: Packed, q: np.ndarray) -> tuple[object, ...] | None:
-    """What J at q (3 nb,) and the words about it depend on; None where that is more than numbers."""
+    """Return all that J at q (3 nb,) and the words about it depend on; None where that is more than numbers."""
     numbers = packed.numbers()
     if numbers is None:
         return None

@@ -15,8 +15,8 @@ from benchmarks.dynamics.cases import ALONE, case
 from benchmarks.dynamics.mbsd_code import ready
 from benchmarks.dynamics.n_four_bar import exact_angle
 from benchmarks.rows import Bar, Row
+from mbsd.dynamics.runs.motion import in_reference, independent_steps
 from mbsd.dynamics.runs.run import Run
-from mbsd.dynamics.runs.to_end import in_reference, independent_steps
 from mbsd.dynamics.simulate import integrator_named
 
 TOLERANCE = 1e-6

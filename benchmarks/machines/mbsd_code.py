@@ -12,8 +12,8 @@ import numpy as np
 import mbsd
 from benchmarks import four_bar, machines
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.runs.motion import in_reference, independent_steps
 from mbsd.dynamics.runs.run import Run
-from mbsd.dynamics.runs.to_end import in_reference, independent_steps
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.march import kinematics_at
 from mbsd.kinematics.prepare import prepare as prepared

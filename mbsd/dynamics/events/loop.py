@@ -15,7 +15,6 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, kernel, lazy
-from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.events.arrays import (
     ACTED,
     APART,
@@ -56,6 +55,7 @@ from mbsd.dynamics.events.sticking.ways import share_here, share_outputs
 from mbsd.dynamics.events.users.actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
 from mbsd.dynamics.events.users.values import begin_sides, find_sides, first_reached
 from mbsd.dynamics.formulation import begin_run, measure, without_contacts
+from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state, cross
 from mbsd.dynamics.repeated_rows.exchange import hold_independent, look
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, record_here

@@ -1,10 +1,9 @@
-"""How fast a run advances: steps between two looks at the keyboard, word of long runs, and an end to stuck ones.
+"""Steps of a run in reference coordinates, and its pace: word of long runs, and an end to stuck ones.
 
 A run is examined when it would take many more steps at its present pace. It ends where a force is found that jumps, or
-one so stiff that the steps are far shorter than the motion needs (stuck.py), where the motion grows without bound
-(runaway.py), and where the end is out of reach.
-Legitimate runs of many steps go on, with word of where they are. What is decided depends on steps alone, never on the
-clock.
+one so stiff that the steps are far shorter than the motion needs, where the motion grows without bound (diagnosis.py),
+and where the end is out of reach. Legitimate runs of many steps go on, with word of where they are. What is decided
+depends on steps alone, never on the clock.
 """
 
 from __future__ import annotations
@@ -16,8 +15,9 @@ from typing import TYPE_CHECKING
 
 from mbsd.base.errors import SimulationError
 from mbsd.base.stopping import end_if_unwanted
-from mbsd.dynamics.runs.runaway import Growth, growth_of, runaway
-from mbsd.dynamics.runs.stuck import diagnosis
+from mbsd.dynamics import state as run_state
+from mbsd.dynamics.runs.diagnosis import Growth, diagnosis, growth_of, refusal, runaway
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import ACCEPTED, REJECTED, TIME, State
 
 if TYPE_CHECKING:
@@ -92,3 +92,36 @@ class Pace:
             "mbsd: %s: t = %.4g of %.4g s after %.0f s and %d steps", self.run.ready.packed.name, at, self.end, waited,
             self._steps(),
         )  # fmt: skip
+
+
+NO_LIMIT = 10**12
+RECENT = 1e3
+"""Steps before a run stops in which what a function of the user did may be why."""
+
+
+def advance(run: Run, state: run_state.State, out: run_state.Output, end: float, steps: int = NO_LIMIT) -> int:
+    """Go on to ``end`` (s), ``steps`` steps at most; returns REACHED or PAUSED, raises SimulationError."""
+    status = run.advance(run.ready.dynamics, run.scratch, state, out, run.settings, end, steps)
+    accepted = status in (run_state.REACHED, run_state.PAUSED)
+    check_callbacks(run, state, accepted)
+    if not accepted:
+        raise refusal(run, status, state)
+    return status
+
+
+def check_callbacks(run: Run, state: run_state.State, accepted: bool) -> None:
+    """Raise what functions of the user raised in steps up to ``state``, ``accepted`` or not."""
+    specials = run.ready.packed.specials
+    if run.method.fixed_step:
+        specials.check()
+    elif accepted:
+        specials.check_trials()
+    else:
+        specials.check_trials(state.clock[run_state.TIME] - RECENT * state.clock[run_state.STEP])
+
+
+def step_to(run: Run, state: run_state.State, out: run_state.Output, end: float) -> None:
+    """Go on to ``end`` (s) a step at a time, with word of long runs. Raises SimulationError."""
+    pace = Pace(run, state, end, None)
+    while advance(run, state, out, end, 1) != run_state.REACHED:
+        pace.note()

@@ -1,4 +1,4 @@
-"""Why a run hardly advances: which force jumps at its state, or which one is stiff.
+"""Why a run hardly advances or cannot go on: a force that jumps or is stiff, a motion that grows without bound.
 
 Forces are evaluated one by one along the motion through the state, y + s y' with s up to 10 and up to 1000 steps h to
 both sides: a smooth force changes a hundred times more in the second, one that jumps does not. The stiffness of a force
@@ -7,6 +7,12 @@ is the rate (1/s) at which it would stop or swing bodies that no joints hold,
     lambda = max(|W^-1 dQ/dv|, sqrt |W^-1 dQ/dq|)
 
 Steps of explicit methods that are no longer than a few 1 / lambda are short for stability's sake, not for accuracy's.
+
+A motion may end in finite time, as under a force that grows with the cube of an angle. With V the size of all
+velocities, T = V / (dV/dt) is the time in which they double or so. Growth that ends at a time t_e, V ~ (t_e - t)^-p,
+has T = (t_e - t) / p: it falls along a straight line that tells t_e, while T of exponential growth stays and that of
+usual motions is of the size of what is left. Steps follow it for ever, each a part of T.
+
 Source: Hairer, Wanner, Solving ODEs II, IV.2.
 """
 
@@ -18,12 +24,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mbsd.arrays.directory import directory, slice_of
-from mbsd.arrays.friction_along import friction_under
+from mbsd.arrays.friction_along import REMEDY, friction_under, jam
 from mbsd.arrays.loads_along import loads_along
+from mbsd.base.errors import SimulationError
+from mbsd.dynamics import state as run_state
 from mbsd.dynamics.formulation import derivative
-from mbsd.dynamics.prepare.lent_inertia import LIFT
+from mbsd.dynamics.prepare.inertia import LIFT
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import TIME, State
-from mbsd.equations.joint_friction import X
+from mbsd.equations.joint_friction import FAILED, X
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -58,7 +67,7 @@ class Stiffest(NamedTuple):
 
 
 def diagnosis(run: Run, state: State, h: float, left: float) -> str | None:
-    """What keeps steps at h (s), with the remedy, or None if the run may go on; ``left`` steps are still to do."""
+    """Return the cause of steps of h (s), with the remedy, or None if the run may go on; ``left`` steps remain."""
     cause = jump(run, state, h)
     slope = slope_at(run, state)
     if cause is not None or slope is None:
@@ -172,3 +181,122 @@ def loads_by_force(run: Run, times: np.ndarray, states: np.ndarray) -> Iterator[
             yield rows.force, friction_under(packed, loads, q, v, normal)
         else:
             yield rows.force, loads_along(packed, loads, run.ready.dynamics.laws, times, q, v)
+
+
+BEYOND = 1e6
+"""Velocities so many times those of the start, of a fall by the size, and of going by the size in the whole run."""
+STRAIGHT = 0.05
+"""How fast T falls at least: p of 20."""
+SOON = 1e-3
+"""Part of the time left within which growth ends."""
+SHARE = 0.5
+"""Part of the power of all inertia that the force which is named has at least."""
+
+
+class Growth(NamedTuple):
+    """Velocities at a time (s), in sizes/s and rad/s."""
+
+    time: float
+    size: float
+    within: float
+    """T (s)"""
+
+
+def growth_of(run: Run, state: State) -> Growth | None:
+    """How velocities grow where they are far beyond usual ones, else None."""
+    dynamics, packed, ready = run.ready.dynamics, run.ready.packed, run.ready
+    size = float(np.linalg.norm(state.y[1] * dynamics.per_size))
+    fall = float(np.hypot(*packed.system.gravity)) / packed.size
+    usual = max(float(np.linalg.norm(ready.initial.v * dynamics.per_size)), fall**0.5, 1.0 / (ready.end - ready.start))
+    if not BEYOND * usual < size < np.inf:
+        return None
+    report = run.scratch.report.copy()
+    slope = slope_at(run, state)
+    run.scratch.report[...] = report
+    if slope is None:
+        return None
+    rise = float(state.y[1] * dynamics.per_size @ (slope[1] * dynamics.per_size)) / size
+    return Growth(float(state.clock[TIME]), size, size / rise) if rise > 0.0 else None
+
+
+def runaway(run: Run, state: State, before: Growth | None, now: Growth | None) -> str | None:
+    """Return words on what grows without bound, when and under which force; None where nothing does."""
+    if before is None or now is None or not (now.time > before.time and now.size > 2.0 * before.size):
+        return None
+    falling = (before.within - now.within) / (now.time - before.time)
+    if not falling > STRAIGHT or now.within / falling > SOON * (run.ready.end - now.time):
+        return None
+    return _words(run, state, now, now.time + now.within / falling, _driving(run, state))
+
+
+def runaway_at(run: Run, state: State) -> str | None:
+    """The same of one state: what a force drives so fast that it would be beyond all bounds within no time."""
+    now = growth_of(run, state)
+    if now is None or now.within > SOON * (run.ready.end - now.time):
+        return None
+    driving = _driving(run, state)
+    return None if driving is None else _words(run, state, now, now.time + now.within, driving)
+
+
+def _words(run: Run, state: State, now: Growth, ends: float, driving: tuple[str, float] | None) -> str:
+    packed = run.ready.packed
+    speeds = np.abs(state.y[1] * run.ready.dynamics.per_size).reshape(-1, 3)[1 : len(packed.body_names) - packed.states]
+    fastest = packed.body_names[1 + int(np.argmax(speeds.max(axis=1)))]
+    what = f"force '{driving[0]}'" if driving is not None else "what drives it"
+    under = f"under force '{driving[0]}', which gives {driving[1]:.2g} W, " if driving is not None else ""
+    return (
+        f"'{fastest}' moves without bound: {under}its speed doubles within some {now.within:.1e} s, in ever shorter "
+        f"times, which ends at t = {ends:.6g} s. Limit {what}, add "
+        "damping that grows as well, or end the simulation before."
+    )
+
+
+def _driving(run: Run, state: State) -> tuple[str, float] | None:
+    """The force that gives most of the power (W) of all inertia, and its power."""
+    slope = slope_at(run, state)
+    if slope is None:
+        return None
+    whole = float(run.ready.dynamics.inertia * slope[1] @ state.y[1])
+    times = np.array([state.clock[TIME]])
+    powers = [(float(loads[0] @ state.y[1]), force.name) for force, loads in loads_by_force(run, times, state.y[None])]
+    power, name = max(powers, default=(0.0, ""))
+    return (name, power) if power > SHARE * whole > 0.0 else None
+
+
+JUMP_STEP = 1e-9
+"""Part of the longest step within which a force that jumps is looked for where steps shrink to nothing."""
+
+
+def refusal(run: Run, status: int, state: run_state.State) -> SimulationError:
+    """The error of a run whose step ended with ``status`` in ``state``: where, why, and what helps."""
+    packed, method = run.ready.packed, run.method
+    bodies = len(packed.body_names) - packed.states
+    time, speeds = state.clock[run_state.TIME], np.abs(state.y[1].reshape(-1, 3)[1:bodies])
+    fastest = packed.body_names[1 + int(np.argmax((speeds / [packed.size, packed.size, 1]).max(1)))]
+    where = f"{packed.name}: {method.name} stops at t = {time:.6g} s, where '{fastest}' is fastest"
+    if status == run_state.NO_CONVERGENCE:
+        own = ", or method='dop853'; stiff springs and dampers ask for method='radau'" if method.fixed_step else ""
+        return SimulationError(
+            f"{where}: the equations of a step of {run.settings.step:.3g} s have no solution near the last one. "
+            f"Take a smaller step{own}, or look for a force or law that jumps."
+        )
+    loads = run.ready.dynamics.loads
+    if loads.iteration[FAILED]:
+        return SimulationError(f"{where}: {jam(packed, loads.normal[X])}. {REMEDY}, or raise slip_speed.")
+    if method.fixed_step:
+        return SimulationError(
+            f"{where}: numbers are no longer finite after a step of {run.settings.step:.3g} s. "
+            "Take a smaller step, or method='dop853'; stiff springs and dampers ask for method='radau'."
+        )
+    short = f"steps below {state.clock[run_state.STEP]:.1e} s do not meet the tolerance {run.tolerance:g}"
+    growing = runaway_at(run, state)
+    if growing is not None:
+        return SimulationError(f"{where}: {short}; {growing}")
+    jumping = jump(run, state, JUMP_STEP * run.settings.longest)
+    if jumping is not None:
+        return SimulationError(f"{where}: {short}; {jumping}")
+    return SimulationError(
+        f"{where}: {short}. "
+        "The pose is singular here, or a force jumps or grows without bound; change the lengths, smooth the force, "
+        "or loosen the tolerance."
+    )

@@ -1,9 +1,17 @@
-"""Accelerations of the independent coordinates, and what an integrator needs beside them.
+"""Accelerations of the independent coordinates, and the outputs in reference coordinates that follow from them.
 
     M_z = B^T M B,   M_z z'' = B^T (Q - M c)           by Cholesky's factors
     power of loads and drivers = v^T (M a - M g)       where drivers are; else that of the loads themselves
 
 Where a group or block has no clear pose the power is not a number, and the step is taken again with another length.
+An output at such a pose is the middle of the quintic through q, q', q'' at two poses a little before and after it, H
+seconds apart:
+
+    q   = (q0 + q1) / 2 + 5/32 H (q0' - q1') + 1/64 H^2 (q0'' + q1'')
+    q'  = 15/8 (q1 - q0) / H - 7/16 (q0' + q1') + 1/32 H (q1'' - q0'')
+    q'' = 3/2 (q1' - q0') / H - (q0'' + q1'') / 4
+
+Multipliers are found afterwards (reference/multipliers.py).
 """
 
 from __future__ import annotations
@@ -11,10 +19,9 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
-from mbsd.dynamics.embedding.arrays import LIMIT, SENSITIVITY
-from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE, Q
-from mbsd.dynamics.embedding.bridge import bridge
-from mbsd.dynamics.embedding.groups import embed_groups
+from mbsd.dynamics.independent.arrays import KEPT_Q, KEPT_SIZE, LIMIT, SENSITIVITY, Q
+from mbsd.dynamics.independent.groups import bridge, embed_groups
+from mbsd.dynamics.state import NEXT, TIME, WORK
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
 from mbsd.kinematics.groups.carrying.branch import WIDE, angle_of
@@ -26,21 +33,24 @@ FLOOR = 1e-14
 
 
 @inlined
-def place_bodies(loaded, body, rate, base, coordinate, angles, q, v, cos_sin):
-    """Poses and velocities of the loaded bodies as forces read them; angles only where ``angles`` says so."""
+def place_bodies(dyn, scratch):
+    """Fill poses and velocities of the loaded bodies as forces read them; angles only where ``dyn.angles`` says so."""
+    body = scratch.body
+    coordinate = scratch.coordinate
+    q = scratch.q
     columns = coordinate.shape[0] - 1
-    for b in loaded:
+    for b in dyn.loaded:
         q[3 * b] = body[b, X]
         q[3 * b + 1] = body[b, Y]
-        if angles:
-            q[3 * b + 2] = angle_of(body, base, coordinate, b)
-        cos_sin[b, 0] = body[b, COS]
-        cos_sin[b, 1] = body[b, SIN]
+        if dyn.angles:
+            q[3 * b + 2] = angle_of(body, scratch.base, coordinate, b)
+        scratch.cos_sin[b, 0] = body[b, COS]
+        scratch.cos_sin[b, 1] = body[b, SIN]
         for c in range(3):
             speed = 0.0
             for j in range(columns):
-                speed += rate[b, 3 * j + c] * coordinate[j, SPEED]
-            v[3 * b + c] = speed
+                speed += scratch.rate[b, 3 * j + c] * coordinate[j, SPEED]
+            scratch.v[3 * b + c] = speed
 
 
 @lazy(bool)
@@ -125,41 +135,9 @@ def evaluate(dyn, scratch, t, state, a, forces):
         coordinate[count, VALUE] = t
         evaluate_laws(dyn.laws, drive.shape[0], t, drive)
     power = 0.0
-    status = embed_groups(
-        dyn.group,
-        dyn.number,
-        dyn.block,
-        dyn.block_number,
-        dyn.numbers,
-        scratch.block_work,
-        scratch.body,
-        rate,
-        scratch.base,
-        coordinate,
-        drive,
-        dyn.gravity,
-        scratch.sums,
-    )
+    status = embed_groups(dyn, scratch)
     if status != SOLVED and dyn.block[KEPT_SIZE] == 0:
-        status = bridge(
-            dyn.laws,
-            dyn.group,
-            dyn.number,
-            dyn.block,
-            dyn.block_number,
-            dyn.numbers,
-            scratch.block_work,
-            dyn.gravity,
-            scratch.body,
-            rate,
-            scratch.base,
-            coordinate,
-            drive,
-            scratch.sums,
-            scratch.joined_body,
-            scratch.joined_rate,
-            t,
-        )
+        status = bridge(dyn, scratch, t)
     if status != SOLVED:
         power = math.nan
     elif forces:
@@ -168,17 +146,7 @@ def evaluate(dyn, scratch, t, state, a, forces):
                 force[3 * b] = 0.0
                 force[3 * b + 1] = 0.0
                 force[3 * b + 2] = 0.0
-            place_bodies(
-                dyn.loaded,
-                scratch.body,
-                rate,
-                scratch.base,
-                coordinate,
-                dyn.angles,
-                scratch.q,
-                scratch.v,
-                scratch.cos_sin,
-            )
+            place_bodies(dyn, scratch)
             power = apply_loads(dyn.loads, dyn.laws, t, scratch.q, scratch.v, scratch.cos_sin, force)
         if count == 1 and last == 1:
             push = scratch.sums[1]
@@ -203,8 +171,15 @@ def derivative(dyn, scratch, t, state, out, lam):
 
 
 @apart
-def keep(body, rate, base, coordinate, number, block, work, size, per_size, watch, t):
+def keep(dyn, scratch, t):
     """Predict from the pose evaluated last; watch[0] takes the largest rate of a body for one unit of a coordinate."""
+    body = scratch.body
+    rate = scratch.rate
+    base = scratch.base
+    coordinate = scratch.coordinate
+    number = dyn.number
+    block = dyn.block
+    work = scratch.block_work
     last = coordinate.shape[0] - 1
     largest = 0.0
     for b in range(1, body.shape[0]):
@@ -213,9 +188,9 @@ def keep(body, rate, base, coordinate, number, block, work, size, per_size, watc
         base[b, BEND] = rate[b, 3 * last + 2]
         for j in range(last):
             base[b, TURNS + j] = rate[b, 3 * j + 2]
-        for j in range(size.shape[0]):
+        for j in range(dyn.size.shape[0]):
             for c in range(3):
-                largest = max(largest, abs(rate[b, 3 * j + c]) * per_size[3 * b + c] * size[j])
+                largest = max(largest, abs(rate[b, 3 * j + c]) * dyn.per_size[3 * b + c] * dyn.size[j])
     for j in range(last):
         coordinate[j, BASE] = coordinate[j, VALUE]
     coordinate[last, BASE] = t
@@ -223,7 +198,7 @@ def keep(body, rate, base, coordinate, number, block, work, size, per_size, watc
         number[e, NEAR] = 1.0 if number[e, SINE] < WIDE else 0.0
     for i in range(block[KEPT_SIZE]):
         work[block[KEPT_Q] + i] = work[block[Q] + i]
-    watch[SENSITIVITY] = largest
+    scratch.watch[SENSITIVITY] = largest
 
 
 @inlined
@@ -234,19 +209,7 @@ def settle(dyn, scratch, t, state, fresh):
     """
     if not fresh:
         derivative(dyn, scratch, t, state, scratch.stages[0], scratch.multipliers)
-    keep(
-        scratch.body,
-        scratch.rate,
-        scratch.base,
-        scratch.coordinate,
-        dyn.number,
-        dyn.block,
-        scratch.block_work,
-        dyn.size,
-        dyn.per_size,
-        scratch.watch,
-        t,
-    )
+    keep(dyn, scratch, t)
     return scratch.watch[SENSITIVITY] > scratch.watch[LIMIT]
 
 
@@ -259,11 +222,15 @@ def look(dyn, scratch, t, state):
 
 
 @internal
-def put(body, rate, base, coordinate, a, forces, poses, accelerations):
-    """Poses and velocities (2, 3 nb) and, with ``forces``, accelerations (3 nb,) of the pose evaluated last.
+def place_all(scratch, a, forces, poses, accelerations):
+    """Fill poses and velocities (2, 3 nb) and, with ``forces``, accelerations (3 nb,) of the pose evaluated last.
 
     a (3 + f,) has its z''.
     """
+    body = scratch.body
+    rate = scratch.rate
+    base = scratch.base
+    coordinate = scratch.coordinate
     last = coordinate.shape[0] - 1
     for b in range(1, body.shape[0]):
         poses[0, 3 * b] = body[b, X]
@@ -285,7 +252,7 @@ def put(body, rate, base, coordinate, a, forces, poses, accelerations):
 def write(dyn, scratch, t, state, stage, out, k):
     """Output k in reference coordinates from a state; stage (2, 3 + f) takes its derivative."""
     power = derivative(dyn, scratch, t, state, stage, scratch.multipliers)
-    put(scratch.body, scratch.rate, scratch.base, scratch.coordinate, stage[1], True, out.y[k], out.a[k])
+    place_all(scratch, stage[1], True, out.y[k], out.a[k])
     return power
 
 
@@ -293,3 +260,61 @@ def write(dyn, scratch, t, state, stage, out, k):
 def write_alone(dyn, scratch, t, state, stage, out, k):
     """``write`` for callers outside the compiled loops."""
     return write(dyn, scratch, t, state, stage, out, k)
+
+
+@inlined
+def record(dyn, scratch, out, k, t, work):
+    """Write output k from scratch.state at t (s); returns whether its pose is clear."""
+    out.work[k] = work
+    power = write(dyn, scratch, t, scratch.state, scratch.stages[0], out, k)
+    return power + work == power + work
+
+
+@inlined
+def record_all(dyn, scratch, out, k, t, work):
+    """``record`` with the evaluation in it: no arrays are handed over for each of many outputs."""
+    a = scratch.stages[0, 1]
+    forces = out.lam.shape[0] > 0
+    out.work[k] = work
+    power = evaluate(dyn, scratch, t, scratch.state, a, forces)
+    place_all(scratch, a, forces, out.y[k], out.a[k])
+    return power + work == power + work
+
+
+@inlined
+def keep_row(dyn, scratch, out, k):
+    """Keep output k as the pose before an unclear one."""
+    for c in range(scratch.before.shape[1]):
+        scratch.before[0, c] = out.y[k, 0, c]
+        scratch.before[1, c] = out.y[k, 1, c]
+        scratch.before[2, c] = out.a[k, c]
+
+
+@inlined
+def join_rows(dyn, scratch, out, k, between):
+    """Put output k in the middle between the pose kept and its own, ``between`` seconds later."""
+    before = scratch.before
+    for c in range(before.shape[1]):
+        q = out.y[k, 0, c]
+        v = out.y[k, 1, c]
+        a = out.a[k, c]
+        out.y[k, 0, c] = (
+            0.5 * (before[0, c] + q)
+            + 5.0 / 32.0 * between * (before[1, c] - v)
+            + between * between / 64.0 * (before[2, c] + a)
+        )
+        out.y[k, 1, c] = (
+            15.0 / 8.0 * (q - before[0, c]) / between
+            - 7.0 / 16.0 * (before[1, c] + v)
+            + between / 32.0 * (a - before[2, c])
+        )
+        out.a[k, c] = 1.5 * (v - before[1, c]) / between - 0.25 * (before[2, c] + a)
+
+
+@apart
+def record_here(dyn, scratch, state, out):
+    """Write the next output from the state itself, which stands at its time."""
+    k = state.count[NEXT]
+    write(dyn, scratch, state.clock[TIME], state.y, scratch.stages[0], out, k)
+    out.work[k] = state.clock[WORK]
+    state.count[NEXT] = k + 1

@@ -1,4 +1,4 @@
-"""Which joints serve as independent coordinates: angles of hinges, ways of slides between a known body and a new one.
+"""Joints that serve as independent coordinates: angles of hinges, ways of slides between a known body and a new one.
 
 The program takes the mechanism apart from ground on; wherever no group and no wheel of a gear train can be added it
 takes the next hinge or slide as a coordinate, and goes back where that leads nowhere. Of the choices that come to an
@@ -9,7 +9,7 @@ coordinates in every choice.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 
@@ -73,6 +73,19 @@ class Coordinate:
         point, base = self._arms(pose)
         reach = pose[self.body, :2] + point - pose[self.other, :2] - base
         return _turned(self.slide[G_X:ANGLE], pose[self.other, 2]), reach
+
+
+def coordinates_along(coordinates: Sequence[Coordinate], q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Return (R, 2, 3 + f) independent coordinates and their rates at q, v (R, 3 nb)."""
+    out = np.zeros((len(q), 2, 3 + len(coordinates)))
+    for k, coordinate in enumerate(coordinates):
+        if coordinate.slide is None:
+            i, j = 3 * coordinate.body + 2, 3 * coordinate.other + 2
+            out[:, 0, 3 + k], out[:, 1, 3 + k] = q[:, i] - q[:, j], v[:, i] - v[:, j]
+        else:
+            out[:, 0, 3 + k] = [coordinate.at(row) for row in q]
+            out[:, 1, 3 + k] = [coordinate.rate(*row) for row in zip(q, v, strict=True)]
+    return out
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,22 @@
-"""Coordinates without inertia that neither joints nor drivers hold: no equation says how they move.
+"""Starts and models that cannot be simulated, each refused by the name of what is to be changed.
 
-A motion z of coordinates without inertia alone, J z = 0, has no kinetic energy. Where anything acts along it, z^T Q or
-a row of a contact, its acceleration has no bound: it is an error. Where nothing ever does, as on the turning of point
-masses, nothing changes it.
+Unheld coordinates: a motion z of coordinates without inertia alone, J z = 0, has no kinetic energy. Where anything acts
+along it, z^T Q or a row of a contact, its acceleration has no bound: it is an error. Where nothing ever does, as on the
+turning of point masses, nothing changes it.
+
+Pressed journals: a pin with play that starts ``start`` away from its bearing's middle (model/forces/clearance_joint.py)
+may stand in its wall as deep as its load presses it, N = K d^n. What it carries is the reaction of the pin without
+play, at the same start; a journal that is pressed in many times harder was put there by mistake, and would be shot out.
+
+Dependent rows: dynamics works on independent rows alone. A row left out as redundant must close wherever the others
+close: that is tried at poses beside the start. If it opens there, the start pose is singular (a toggle, a change point,
+a stretched chain): rows depend on each other only in it, and the equations do not say how the links go on.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
@@ -15,14 +25,21 @@ from mbsd.arrays.friction_along import friction_under
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed
-from mbsd.base.errors import MobilityError, ModelError
+from mbsd.base.errors import MechanismError, MobilityError, ModelError, SimulationError, SingularPoseError
 from mbsd.dynamics.formulation import derivative
+from mbsd.dynamics.prepare.large import MANY_COORDINATES
+from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.arrays import scratch_for
+from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.reference.rows import OPENED_BY
 from mbsd.equations.assembly import residual_and_jacobian
+from mbsd.kinematics.pose.ideal_joints import with_ideal_joints
+from mbsd.model.force import Press
+from mbsd.model.mechanism import Model
 from mbsd.results.mobility import Mobility
 
 if TYPE_CHECKING:
-    from mbsd.dynamics.prepare.prepared import PreparedDynamics
+    from mbsd.dynamics.prepare.large import MANY_COORDINATES
 
 LOOSE = 1e-9
 """Singular values of the scaled Jacobian below this part of the largest are zero."""
@@ -33,8 +50,6 @@ BALANCED = 1e-8
 nothing holds it."""
 SLIGHT = 1e-6
 """Accelerations of usual inertias below this (sizes or rad per s^2) are no load."""
-MANY_COORDINATES = 600
-"""Up to so many coordinates are looked at, by full matrices."""
 NEAR = 0.02
 """How far poses near the start are (sizes, rad), and how fast they move (per s)."""
 ACTS = 1e-9
@@ -158,3 +173,113 @@ def _null_space(matrix: np.ndarray) -> np.ndarray:
     """(k, n) orthonormal rows that ``matrix`` (m, n), dimensionless, takes to zero."""
     _u, size, basis = np.linalg.svd(matrix)
     return basis[int((size > LOOSE * max(1.0, float(size.max(initial=0.0)))).sum()) :]
+
+
+SHALLOW = 0.01
+"""Part of the clearance by which any journal may start in its wall."""
+HARDER = 10.0
+"""Times its load by which it may start pressed in: a load may grow right after the start."""
+
+
+def presses(m: Model) -> dict[str, Press]:
+    """By name, those journals of a mechanism that start in their walls by more than slightly."""
+    own = {name: force.kind.press(force) for name, force in m.forces.items() if force.kind.press is not None}
+    return {name: press for name, press in own.items() if press is not None and press.depth > SHALLOW * press.room}
+
+
+def refuse_pressed(m: Model, start: float, end: float, prepared: Callable[..., PreparedDynamics]) -> None:
+    """Raise SimulationError for a journal that starts pressed into its bearing, from ``start`` to ``end`` (s).
+
+    ``prepared`` makes a mechanism ready for its dynamics.
+    """
+    deep = presses(m)
+    if not deep:
+        return
+    joined = with_ideal_joints(m)
+    assert joined is not None, "what starts as a pin does is one then"
+    try:
+        ideal = prepared(joined, start, end)
+    except MechanismError:
+        return  # without play it cannot move: what it carries is not known
+    for name, press in deep.items():
+        load = _reaction(ideal, name)
+        if press.force > HARDER * load:
+            raise SimulationError(
+                f"{m.name}: force '{name}' starts with its journal {press.depth:.3g} m deep in the bearing's wall, "
+                f"pressed in by {press.force:.3g} N, where a pin without play carries {load:.3g} N. Give start= within "
+                f"its clearance of {press.room:g} m, or as deep as its load presses it; start=None leaves it where "
+                "start_near puts it"
+            )
+
+
+def _reaction(ready: PreparedDynamics, name: str) -> float:
+    """The force (N) that the pin ``name`` carries at the start."""
+    packed, dynamics = ready.packed, ready.dynamics
+    state = np.stack([ready.initial.q, ready.initial.v])
+    out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
+    derivative(dynamics, scratch_for(dynamics, packed.ws, len(packed.motions), 1), ready.start, state, out, lam)
+    packed.specials.check()
+    number = [joint.name for joint in packed.joints].index(name)
+    return math.hypot(*lam[packed.first_row[number] : packed.first_row[number + 1]].tolist())
+
+
+BESIDE = (0.003, 0.001)
+"""How far beside the start is looked, in sizes and rad; nearer where the links do not close, or a row opens: from afar
+they may have closed on another branch."""
+CLOSED = 1e-9
+"""Residuals (sizes, rad) of rows that hold."""
+PASSES = 30
+
+
+def refuse_singular_start(ready: PreparedDynamics, kept: list[int], rows: int) -> None:
+    """Note the rows left out of the first ``rows``; raises SingularPoseError if they only seem redundant."""
+    packed = ready.packed
+    ready.dropped = tuple(sorted(set(range(rows)) - set(kept)))
+    if not ready.dropped:
+        return
+    scratch = scratch_for(ready.dynamics, packed.ws, len(packed.motions), 1)
+    scale = packed.row_scale()
+    random = np.random.default_rng(3)
+    for _ in range(3):
+        away = np.concatenate([np.zeros(3), packed.column_scale() * random.standard_normal(packed.coordinates)])
+        opened = None
+        for part in BESIDE:
+            state = np.stack([ready.initial.q + part * away, ready.initial.v])
+            project(ready.dynamics, scratch, ready.start, state, PASSES)
+            packed.specials.check()
+            gaps = np.abs(packed.ws.phi * scale)
+            if gaps[kept].max(initial=0.0) <= CLOSED:
+                opened = [row for row in ready.dropped if not gaps[row] <= OPENED_BY]
+                if not opened:
+                    break
+        if opened:
+            _refuse(ready, opened)
+
+
+def _refuse(ready: PreparedDynamics, opened: list[int]) -> None:
+    packed = ready.packed
+    names = ", ".join(dict.fromkeys(f"'{packed.joint_of_row(row).name}'" for row in opened))
+    raise SingularPoseError(
+        f"{packed.name}: the start pose at t = {ready.start:.6g} s is singular (a toggle, a change point or a "
+        f"stretched chain): only there {names} {'repeat' if ',' in names else 'repeats'} what others hold, and how the "
+        "links go on is not determined. Start a little beside it with start_near; if nothing can move there, free a "
+        "joint."
+    )
+
+
+def refuse_opened(ready: PreparedDynamics, times: np.ndarray, phi: np.ndarray) -> None:
+    """Raise SingularPoseError if a row left out as redundant opens at residuals phi (T, m) of ``times`` (T,)."""
+    if not ready.dropped:
+        return
+    packed, rows = ready.packed, np.array(ready.dropped)
+    gaps = np.abs(phi[:, rows] * packed.row_scale()[rows])
+    late = np.flatnonzero(~(gaps.max(axis=1) <= OPENED_BY))
+    if len(late):
+        k = int(late[0])
+        row = int(rows[np.argmax(gaps[k])])
+        raise SingularPoseError(
+            f"{packed.name}: by t = {times[k]:.6g} s joint '{packed.joint_of_row(row).name}', left out as redundant, "
+            f"is open by {abs(phi[k, row]):.3g} (m or rad): the links passed a change point on another branch, "
+            "lengths do not agree there, or an event released the joint that it repeats. Correct the lengths, end "
+            "before it, or leave out another joint."
+        )

@@ -1,4 +1,4 @@
-"""Consistent start and independent rows of large mechanisms, in time proportional to their size.
+"""Consistent start, independent rows and mobility of large mechanisms, in time proportional to their size.
 
 Dense rank decisions and least-norm steps grow with the cube of the unknowns; here the same is done with the Schur
 complement of the dynamics, which follows the mechanism's graph:
@@ -27,13 +27,13 @@ from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.start_state import copied
 from mbsd.base.errors import AssemblyError
 from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
-from mbsd.dynamics.reference.projection import project
-from mbsd.dynamics.reference.sequence import plan_schur
+from mbsd.dynamics.reference.projection import factor_at, project
+from mbsd.dynamics.reference.schur import plan_schur
 from mbsd.dynamics.reference.sliding import sliding_for
-from mbsd.dynamics.start.row_strength import factor_at
-from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, rough_pose, unwind_angles
+from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, rough_pose, unwind_angles
 from mbsd.kinematics.pose.ideal_joints import closed_ideally
 from mbsd.kinematics.pose.initial import Initial, given_coordinates, given_velocities, nearest_turn, tell_coordinates
+from mbsd.kinematics.pose.mobility import joint_mobility
 from mbsd.kinematics.pose.open_loops import why_open
 from mbsd.kinematics.pose.phases import active_rows, let_phases_go, refuse_impossible, take_decided, take_phases
 from mbsd.model.mechanism import Model
@@ -235,3 +235,12 @@ def mobility_large(m: Model, packed: Packed) -> Mobility:
             if there.dof < mobility.dof:
                 mobility = replace(there, singular=True)
     return mobility
+
+
+def mobility(m: Model) -> Mobility:
+    """Mobility of the joints of ``m`` at its start; raises AssemblyError if it does not close."""
+    packed = pack(m)
+    if packed.coordinates > MANY_COORDINATES:
+        return mobility_large(m, packed)
+    q = assemble(m, packed, 0.0)
+    return joint_mobility(packed, q)

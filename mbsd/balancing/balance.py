@@ -58,7 +58,7 @@ class Shaft:
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """What was found, and what it brings: ``before`` and ``after`` by quantity, root mean square or peak (N, N m)."""
+    """Weights and shafts that balance a mechanism; ``before`` and ``after`` by quantity, RMS or peak (N, N m)."""
 
     weights: tuple[Weight, ...]
     shafts: tuple[Shaft, ...]

@@ -51,7 +51,7 @@ class Hand:
     """That it had when it was looked at last, those of other coordinators included."""
 
     def is_ready(self) -> bool:
-        """Whether it can get another group."""
+        """True if the worker can get another group."""
         ahead = self.manner.ahead if math.isfinite(self.each) else 1
         able = self.fit and not self.aside and not self.stalled and time.monotonic() >= self.resting
         return able and len(self.groups) < ahead * self.threads
@@ -98,7 +98,7 @@ class Hand:
         return bool(self.aside)
 
     def is_overdue(self) -> bool:
-        """Whether it has been silent for much longer than its group should take."""
+        """True if the worker has been silent for much longer than its group should take."""
         if not self.groups or self.stalled:
             return False
         silent, manner = time.monotonic() - self.began, self.manner

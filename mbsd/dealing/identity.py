@@ -1,4 +1,4 @@
-"""What a machine works with. Machines with the same identity give the same results, as far as their processors do."""
+"""Versions and sources of a computer. Equal identities give equal results, as far as the processors do."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ SHOWN = 3
 
 
 class Trust(NamedTuple):
-    """What workers must work with to be given anything."""
+    """The identity that workers must have to get orders."""
 
     ours: Mapping[str, str]
     """Versions and sources of this machine by name."""

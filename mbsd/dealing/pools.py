@@ -79,7 +79,7 @@ class Processes(Here):
         self._ended: list[Any] = []
 
     def there(self) -> Mapping[str, int]:
-        """Those that run, and new ones for those that ended."""
+        """Return the running processes, with new ones for those that ended."""
         while len(self._running) < self._count:
             self._started += 1
             self._running[f"process {self._started}"] = self._start()
@@ -127,7 +127,7 @@ class Dask(Here):
         self.where = getattr(client.scheduler, "address", "")
 
     def there(self) -> Mapping[str, int] | None:
-        """Those that the scheduler knows."""
+        """Return the workers that the scheduler knows."""
         self._refuse_gone()
         try:
             workers = workers_of(self.client)

@@ -33,7 +33,7 @@ class Recorder:
         self._own = threading.local()
 
     def inputs(self, every_module: bool = False) -> Inputs:
-        """What was read so far, and what was loaded: every module, or those that ``sys.modules`` does not know."""
+        """Return the inputs read and the modules loaded so far: all, or those that ``sys.modules`` does not know."""
         known = set() if every_module else {getattr(module, "__file__", None) for module in list(sys.modules.values())}
         modules = {name: state for name, state in self.modules.items() if str(self.places.path_of(name)) not in known}
         return Inputs(
@@ -156,7 +156,7 @@ def _opened(recorder: Recorder, path: Any, mode: Any, flags: Any) -> None:
 
 
 def _asked_for(recorder: Recorder, path: Any) -> None:
-    """Whether a folder is there is asked of so many that it says nothing."""
+    """Record that a path was looked up; lookups of folders are too many to mean anything."""
     place = absolute(path)
     if place is not None and not os.path.isdir(place):
         recorder.read(path)

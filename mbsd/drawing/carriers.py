@@ -1,4 +1,4 @@
-"""What carries a stroke of the skeleton through a motion; each symbol says it of what it draws.
+"""Carriers of strokes of the skeleton through a motion; each symbol names those of its strokes.
 
 ground    it stays where it is
 body      it moves with a body's frame

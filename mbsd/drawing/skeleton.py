@@ -183,7 +183,7 @@ def _points(m: Model, pose: Pose, name: str) -> np.ndarray:
 
 
 def _alone(points: list[np.ndarray]) -> bool:
-    """Whether all are one place: then a body hangs on it by its centre of mass."""
+    """True if all points are one place: then a line joins it to the body's centre of mass."""
     return float(np.ptp(points, axis=0).max()) == 0.0
 
 

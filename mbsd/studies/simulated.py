@@ -156,7 +156,7 @@ def simulated(
     formulation: str = "auto",
     **options: float,
 ) -> Simulated:
-    """What a study measures: ``study(build, grid, simulated({"end": final("door.theta")}, 4.0))``.
+    """Return a study's ``measure``: ``study(build, grid, simulated({"end": final("door.theta")}, 4.0))``.
 
     ``measures``: names to measures (mbsd.measures); the other arguments are those of
     :meth:`mbsd.mechanism.Mechanism.simulate`. Where ``build`` makes mechanisms that differ in numbers of forces alone,

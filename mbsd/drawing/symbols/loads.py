@@ -132,7 +132,7 @@ def _surface(canvas: Canvas, force: Force, pose: Pose) -> None:
 
 
 def _keeps_width(force: Force, pose: Pose, end: np.ndarray, unit: float) -> bool:
-    """Whether a spring from marker to marker is nowhere so short that its coils are drawn narrower."""
+    """True if a spring from marker to marker never becomes so short that its coils are drawn narrower."""
     gap = pose.place(force.j) - pose.place(force.i)
     along, aside = (ways.get(f"force {force.name}", np.zeros(0)) for ways in (pose.travel, pose.aside))
     shortest = float(np.hypot(along, aside).min(initial=float(np.hypot(*gap))))

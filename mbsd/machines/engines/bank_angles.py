@@ -1,4 +1,4 @@
-"""What the angle between the banks of a V engine decides: what is left unbalanced, how evenly it fires, its torque.
+"""The bank angle of a V engine: unbalanced forces and couples, firing intervals and torque over it.
 
 With two rods on a throw, b apart, order n of both has a part that turns with the shaft and one that turns against it:
 
@@ -102,7 +102,7 @@ class BankAngles:
     """(A,) torque of the gas: largest less least, over the mean; None without a cycle."""
 
     def left(self, counterweights: bool = False, shafts: Sequence[int] = ()) -> Left:
-        """What is left. ``counterweights`` cancel what turns with the shaft in the first order.
+        """Return what is left unbalanced. ``counterweights`` cancel the first order that turns with the shaft.
 
         ``shafts``: orders that pairs of balance shafts cancel, turning both ways, forces and couples.
         """

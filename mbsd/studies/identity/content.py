@@ -1,4 +1,4 @@
-"""What functions compute, as a hash: their code, what it refers to, and what they were closed over.
+"""Hash of what functions compute: their code, what it refers to, and what they were closed over.
 
 Followed is whatever the code can reach by its names: helpers of helpers, attributes of modules, methods and bases of
 classes, functions that objects hold. Comments, docstrings, names of files and places in them do not count, so that
@@ -296,7 +296,7 @@ class Content:
         return self._all("object", [kind, make, arguments, state, list(items or ()), dict(pairs or ())])
 
     def _is_installed(self, module: ModuleType) -> bool:
-        """Whether a module is of mbsd, of Python or of an installed package; one of the user is noted."""
+        """True if a module is of mbsd, of Python or of an installed package; one of the user is noted."""
         name = module.__name__
         spec = getattr(module, "__spec__", None)
         file = file_of(module)

@@ -32,7 +32,7 @@ class Effect:
     couple: np.ndarray
     power: np.ndarray
 
-    def of(self, quantity: str, rate: np.ndarray) -> np.ndarray:
+    def on(self, quantity: str, rate: np.ndarray) -> np.ndarray:
         """Return the effect on a quantity; a driver's torque is power divided by its ``rate`` (T,)."""
         return self.power / rate[:, None, None] if quantity == "torque" else getattr(self, quantity)
 

@@ -138,7 +138,7 @@ class Deal:
         if self.trust is None:
             hand.fit = True
         else:
-            self.pool.ask(hand.name, self.trust.asked, lambda answer: self._events.put((hand, None, answer)))
+            self.pool.ask(hand.name, self.trust.request, lambda answer: self._events.put((hand, None, answer)))
 
     def _mourn(self, hand: Hand, weight: int) -> None:
         """A worker has gone; what it had goes to others, in smaller groups where that may have been the reason."""
@@ -221,7 +221,7 @@ class Deal:
         hand.lacks = []
         orders = [(key, self.orders[key]) for key in keys]
         group = Group(keys, frozenset(sent))
-        hand.take(group)
+        hand.assign(group)
         then, most = partial(self._come, hand, group), len(keys) * self.kind.most + AROUND
         group.release = self.pool.submit(hand.name, self.kind.task, (*self.kind.given, orders, sent), most, then)
 

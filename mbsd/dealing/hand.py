@@ -62,7 +62,7 @@ class Hand:
             return 1
         return max(1, min(fair, self.manner.largest, int(self.manner.target / max(self.each, 1e-6))))
 
-    def take(self, group: Group) -> None:
+    def assign(self, group: Group) -> None:
         """Count a group as given to it."""
         if not self.groups:
             self.began = time.monotonic()

@@ -16,7 +16,7 @@ class Trust(NamedTuple):
 
     ours: Mapping[str, str]
     """Versions and sources of this machine by name."""
-    asked: Callable[[], bytes]
+    request: Callable[[], bytes]
     """What a worker runs to say the same of itself, as JSON."""
 
 
@@ -37,13 +37,13 @@ def asker(module: str, function: str, *arguments: Any) -> Callable[[], bytes]:
     A worker with other sources understands it as well, as it travels itself and not by its name.
     """
 
-    def asked() -> bytes:
+    def state() -> bytes:
         import importlib
         import json
 
         return json.dumps(getattr(importlib.import_module(module), function)(*arguments)).encode()
 
-    return asked
+    return state
 
 
 def differences(theirs: Mapping[str, str], ours: Mapping[str, str]) -> str:

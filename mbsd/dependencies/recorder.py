@@ -76,7 +76,7 @@ class Recorder:
         if not top and name not in self.packages:
             self.packages[name] = self.places.package_state(name)
 
-    def made(self, path: Any) -> None:
+    def leave_out(self, path: Any) -> None:
         """Leave out from now on what the run itself writes."""
         place = absolute(path)
         if place:
@@ -85,13 +85,13 @@ class Recorder:
     def renamed(self, source: Any, target: Any) -> None:
         """Leave out a file under its new name, too, if the run has made it."""
         if absolute(source) in self._made:
-            self.made(target)
+            self.leave_out(target)
 
     def written(self, path: Any) -> None:
         """Leave out a file that is opened for writing, unless it was read before."""
         place = absolute(path)
         if place and self.places.name_of(place) not in self.files:
-            self.made(path)
+            self.leave_out(path)
 
     def variable(self, name: Any, value: str | None) -> None:
         """Count a variable of the environment, unless the run itself has set it."""
@@ -177,10 +177,10 @@ EVENTS: dict[str, Callable[..., None]] = {
     "stat": _asked_for,
     "os.listdir": lambda recorder, path: recorder.listed(path if path is not None else "."),
     "os.scandir": lambda recorder, path: recorder.listed(path if path is not None else "."),
-    "os.mkdir": lambda recorder, path, *_: recorder.made(path),
+    "os.mkdir": lambda recorder, path, *_: recorder.leave_out(path),
     "os.rename": lambda recorder, source, target, *_: recorder.renamed(source, target),
-    "tempfile.mkdtemp": lambda recorder, path: recorder.made(path),
-    "tempfile.mkstemp": lambda recorder, path: recorder.made(path),
+    "tempfile.mkdtemp": lambda recorder, path: recorder.leave_out(path),
+    "tempfile.mkstemp": lambda recorder, path: recorder.leave_out(path),
     "sqlite3.connect": lambda recorder, path: recorder.read(path),
     "ctypes.dlopen": lambda recorder, path: recorder.read(path) if os.sep in str(path) else None,
     "subprocess.Popen": _started,

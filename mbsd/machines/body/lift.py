@@ -46,7 +46,7 @@ class Lift:
         return self.solution.force(self._named(joint)).power
 
     def work(self, joint: str) -> tuple[float, float]:
-        """Return the work that the muscles of a joint give and absorb in a repetition (J); the second is never positive."""
+        """Return the work (J) that the muscles of a joint give and absorb in a repetition; the second is at most 0."""
         power = self.power(joint)
         given, taken = np.maximum(power, 0.0), np.minimum(power, 0.0)
         return float(np.trapezoid(given, self.t)), float(np.trapezoid(taken, self.t))

@@ -50,8 +50,8 @@ class Family:
         """Two on each throw."""
         return 2 * len(self.throws)
 
-    def at(self, angle: float) -> Layout:
-        """The layout with an angle between its banks (degrees)."""
+    def layout(self, angle: float) -> Layout:
+        """Return the layout with an angle between its banks (degrees)."""
         return vee(angle, self.throws, even_split(angle, self.cylinders) if self.split else 0.0)
 
 
@@ -180,7 +180,7 @@ def bank_angles(
     wide = np.asarray(angles, float)
     fired, free = [], []
     for angle in wide:
-        of = family.at(float(angle))
+        of = family.layout(float(angle))
         fired.append(firing(of))
         free.append(free_forces(of, ratio, ORDERS))
     mean = 720.0 / family.cylinders

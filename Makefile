@@ -207,7 +207,7 @@ site: install ## a wall of all machines in motion and a page for each, for any w
 	@$(MBSD) site
 
 view-engines: install ## pages used in Firefox and Safari's engine: a small four-bar, or ONLY=four_bar,pendulum
-	@$(PYTHON) -m tools.engines --name="$$ONLY"
+	@$(PYTHON) -m tools.browsers --name="$$ONLY"
 
 gallery: libraries ## posters of all mechanisms and the page that shows them: docs/gallery/
 	@$(MBSD) gallery
@@ -337,8 +337,8 @@ schema: install ## write docs/schema/ from shared/contract/ and the solver's joi
 docs: install ## docs/theory.md and the map of rooms from docstrings, pictures, the lecture's outputs, the site
 	@$(PYTHON) tools/theory.py
 	@$(PYTHON) tools/rooms.py
-	@$(PYTHON) -m tools.figures
-	@$(PYTHON) -m tools.lecture
+	@$(PYTHON) -m tools.documents figures
+	@$(PYTHON) -m tools.documents lecture
 	@$(PYTHON) -m tools.site
 
 docs-site: install ## the documents and all names of mbsd as pages, with a search, to read without a network: out/docs/
@@ -346,20 +346,20 @@ docs-site: install ## the documents and all names of mbsd as pages, with a searc
 
 study-engines: install ## which bank angle suits which V engine: out/engines/ and the tables of docs/engines.md
 	$(ALL_KERNELS)
-	@$(PYTHON) -m tools.engine_layouts
+	@$(PYTHON) -m tools.documents bank-angles
 
 study-run-up: install ## engines on mounts run through resonance, 120 simulations on all cores: out/engines/run_up.csv, .svg
 	$(ALL_KERNELS)
-	@$(PYTHON) -m tools.engine_run_up
+	@$(PYTHON) -m tools.documents run-up
 
 readme-loop: libraries ## the loop at the top of README.md, filmed by the page in Chromium: docs/readme_loop.webp
 	@$(MBSD) view four_bar
-	@$(PYTHON) -m tools.readme_loop
+	@$(PYTHON) -m tools.documents readme-loop
 
 integrators: install ## measure the integrators again, for docs/integrators.md: order, cost, 10 000 periods (5 minutes)
 	$(ALL_KERNELS)
-	@$(PYTHON) -m tools.integrators
-	@$(PYTHON) -m tools.figures integrators
+	@$(PYTHON) -m tools.documents integrators
+	@$(PYTHON) -m tools.documents figures integrators
 
 wheel: install ## mbsd with all rooms as sdist and wheel: dist/; KERNELS=1: a wheel with compiled kernels, too
 	@$(PYTHON) -m tools.wheel $${KERNELS:+--kernels}

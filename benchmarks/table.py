@@ -7,18 +7,15 @@ from collections.abc import Sequence
 
 from benchmarks.rows import Bar, Row
 from shared.stage.files import write_bytes
-from shared.stage.paths import ROOT
+from tools.documents.pages import DOCS, replaced
 
-PAGE = ROOT / "docs" / "benchmarks.md"
+PAGE = DOCS / "benchmarks.md"
 BEGIN, END = "<!-- rows of make bench -->", "<!-- end of rows -->"
 
 
 def write(rows: Sequence[Row], bars: Sequence[Bar]) -> None:
     """Replace the tables in the page."""
-    page = PAGE.read_text()
-    before, _, rest = page.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    write_bytes(PAGE, f"{before}{BEGIN}\n{text(rows, bars)}\n{END}{after}".encode())
+    write_bytes(PAGE, replaced(PAGE.read_text(), BEGIN, END, text(rows, bars)).encode())
 
 
 def text(rows: Sequence[Row], bars: Sequence[Bar]) -> str:

@@ -1,1 +1,1 @@
-"""The page in the engines of Firefox and Safari: `make view-engines`. CONTRIBUTING.md says what it needs."""
+"""The page in Firefox and in Safari's browser: `make view-engines`. CONTRIBUTING.md says what it needs."""

@@ -12,8 +12,6 @@ from websockets.sync.client import connect
 
 from shared.stage.errors import UserError
 
-PROGRAMS = ("firefox-esr", "firefox")
-PACKAGES = "firefox-esr"
 SECONDS = 120
 """Any answer may take."""
 HELLO = "WebDriver BiDi listening on "
@@ -78,7 +76,7 @@ class Firefox:
         self._call("browsingContext.navigate", context=self.tab, url=page.as_uri(), wait="complete")
 
     def ask(self, expression: str) -> Any:
-        """The value of an expression of JavaScript, awaited if it is a promise, as JSON carries it."""
+        """Return the value of an expression of JavaScript, awaited if it is a promise, as JSON carries it."""
         code = f"(async () => JSON.stringify(await ({expression})) ?? 'null')()"
         answer = self._call("script.evaluate", expression=code, target={"context": self.tab}, awaitPromise=True)
         if answer["type"] != "success":
@@ -86,15 +84,15 @@ class Firefox:
         return json.loads(answer["result"]["value"])
 
     def act(self, actions: list[dict[str, Any]]) -> None:
-        """Do what a hand does."""
+        """Perform actions of a hand."""
         self._call("input.performActions", context=self.tab, actions=actions)
 
     def saved(self) -> Path:
-        """The folder where it saves what a page lets one download."""
+        """Return the folder of its downloads."""
         return self.downloads
 
     def picture(self) -> bytes:
-        """The page as PNG."""
+        """Return the page as PNG."""
         return base64.b64decode(self._call("browsingContext.captureScreenshot", context=self.tab)["data"])
 
     def close(self) -> None:

@@ -10,14 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from shared.contract import Motion
-from tools.engines.browser import Browser, click, press
-from tools.engines.places import APP, FRAME, box
+from tools.browsers.browser import APP, FRAME, Browser, box, click, press
 
 SECONDS = 20
 
 
 def tabled(browser: Browser, motion: Motion) -> Iterator[str]:
-    """What is wrong with the files that are saved."""
+    """Yield what is wrong with the files that are saved."""
     joint = next(name for name in motion.joints if motion.joints[name].kind == "revolute")
     browser.ask(f"{APP}.store.set({{playing: false, selected: {{kind: 'joint', name: '{joint}'}}}})")
     browser.ask(FRAME)

@@ -8,8 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from shared.contract import Motion
-from tools.engines.browser import Browser, fingers
-from tools.engines.places import APP, FRAME, STATE, box
+from tools.browsers.browser import APP, FRAME, STATE, Browser, box, fingers
 
 Place = tuple[float, float]
 EVENTS = """((ways) => {
@@ -48,7 +47,7 @@ def touch(browser: Browser, *ways: Sequence[Place]) -> None:
 
 
 def touched(browser: Browser, motion: Motion, stage: dict[str, float]) -> Iterator[str]:
-    """What fingers do not do as they should."""
+    """Yield what fingers do wrongly."""
     middle = stage["left"] + stage["width"] / 2, stage["top"] + stage["height"] / 2
     yield from _plane(browser, motion, middle, stage)
     yield from _parts(browser, middle)

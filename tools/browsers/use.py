@@ -13,10 +13,9 @@ from PIL import Image
 from shared.contract import Motion, read_motion
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
-from tools.engines.browser import Browser, click, drag, press
-from tools.engines.places import APP, FRAME, STATE, box
-from tools.engines.table import tabled
-from tools.engines.touch import touched
+from tools.browsers.browser import APP, FRAME, STATE, Browser, box, click, drag, press
+from tools.browsers.table import tabled
+from tools.browsers.touch import touched
 from tools.fixtures.pins import dot, projected
 
 WIDTH, HEIGHT = 1000, 620

@@ -13,7 +13,6 @@ import httpx
 
 from shared.stage.errors import UserError
 
-PROGRAMS = ("WebKitWebDriver",)
 PACKAGES = "webkit2gtk-driver"
 SECONDS = 120
 """Any answer may take."""
@@ -84,7 +83,7 @@ class WebKit:
             time.sleep(0.2)
 
     def ask(self, expression: str) -> Any:
-        """The value of an expression of JavaScript, awaited if it is a promise, as JSON carries it."""
+        """Return the value of an expression of JavaScript, awaited if it is a promise, as JSON carries it."""
         code = (
             f"const done = arguments[0]; (async () => JSON.stringify(await ({expression})) ?? 'null')()"
             ".then(done, (error) => done(JSON.stringify({failed: String(error)})))"
@@ -95,15 +94,15 @@ class WebKit:
         return value
 
     def act(self, actions: list[dict[str, Any]]) -> None:
-        """Do what a hand does."""
+        """Perform actions of a hand."""
         self._call("/actions", {"actions": actions})
 
     def saved(self) -> Path:
-        """The folder where it saves what a page lets one download."""
+        """Return the folder of its downloads."""
         return self.downloads
 
     def picture(self) -> bytes:
-        """The page as PNG."""
+        """Return the page as PNG."""
         return base64.b64decode(self._call("/screenshot"))
 
     def close(self) -> None:

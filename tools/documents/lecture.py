@@ -1,4 +1,4 @@
-"""A notebook: its code, its run by Jupyter's client, and the same bytes each time."""
+"""docs/lecture.ipynb: its code, its run by Jupyter's client, and the same bytes each time."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ import json
 import os
 import re
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
+from tools.documents.pages import DOCS, write_changed
 
+NOTEBOOK = DOCS / "lecture.ipynb"
 SETTINGS = "svg.hashsalt: mbsd\nsvg.fonttype: path\npath.simplify_threshold: 0.1\n"
 KEPT = ("image/svg+xml", "text/plain")
 """Kinds of output, of which the first that a cell has is kept."""
@@ -22,17 +25,17 @@ LIMIT = 300
 
 
 def read(path: Path) -> dict[str, Any]:
-    """The notebook's JSON."""
+    """Return the JSON of a notebook."""
     return json.loads(path.read_text())
 
 
 def code(notebook: dict[str, Any]) -> list[str]:
-    """The code of its cells, in order."""
+    """Return the code of its cells, in order."""
     return ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
 
 
 def executed(notebook: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """The notebook with the outputs of a run in ``folder``. Raises UserError that has the traceback of a cell."""
+    """Return the notebook with the outputs of a run in ``folder``. Raises UserError with the traceback of a cell."""
     import nbformat
     from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError
@@ -55,12 +58,12 @@ def executed(notebook: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def written(notebook: dict[str, Any]) -> bytes:
-    """As a file."""
+    """Return the bytes of its file."""
     return (json.dumps(notebook, indent=1, ensure_ascii=False) + "\n").encode()
 
 
 def _settled(notebook: dict[str, Any]) -> dict[str, Any]:
-    """Without what differs from run to run or from machine to machine."""
+    """Return the notebook without what differs from run to run or between computers."""
     for cell in notebook["cells"]:
         cell["metadata"] = {}
         if cell["cell_type"] == "code":
@@ -70,7 +73,7 @@ def _settled(notebook: dict[str, Any]) -> dict[str, Any]:
 
 
 def _joined(outputs: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Prints that came in two messages are one output."""
+    """Return the outputs with prints of several messages joined."""
     out: list[dict[str, Any]] = []
     for output in outputs:
         if out and output.get("name") == out[-1].get("name") == "stdout":
@@ -93,5 +96,10 @@ def _plain(output: dict[str, Any]) -> dict[str, Any]:
 
 
 def _rounded(path: re.Match[str]) -> str:
-    """A path in tenths of a point: half the bytes, the same picture."""
+    """Return a path in tenths of a point: half the bytes, the same picture."""
     return " ".join(LONG.sub(lambda number: f"{float(number[0]):.1f}", path[0]).split())
+
+
+def main(words: Sequence[str]) -> None:
+    """Run the notebook in a kernel of its own and keep its outputs."""
+    write_changed(NOTEBOOK, written(executed(read(NOTEBOOK), NOTEBOOK.parent)))

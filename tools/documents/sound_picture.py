@@ -1,13 +1,12 @@
-"""Draws docs/sound.png: what the films of some mechanisms sound like, wave and spectrogram.
+"""docs/sound.png: the sound of films of some mechanisms, wave and spectrogram.
 
-``python -m tools.sound_picture reflective_wall geneva_drive planetary_gear``, after ``make run-...`` of each.
+``python -m tools.documents sound reflective_wall geneva_drive planetary_gear``, after ``make run-...`` of each.
 """
 
 from __future__ import annotations
 
 import io
-import sys
-from pathlib import Path
+from collections.abc import Sequence
 
 import matplotlib as mpl
 
@@ -21,17 +20,15 @@ from PIL import Image
 from render.film.inputs import read_film
 from render.sound.setting import RATE
 from render.sound.sound import sound_of
-from shared.stage.files import write_bytes
 from shared.stage.paths import Out
-from tools.figures.look import BLUE, FAINT, INK, MOVED, STYLE, plain
+from tools.documents.figures.look import BLUE, FAINT, INK, MOVED, STYLE, plain
+from tools.documents.pages import DOCS, write_changed
 
 SECONDS = 4.0
-TARGET = Path(__file__).parents[1] / "docs" / "sound.png"
 
 
-def main() -> None:
-    """Write the picture of the mechanisms named."""
-    names = sys.argv[1:]
+def main(names: Sequence[str]) -> None:
+    """Draw the films of the mechanisms named."""
     with plt.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
         figure, axes = plt.subplots(
             2, len(names), figsize=(3.4 * len(names), 4.2), squeeze=False, sharex=True, layout="constrained",
@@ -46,7 +43,7 @@ def main() -> None:
     small = io.BytesIO()
     with Image.open(buffer) as picture:
         picture.convert("RGB").quantize(64).save(small, format="PNG", optimize=True)
-    write_bytes(TARGET, small.getvalue())
+    write_changed(DOCS / "sound.png", small.getvalue())
 
 
 def _draw(name: str, above: Axes, below: Axes) -> None:
@@ -62,7 +59,3 @@ def _draw(name: str, above: Axes, below: Axes) -> None:
     for time in film.clock.time_map.when(np.array([e.time for e in film.motion.events if e.what == "impact"]))[0]:
         below.axvline(time, color=FAINT, linewidth=0.6, linestyle=(0, (1, 3)))
     below.tick_params(colors=INK)
-
-
-if __name__ == "__main__":
-    main()

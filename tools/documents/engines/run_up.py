@@ -1,4 +1,7 @@
-"""One run of the study: an engine on mounts, simulated from rest through its resonances, beside linear theory.
+"""Engines on mounts run through resonance, simulated beside linear theory (``make study-run-up``).
+
+Writes out/engines/run_up.csv, out/engines/run_up.svg and the table of docs/engines.md; results are kept in
+out/engines/studies/.
 
 Mass, inertia and mounts are those of the mount study of docs/engines.md. The cylinders compress and do not burn, as on
 a test bench that drives the engine; the bench stands on ground, so that the torque of gas and inertia rocks the block.
@@ -7,15 +10,23 @@ a test bench that drives the engine; the bench stands on ground, so that the tor
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Sequence
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
+from matplotlib.figure import Figure
 
-from mbsd import Mechanism, four_stroke
+from mbsd import Mechanism, four_stroke, study
 from mbsd.machines.engines.block import Block, mounts_of_frequency
 from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.mount_response import mount_response
 from mbsd.machines.engines.run_up import run_up
+from shared.stage.files import write_bytes
+from shared.stage.paths import out_root
+from tools.documents.figures.look import BLUE, GREEN, MOVED, PURPLE, QUIET, STYLE, plain
+from tools.documents.pages import DOCS, replaced
 
 PLACES = ((-0.30, -0.10), (0.30, -0.10), (0.0, 0.20))
 MASS, INERTIA = 150.0, 4.0
@@ -37,10 +48,32 @@ RPM = 30 / math.pi
 """Times rad/s."""
 SPEEDS = np.linspace(0.02, 1.0, 491)
 """Parts of the last speed at which the steady response is computed."""
+COLOURS = (MOVED, BLUE, GREEN, PURPLE)
+BEGIN, END = "<!-- run-up: written by make study-run-up -->", "<!-- end of run-up -->"
+DAMPING_RATIO = 0.1
+"""Of the runs in the table."""
+RATES = (100.0, 2000.0)
+"""Rates of the runs in the table (rpm/s)."""
+
+
+def main(words: Sequence[str]) -> None:
+    """Compute the study and write its table and picture."""
+    begun = time.monotonic()
+    out, page = out_root() / "engines", DOCS / "engines.md"
+    out.mkdir(parents=True, exist_ok=True)
+    runs = study(build, GRID, measure, folder=out / "studies", save=out / "run_up.csv")
+    failed = list(runs["reason"].dropna())
+    if failed:
+        raise SystemExit(f"run-up: {len(failed)} runs failed, the first for: {failed[0]}")
+    with mpl.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
+        picture(runs).savefig(out / "run_up.svg", metadata={"Date": None, "Creator": None})
+    write_bytes(page, replaced(page.read_text(), BEGIN, END, table(runs)).encode())
+    print(f"run-up: {len(runs)} runs in {time.monotonic() - begun:.1f} s")
+    print(f"run-up: {out / 'run_up.csv'}, {out / 'run_up.svg'} and the table of docs/engines.md written")
 
 
 def build(layout: str, frequency: float, damping_ratio: float, rate: float) -> Mechanism:
-    """The engine whose speed rises by ``rate`` (rpm/s) from rest, without weight, which only moves where it rests."""
+    """Return the engine whose speed rises by ``rate`` (rpm/s) from rest, without weight, which only shifts its rest."""
     mounts = mounts_of_frequency(MASS, frequency, PLACES, damping_ratio)
     block = Block(MASS, INERTIA, mounts, motor_on="ground")
     m = engine(layout, **SIZE, gas=four_stroke(10.0), block=block, acceleration=rate / RPM, name=layout)
@@ -49,7 +82,7 @@ def build(layout: str, frequency: float, damping_ratio: float, rate: float) -> M
 
 
 def measure(m: Mechanism) -> dict[str, float]:
-    """Largest displacement of the shaft's axis (mm) and angle of the block (mrad), and the speeds at which they come.
+    """Return the largest displacement of the shaft's axis (mm) and angle of the block (mrad), with their speeds.
 
     ``steady``: the same at constant speed by linear theory. ``expected``: what of it a single mode run through at this
     rate reaches in closed form. Speeds in rpm.
@@ -87,5 +120,60 @@ def measure(m: Mechanism) -> dict[str, float]:
 
 
 def last_speed(m: Mechanism) -> float:
-    """Where a run ends (rad/s)."""
+    """Return the speed at which a run ends (rad/s)."""
     return BEYOND * mount_response(m, [1.0]).modes[-1].omega / TORQUE_ORDER[m.name]
+
+
+def table(runs: Any) -> str:
+    """Return the largest displacement and angle with their speeds, of the runs (pandas) with one damping ratio."""
+    rates = " | ".join(f"{rate:g} rpm/s" for rate in RATES)
+    lines = [
+        f"| engine | mounts | displacement, steady | {rates} | angle, steady | {rates} |",
+        f"|{'---|' * (4 + 2 * len(RATES))}",
+    ]
+    shown = runs[runs["damping_ratio"] == DAMPING_RATIO]
+    for (layout, frequency), rows in shown.groupby(["layout", "frequency"], sort=False):
+        cells = [str(layout), f"{frequency:g} Hz"]
+        at = rows.set_index("rate")
+        for name, unit in (("displacement", "mm"), ("angle", "mrad")):
+            cells.append(_cell(at.loc[RATES[0]], f"steady {name}", unit))
+            cells += [_cell(at.loc[rate], name, unit) for rate in RATES]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def _cell(row: Any, name: str, unit: str) -> str:
+    return f"{row[name]:.3g} {unit} at {row[f'speed of {name}']:.0f}"
+
+
+def picture(runs: Any) -> Figure:
+    """Draw displacement and angle over the rate, as parts of the steady ones, simulated and in closed form."""
+    with mpl.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
+        layouts = list(dict.fromkeys(runs["layout"]))
+        figure = Figure(figsize=(2.6 * len(layouts), 7.6), layout="constrained")
+        frequencies = list(dict.fromkeys(runs["frequency"]))
+        axes = figure.subplots(2 * len(frequencies), len(layouts), sharex=True, sharey="row", squeeze=False)
+        for column, layout in enumerate(layouts):
+            for row, (name, frequency) in enumerate(
+                (name, frequency) for name in ("displacement", "angle") for frequency in frequencies
+            ):
+                ax = axes[row, column]
+                shown = runs[(runs["layout"] == layout) & (runs["frequency"] == frequency)]
+                _panel(ax, shown, name)
+                ax.set_title(f"{layout}, {frequency:g} Hz" if row < len(frequencies) else "")
+                if column == 0:
+                    ax.set_ylabel(f"{name} / steady")
+        for ax in axes[-1]:
+            ax.set_xlabel("rpm/s")
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+        return figure
+
+
+def _panel(ax: Any, runs: Any, name: str) -> None:
+    for colour, (damping_ratio, rows) in zip(COLOURS, runs.groupby("damping_ratio"), strict=False):
+        steady = rows[f"steady {name}"]
+        ax.plot(rows["rate"], rows[name] / steady, "o", color=colour, label=f"damping ratio {damping_ratio:g}")
+        ax.plot(rows["rate"], rows[f"expected {name}"] / steady, "-", color=colour)
+    ax.plot([], [], "-", color=QUIET, label="one mode, closed form")
+    ax.axhline(1.0, color=QUIET, linewidth=0.9, linestyle=(0, (3, 3)))
+    plain(ax, xscale="log", ylim=(0, 1.25))

@@ -14,7 +14,7 @@ from functools import cache
 from math import degrees, radians
 
 from mbsd.drawing.inks import hex_of, lch_of
-from tools.figures.dark import PAPER
+from tools.documents.figures.dark import PAPER
 
 INK = 0.68
 """Lightness (OKLab) of the palest ink."""

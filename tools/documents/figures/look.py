@@ -1,4 +1,4 @@
-"""What the pictures of docs/ have in common: style, colours, plain axes, words with a line to their place."""
+"""The common look of the pictures of docs/: style, colours, plain axes, words with a line to their place."""
 
 from __future__ import annotations
 

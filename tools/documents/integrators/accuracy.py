@@ -18,7 +18,7 @@ from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.to_end import integrate
 from mbsd.dynamics.state import ACCEPTED
-from tools.integrators.mechanisms import four_bar, pendulum, pendulum_angle, stiff_four_bar
+from tools.documents.integrators.mechanisms import four_bar, pendulum, pendulum_angle, stiff_four_bar
 
 for _module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
     importlib.import_module(f"mbsd.dynamics.integrators.{_module.name}")

@@ -13,7 +13,7 @@ from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.to_end import integrate
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.dynamics.state import EVALUATIONS
-from tools.integrators.mechanisms import four_bar, pendulum
+from tools.documents.integrators.mechanisms import four_bar, pendulum
 
 PERIODS = 10_000
 A_PERIOD = 2.653

@@ -1,4 +1,4 @@
-"""What the integrators are measured on: an open chain, a closed chain, and the closed chain with a stiff joint."""
+"""Mechanisms on which integrators are measured: an open chain, a closed chain, and that with a stiff joint."""
 
 from __future__ import annotations
 

@@ -1,12 +1,31 @@
-"""What the loop shows when: the number, the crank's turns, the skeleton, the solid parts, the reactions, the camera."""
+"""Story of the loop: its twelve lines, the number that changes, the crank's turns, the parts, reactions and camera.
+
+The lines that are shown are those that are run, with the number as it is at the moment.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
-from tools.readme_loop.lines import CRANK
-
+LINES = """\
+m = Mechanism("four_bar")
+crank = m.bar("crank", {crank:.3f})
+coupler = m.bar("coupler", 0.120)
+rocker = m.bar("rocker", 0.090)
+m.revolute("A", m.ground.at(0, 0), crank.start)
+m.revolute("B", crank.end, coupler.start)
+m.revolute("C", coupler.end, rocker.end)
+m.revolute("D", m.ground.at(0.120, 0), rocker.start)
+m.drive_angle("motor", crank, constant_rate(2 * pi))
+m.trace("P", coupler.at(0.060, 0.030))
+m.start_near(crank=0, coupler=45, rocker=100)
+sol = m.sweep()"""
+CHANGED = "{crank:.3f}"
+"""Where the number stands that changes (m)."""
+CRANK = 0.040
+"""What it is in mechanisms/four_bar (m)."""
 RATE = 12
 """Frames a second."""
 SECONDS = 6.4
@@ -19,6 +38,7 @@ SOLID = ((2.9, 0.0), (3.35, 1.0), (5.85, 1.0), (6.3, 0.0))
 TILTED = ((3.2, 0.0), (4.0, 1.0), (5.3, 1.0), (6.0, 0.0))
 """How far the camera has gone from before the plane to where the film has it."""
 REACTIONS = ((3.9, 0.0), (4.1, 1.0), (5.1, 1.0), (5.3, 0.0))
+SHOWN = (SOLID, TILTED, REACTIONS)
 
 
 @dataclass(frozen=True)
@@ -35,19 +55,17 @@ class Frame:
 
 
 def frames() -> list[Frame]:
-    """All of them, at equal times."""
+    """Return all frames, at equal times."""
     count = round(RATE * SECONDS)
     times = [SECONDS * k / count for k in range(count)]
     return [
-        Frame(
-            round(_at(NUMBERS, t), 3), TURNS * t / SECONDS % 1.0, _at(SOLID, t), _at(TILTED, t), _at(REACTIONS, t)
-        )
+        Frame(round(_value(NUMBERS, t), 3), TURNS * t / SECONDS % 1.0, *(_value(steps, t) for steps in SHOWN))
         for t in times
-    ]  # fmt: skip
+    ]
 
 
-def _at(steps: tuple[tuple[float, float], ...], t: float) -> float:
-    """Smooth from one step to the next."""
+def _value(steps: tuple[tuple[float, float], ...], t: float) -> float:
+    """Return the value at a time, smooth from one step to the next."""
     if t <= steps[0][0]:
         return steps[0][1]
     for (a, low), (b, high) in pairwise(steps):
@@ -55,3 +73,16 @@ def _at(steps: tuple[tuple[float, float], ...], t: float) -> float:
             part = (t - a) / (b - a)
             return low + (high - low) * part * part * (3 - 2 * part)
     return steps[-1][1]
+
+
+def run(crank: float) -> dict[str, Any]:
+    """Return the variables of the lines: the mechanism ``m``, its motion ``sol`` and others."""
+    import mbsd
+
+    variables: dict[str, Any] = {
+        "Mechanism": mbsd.Mechanism,
+        "constant_rate": mbsd.constant_rate,
+        "pi": 3.141592653589793,
+    }
+    exec(LINES.format(crank=round(crank, 3)), variables)
+    return variables

@@ -7,5 +7,5 @@ from types import SimpleNamespace
 
 
 def pictures(page: SimpleNamespace) -> dict[str, bytes]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     return {"animation.gif": Path(page.folder / "slider_crank.gif").read_bytes()}

@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from tools.figures.look import INK, MOVED, QUIET, note, plain
+from tools.documents.figures.look import INK, MOVED, QUIET, note, plain
 
 SHOWN = 30
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(10.0, 4.4), layout="constrained")
     curves, cloud = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     _curves(curves, page)

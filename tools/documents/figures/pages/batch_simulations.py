@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, GOLD, plain
+from tools.documents.figures.look import BLUE, GOLD, plain
 
 LEVELS = np.arange(0, 81, 10)
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(10.0, 4.2), layout="constrained")
     rests, fast = figure.subplots(1, 2)
     shape = len(page.speeds), len(page.angles)

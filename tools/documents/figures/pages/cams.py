@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mbsd.cams import RISES
-from tools.figures.look import BLUE, GREEN, INK, MOVED, WRONG, plain
+from tools.documents.figures.look import BLUE, GREEN, INK, MOVED, WRONG, plain
 
 LAWS = (("cycloidal", BLUE), ("3-4-5", GREEN), ("modified_sine", MOVED))
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(11.0, 4.8), layout="constrained")
     grid = figure.add_gridspec(3, 3, width_ratios=(0.75, 1.0, 1.15))
     skeleton = figure.add_subplot(grid[:, 0])

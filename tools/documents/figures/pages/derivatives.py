@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, GOLD, PURPLE, QUIET, plain
+from tools.documents.figures.look import BLUE, GOLD, PURPLE, QUIET, plain
 
 EVERY = 24
 ARROW = 0.010
@@ -15,7 +15,7 @@ ARROW = 0.010
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(10.0, 3.8), layout="constrained")
     path, torque, search = figure.subplots(1, 3, width_ratios=(1.0, 1.25, 0.9))
     s, colours = page.s, {"crank": BLUE, "coupler": GOLD, "rocker": PURPLE}

@@ -1,4 +1,4 @@
-"""What the bank angle of V engines leaves unbalanced, and which angles fire evenly."""
+"""Unbalanced forces of V engines over their bank angle, and the angles that fire evenly."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mbsd.machines.engines.bank_angles import NOTHING
-from tools.figures.look import BLUE, GREEN, MOVED, QUIET, plain
+from tools.documents.figures.look import BLUE, GREEN, MOVED, QUIET, plain
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(9.6, 8.4), layout="constrained")
     axes = figure.subplots(4, 3, sharex=True)
     for ax, chart in zip(axes.ravel(), page.maps, strict=True):

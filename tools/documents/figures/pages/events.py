@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, FAINT, GREEN, INK, MOVED, QUIET, note, plain
+from tools.documents.figures.look import BLUE, FAINT, GREEN, INK, MOVED, QUIET, note, plain
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(9.6, 5.4), layout="constrained")
     grid = figure.add_gridspec(2, 2)
     _ball(figure.add_subplot(grid[:, 0]), page)

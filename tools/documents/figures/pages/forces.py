@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, FAINT, GREEN, INK, MOVED, QUIET, plain
+from tools.documents.figures.look import BLUE, FAINT, GREEN, INK, MOVED, QUIET, plain
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(10.4, 6.0), layout="constrained")
     axes = figure.subplots(2, 3)
     over_place = (

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, FAINT, GOLD, GREEN, INK, MOVED, QUIET, plain
+from tools.documents.figures.look import BLUE, FAINT, GOLD, GREEN, INK, MOVED, QUIET, plain
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(9.6, 6.4), layout="constrained")
     snaps, place, energy = figure.subplots(3, 1, height_ratios=(0.95, 0.75, 1.1))
     _snapshots(snaps, page)

@@ -7,14 +7,14 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, GREEN, INK, MOVED, plain
+from tools.documents.figures.look import BLUE, GREEN, INK, MOVED, plain
 
 COLOURS = {"hip": MOVED, "knee": BLUE, "ankle": GREEN}
 LIFTS = {"hip thrust": MOVED, "squat": BLUE, "deadlift": GREEN}
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(10.2, 6.4), layout="constrained")
     (pose, moments, lifts), (feet, benches, loads) = figure.subplots(2, 3)
     _poses(pose, page)

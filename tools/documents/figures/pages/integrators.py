@@ -9,9 +9,9 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, GOLD, GREEN, INK, MOVED, PURPLE, QUIET, plain
+from tools.documents.figures.look import BLUE, GOLD, GREEN, INK, MOVED, PURPLE, QUIET, plain
 
-MEASURED = Path(__file__).resolve().parents[3] / "docs" / "integrators.json"
+MEASURED = Path(__file__).resolve().parents[4] / "docs" / "integrators.json"
 CLOSED = 1e-15
 """Less is rounding (m)."""
 COLOURS = {
@@ -27,7 +27,7 @@ COLOURS = {
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     runs = json.loads(MEASURED.read_text())["long"]
     energy = Figure(figsize=(9.6, 4.8), layout="constrained")
     left, right = energy.subplots(1, 2, sharey=True)

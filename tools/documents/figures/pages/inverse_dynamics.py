@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, GREEN, INK, MOVED, QUIET, note, plain
+from tools.documents.figures.look import BLUE, GREEN, INK, MOVED, QUIET, note, plain
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     sol = page.sol
     figure = Figure(figsize=(10.2, 5.0), layout="constrained")
     grid = figure.add_gridspec(2, 2, width_ratios=(1.1, 1.0), height_ratios=(0.8, 1.0))

@@ -12,7 +12,7 @@ from mbsd.cams import Lift, roller_cam
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(11.0, 6.0), layout="constrained")
     machines = (
         page.yoke, page.planetary, page.belt, page.steering, _cam(), page.geneva, page.hill, page.wire,

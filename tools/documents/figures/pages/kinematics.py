@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, FAINT, GREEN, INK, MOVED, plain
+from tools.documents.figures.look import BLUE, FAINT, GREEN, INK, MOVED, plain
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(9.6, 5.0), layout="constrained")
     skeleton, *curves = _axes(figure)
     page.sol.draw(t=0.1, ax=skeleton)

@@ -7,13 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, FAINT, GREEN, INK, MOVED, QUIET, plain
+from tools.documents.figures.look import BLUE, FAINT, GREEN, INK, MOVED, QUIET, plain
 
 NAMES = ("upper", "middle", "lower")
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(10.4, 4.6), layout="constrained")
     grid = figure.add_gridspec(1, 4, width_ratios=(1, 1, 1, 2.6))
     for k, (mode, colour) in enumerate(zip(page.linear.modes, (BLUE, GREEN, MOVED), strict=True)):

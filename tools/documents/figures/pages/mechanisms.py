@@ -13,7 +13,7 @@ from render.plots.style import house_style
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py. No joint of this one needs masses other than those of its mechanism.py."""
+    """Return the pictures of the page. No joint of this mechanism needs masses other than its own."""
     m = build(Params())
     motion = to_motion(m.sweep(), None, "", {}, dict.fromkeys(m.bodies, "mechanism"))
     with house_style():

@@ -9,7 +9,7 @@ from mbsd.pictures.picture import Picture, Svg
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Picture | Svg]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     four_bar = Mechanism.load(page.folder / "four_bar.json")  # before the page took its motor away
     four_bar.forces.clear()  # the spring that the page adds later
     return {"model_drawing.svg": four_bar.draw(), "model_topology.svg": page.wide.topology()}

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, FAINT, GREEN, MOVED, QUIET, plain
+from tools.documents.figures.look import BLUE, FAINT, GREEN, MOVED, QUIET, plain
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(10.4, 3.4), layout="constrained")
     slider, orbit, rattle = figure.subplots(1, 3)
     turns = page.ideal.t / page.TURN

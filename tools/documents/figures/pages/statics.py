@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, GREEN, INK, MOVED, QUIET, WRONG, note, plain
+from tools.documents.figures.look import BLUE, GREEN, INK, MOVED, QUIET, WRONG, note, plain
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(10.6, 4.2), layout="constrained")
     skeleton, energy, snap = figure.subplots(1, 3, width_ratios=(0.85, 1.0, 1.0))
     page.right.start(page.pushed)

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import INK, MOVED, QUIET, note, plain
+from tools.documents.figures.look import INK, MOVED, QUIET, note, plain
 
 HOEKEN = {"coupler": 2.5, "rocker": 2.5}
 NEAR = 0.06
@@ -15,7 +15,7 @@ NEAR = 0.06
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     known = page.m.batch(
         lengths={name: [value] for name, value in HOEKEN.items()}, places={"D": [(2.0, 0.0)], "P": [(5.0, 0.0)]}
     ).points["P"][0]

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 from matplotlib.figure import Figure
 
-from tools.figures.look import BLUE, GOLD, INK, QUIET, WRONG, plain
+from tools.documents.figures.look import BLUE, GOLD, INK, QUIET, WRONG, plain
 
 HIGH = 0.78
 """Part of the height that is below the words."""
@@ -15,7 +15,7 @@ BINS = np.linspace(79.3, 80.7, 71)
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     figure = Figure(figsize=(10.0, 4.2), layout="constrained")
     heights, shares = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     _heights(heights, page)

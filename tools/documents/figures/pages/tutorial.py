@@ -8,5 +8,5 @@ from matplotlib.figure import Figure
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Figure]:
-    """See tools/figures/__main__.py."""
+    """Return the pictures of the page."""
     return {"tutorial_pendulum.svg": page.figure}

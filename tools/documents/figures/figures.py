@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/ from what the code of their pages computes: ``make docs``, or ``-m tools.figures NAME``.
+"""Pictures of docs/, drawn from what the code of their pages computes.
 
 Each file of ``pages/`` belongs to the page of its name. Its ``pictures`` gets the variables that the page's code
 leaves behind and returns figures by file name.
@@ -9,11 +9,10 @@ from __future__ import annotations
 import contextlib
 import importlib
 import io
-import os
 import pkgutil
 import re
-import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -26,23 +25,26 @@ from matplotlib import pyplot
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-import tools.figures.pages
 from mbsd.pictures.picture import Picture, Svg
-from tools.figures.dark import dark, name_of
-from tools.figures.dark_gif import dark_gif
-from tools.figures.look import STYLE
+from shared.stage.paths import ROOT
+from tools.documents.figures import pages
+from tools.documents.figures.dark import dark, name_of
+from tools.documents.figures.dark_gif import dark_gif
+from tools.documents.figures.look import STYLE
+from tools.documents.pages import DOCS, write_changed
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 BLOCK = re.compile(r"^```python\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
-PAGES = tuple(sorted(m.name for m in pkgutil.iter_modules(tools.figures.pages.__path__)))
+PAGES = tuple(sorted(module.name for module in pkgutil.iter_modules(pages.__path__)))
 
 
 def drawn(page: str) -> dict[str, bytes]:
-    """The pictures of a page by file name, each also on dark paper."""
+    """Return the pictures of a page by file name, each also on dark paper."""
     with mpl.rc_context(STYLE):  # pyright: ignore[reportArgumentType]
         variables = _run(page)
         out = {}
-        for name, picture in importlib.import_module(f"tools.figures.pages.{page}").pictures(variables).items():
+        for name, picture in (
+            importlib.import_module(f"tools.documents.figures.pages.{page}").pictures(variables).items()
+        ):
             out[name] = _bytes(picture)
             out[name_of(name)] = (dark_gif if name.endswith(".gif") else dark)(out[name])
         pyplot.close("all")
@@ -50,8 +52,8 @@ def drawn(page: str) -> dict[str, bytes]:
 
 
 def _run(page: str) -> SimpleNamespace:
-    """What the Python of a page leaves behind, run from the project's folder."""
-    code = "\n".join(BLOCK.findall((ROOT / "docs" / f"{page}.md").read_text()))
+    """Return the variables that the Python of a page leaves behind, run from the project's folder."""
+    code = "\n".join(BLOCK.findall((DOCS / f"{page}.md").read_text()))
     variables: dict[str, Any] = {"__name__": "__main__"}
     with contextlib.chdir(ROOT), contextlib.redirect_stdout(io.StringIO()):
         exec(compile(code, f"docs/{page}.md", "exec"), variables)
@@ -82,16 +84,8 @@ def _settle(figure: Figure) -> None:
         ax.set_position(Bbox.from_bounds(*(round(value, 6) for value in ax.get_position(original=True).bounds)))
 
 
-def main() -> int:
+def main(words: Sequence[str]) -> None:
     """Write the pictures of the pages named, or of all."""
-    for page in sys.argv[1:] or PAGES:
+    for page in words or PAGES:
         for name, content in drawn(page).items():
-            path = ROOT / "docs" / name
-            if not path.exists() or path.read_bytes() != content:
-                path.write_bytes(content)
-                print(f"{os.path.relpath(path)} is new")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+            write_changed(DOCS / name, content)

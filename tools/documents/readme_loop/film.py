@@ -1,4 +1,4 @@
-"""Films the loop of README.md by the page in Chromium: ``make readme-loop`` writes docs/readme_loop.webp."""
+"""The loop at the top of README.md, filmed by the page in Chromium: docs/readme_loop.webp."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import json
 import os
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,16 +20,16 @@ from render.view.binary import encode
 from render.view.bundle import PAGE, node, node_modules
 from render.view.inputs import read_payload
 from render.view.pictures import chromium
-from shared.stage.console import run_cli, say
+from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
-from shared.stage.paths import ROOT, Out
+from shared.stage.paths import Out
 from studio.live.child.shown import Shown
-from tools.readme_loop.lines import CHANGED, CRANK, LINES, run
-from tools.readme_loop.story import RATE, frames
+from tools.documents.pages import DOCS
+from tools.documents.readme_loop.story import CHANGED, CRANK, LINES, RATE, frames, run
 
 NAME = "four_bar"
-TARGET = ROOT / "docs" / "readme_loop.webp"
+TARGET = DOCS / "readme_loop.webp"
 WIDTH, HEIGHT, LINES_WIDTH = 960, 420, 440
 SIZE = 720, 315
 """Pixels of the file's pictures: filmed larger, their lines are thin and smooth."""
@@ -40,7 +41,7 @@ MINUTES = 60
 
 
 def plan(every: int = 1) -> dict[str, Any]:
-    """What the browser draws: the frames, and the motion with each number but the file's own."""
+    """Return the browser's orders: the frames, and the motion with each number but the file's own."""
     shown = frames()[::every]
     others = sorted({frame.crank for frame in shown} - {CRANK})
     patches = [base64.b64encode(_motion(crank)).decode() for crank in others]
@@ -59,7 +60,7 @@ def plan(every: int = 1) -> dict[str, Any]:
 
 
 def film(every: int) -> bytes:
-    """The animated WebP. Raises UserError where the browser is missing or fails."""
+    """Return the animated WebP. Raises UserError where the browser is missing or fails."""
     browser = chromium()
     if browser is None:
         raise UserError("the loop is filmed by Chromium, which is missing: sudo apt-get install -y chromium")
@@ -100,17 +101,12 @@ def _extent(skeleton: dict[str, Any]) -> tuple[list[float], list[float]]:
     return [value - pad for value in skeleton["low"]], [value + pad for value in skeleton["high"]]
 
 
-def main() -> int:
+def main(words: Sequence[str]) -> None:
     """Write docs/readme_loop.webp."""
-    parser = argparse.ArgumentParser(prog="python -m tools.readme_loop", description="The loop of README.md.")
+    parser = argparse.ArgumentParser(prog="python -m tools.documents readme-loop", description="The loop of README.md.")
     parser.add_argument("--every", type=int, default=1, help="film every so many frames alone, to look at it sooner")
     parser.add_argument("--to", type=Path, default=TARGET, help="the file; docs/readme_loop.webp if not given")
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(words)
     content = film(arguments.every)
     write_bytes(arguments.to, content)
     say("readme", f"{arguments.to}: {len(content) / 1e6:.2f} MB")
-    return 0
-
-
-if __name__ == "__main__":
-    run_cli(main)

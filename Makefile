@@ -328,7 +328,7 @@ hunt-imports: install ## N damaged files of other programs (1000), each imported
 
 torture: install ## N nights of postage stamps (20), killed and damaged meanwhile; SEED=1: out/torture.json
 	$(ALL_KERNELS)
-	@$(PYTHON) -m tools.torture --n "$${N:-20}" --seed "$$SEED" --only="$$ONLY"
+	@$(PYTHON) -m tests.studio.night.torture --n "$${N:-20}" --seed "$$SEED" --only="$$ONLY"
 
 schema: install ## write docs/schema/ from shared/contract/ and the solver's joints and laws
 	@$(PYTHON) -m tools.schema

@@ -15,9 +15,9 @@ import pytest
 
 from shared.stage.paths import ROOT
 from tests.running.processes import ends_with_us, run_to_its_end, working_for
-from tools.torture.damage import cut, flipped, no_text
-from tools.torture.faults import BACKGROUND, CLUSTER, DISK_OF_ONE, FAULTS, FETCH, FULL
-from tools.torture.rounds import TRACEBACK, Outcome
+from tests.studio.night.torture.damage import cut, flipped, no_text
+from tests.studio.night.torture.faults import BACKGROUND, CLUSTER, DISK_OF_ONE, FAULTS, FETCH, FULL
+from tests.studio.night.torture.rounds import TRACEBACK, Outcome
 
 
 @pytest.mark.slow
@@ -27,7 +27,7 @@ def test_two_rounds(out_root: Path, tmp_path: Path) -> None:
     Where a small disk can be mounted, one of the two rounds fills it, and the other has no memory.
     """
     done = run_to_its_end(
-        [sys.executable, "-m", "tools.torture", "--n", "2", "--seed", "10596"], 400.0,
+        [sys.executable, "-m", "tests.studio.night.torture", "--n", "2", "--seed", "10596"], 400.0,
         cwd=ROOT, env=os.environ | {"MBSD_OUT": str(out_root), "TMPDIR": str(tmp_path)},
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
@@ -43,7 +43,7 @@ def test_two_rounds(out_root: Path, tmp_path: Path) -> None:
 CLUSTER_ALONE = """
 import sys, time
 from pathlib import Path
-from tools.torture import workers
+from tests.studio.night.torture import workers
 workers.COUNT = 1
 workers.Workers(Path(sys.argv[1]))
 print("there", flush=True)

@@ -1,4 +1,4 @@
-"""``python -m tools.torture``: a night of films at the size of a postage stamp, made while things go wrong.
+"""``make torture``: a night of films at the size of a postage stamp, rendered while things go wrong.
 
 --n 100 --seed 1    a hundred rounds: a run of make with a random fault at a random moment (kills, a full disk, damaged
                     files, two runs at once), then the same command again, which has to end with the right films;
@@ -30,12 +30,12 @@ from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import out_root
 from shared.system.missing import missing_programs, program, sentence
-from tools.fixtures.loopback_ssh import machine
-from tools.torture import fetching
-from tools.torture.faults import BACKGROUND, CLUSTER, DISK_OF_ONE, FAULTS, FETCH, FULL, Fault
-from tools.torture.project import Project
-from tools.torture.rounds import Outcome, play
-from tools.torture.workers import Workers
+from tests.studio.loopback_ssh import machine
+from tests.studio.night.torture import fetching
+from tests.studio.night.torture.faults import BACKGROUND, CLUSTER, DISK_OF_ONE, FAULTS, FETCH, FULL, Fault
+from tests.studio.night.torture.project import Project
+from tests.studio.night.torture.rounds import Outcome, play
+from tests.studio.night.torture.workers import Workers
 
 ROUNDS, SEED = 20, 1
 COUNTS = ("wrong", "lost", "redone", "twice", "refused", "hangs", "orphans", "tracebacks")
@@ -44,7 +44,9 @@ COUNTS = ("wrong", "lost", "redone", "twice", "refused", "hangs", "orphans", "tr
 def main() -> int:
     """Play the rounds, report, and say by the exit code whether anything went wrong."""
     parser = argparse.ArgumentParser(
-        prog="python -m tools.torture", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="python -m tests.studio.night.torture",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--n", type=_count, default=ROUNDS)
     parser.add_argument("--seed", type=int, default=SEED)

@@ -7,12 +7,12 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from tools.torture.cluster.hostile import KINDS
-from tools.torture.cluster.studies import scheduler_killed, study_again
-from tools.torture.damage import cut, flipped, gone, no_text
-from tools.torture.fetching import fetch_again, fetch_killed
-from tools.torture.following import live_page_hit, wrong_pages
-from tools.torture.hits import (
+from tests.studio.night.torture.cluster.hostile import KINDS
+from tests.studio.night.torture.cluster.studies import scheduler_killed, study_again
+from tests.studio.night.torture.damage import cut, flipped, gone, no_text
+from tests.studio.night.torture.fetching import fetch_again, fetch_killed
+from tests.studio.night.torture.following import live_page_hit, wrong_pages
+from tests.studio.night.torture.hits import (
     Hit,
     asked_to_stop,
     clock_set_back,
@@ -32,9 +32,9 @@ from tools.torture.hits import (
     swapped,
     writable,
 )
-from tools.torture.project import COORDINATOR, Project
-from tools.torture.stage import MODULE
-from tools.torture.workers import (
+from tests.studio.night.torture.project import COORDINATOR, Project
+from tests.studio.night.torture.stage import MODULE
+from tests.studio.night.torture.workers import (
     Workers,
     admitted,
     disk_of_one,

@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 from shared.system.missing import missing_programs
-from tools.torture.project import Project
+from tests.studio.night.torture.project import Project
 
 PROGRAMS = ("rsync", "ssh", "ssh-keygen", "sshd")
 PATIENCE = 120.0

@@ -50,7 +50,7 @@ def wrong_pages(_: InFolder) -> int:
 
 
 def _play(folder: Path, chance: random.Random) -> int:
-    from tools.fixtures.arm import ARM
+    from tests.studio.live.arm import ARM
 
     shutil.rmtree(folder, ignore_errors=True)
     file = folder / "mechanisms" / "arm" / "mechanism.py"
@@ -90,7 +90,7 @@ def _follow(address: str, file: Path, server: subprocess.Popen[bytes], chance: r
     from websockets.exceptions import WebSocketException
     from websockets.sync.client import connect
 
-    from tools.fixtures.arm import ARM
+    from tests.studio.live.arm import ARM
 
     wrong = 0
     origin: Any = "/".join(address.split("/")[:3])

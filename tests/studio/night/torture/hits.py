@@ -15,8 +15,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from studio.night.files import runs
-from tools.torture.project import COORDINATOR, Project
-from tools.torture.stage import MODULE
+from tests.studio.night.torture.project import COORDINATOR, Project
+from tests.studio.night.torture.stage import MODULE
 
 Hit = Callable[[Project, random.Random], bool]
 """Does it; False if there is nothing to hit yet."""

@@ -16,9 +16,9 @@ from shared.contract.shot import Camera, Shot
 from shared.stage.paths import ROOT, Out
 from shared.stage.signals import end_with_parent
 from studio.night.files import record, runs
-from tools.torture.processes import Process, processes
-from tools.torture.stage import RENDERED
-from tools.torture.workers import Workers
+from tests.studio.night.torture.processes import Process, processes
+from tests.studio.night.torture.stage import RENDERED
+from tests.studio.night.torture.workers import Workers
 
 SHOTS = {
     "four_bar": Shot(turns=2, seconds_per_turn=0.2),
@@ -38,7 +38,7 @@ case "$2 $3" in
 *film) stage=film ;;
 *) exit 0 ;;
 esac
-exec '{python}' -m tools.torture.stage $stage "$4" '{folder}'
+exec '{python}' -m tests.studio.night.torture.stage $stage "$4" '{folder}'
 """
 
 

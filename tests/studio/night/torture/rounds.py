@@ -12,9 +12,9 @@ from typing import Any
 
 from render.blender.picture_file import is_as_named
 from studio.night.files import runs
-from tools.torture.faults import BLENDER, FILM, MAKE, STAGE, Fault
-from tools.torture.hits import TARGETS
-from tools.torture.project import Project
+from tests.studio.night.torture.faults import BLENDER, FILM, MAKE, STAGE, Fault
+from tests.studio.night.torture.hits import TARGETS
+from tests.studio.night.torture.project import Project
 
 HANG = 180.0
 """Seconds after which a run counts as hanging."""

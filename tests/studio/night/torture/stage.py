@@ -1,4 +1,4 @@
-"""The stages of the tiny project that make runs: ``python -m tools.torture.stage {inputs,film} NAME FOLDER``."""
+"""The stages of the tiny project that make runs, as a module with the words {inputs,film} NAME FOLDER."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from shared.stage.files import write_bytes
 from shared.stage.paths import Out
 from shared.stage.stages import Stage, key_of
 
-MODULE = "tools.torture.stage"
+MODULE = "tests.studio.night.torture.stage"
 RENDERED = "rendered.txt"
 STAMP = Preset("draft", 64, 36, 1)
 """The picture's size: a postage stamp, rendered in milliseconds."""

@@ -13,7 +13,7 @@ from mbsd.dealing.report import Report, encoded
 from render.blender.picture_file import name_of
 from render.frames.served import Made
 from shared.cluster import hands
-from tools.torture.stage import STAMP
+from tests.studio.night.torture.stage import STAMP
 
 VARIABLE = "HOSTILE"
 

@@ -1,4 +1,4 @@
-"""A study on the cluster of the rounds: ``-m tools.torture.cluster.studies ADDRESS FOLDER``, and what hits it."""
+"""A study on the cluster of the rounds, run as a module with ADDRESS FOLDER, and the faults that hit it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from shared.stage.signals import end_with_parent
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from tools.torture.project import Project
+    from tests.studio.night.torture.project import Project
 
 POINTS, SECONDS = 60, 0.3
 """Points of the study, and what each of them takes."""
@@ -106,7 +106,7 @@ def _start(project: Project) -> subprocess.Popen[bytes]:
     place = _folder(project)
     with (place / "said.txt").open("ab") as said:
         return subprocess.Popen(
-            [sys.executable, "-m", "tools.torture.cluster.studies", project.workers.address, str(place)],
+            [sys.executable, "-m", "tests.studio.night.torture.cluster.studies", project.workers.address, str(place)],
             cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
             preexec_fn=partial(end_with_parent, signal.SIGTERM),
         )  # fmt: skip

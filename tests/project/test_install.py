@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from shared.stage.paths import ROOT
-from tests.project.making import run
+from tests.running.make import run
 
 
 def test_the_locks_hold_hashes_and_no_addresses() -> None:

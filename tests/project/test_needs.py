@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from shared.stage.paths import ROOT
-from tests.project.making import run
+from tests.running.make import run
 from tests.running.needs import SOLVER
 
 LACKING = """

@@ -51,7 +51,7 @@ SPEEDS = np.linspace(0.02, 1.0, 491)
 COLOURS = (MOVED, BLUE, GREEN, PURPLE)
 BEGIN, END = "<!-- run-up: written by make study-run-up -->", "<!-- end of run-up -->"
 DAMPING_RATIO = 0.1
-"""Of the runs in the table."""
+"""Damping ratio of the runs in the table."""
 RATES = (100.0, 2000.0)
 """Rates of the runs in the table (rpm/s)."""
 

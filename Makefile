@@ -106,7 +106,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts hunt-imports torture check-numbers keep-numbers record-numbers check-events record-events schema docs docs-site site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow test-all lint format bench bench-start bench-live bench-film hunt hunt-parts hunt-imports torture check-numbers keep-numbers record-numbers check-events record-events schema docs docs-site site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
@@ -269,6 +269,11 @@ test-slow: install ## the slow ones: all stages of the rest of the gallery, larg
 	$(PROGRAMS_OF_TESTS)
 	$(ALL_KERNELS)
 	@$(PYTHON) -m pytest -m slow $(PYTEST)
+
+test-all: install ## every test once, as CI runs them: quick ones first, then the longest
+	$(PROGRAMS_OF_TESTS)
+	$(ALL_KERNELS)
+	@$(PYTHON) -m pytest $(PYTEST)
 
 lint: install ## formatting, ruff, pyright, import rules
 	@.venv/bin/ruff format --check .

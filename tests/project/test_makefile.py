@@ -23,7 +23,7 @@ def test_help_is_the_default_and_has_a_line_for_every_target() -> None:
     wanted = "help check install list run-<name> solve-<name> parts-<name> clearance-<name> plot-<name> still-<name> "
     wanted += "poster-<name> frames-<name> film-<name> scene-<name> scene-ui-<name> run-all all new test lint bench "
     wanted += "bench-start bench-live readme-loop animate-<name> report-<name> glb-<name> contact-<name> gallery "
-    wanted += "clean clean-all test-fast test-slow"
+    wanted += "clean clean-all test-fast test-slow test-all"
     assert set(wanted.split()) <= set(listed)
     assert max(map(len, done.stdout.splitlines())) <= 120
 
@@ -87,7 +87,7 @@ def test_the_makefile_keeps_to_make_3_81_and_a_posix_shell() -> None:
 
 
 def test_tests_and_measurements_wait_for_all_kernels() -> None:
-    for target in ("test", "test-fast", "test-slow", "bench-start", "check-numbers", "check-events"):
+    for target in ("test", "test-fast", "test-slow", "test-all", "bench-start", "check-numbers", "check-events"):
         done = run("make", "-n", "-o", "install", target)
         [line] = [number for number, text in enumerate(done.stdout.splitlines()) if "-m tools.compiling wait" in text]
         assert line == (1 if target.startswith("test") else 0), (

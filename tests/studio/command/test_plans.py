@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.running.make import STAGES, planned
+from tests.studio.command.plans import STAGES, planned
 
 PICTURES = ("still", "poster", "contact", "frames", "film", "scene", "scene-ui")
 

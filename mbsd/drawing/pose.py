@@ -46,9 +46,9 @@ class Pose:
 
     def place(self, marker: Marker) -> np.ndarray:
         """(2,) of a marker in the world (m)."""
-        return self.of(marker.body.name, marker.x, marker.y)
+        return self.point(marker.body.name, marker.x, marker.y)
 
-    def of(self, body: str, x: float, y: float) -> np.ndarray:
+    def point(self, body: str, x: float, y: float) -> np.ndarray:
         """(2,) of a point of a body (m)."""
         x0, y0, theta = self.frames[body]
         c, s = math.cos(theta), math.sin(theta)

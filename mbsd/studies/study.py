@@ -168,7 +168,7 @@ def _key_of(point: Point) -> str:
 
 
 def _store(folder: str | os.PathLike[str], content: Content, places: StudyPlaces) -> Store:
-    """What is kept of this build and measure, as their inputs are now."""
+    """Return the store of this build and measure with their present inputs."""
     key = hashlib.sha256(f"{own_sources()} {sys.version_info[:3]} {content.hexdigest()}".encode()).hexdigest()
     return Store(folder, key, places, loaded_inputs(content, places))
 

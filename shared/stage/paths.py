@@ -56,6 +56,7 @@ RESERVED = {
     "gallery": "out/gallery holds the gallery",
     "docs": "out/docs holds the pages of the documents",
     "engines": "out/engines holds the tables of engine layouts",
+    "browsers": "out/browsers holds what was seen of pages in browsers",
     "hunt_parts": "out/hunt_parts holds the cases of hunts",
 }
 """Names that no mechanism can have, and why: results of it and of others would be in one folder."""

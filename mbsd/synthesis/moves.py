@@ -12,7 +12,7 @@ import numpy as np
 
 from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.derivatives.driven.sweeps import SweepTangents
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.sensitivities import Tangents, moves_freely, simulation_tangents, values_and_slopes

@@ -19,7 +19,7 @@ from mbsd.tolerancing.statistics.shares import Sobol
 from mbsd.tolerancing.statistics.yields import Limits, Yield, yield_of
 
 if TYPE_CHECKING:
-    from mbsd.pictures.picture import Picture
+    from mbsd.pictures import Picture
 
 QUANTILES = (0.00135, 0.025, 0.25, 0.5, 0.75, 0.975, 0.99865)
 """Those of -3 and 3 standard deviations of a normal distribution are the first and the last."""

@@ -19,7 +19,7 @@ import numpy as np
 
 from mbsd.base.arguments import checked, finite_number, whole_number
 from mbsd.base.errors import ModelError
-from mbsd.base.progress import users_progress
+from mbsd.base.users_function import users_progress
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
 from mbsd.tolerancing.dimensions.dimension import Dimension

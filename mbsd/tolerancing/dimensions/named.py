@@ -18,8 +18,7 @@ from typing import Any
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.derivatives.numbers.number_steps import size_of, step_of
 from mbsd.model.change import values_of
 from mbsd.model.joint import Joint

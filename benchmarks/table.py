@@ -7,18 +7,16 @@ from collections.abc import Sequence
 
 from benchmarks.rows import Bar, Row
 from shared.stage.files import write_bytes
-from shared.stage.paths import ROOT, out_root
+from shared.stage.paths import out_root
+from tools.documents.pages import DOCS, replaced
 
-PAGE = ROOT / "docs" / "benchmarks.md"
+PAGE = DOCS / "benchmarks.md"
 BEGIN, END = "<!-- rows of make bench -->", "<!-- end of rows -->"
 
 
 def write(rows: Sequence[Row], bars: Sequence[Bar]) -> None:
     """Replace the table in the page, and write out/bench.md."""
-    page = PAGE.read_text()
-    before, _, rest = page.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    write_bytes(PAGE, f"{before}{BEGIN}\n{bars_table(rows, bars)}\n{END}{after}".encode())
+    write_bytes(PAGE, replaced(PAGE.read_text(), BEGIN, END, bars_table(rows, bars)).encode())
     write_bytes(out_root() / "bench.md", f"# Every row of the last run\n\n{rows_table(rows)}\n".encode())
 
 

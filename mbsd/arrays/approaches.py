@@ -1,6 +1,6 @@
 """How fast contacts by penalty approached when they began, along a motion: what their damping may depend on.
 
-A simulation notes it at each accepted step (mbsd/dynamics/prepare/approaches.py). A driven motion is known at its
+A simulation notes it at each accepted step (mbsd/dynamics/prepare/prepared.py). A driven motion is known at its
 outputs alone; there the depth between two outputs is the cubic through both with their rates, and the approach is its
 slope where it begins to be above zero.
 """

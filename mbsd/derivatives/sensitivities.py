@@ -17,7 +17,7 @@ from mbsd.derivatives.free.indexing import watched
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.with_model import with_model
-from mbsd.dynamics.mobility import mobility
+from mbsd.dynamics.prepare.large import mobility
 from mbsd.dynamics.repeated import Repeated
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times

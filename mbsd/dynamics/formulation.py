@@ -52,8 +52,8 @@ from typing import Any
 
 from mbsd.compiling.alternatives import Alternatives, alternatives
 from mbsd.compiling.jit import inlined, shared
-from mbsd.dynamics.embedding import equations, records
-from mbsd.dynamics.embedding.arrays import Embedding
+from mbsd.dynamics.independent import equations
+from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.reference import acceleration, projection, refinement, rows
 from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.reference.arrays import without_contacts as without_contacts_in_plane
@@ -135,11 +135,11 @@ bends = alternatives({}, _copy_accelerations)
 speeds = alternatives({}, _keep_rate)
 shift = alternatives({}, _shift)
 settle = alternatives({Embedding: equations.settle}, _settle)
-record = alternatives({Embedding: records.record}, _record)
-record_all = alternatives({Embedding: records.record_all}, _record)
-keep_row = alternatives({Embedding: records.keep_row}, _keep_row)
-join_rows = alternatives({Embedding: records.join_rows}, _join_rows)
-record_here = alternatives({Embedding: records.record_here}, _record_here)
+record = alternatives({Embedding: equations.record}, _record)
+record_all = alternatives({Embedding: equations.record_all}, _record)
+keep_row = alternatives({Embedding: equations.keep_row}, _keep_row)
+join_rows = alternatives({Embedding: equations.join_rows}, _join_rows)
+record_here = alternatives({Embedding: equations.record_here}, _record_here)
 measure = alternatives({Dynamics: projection.measure})
 measure_gaps = alternatives({Dynamics: rows.measure_gaps})
 along = alternatives({Dynamics: rows.along})

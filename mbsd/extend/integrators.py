@@ -12,12 +12,11 @@ from mbsd.compiling.jit import apart, inlined, internal, kernel
 from mbsd.dynamics.formulation import begin_run as begin
 from mbsd.dynamics.formulation import close_step, derivative, project
 from mbsd.dynamics.formulation import record_output as record
+from mbsd.dynamics.integrators.full_matrix import differentiate, factor_full, solve_full, too_large
 from mbsd.dynamics.integrators.kind import Integrator, Option, without_sliding
 from mbsd.dynamics.integrators.kind import register as register_integrator
 from mbsd.dynamics.integrators.others.outside import PULL, STAGES, Rates, Stepper, advance_with, tolerances
 from mbsd.dynamics.integrators.step_size import allowed, first_step
-from mbsd.dynamics.integrators.tangents import differentiate, too_large
-from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
 from mbsd.dynamics.state import (
     ACCEPTED,
     ERROR,

@@ -25,7 +25,7 @@ from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.runs.run import REFERENCE, Run
-from mbsd.dynamics.state import State
+from mbsd.dynamics.state import State, output_for
 from mbsd.equations.assembly import tabulate_all
 from mbsd.equations.interactions.switching import SWITCHING
 from mbsd.model.mechanism import Model
@@ -66,9 +66,10 @@ class NativeEquations:
         self.jacobian_at = np.zeros((1, len(self.state.lam), 6))
         self.no_rows = np.zeros((1, len(self.state.lam)))
         y, ws = self.state.y, scratch.ws
+        nowhere = output_for(np.zeros(0), y.shape[1], len(self.state.lam))
         self.arguments: dict[str, tuple[Any, tuple[Any, ...]]] = {
             "advance": (
-                DOP853.advance, (dynamics, scratch, self.state, self.run.nowhere, self.run.settings, end, MANY_STEPS)
+                DOP853.advance, (dynamics, scratch, self.state, nowhere, self.run.settings, end, MANY_STEPS)
             ),
             "derivative": (derivative, (dynamics, scratch, start, y, self.state.dy, self.state.lam)),
             "project": (project, (dynamics, scratch, start, y, 2)),

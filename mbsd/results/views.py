@@ -125,4 +125,4 @@ class Stats:
     inserted_steps: int
     """Steps added between outputs to stay on the branch."""
     independent: bool = False
-    """Whether a simulation was integrated in independent coordinates (mbsd/dynamics/embedding)."""
+    """Whether a simulation was integrated in independent coordinates (mbsd/dynamics/independent)."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import os
-import pkgutil
 import re
 import subprocess
 import sys
@@ -14,10 +13,11 @@ from pathlib import Path
 import pytest
 
 from shared.stage.paths import ROOT
+from tools.documents.figures.figures import PAGES
 
 PUBLIC = ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md")
 DOCUMENTS = [ROOT / name for name in PUBLIC] + sorted((ROOT / "docs").rglob("*.md"))
-DRAWN = {ROOT / "docs" / f"{module.name}.md" for module in pkgutil.iter_modules([str(ROOT / "tools/figures/pages")])}
+DRAWN = {ROOT / "docs" / f"{page}.md" for page in PAGES}
 """Pages with pictures, whose Python test_figures.py runs, too."""
 BLOCK = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 

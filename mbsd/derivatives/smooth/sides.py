@@ -17,10 +17,10 @@ from mbsd.derivatives.numbers.start_tangents import StartTangents
 from mbsd.derivatives.numbers.variants import SECOND, TINY, Variant, Variants, Variation
 from mbsd.derivatives.smooth.forces_beside import ForcesBeside
 from mbsd.derivatives.smooth.smooth_motion import NotSmooth
-from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.embedding.coordinates import choices
+from mbsd.dynamics.independent.arrays import Embedding
+from mbsd.dynamics.independent.coordinates import choices
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.runs.embed import Embedded
+from mbsd.dynamics.runs.embedding import Embedded
 from mbsd.kinematics.groups.carrying.columns import AVOID, SIGN
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.tables import rows_of

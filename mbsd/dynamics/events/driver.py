@@ -54,10 +54,9 @@ from mbsd.dynamics.events.refusals import jam_at, refuse_inside, taking_turns
 from mbsd.dynamics.events.search import CHANCE
 from mbsd.dynamics.events.users.arrays import GROUP, ROW, UNKNOWN
 from mbsd.dynamics.repeated_rows.packing import opened
-from mbsd.dynamics.runs.pace import Pace
-from mbsd.dynamics.runs.recording import Snapshot
-from mbsd.dynamics.runs.reference_steps import advance, check_callbacks
-from mbsd.dynamics.runs.refusal import refusal
+from mbsd.dynamics.runs.diagnosis import refusal
+from mbsd.dynamics.runs.run import Snapshot
+from mbsd.dynamics.runs.steps import Pace, advance, check_callbacks
 from mbsd.dynamics.state import NEXT, NOT_FINITE, PAUSED, REACHED, TIME, WORK, Output, State
 from mbsd.equations.system import ZERO
 from mbsd.model.event import Event, Happening

@@ -15,7 +15,6 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, kernel, lazy
-from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.events.arrays import (
     ACTED,
     APART,
@@ -53,9 +52,10 @@ from mbsd.dynamics.events.rows import any_held, hold_rows
 from mbsd.dynamics.events.search import event_time, first_met
 from mbsd.dynamics.events.sticking.jumps import resolve_friction
 from mbsd.dynamics.events.sticking.ways import share_here, share_outputs
-from mbsd.dynamics.events.users.actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
+from mbsd.dynamics.events.user_actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
 from mbsd.dynamics.events.users.values import begin_sides, find_sides, first_reached
 from mbsd.dynamics.formulation import begin_run, measure, without_contacts
+from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state, cross
 from mbsd.dynamics.repeated_rows.exchange import hold_independent, look
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, record_here

@@ -40,11 +40,9 @@ from mbsd.dynamics.events.laws.least_part import together_of
 from mbsd.dynamics.events.users.packing import events_of, may_release
 from mbsd.dynamics.integrators.advance import number_of
 from mbsd.dynamics.integrators.kind import Integrator
-from mbsd.dynamics.prepare.following import SHORTEST
-from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.prepare.prepared import SHORTEST, PreparedDynamics
 from mbsd.dynamics.reference.pins import with_pins
-from mbsd.dynamics.reference.schur import Schur
-from mbsd.dynamics.reference.sequence import elimination_sequence
+from mbsd.dynamics.reference.schur import Schur, elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.repeated_rows.packing import repeated_of
 from mbsd.dynamics.state import State

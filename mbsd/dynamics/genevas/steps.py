@@ -14,8 +14,6 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, kernel, lazy
-from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.embedding.equations import write_alone
 from mbsd.dynamics.genevas.arrays import (
     ARM_X,
     ARM_Y,
@@ -27,6 +25,8 @@ from mbsd.dynamics.genevas.arrays import (
     TO_Y,
     WHEEL,
 )
+from mbsd.dynamics.independent.arrays import Embedding
+from mbsd.dynamics.independent.equations import write_alone
 from mbsd.dynamics.integrators.advance import USUAL, advance_past_jumps, copy_state
 from mbsd.dynamics.state import ACCEPTED, ERROR, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, lazy
-from mbsd.dynamics.embedding.arrays import Embedding
+from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.integrators import generalized_alpha, rattle, rk4
 from mbsd.dynamics.integrators.dop853.loop import DOP853
 from mbsd.dynamics.integrators.dop853.loop import advance as advance_dop853

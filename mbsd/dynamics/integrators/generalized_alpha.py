@@ -21,9 +21,8 @@ import math
 
 from mbsd.compiling.jit import internal, kernel
 from mbsd.dynamics.formulation import begin_run, close_step, derivative
+from mbsd.dynamics.integrators.full_matrix import differentiate, factor_full, solve_full, too_large
 from mbsd.dynamics.integrators.kind import Integrator, Option, register
-from mbsd.dynamics.integrators.tangents import differentiate, too_large
-from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
 from mbsd.dynamics.state import (
     ACCEPTED,
     EVALUATIONS,

@@ -47,7 +47,7 @@ class Integrator:
     options: Mapping[str, Option] = field(default_factory=dict)
     """Numbers that ``simulate`` takes by name for this method; in this order they stand in Settings.options."""
     matrices: tuple[int, int] = (0, 0)
-    """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/reference/full_matrix.py)."""
+    """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/integrators/full_matrix.py)."""
     independent: bool = False
     """Whether ``advance`` integrates independent coordinates as well: ``dyn`` is then an Embedding."""
     general: bool = False

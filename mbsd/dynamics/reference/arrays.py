@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.compiling.jit import inlined
-from mbsd.dynamics.reference.full_matrix import FullMatrices, full_matrices
 from mbsd.dynamics.reference.schur import SchurFactors, schur_factors
 from mbsd.dynamics.reference.sliding import Sliding
 from mbsd.equations.system import System
@@ -43,6 +42,22 @@ class Dynamics(NamedTuple):
     """(2,) alpha and beta of the stabilisation (1/s); zero turns it off."""
     per_size: Any
     """(3 nb,) what makes coordinates dimensionless: 1 / size for x and y, 1 for theta."""
+
+
+class FullMatrices(NamedTuple):
+    """Room for k matrices of size N with their right-hand sides."""
+
+    value: Any
+    """(k, N, N)"""
+    pivot: Any
+    """(k, N) row exchanged with each row."""
+    side: Any
+    """(k, N) right-hand sides, then solutions."""
+
+
+def full_matrices(count: int, size: int) -> FullMatrices:
+    """Room for ``count`` matrices of ``size`` rows."""
+    return FullMatrices(np.zeros((count, size, size)), np.zeros((count, size), np.int64), np.zeros((count, size)))
 
 
 class Scratch(NamedTuple):

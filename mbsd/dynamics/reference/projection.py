@@ -7,7 +7,7 @@ Source: Eich 1993, SIAM J. Numer. Anal. 30 (projection after each step); Hairer,
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart, shared
+from mbsd.compiling.jit import apart, kernel, shared
 from mbsd.dynamics.reference.pins import change_by_pins, factor_pins
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.equations.assembly import evaluate_nu, evaluate_position, position
@@ -70,3 +70,10 @@ def measure(dyn, scratch, t, q):
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
     position(dyn.system, q, scratch.drive, scratch.ws)
+
+
+@kernel
+def factor_at(dyn, scratch, t, state):
+    """Factor at the pose of a state; the part of each row that is new stays in factors.low[k, 1:3]."""
+    project(dyn, scratch, t, state, 1)
+    factor_schur(dyn.schur, dyn.metric, scratch.ws.jac, scratch.factors, 0.0)

@@ -18,8 +18,8 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, inlined, internal, lazy
-from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.formulation import measure, push
+from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.integrators.advance import advance_past_jumps
 from mbsd.dynamics.reference.rows import OPENED_BY
 from mbsd.dynamics.repeated_rows.arrays import (

@@ -18,6 +18,7 @@ import math
 
 from mbsd.compiling.jit import apart, internal, kernel
 from mbsd.dynamics.formulation import begin_run, derivative, project, record_output
+from mbsd.dynamics.integrators.full_matrix import differentiate, too_large
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.integrators.radau.newton import (
     AFTER,
@@ -31,7 +32,6 @@ from mbsd.dynamics.integrators.radau.newton import (
 )
 from mbsd.dynamics.integrators.radau.tableau import WEIGHTS, D, E
 from mbsd.dynamics.integrators.step_size import first_step
-from mbsd.dynamics.integrators.tangents import differentiate, too_large
 from mbsd.dynamics.state import (
     ACCEPTED,
     EVALUATIONS,

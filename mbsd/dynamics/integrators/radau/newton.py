@@ -16,9 +16,9 @@ import math
 
 from mbsd.compiling.jit import apart, inlined, internal
 from mbsd.dynamics.formulation import derivative, rates, speeds
+from mbsd.dynamics.integrators.full_matrix import factor_full, solve_full
 from mbsd.dynamics.integrators.radau.tableau import PART, REAL, TI, TURN, C, T
 from mbsd.dynamics.integrators.step_size import allowed
-from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
 from mbsd.dynamics.state import EVALUATIONS, TIME
 
 Z, F, W = 1, 4, 7

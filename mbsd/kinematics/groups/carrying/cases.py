@@ -56,7 +56,7 @@ class AlongLaws(NamedTuple):
 
 
 class PerCoordinate(NamedTuple):
-    """All bodies in independent coordinates (mbsd/dynamics/embedding/arrays.py)."""
+    """All bodies in independent coordinates (mbsd/dynamics/independent/arrays.py)."""
 
     group: Any
     number: Any

@@ -10,7 +10,7 @@ import numpy as np
 from manifold3d import CrossSection, JoinType
 
 if TYPE_CHECKING:
-    from mbsd import Marker
+    from mbsd.model.body import Marker
     from mbsd.model.laws.curve import Curve
     from mechanisms.stages.automatic.layout.layout import Layout
 

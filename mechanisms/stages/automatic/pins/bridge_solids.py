@@ -11,7 +11,7 @@ from shared.shapes import outline
 from shared.shapes.base import column
 from shared.shapes.build import bore, eased, extruded
 from shared.shapes.pin import pin
-from shared.shapes.solid import placed
+from shared.shapes.solid import placed as placed_solid
 
 if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.order.heights import Heights
@@ -33,13 +33,13 @@ def bridge_solids(bridge: Bridge, plan: Plan, heights: Heights) -> None:
     shape = eased(shape, 1.2, ">Z", chamfer=True)
     hung = [pin.places["ground"] for pin in bridge.pins]
     for x, y in [*bridge.ends, *hung]:
-        shape = shape.cut(placed(bore(pivot.held, low, low + BEAM_HEIGHT, 0.4), x, y))
+        shape = shape.cut(placed_solid(bore(pivot.held, low, low + BEAM_HEIGHT, 0.4), x, y))
     plan.make("ground", f"bridge_{bridge.name}", shape, "aluminium_black", 2 + len(hung))
     for k, (x, y) in enumerate(bridge.ends, start=1):
         standing(f"{bridge.name}_{k}", (x, y), low - seat, plan, label="", kind="post", levels=heights.levels)
         dowel = pin(pivot.pin, DOWEL - seat, sizes.head)
         top = low + BEAM_HEIGHT + seat
-        plan.make("ground", f"dowel_{bridge.name}_{k}", placed(dowel, x, y, top - DOWEL + seat), "steel", 0)
+        plan.make("ground", f"dowel_{bridge.name}_{k}", placed_solid(dowel, x, y, top - DOWEL + seat), "steel", 0)
     for hanging in bridge.pins:
         _shaft(hanging, plan, heights)
 
@@ -52,12 +52,12 @@ def _shaft(joint: Pin, plan: Plan, heights: Heights) -> None:
     stack = sorted(joint.movers, key=lambda body: heights.bottom(body))
     low = heights.top(stack[-1]) + pivot.flange_room + fit.axial + pivot.washer_room
     boss = column(heights.roof - fit.seat - low, pivot.held, TOP, FOOT).rotate((0, 0, 0), (1, 0, 0), 180)
-    plan.make("ground", f"boss_{name}", placed(boss, x, y, heights.roof - fit.seat), "aluminium", 1)
+    plan.make("ground", f"boss_{name}", placed_solid(boss, x, y, heights.roof - fit.seat), "aluminium", 1)
     run(joint, stack, "ground", plan, heights)
     clip = heights.bottom(stack[0]) - pivot.flange_room - pivot.retainer_room
     start, top = clip - sizes.pin_end, heights.roof + BEAM_HEIGHT + fit.seat
     bolt = pin(pivot.pin, top - start, sizes.head, pivot.groove(clip - start))
-    plan.make("ground", f"pin_{name}", placed(bolt, x, y, start), "steel", 0)
+    plan.make("ground", f"pin_{name}", placed_solid(bolt, x, y, start), "steel", 0)
     plan.add(
         "ground",
         pivot.washer_at(f"washer_{name}_high", x, y, low - pivot.washer_room),

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.wheels import pulleys
-from mechanisms.stages.automatic.wheels.pulleys import Belt, Pulley
+from mechanisms.stages.automatic.wheels.pulleys import LEAST, Belt, Pulley
 from shared.contract.belt_path import BeltPath
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
@@ -27,7 +26,7 @@ def extent_of(joint: Joint, solution: Solution) -> Extent:
     """Both pulleys."""
     sized = with_radii(joint.params)
     both = (joint.i, sized["radius_i"]), (joint.j, sized["radius_j"])
-    return Extent(both, tuple((radius, pulleys.LEAST) for _, radius in both))
+    return Extent(both, tuple((radius, LEAST) for _, radius in both))
 
 
 def belts(m: Mechanism, layout: Layout) -> list[Belt]:

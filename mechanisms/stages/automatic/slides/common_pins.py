@@ -73,10 +73,10 @@ def refuse_pins_of_both_kinds(m: Mechanism, features: Sequence[Feature]) -> None
     for slot in (getattr(feature, "runs_through", None) for feature in features):
         if slot is None:
             continue
-        for pin in pins:
-            place = pin.places.get(slot.pin)
+        for other in pins:
+            place = other.places.get(slot.pin)
             if place is not None and math.dist(place, slot.pin_at) < SAME:
                 raise UserError(
-                    f"{m.name}: the pin of joint '{slot.name}' is where {slot.pin} has that of joint '{pin.name}'; "
+                    f"{m.name}: the pin of joint '{slot.name}' is where {slot.pin} has that of joint '{other.name}'; "
                     f"give it a place of its own on {slot.pin}, or write {shown_file(m.name, 'parts')}"
                 )

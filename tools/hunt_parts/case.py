@@ -83,7 +83,7 @@ def moved(subject: Subject, steps: int = STEPS) -> Solution:
 
 def parts_of(m: Mechanism, solution: Solution, solids: bool = True, engraved: bool = True) -> Outcome:
     """Plan and build the parts, with an ``engraved`` base or a bare one, and prove that none touch."""
-    from mechanisms.stages.automatic.assembly.kernel_refusals import KERNEL
+    from mechanisms.stages.automatic.assembly import KERNEL
     from mechanisms.stages.automatic.automatic import Automatic
 
     made = Automatic(m, solution)

@@ -1,54 +1,85 @@
-"""Parts from the model and its motion: ``automatic(m)`` plans them, ``solids()`` builds them.
-
-def parts(p: Params) -> dict[str, list[Solid]]:
-    made = automatic(build(p))
-    made.material("crank", "steel")
-    made.layer("rocker", 2)
-    return made.solids()
-"""
+"""Automatic parts: from the model and its motion to solids."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.assembly.kernel_refusals import kernel_refusals
-from mechanisms.stages.automatic.assembly.looks import ROD, materials
-from mechanisms.stages.automatic.assembly.marks import Wish, place, refuse_letters
-from mechanisms.stages.automatic.decided import decided
-from mechanisms.stages.automatic.laid_out import laid_out
-from mechanisms.stages.automatic.layout.extents import lengths_of
-from mechanisms.stages.automatic.layout.features import build
-from mechanisms.stages.automatic.layout.items import Need
+from mechanisms.stages.automatic.assembly import ROD, Wish, kernel_refusals, materials, place, refuse_letters
+from mechanisms.stages.automatic.decision import decided
+from mechanisms.stages.automatic.features import laid_out
+from mechanisms.stages.automatic.layout.items import Heights, Need, heights
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
-from mechanisms.stages.automatic.layout.order.heights import Heights, heights
-from mechanisms.stages.automatic.layout.printed import printed_sizes
-from mechanisms.stages.automatic.layout.sizes import THINNEST, Sizes, of_pin, refuse_sizes, sizes, thin_pins
-from mechanisms.stages.automatic.pins.rods import places
+from mechanisms.stages.automatic.layout.plan import build
+from mechanisms.stages.automatic.layout.sizes import (
+    THINNEST,
+    Sizes,
+    lengths_of,
+    of_pin,
+    printed_sizes,
+    refuse_sizes,
+    rods_of,
+    sizes,
+    thin_pins,
+)
+from mechanisms.stages.automatic.pins.pins import places
 from mechanisms.stages.automatic.rolling.roads import runs_on_ground
 from mechanisms.stages.automatic.shafts.along import THINNEST_ALONG, Along
-from mechanisms.stages.automatic.shafts.bodies.planes import has_places
-from mechanisms.stages.automatic.standing.held import hold
-from mechanisms.stages.automatic.wished_names import refuse_material, refuse_unknown
+from mechanisms.stages.automatic.shafts.bodies import has_places
+from mechanisms.stages.automatic.standing import hold
 from mechanisms.stages.loading.wished_mount import wished
 from mechanisms.stages.loading.wished_scale import wished_scale
+from shared.contract.materials import MATERIALS
 from shared.contract.mount import Mount, mounted
 from shared.stage.console import Shown
 from shared.stage.errors import UserError
+from shared.stage.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     import cadquery as cq
 
     from mbsd import Mechanism, Solution
-    from mechanisms.stages.automatic.assembly.joined import Joined
+    from mechanisms.stages.automatic.body_shapes import Joined
     from mechanisms.stages.automatic.layout.plan import Plan
     from shared.shapes.bodies import Bodies
     from shared.shapes.fit import Fit
     from shared.shapes.outline import Point
     from shared.shapes.solid import Solid
+
+
+# Names in wishes for parts: bodies and materials that there are.
+
+
+def refuse_unknown(m: Mechanism, body: str, left_out: Collection[str], ground: bool = False) -> None:
+    """Raise UserError unless ``body`` is one that moves, a rod (or ground, where that may be) and is not left out."""
+    if body in left_out:
+        raise UserError(f"{m.name}: '{body}' is left out, so there is nothing of it to shape")
+    names = [*(name for name in m.bodies if ground or name != "ground"), *rods_of(m)]
+    if body not in names:
+        raise UserError(
+            f"{m.name}: there is no body '{body}' to shape; there is: {', '.join(names)}{did_you_mean(body, names)}"
+        )
+
+
+def refuse_material(m: Mechanism, body: str, material: str) -> None:
+    """Raise UserError unless ``material`` is one that there is."""
+    if material not in MATERIALS:
+        raise UserError(
+            f"{m.name}: material of '{body}': there is no '{material}'; there is {', '.join(MATERIALS)}"
+            f"{did_you_mean(material, MATERIALS)}"
+        )
+
+
+# Parts from the model and its motion: ``automatic(m)`` plans them, ``solids()`` builds them.
+#
+# def parts(p: Params) -> dict[str, list[Solid]]:
+#     made = automatic(build(p))
+#     made.material("crank", "steel")
+#     made.layer("rocker", 2)
+#     return made.solids()
 
 
 class Automatic:
@@ -104,7 +135,7 @@ class Automatic:
         ``at`` is the place of the joint whose eye it carries; joints that no outline carries are linked as usual.
         ``sharp`` leaves its edges as they are.
         """
-        from mechanisms.stages.automatic.assembly.joined import Joined
+        from mechanisms.stages.automatic.body_shapes import Joined
 
         self._known(body)
         self._refuse_along("join", "join the outline to the solids (made.replace)")
@@ -229,8 +260,7 @@ class Automatic:
         """Every piece by the body it moves with, in mm; the first of each list is the body's main piece. ``on_stand()``
         adds a stand. ``engraved_too``: the base with its names, rule and dial, which cost as much as a link.
         """
-        from mechanisms.stages.automatic.assembly.built import built, fitted
-        from mechanisms.stages.automatic.assembly.frame import back_plate
+        from mechanisms.stages.automatic.assembly import back_plate, built, fitted
         from shared.shapes.bodies import Bodies
 
         if self.along is not None:
@@ -257,8 +287,8 @@ class Automatic:
         return made
 
     def _solids_along(self, along: Along) -> Bodies:
-        from mechanisms.stages.automatic.assembly.built import fitted
-        from mechanisms.stages.automatic.shafts.solids.made import plate_of, solids
+        from mechanisms.stages.automatic.assembly import fitted
+        from mechanisms.stages.automatic.shafts.solids import plate_of, solids
         from shared.shapes.bodies import Bodies
 
         made = Bodies(fitted(solids(along, self._materials, self.mount, self._base_under)) | self._replaced)

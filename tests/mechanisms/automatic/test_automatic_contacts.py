@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from mbsd import Mechanism, constant_rate
 from mbsd.model.laws.curve import curve
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.cams.cams import Cam
+from mechanisms.stages.automatic.cams import Cam
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
 from mechanisms.stages.parts.mesh_check import check_mesh, only_solid

@@ -8,8 +8,8 @@ import numpy as np
 
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.items import Item, Reach
+from mechanisms.stages.automatic.layout.layers import Problem, find_layers
 from mechanisms.stages.automatic.layout.motion import TURN, poses_of, times_of
-from mechanisms.stages.automatic.layout.order.layers import Problem, find_layers
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.pins.pins import Pin
 from mechanisms.stages.solve.refined_times import CLOSE, swept_closely

@@ -12,11 +12,9 @@ from scipy.interpolate import CubicSpline
 
 from mbsd import Mechanism, Solution
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.followed import continued, followed
-from mechanisms.stages.automatic.rolling.backings import band
-from mechanisms.stages.automatic.rolling.roads import Road, along, banded
+from mechanisms.stages.automatic.layout.curves import continued, followed
+from mechanisms.stages.automatic.rolling.roads import Road, along, band, banded, with_shared_roads
 from mechanisms.stages.automatic.rolling.rounds import Round
-from mechanisms.stages.automatic.rolling.shared_roads import with_shared_roads
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
 from shared.shapes.polyline import distances
 from shared.stage.errors import UserError

@@ -8,7 +8,7 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mbsd.model.plane_curves import curve_pieces
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.profiles import curve_path
+from mechanisms.stages.automatic.layout.curves import curve_path
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
 from shared.shapes.polyline import distances

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate, curve
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.rolling.roads import Road, along
-from mechanisms.stages.automatic.rolling.shared_roads import with_shared_roads
+from mechanisms.stages.automatic.rolling.roads import Road, along, with_shared_roads
 from shared.shapes.polyline import distances
 from tests.mechanisms.automatic.layouts import meets
 from tests.shared.shape_checks import checked

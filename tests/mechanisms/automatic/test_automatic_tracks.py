@@ -10,7 +10,8 @@ import pytest
 from mbsd import Mechanism, constant_rate, harmonic
 from mbsd.results.solution import Solution
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.rolling.tracks import Track, circle, normals, turns_left
+from mechanisms.stages.automatic.rolling.tracks import Track, circle, turns_left
+from mechanisms.stages.automatic.rolling.tracks import closed_normals as normals
 from shared.shapes.polyline import distances
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.extents import rods_of
 from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, PinReach, Reach, spans_meet
-from mechanisms.stages.automatic.layout.order.layers import Problem
+from mechanisms.stages.automatic.layout.layers import Problem
 from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
+from mechanisms.stages.automatic.layout.sizes import rods_of
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Mapping

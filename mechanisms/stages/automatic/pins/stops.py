@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout import limits
+from mechanisms.stages.automatic.layout import motion
 from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot
@@ -29,9 +29,8 @@ from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 AWAY, RADIUS, EYE = 17.8, 3.2, 6.2
@@ -123,7 +122,7 @@ def stops(m: Mechanism, features: list[Feature], layout: Layout) -> list[Feature
     for joint in m.joints.values():
         if joint.kind.pair != "pin" or layout.apart.intersection(joint.bodies):
             continue
-        ends = limits.turning(joint, m)
+        ends = motion.turning(joint, m)
         (i, j), swap = (joint.i, joint.j), joint.j.body.name == "ground"
         if swap:
             i, j, ends = j, i, (None if ends[1] is None else -ends[1], None if ends[0] is None else -ends[0])
@@ -155,7 +154,7 @@ def stops(m: Mechanism, features: list[Feature], layout: Layout) -> list[Feature
     return stop_pins
 
 
-def _given(ends: limits.Limits) -> list[float]:
+def _given(ends: motion.Limits) -> list[float]:
     return [end for end in ends if end is not None]
 
 

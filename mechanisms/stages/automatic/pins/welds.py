@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.layout.plan import Foot, kind
 from mechanisms.stages.automatic.layout.planar import around
 from shared.shapes import outline
 from shared.shapes.build import extruded
@@ -29,9 +28,8 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 BOLT, HEAD = 5.0, Head(9.0, 3.0, 0.8)

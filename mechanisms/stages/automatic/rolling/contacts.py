@@ -1,30 +1,26 @@
-"""Contacts of discs with surfaces and with each other: walls, roads, tracks, balls, wheels and discs.
-
-A surface is where the model has it. What touches is smaller by a clearance (cams.py), and where a contact hardly yields
-also by as much as it presses in; where one sees that, the two pieces may touch by design. A body without joints is a
-ball, or where there is friction, which turns it, a wheel with a tyre; one with joints, or with several places that
-touch, gets discs. What touches a disc that is itself on ground, or a yielding profile of a moving body, has no parts.
-"""
+"""Rolling and touching contacts: discs on roads, tracks and walls."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.model.laws.curve import Curve
-from mechanisms.stages.automatic.cams.cams import pushing_cam, pushing_extent, with_room
-from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import contact_kind, force_kind
+from mechanisms.stages.automatic.cams import pushing_cam, pushing_extent, with_room
+from mechanisms.stages.automatic.layout.curves import curve_path, farthest, on_body, profile_path, turns_left
 from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.profiles import curve_path, farthest, on_body, profile_path, turns_left
+from mechanisms.stages.automatic.layout.plan import contact_kind, force_kind, kind
+from mechanisms.stages.automatic.layout.sizes import Extent, extent
+from mechanisms.stages.automatic.rolling.roads import THICK, Road, along
 from mechanisms.stages.automatic.rolling.rounds import Look, Round, round_at
-from mechanisms.stages.automatic.rolling.surfaces import touched_path, touched_road
-from mechanisms.stages.automatic.rolling.tracks import circle, track
-from mechanisms.stages.automatic.rolling.walls import NOSE, Line, roads
+from mechanisms.stages.automatic.rolling.tracks import circle, rolled_road, touched_path, touched_road, track
 from shared.shapes.polyline import distances
+from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -32,14 +28,96 @@ if TYPE_CHECKING:
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Layout
 
-    type Touch = Force | Joint
+
+# Straight walls on ground from contacts with lines: as long as the way along them, and meeting in mitred corners.
+#
+# The lines of one disc leave it the region in which it is on the free side of them all. So each wall ends where it
+# crosses another one, and has its matter outside.
+
+BEYOND = 1.2
+"""How far a wall goes on beyond the way of what touches it, in that one's radii."""
+CORNER = 3.0
+"""A wall that ends nearer than this to another one (radii) goes on to it."""
+SHARPEST = math.radians(20.0)
+"""Walls at a smaller angle have no mitred corner."""
+PARALLEL = 1e-3
+"""Walls at a smaller angle (rad) do not meet."""
+NOSE = 4.0
+"""The least radius of what touches (rmm); the wall of a smaller one lies back by the difference."""
+
+
+@dataclass(eq=False)
+class Line:
+    """A line on ground (rmm): a place, its direction, and the round parts that it carries with their ways along it."""
+
+    name: str
+    start: np.ndarray
+    way: np.ndarray
+    rounds: list[Round] = field(default_factory=list)
+    travel: list[tuple[float, float]] = field(default_factory=list)
+
+    @property
+    def free(self) -> np.ndarray:
+        """(2,) the unit vector to the free side."""
+        return np.array([-self.way[1], self.way[0]])
+
+    def carry(self, part: Round, places: np.ndarray) -> None:
+        """Add a round part that goes along (T, 2) places."""
+        along = (places - self.start) @ self.way
+        beyond = BEYOND * part.radius
+        self.rounds.append(part)
+        self.travel.append((float(along.min()) - beyond, float(along.max()) + beyond))
+
+    def is_same(self, other: Line) -> bool:
+        """Whether both are one line with one free side."""
+        return bool(np.abs(self.way - other.way).max() < 1e-9 and abs((other.start - self.start) @ self.free) < 1e-6)
+
+
+def roads(lines: Sequence[Line]) -> list[Road]:
+    """A wall for each line."""
+    walls = []
+    for line in lines:
+        low, high = min(low for low, _ in line.travel), max(high for _, high in line.travel)
+        shared = [other for other in lines if other is not line and {*other.rounds} & {*line.rounds}]
+        reach = CORNER * max(part.radius for part in line.rounds)
+        behind = [THICK * -line.free] * 2  # of the last and of the first place
+        first, last = low - reach, high + reach
+        for other in shared:
+            turn = float(line.way @ other.free)  # sine of the angle between them; below 0: it ends here
+            if abs(turn) < PARALLEL:
+                continue
+            at = float((other.start - line.start) @ other.free) / turn
+            if turn < 0 and at < last:
+                high, behind[0], last = at, _mitre(line, other), at
+            elif turn > 0 and at > first:
+                low, behind[1], first = at, _mitre(line, other), at
+        path = np.array([line.start + low * line.way, line.start + high * line.way])
+        walls.append(Road(line.name, line.rounds, path, np.array([path[1] + behind[0], path[0] + behind[1]])))
+    return walls
+
+
+def _mitre(line: Line, other: Line) -> np.ndarray:
+    """(2,) from where two walls meet to where their outer faces meet; square where that would be far."""
+    cosine = float(line.free @ other.free)
+    if math.pi - math.acos(max(-1.0, min(1.0, cosine))) < SHARPEST:
+        return -THICK * line.free
+    return -THICK * (line.free + other.free) / (1.0 + cosine)
+
+
+# Contacts of discs with surfaces and with each other: walls, roads, tracks, balls, wheels and discs.
+#
+# A surface is where the model has it. What touches is smaller by a clearance (cams.py), and where a contact hardly
+# yields also by as much as it presses in; where one sees that, the two pieces may touch by design. A body without
+# joints is a ball, or where there is friction, which turns it, a wheel with a tyre; one with joints, or with several
+# places that touch, gets discs. What touches a disc that is itself on ground, or a yielding profile of a moving body,
+# has no parts.
+
+type Touch = Force | Joint
 
 BALL, DISC, WHEEL = 12.0, 18.0, 22.0
 """Least radii (rmm)."""
 YIELDS = 0.3
 """Bodies that press further into each other (rmm) do so in the film, too."""
-BEYOND = 1.2
-"""How far a road goes on beyond the way of its wheel, in the wheel's radii."""
 
 
 @contact_kind("rigid_contact")
@@ -243,3 +321,71 @@ def extent_of(touch: Touch, solution: Solution) -> Extent:
     least = WHEEL if touch.kind.name == "tyre" or touch.params.get("friction", 0.0) > 0.0 else BALL
     round_it = ((touch.i, farthest(touch.params["points"])),) if closed else ()
     return Extent(((touch.j, radius), *round_it), ((radius, least),) if radius > 0 else ())
+
+
+# Discs that roll on a line or a curve: a wheel with a tyre, and the road as a wall on the base, or on a moving body;
+# closed curves are rings round the wheel, or discs (tracks.py).
+#
+# Wheel and road touch by design; they are made with the clearance of a cam and its roller.
+
+BEYOND_TRAVEL = 0.8
+"""How far a straight road goes on beyond the wheel's travel, in the wheel's radii."""
+LEAST = 17.0
+"""Least radius of a wheel (rmm): an eye lies within its tyre."""
+
+
+@kind("rolling_disc")
+def on_lines(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """A wheel and a road for each joint."""
+    features: list[Feature] = []
+    for joint in joints:
+        _refuse(m, joint)
+        start, angle = np.array(layout.place(joint.i)), joint.i.angle
+        way = np.array([math.cos(angle), math.sin(angle)])
+        travel = (layout.seen(joint.j.body.name, layout.place(joint.j), joint.i.body.name) - start) @ way
+        beyond = BEYOND_TRAVEL * layout.sizes.of_metres(joint.params["radius"])
+        ends = np.array([travel.min() - beyond, travel.max() + beyond])
+        features += _rolling(joint, start + ends[:, None] * way, False, layout)
+    return features
+
+
+@kind("rolling_on_curve")
+def on_curves(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """A wheel and a road for each joint."""
+    features: list[Feature] = []
+    for joint in joints:
+        _refuse(m, joint)
+        closed = bool(joint.params["closed"])
+        path = on_body(curve_path(joint.params["points"], True), joint.i, layout) if closed else None
+        features += _rolling(joint, path, closed, layout)
+    return features
+
+
+def _rolling(joint: Joint, path: np.ndarray | None, closed: bool, layout: Layout) -> list[Feature]:
+    """Wheel and road; without a ``path`` the road is along the joint's open curve."""
+    radius = layout.sizes.of_metres(joint.params["radius"])
+    wheel, new = round_at(layout, joint.name, joint.j.body.name, layout.place(joint.j), radius, "wheel")
+    body, features = joint.i.body.name, [wheel] if new else []
+    if path is not None and closed:
+        return [*features, track(joint.name, body, wheel, path, True)]
+    road = rolled_road(joint, wheel, layout) if path is None else along(joint.name, [wheel], path)
+    if body == "ground":
+        return [*features, road]
+    return [*features, track(joint.name, body, wheel, road.path, False, road)]
+
+
+def _refuse(m: Mechanism, joint: Joint) -> None:
+    if joint.j.body.name == "ground":
+        raise UserError(
+            f"{m.name}: joint '{joint.name}' is a {joint.kind.name.replace('_', ' ')} whose disc is on ground; "
+            f"it has no automatic parts yet; write {shown_file(m.name, 'parts')}"
+        )
+
+
+@extent("rolling_disc")
+@extent("rolling_on_curve")
+def extent_of_rolling(joint: Joint, solution: Solution) -> Extent:
+    """The wheel, and a closed curve."""
+    radius = joint.params["radius"]
+    round_it = ((joint.i, farthest(joint.params["points"])),) if joint.params.get("closed") else ()
+    return Extent(((joint.j, radius), *round_it), ((radius, LEAST),))

@@ -13,28 +13,37 @@ from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
 from mechanisms.stages.automatic.layout.planar import disc
-from mechanisms.stages.automatic.shafts.banks import banks, deck_corners, deck_takes, fins
-from mechanisms.stages.automatic.shafts.bearers import BOSS, Bearers, bearers
-from mechanisms.stages.automatic.shafts.bodies.kinds import Machine
-from mechanisms.stages.automatic.shafts.bodies.machine import free_links, machine
+from mechanisms.stages.automatic.shafts.bearings import (
+    BOSS,
+    FOOT,
+    Axle,
+    Bearers,
+    axle_takes,
+    axles,
+    bearers,
+    free_places,
+)
+from mechanisms.stages.automatic.shafts.bodies import Machine
 from mechanisms.stages.automatic.shafts.cylinders import Cylinder, cylinders
-from mechanisms.stages.automatic.shafts.free_places import free_places
-from mechanisms.stages.automatic.shafts.mounted.valves import ValvePlan, valve_plans
-from mechanisms.stages.automatic.shafts.mounted.wheels import Wheels, wheels
+from mechanisms.stages.automatic.shafts.machine import free_links, machine
 from mechanisms.stages.automatic.shafts.passing import (
     Meeting,
     Takes,
+    banks,
     cylinder_takes,
+    deck_corners,
+    deck_takes,
+    fins,
     links_take,
     meeting,
     refuse_meetings,
     shaft_takes,
     weights,
 )
-from mechanisms.stages.automatic.shafts.pins_along import FOOT, Axle, axle_takes, axles
 from mechanisms.stages.automatic.shafts.rams import RamPlan, ram_plans
-from mechanisms.stages.automatic.shafts.shaft_plan import ShaftPlan, shaft_plan
-from mechanisms.stages.automatic.shafts.thickness import Measures, thicknesses
+from mechanisms.stages.automatic.shafts.shaft_plan import Measures, ShaftPlan, shaft_plan, thicknesses
+from mechanisms.stages.automatic.shafts.valves import ValvePlan, valve_plans
+from mechanisms.stages.automatic.shafts.wheels import Wheels, wheels
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 
@@ -43,7 +52,7 @@ if TYPE_CHECKING:
 
     from mbsd import Mechanism, Solution
     from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.bodies.mounted import Mounted
+    from mechanisms.stages.automatic.shafts.bodies import Mounted
 
 BELOW = 8.0
 """From the lowest part that moves to the base plate, at least (rmm)."""

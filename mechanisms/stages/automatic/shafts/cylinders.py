@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
-from mechanisms.stages.automatic.shafts.bodies.planes import SAME
-from mechanisms.stages.automatic.shafts.knuckles import (
+from mechanisms.stages.automatic.shafts.bodies import (
     HUB,
     KNUCKLE_EYE,
+    SAME,
     carrier,
     is_carrier,
     refuse_near,
@@ -29,7 +29,7 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from mechanisms.stages.automatic.shafts.bodies.kinds import Link, Machine, Piston, Shaft
+    from mechanisms.stages.automatic.shafts.bodies import Link, Machine, Piston, Shaft
 
 SQUARE = 0.95
 """Bore over stroke, where there is room and no gas says otherwise."""

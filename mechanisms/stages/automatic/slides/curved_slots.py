@@ -15,15 +15,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import build, kind
-from mechanisms.stages.automatic.layout.followed import continued, end_ways, evenly, followed
+from mechanisms.stages.automatic.layout.curves import continued, curve_path, end_ways, evenly, followed, on_body
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
+from mechanisms.stages.automatic.layout.plan import build, kind
 from mechanisms.stages.automatic.layout.planar import convex_hull, disc
-from mechanisms.stages.automatic.layout.profiles import curve_path, on_body
-from mechanisms.stages.automatic.slides.slot_solids import channelled, slotted
-from mechanisms.stages.automatic.slides.slots import Slot, entered
+from mechanisms.stages.automatic.layout.sizes import Extent, extent
+from mechanisms.stages.automatic.slides.slots import Slot, channelled, entered, slotted
 from shared.shapes.band import normals, sharpest
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
@@ -31,9 +29,8 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 STEP, MOST, FINEST = 2.0, 240, 960

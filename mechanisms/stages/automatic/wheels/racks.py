@@ -1,8 +1,4 @@
-"""Racks: a toothed bar in the layer of its pinions, screwed to its body's plate or on posts of the ground.
-
-The bar is in phase with its pinions and as long as their way over it. It has a layer of its own and stands off its
-body's plate by two studs, so that a slide may guide the body right under the teeth.
-"""
+"""Racks with their pinions, and the solids of racks."""
 
 from __future__ import annotations
 
@@ -14,17 +10,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.plan import Foot, build
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
-from shared.shapes.involute import DEDENDUM
+from shared.shapes.build import extruded
+from shared.shapes.involute import DEDENDUM, rack_outline, wire
+from shared.shapes.outline import circle
+from shared.shapes.solid import placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.wheels.wheels import Wheel
+
+
+# Racks: a toothed bar in the layer of its pinions, screwed to its body's plate or on posts of the ground.
+#
+# The bar is in phase with its pinions and as long as their way over it. It has a layer of its own and stands off its
+# body's plate by two studs, so that a slide may guide the body right under the teeth.
 
 BACK = 11.0
 """Height of the bar under its teeth."""
@@ -159,3 +166,38 @@ def _path(rack: Rack, pinion: Wheel, layout: Layout) -> np.ndarray:
     seen = layout.seen(pinion.body, (pinion.x, pinion.y), rack.body) - np.array([rack.x, rack.y])
     c, s = math.cos(rack.angle), math.sin(rack.angle)
     return np.stack([c * seen[:, 0] + s * seen[:, 1], c * seen[:, 1] - s * seen[:, 0]], axis=1)
+
+
+# The solids of a rack (rmm): the toothed bar, and the studs or posts that carry it.
+
+
+@build.register(Rack)
+def build_rack(rack: Rack, plan: Plan, heights: Heights) -> None:
+    """A steel bar; in its body's layer it is part of the plate."""
+    first, last = rack.teeth
+    outline = rack_outline(
+        last - first + 1,
+        rack.module,
+        rack.tip,
+        rack.root,
+        BACK,
+        rack.play / 2,
+        (rack.phase or 0.0) + first * rack.pitch,
+    )
+    bar = placed(extruded(wire(outline), heights.thickness), rack.x, rack.y, turn=math.degrees(rack.angle))
+    z, seat = heights.bottom(rack.layer), plan.layout.sizes.pivot.fit.seat
+    if rack.body == "ground":
+        low, high = seat, z - seat
+    elif heights.bottom(rack.body) == z:
+        plan.plate(rack.body, bar, (rack.x, rack.y, 0.0))
+        return
+    elif heights.bottom(rack.body) < z:
+        low, high = heights.top(rack.body) + seat, z - seat
+    else:
+        low, high = heights.top(rack.layer) + seat, heights.bottom(rack.body) - seat
+    plan.make(rack.body, f"rack_{rack.name}", placed(bar, z=z), "steel", 0)
+    for k, (x, y) in enumerate(rack.seats(plan.layout)):
+        stud = extruded(circle(x, y, STUD), high - low, low)
+        plan.make(rack.body, f"stud_{rack.name}_{k + 1}", stud, "aluminium", 0)
+        if rack.body == "ground":
+            plan.feet.append(Foot("", x, y, STUD + 2.0))

@@ -17,7 +17,6 @@ from shared.stage import paths
 from shared.stage.files import file_hash, sources_hash
 from shared.stage.memory import recalled
 
-__all__ = ["PROJECT", "Inputs", "file_state", "name_of", "observed", "package_state", "path_of", "sources_state"]
 PICTURES = ("mbsd/drawing",)
 """Sources that decide no number; what they draw has them in its key by their own name."""
 RESULTS = "results:"

@@ -12,8 +12,8 @@ from types import ModuleType
 
 from mbsd.dependencies.imported import file_of, imported, modules_below, package_of
 from mbsd.dependencies.installed import distributions, is_installed
-from mechanisms.stages.loading.inputs import PROJECT, Inputs, package_state, sources_state
-from shared.stage.paths import MECHANISMS, ROOT, SOLVER, in_workshop
+from mechanisms.stages.loading.inputs import PROJECT, ROOT, Inputs, package_state, sources_state
+from shared.stage.paths import MECHANISMS, SOLVER, in_workshop
 
 
 def loaded_inputs(start: Path, package: str, before: set[str], leave_out: Path | None = None) -> Inputs:

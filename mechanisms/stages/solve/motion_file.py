@@ -14,7 +14,8 @@ from shared import contract
 if TYPE_CHECKING:
     import numpy as np
 
-    from mbsd import Force, Joint, Solution
+    from mbsd import Joint, Solution
+    from mbsd.model.force import Force
     from mbsd.results.force_view import ForceView
     from mbsd.results.views import Wrench
     from shared.contract.loads import Look

@@ -20,8 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from mbsd.results.solution import Solution
+    from mbsd import Mechanism, Solution
 
 CLOSE = 2e-5
 """Largest difference, in sizes of the mechanism (turned bodies count by their angle times that size)."""

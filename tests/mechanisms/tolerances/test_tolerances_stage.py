@@ -17,7 +17,7 @@ from mbsd.measures import largest, samples
 from mechanisms.slider_crank import tolerances as author
 from mechanisms.slider_crank.mechanism import Params, build
 from mechanisms.stages.solve.masses import give_masses
-from mechanisms.stages.tolerances import stage
+from mechanisms.stages.tolerances import stage as tolerances_stage
 from mechanisms.stages.tolerances.asked import asked
 from mechanisms.stages.tolerances.summary import advice
 from shared.stage.errors import UserError
@@ -68,7 +68,7 @@ def test_a_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(UserError, match=r"slider_crank-offset: cannot write .*\.csv: No space left on device"):
-        stage.run("slider_crank-offset")
+        tolerances_stage.run("slider_crank-offset")
     assert [path.name for path in (tmp_path / "slider_crank-offset").iterdir()] == ["tolerances"]
     assert not list((tmp_path / "slider_crank-offset" / "tolerances").iterdir())
 
@@ -77,7 +77,7 @@ def test_the_example_of_the_gallery_is_what_the_library_finds(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("MBSD_OUT", str(tmp_path))
-    stage.run("slider_crank-offset")
+    tolerances_stage.run("slider_crank-offset")
     folder = tmp_path / "slider_crank-offset" / "tolerances"
     assert sorted(file.name for file in folder.iterdir()) == ["end_of_stroke.csv", "end_of_stroke.svg", "summary.md"]
     m = build(Params(offset=0.020))
@@ -95,10 +95,10 @@ def test_the_example_of_the_gallery_is_what_the_library_finds(
     assert f"tighten '{t.tighten[0].name}' first" in said
     assert "nothing to do" not in said
     before = (folder / "end_of_stroke.svg").read_bytes()
-    stage.run("slider_crank-offset")
+    tolerances_stage.run("slider_crank-offset")
     assert "nothing to do" in capsys.readouterr().out
     (folder / "end_of_stroke.svg").write_text("cut short")
-    stage.run("slider_crank-offset")
+    tolerances_stage.run("slider_crank-offset")
     assert (folder / "end_of_stroke.svg").read_bytes() == before
 
 
@@ -166,7 +166,7 @@ def test_a_function_of_other_arguments_is_refused(monkeypatch: pytest.MonkeyPatc
 
 def test_a_mechanism_without_one_says_what_to_write() -> None:
     with pytest.raises(UserError, match=r"four_bar/tolerances\.py is missing; write def tolerances"):
-        stage.run("four_bar")
+        tolerances_stage.run("four_bar")
 
 
 def test_advice_knows_when_there_is_nothing_to_tighten() -> None:

@@ -11,11 +11,11 @@ from shared.stage.paths import compared, known_name, mechanism_file, owner_of, v
 STAGES = {
     "parts": ("mechanisms.stages.parts.stage", "make the solids: STL, STEP and parts.json"),
     "solve": ("mechanisms.stages.solve.stage", "solve the motion: data.json"),
-    "animate": ("mechanisms.stages.animate.stage", "the moving skeleton with its arrows: animation.mp4, animation.gif"),
+    "animate": ("mechanisms.stages.animate", "the moving skeleton with its arrows: animation.mp4, animation.gif"),
     "clearance": ("mechanisms.stages.clearance.stage", "prove that no two parts touch over the motion: clearance.json"),
     "print": ("mechanisms.stages.print.stage", "lay out what is to be printed, cut and bought: 3MF, STL, DXF, lists"),
-    "shot": ("mechanisms.stages.shot.stage", "check the scene's description: shot.json"),
-    "tolerances": ("mechanisms.stages.tolerances.stage", "how parts as they are made stray: tolerances/"),
+    "shot": ("mechanisms.stages.shot", "check the scene's description: shot.json"),
+    "tolerances": ("mechanisms.stages.tolerances", "how parts as they are made stray: tolerances/"),
 }
 
 
@@ -95,7 +95,7 @@ def main() -> int | None:
 
         return export.run(arguments.name, arguments.format, arguments.time)
     if arguments.command == "study":
-        from mechanisms.stages.study import stage as study
+        from mechanisms.stages import study as study
 
         return study.run(arguments.name, arguments.over)
     if arguments.command == "check":

@@ -72,8 +72,8 @@ def tell_current(names: Iterable[str]) -> None:
 
 def is_current(name: str) -> bool:
     """Return True if motion, parts and shot that are there follow from the author's files as they are."""
+    from mechanisms.stages import shot as shot
     from mechanisms.stages.parts import stage as parts
-    from mechanisms.stages.shot import stage as shot
     from mechanisms.stages.solve import stage as solve
 
     out = Out(name)
@@ -155,7 +155,7 @@ def _made(out: Out) -> dict[str, Path]:
 
 def _older(out: Out, made: Mapping[str, Path]) -> list[str]:
     """Return the results that are older than what they were made of."""
-    from mechanisms.stages.shot import stage as shot
+    from mechanisms.stages import shot as shot
     from mechanisms.stages.solve import stage as solve
 
     stale = set() if _is_fresh(solve.is_fresh, out) else {out.motion, out.skeleton, out.animation("", ".mp4")}

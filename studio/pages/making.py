@@ -55,8 +55,8 @@ def run(names: Sequence[str]) -> int:
 
 def tell_fresh(names: Sequence[str]) -> int:
     """Print the names whose page has nothing to do; mechanism.py of each is run for its parameters."""
+    from mechanisms.stages import shot as shot
     from mechanisms.stages.parts import stage as parts
-    from mechanisms.stages.shot import stage as shot
     from mechanisms.stages.solve import stage as solve
     from render import view
     from shared.stage.memory import remembered

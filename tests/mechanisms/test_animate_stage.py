@@ -11,7 +11,7 @@ import pytest
 
 from mbsd.drawing.animation.words import QUANTITIES as DRAWN
 from mbsd.results.solution import Solution
-from mechanisms.stages.animate import stage as animate_stage
+from mechanisms.stages import animate as animate_stage
 from mechanisms.stages.parts import stage as parts_stage
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out

@@ -85,7 +85,7 @@ def test_where_masses_decide_nothing_parts_are_made_once(
 
 
 def test_given_masses_count_before_those_of_the_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    from mechanisms.stages.parts.mass_properties import mass_of
+    from mechanisms.stages.parts.meshes import mass_of
 
     mass = mass_of(cq.Workplane().box(10, 10, 10).val(), 7850.0)
     _Author(monkeypatch, mass=0.5)

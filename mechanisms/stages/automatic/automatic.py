@@ -30,8 +30,7 @@ from mechanisms.stages.automatic.rolling.roads import runs_on_ground
 from mechanisms.stages.automatic.shafts.along import THINNEST_ALONG, Along
 from mechanisms.stages.automatic.shafts.bodies import has_places
 from mechanisms.stages.automatic.standing import hold
-from mechanisms.stages.loading.wished_mount import wished
-from mechanisms.stages.loading.wished_scale import wished_scale
+from mechanisms.stages.loading.wishes import wished, wished_scale
 from shared.contract.materials import MATERIALS
 from shared.contract.mount import Mount, mounted
 from shared.stage.console import Shown

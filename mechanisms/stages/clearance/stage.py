@@ -40,11 +40,9 @@ from shared.stage.stages import Stage, contract_sources, key_of, versions
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from mechanisms.stages.clearance.axes import Axes
-    from mechanisms.stages.clearance.path import BodyPath
+    from mechanisms.stages.clearance.path import Axes, BodyPath
     from mechanisms.stages.clearance.pieces import MeshPiece
-    from mechanisms.stages.clearance.search.search import Least
-    from mechanisms.stages.clearance.search.sweep import Sweep
+    from mechanisms.stages.clearance.search import Least, Sweep
     from mechanisms.stages.clearance.slide import Slides
 
 LIMIT = 0.05
@@ -75,7 +73,7 @@ def run(name: str, scale: str = "") -> None:
     if stage.is_fresh():
         say("clearance", f"{out.title}: nothing to do")
         return
-    from mechanisms.stages.clearance.at_scale import at_scale, what_shrinks
+    from mechanisms.stages.clearance.path import at_scale, what_shrinks
     from mechanisms.stages.clearance.pieces import read_pieces
 
     reach = REACH if at is None else min(max(REACH * at.ratio, REACH_OF_MODELS), REACH)
@@ -116,14 +114,11 @@ def check(
     """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`, with
     ``title`` as the name, which is that of the mechanism by default.
     """
-    from mechanisms.stages.clearance import far as bodies
-    from mechanisms.stages.clearance.axes import axes_of
-    from mechanisms.stages.clearance.belts import bands
-    from mechanisms.stages.clearance.meshing import least_in_mesh, meshes
-    from mechanisms.stages.clearance.path import paths
-    from mechanisms.stages.clearance.search.least import least_gap
-    from mechanisms.stages.clearance.search.search import RESOLUTION
-    from mechanisms.stages.clearance.search.sweep import Sweep
+    from mechanisms.stages.clearance import path as bodies
+    from mechanisms.stages.clearance.meshing import bands, least_in_mesh, meshes
+    from mechanisms.stages.clearance.outlines import least_gap
+    from mechanisms.stages.clearance.path import axes_of, paths
+    from mechanisms.stages.clearance.search import RESOLUTION, Sweep
     from mechanisms.stages.clearance.slide import slides_of
     from shared.contract.spanning import with_rods
 
@@ -237,8 +232,8 @@ def _sliced(
 
     Only for a pair that stays near: else the motion alone proves it sooner.
     """
-    from mechanisms.stages.clearance.search.least import least_gap
-    from mechanisms.stages.clearance.search.sweep import Sweep
+    from mechanisms.stages.clearance.outlines import least_gap
+    from mechanisms.stages.clearance.search import Sweep
     from mechanisms.stages.clearance.slide import BESIDE, ROUNDING, sliced
 
     near = BESIDE[1] * reach

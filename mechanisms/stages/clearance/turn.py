@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechanisms.stages.clearance.distinct import distinct
+from mechanisms.stages.clearance.pieces import distinct
 
 RESOLUTION = 0.004
 """The bound is at most this far (mm) below what is reached, or ROUNDS are over."""

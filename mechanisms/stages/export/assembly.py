@@ -1,25 +1,48 @@
-"""The solids as a STEP assembly in one pose (mm): a product for each body, its pieces below, with names and colours.
-
-    mechanism ─► body, where it is at the time ─► body/piece, as its author drew it
-
-Pieces of a body's main material have the body's colour in all pictures, others the ink of theirs.
-"""
+"""STEP assemblies of the parts in a pose, and the times and formats that a user asks for."""
 
 from __future__ import annotations
 
 import re
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mechanisms.stages.export.wanted import Wanted
-from mechanisms.stages.solve.body_colours import main_material
+import numpy as np
+
 from mechanisms.stages.solve.motion_file import to_motion
+from mechanisms.stages.solve.skeleton_file import main_material
 from shared.contract import BodyParts, Motion, Parts
 from shared.contract.materials import MATERIALS
 from shared.contract.spanning import with_rods
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
+from shared.stage.paths import Out
+
+# What is to be exported: a solved mechanism, the time of a pose, and its parts where there are some.
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """One export."""
+
+    solution: Any
+    time: float
+    """Time of a pose (s)."""
+    out: Out
+    parts: Parts | None
+
+    @property
+    def row(self) -> int:
+        """Number of the output nearest to the time."""
+        return int(np.abs(self.solution.t - self.time).argmin())
+
+
+# The solids as a STEP assembly in one pose (mm): a product for each body, its pieces below, with names and colours.
+#
+#     mechanism ─► body, where it is at the time ─► body/piece, as its author drew it
+#
+# Pieces of a body's main material have the body's colour in all pictures, others the ink of theirs.
 
 MM = 1000.0
 GROUND = "ground"

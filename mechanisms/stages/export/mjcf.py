@@ -10,8 +10,7 @@ import math
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from mechanisms.stages.export.numbers import number, numbers
-from mechanisms.stages.export.tree import GROUND, MESHING, Node, Tree, poses_of, tree_of
+from mechanisms.stages.export.tree import GROUND, MESHING, Node, Tree, number, numbers, poses_of, tree_of
 
 GAIN = 1e4
 """Gain of the drivers' servos, in N m s (or N s/m) for each kg m^2 (kg) of the mechanism."""

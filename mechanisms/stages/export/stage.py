@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from mechanisms.stages.export import assembly, drawings, mjcf, urdf
+from mechanisms.stages.export.assembly import Wanted
 from mechanisms.stages.export.modelica.text import modelica
-from mechanisms.stages.export.wanted import Wanted
 from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.inputs import Inputs, observed
-from mechanisms.stages.loading.recording import recording
+from mechanisms.stages.loading.inputs import Inputs, observed, recording
 from mechanisms.stages.solve import stage as solving
 from shared import contract
 from shared.stage.console import say, warn
@@ -35,7 +34,7 @@ def run(name: str, form: str, time: float = 0.0) -> None:
         raise UserError(
             f"there is no format {form!r} to export; choose one of: {', '.join(FORMATS)}{did_you_mean(form, FORMATS)}"
         )
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    from mechanisms.stages.loading.inputs import loaded_inputs
 
     out, before = Out(name), set(sys.modules)
     parts = _parts(out)
@@ -108,7 +107,7 @@ def _text(write: Callable[..., Any], timed: bool = False) -> Callable[[Wanted], 
 
 
 def _fmu(wanted: Wanted) -> Written:
-    from mechanisms.stages.export.fmu.unit import fmu
+    from mechanisms.stages.export.fmu import fmu
 
     return fmu(wanted.solution)
 

@@ -1,14 +1,32 @@
-"""A mechanism as a tree of bodies with the joints that close its loops, as simulators of robots describe machines.
-
-From the ground outwards one joint attaches each body; a joint between two bodies that are attached closes a loop. Poses
-are those at the start of a solution, where all loops are closed.
-"""
+"""The mechanism as a tree of bodies, as models of robots have it, and numbers as text."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
 from typing import Any
+
+# Numbers as XML files of other programs have them.
+
+DIGITS = 15
+ROUNDING = 1e-15
+"""Less is written as zero."""
+
+
+def number(value: float) -> str:
+    """One number with all the digits that matter."""
+    return f"{value:.{DIGITS}g}"
+
+
+def numbers(*values: float) -> str:
+    """Several, with spaces between."""
+    return " ".join(number(0.0 if abs(value) < ROUNDING else value) for value in values)
+
+
+# A mechanism as a tree of bodies with the joints that close its loops, as simulators of robots describe machines.
+#
+# From the ground outwards one joint attaches each body; a joint between two bodies that are attached closes a loop.
+# Poses are those at the start of a solution, where all loops are closed.
 
 GROUND = "ground"
 ATTACHING = ("revolute", "prismatic", "pin_in_slot", "weld")

@@ -18,16 +18,12 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from mechanisms.stages.loading.inputs import Inputs, observed
+from mechanisms.stages.loading.inputs import Inputs, Recorder, observed, recording
 from mechanisms.stages.loading.loading import author_code, has, load, package_of, params
-from mechanisms.stages.loading.recording import Recorder, recording
-from mechanisms.stages.loading.wished_mount import of_shot, wishing
-from mechanisms.stages.loading.wished_scale import scaling
-from mechanisms.stages.parts import remembered
-from mechanisms.stages.parts.kept_pieces import KeptPieces
-from mechanisms.stages.parts.of_models import needs_machine, needs_masses
-from mechanisms.stages.parts.plain_values import plain_text
-from mechanisms.stages.parts.traced_params import fields_of, traced
+from mechanisms.stages.loading.wishes import of_shot, scaling, wishing
+from mechanisms.stages.parts import memory
+from mechanisms.stages.parts.automatic_solids import needs_machine, needs_masses
+from mechanisms.stages.parts.memory import KeptPieces, fields_of, plain_text, traced
 from shared.cluster.address import address
 from shared.contract import Parts, Provenance, write_parts
 from shared.contract.materials import MATERIALS
@@ -80,7 +76,7 @@ def run(name: str, scale: str = "", anyway: bool = False) -> None:
         with_machine = needs_machine(out.name)
         wish = _wish(out.name, wish.scale, with_machine)
     if not anyway:
-        remembered.refuse_again(out, lambda reads, inputs: _key(given, reads, inputs, wish))
+        memory.refuse_again(out, lambda reads, inputs: _key(given, reads, inputs, wish))
     made = _of_cluster(out, given, wish, recorder) if address() else None
     made = made or _made_here(out, given, wish, before, recorder)
     count = _write(out, made.files, made.document)
@@ -88,7 +84,7 @@ def run(name: str, scale: str = "", anyway: bool = False) -> None:
     notes = {"parameters": made.reads, "inputs": made.inputs.names(), **({} if with_machine else {MACHINE: False})}
     Stage(out, "parts", made.document.provenance.inputs, outputs).done(**notes)
     _kept_pieces(out).clear()
-    remembered.forget(out)
+    memory.forget(out)
     say("parts", _summary(out.title, made.document, count))
 
 
@@ -130,9 +126,9 @@ def _made_here(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
         return _described(out, given, wish, before, recorder, seen)
     except UserError as error:
         seconds = time.monotonic() - began
-        if remembered.is_worth_it(error, seconds) and (wish.by_itself or seen.is_whole):
+        if memory.is_worth_it(error, seconds) and (wish.by_itself or seen.is_whole):
             reads, inputs = sorted(seen.reads), seen.inputs.joined(_of_mechanism(out.name, before, recorder))
-            remembered.remember(out, error, _key(given, reads, inputs, wish), reads, inputs)
+            memory.remember(out, error, _key(given, reads, inputs, wish), reads, inputs)
         raise
 
 
@@ -147,7 +143,7 @@ class _Seen:
 
 def _of_mechanism(name: str, before: set[str], recorder: Recorder) -> Inputs:
     """What mechanism.py was made of and read."""
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    from mechanisms.stages.loading.inputs import loaded_inputs
 
     return loaded_inputs(mechanism_file(name), package_of(name), before).joined(recorder.inputs())
 
@@ -158,8 +154,8 @@ def _kept_pieces(out: Out) -> KeptPieces:
 
 
 def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder, seen: _Seen) -> _Found:
-    from mechanisms.stages.parts.described_body import described_body
-    from mechanisms.stages.parts.mount_of import follows_gravity, mount_of
+    from mechanisms.stages.parts.automatic_solids import follows_gravity, mount_of
+    from mechanisms.stages.parts.bodies import described_body
     from shared.shapes.bodies import Bodies
 
     name = out.name
@@ -287,8 +283,8 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
     A property or method of Params can compute anything, a value may have no text that shows it, and parts.py or what
     it imports may use other names of mechanism.py.
     """
-    from mechanisms.stages.loading.loaded_files import author_files
-    from mechanisms.stages.parts.params_use import only_annotates
+    from mechanisms.stages.loading.inputs import author_files
+    from mechanisms.stages.parts.memory import only_annotates
 
     fields, package = fields_of(given), package_of(name)
     if is_single_file(name) or any(read not in fields or plain_text(fields[read]) is None for read in reads):
@@ -300,9 +296,9 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
 
 def _build(name: str, given: Any, seen: _Seen) -> dict[str, list[Any]]:
     """The solids by body; ``seen`` gets what parts.py reads, also where it fails."""
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    from mechanisms.stages.loading.inputs import loaded_inputs
+    from mechanisms.stages.parts.bodies import refuse_unfit
     from mechanisms.stages.parts.cad_reads import reported_cad_files
-    from mechanisms.stages.parts.returned_parts import refuse_unfit
 
     if not has(name, "parts"):
         from mechanisms.stages.parts.automatic_solids import solids_of

@@ -1,12 +1,18 @@
-"""Lays a piece on the bed: on its largest flat face, with as little overhang as possible."""
+"""Laying of pieces on plates: flat sides down, alike pieces together."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, KDTree
+
+from shared.stage.errors import UserError
+
+# Lays a piece on the bed: on its largest flat face, with as little overhang as possible.
 
 type Bed = tuple[float, float, float]
 """Length, width and height that a printer can use (mm); the height is infinite if it is not given."""
@@ -139,3 +145,158 @@ def _standing(vertices: np.ndarray, faces: np.ndarray, turn: np.ndarray, before:
     shift = -placed.min(axis=0)
     whole, moved = (turn, shift) if before is None else (turn @ before.turn, turn @ before.shift + shift)
     return Laid(placed + shift, faces, whole, moved)
+
+
+# Finds pieces that can be cut from a sheet: their outline is the same from the bed up to the sheet's thickness.
+#
+# Eased edges, pockets, counterbores and engraving do not change the outline and are left out of it, and so is what
+# stands above the sheet, such as a boss; both are reported.
+
+SAME = 0.9
+"""The least area of an outline, of the largest, at every height of the sheet; an edge is eased by some of it."""
+FULL = 0.7
+"""How much of the cut sheet the piece must be."""
+THICK = 0.6
+"""A piece thicker than this part of its width is none of a sheet."""
+ABOVE = 0.25
+"""How much of the piece may stand above the sheet."""
+SAMPLES = 24
+LARGE = 0.02
+"""The least area of a face that may be the sheet's upper one, of the outline's."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A piece as something cut from a sheet (mm)."""
+
+    thickness: float
+    above: float
+    """Height of what stands above the sheet and is not in the outline."""
+    full: float
+    """Volume of the piece within the sheet, as a part of the cut sheet's."""
+
+
+def sheet_of(piece: Laid) -> Sheet | None:
+    """The sheet that a laid piece can be cut from; None if its outline changes on the way up."""
+    body = _manifold(piece)
+    x, y, height = piece.size
+    levels = _upper_faces(piece)
+    heights = (np.arange(SAMPLES) + 0.5) / SAMPLES * height
+    outlines = np.array([_filled(body.slice(float(z))) for z in heights])
+    same = outlines >= SAME * outlines.max()
+    if not same[0]:
+        return None
+    for level in levels:
+        below = heights < level
+        if not below.any() or not same[below].all():
+            continue
+        area = body.slice(level / 2).area()
+        within = body.trim_by_plane((0.0, 0.0, -1.0), -level).volume()
+        full = within / (area * level)
+        if body.volume() - within > ABOVE * body.volume():
+            return None
+        if _filled(body.project()) > outlines.max() * 1.01 or not FULL < full < 1.03 or level > THICK * min(x, y):
+            return None
+        above = height - level
+        return Sheet(level, above if above > FLAT else 0.0, min(full, 1.0))
+    return None
+
+
+def _upper_faces(piece: Laid) -> list[float]:
+    """Heights of large faces that look up, from the highest down."""
+    corners = piece.triangles
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    up = across[:, 2] > 0.9999 * np.linalg.norm(across, axis=1)
+    levels, areas = corners[up][:, :, 2].mean(axis=1), across[up, 2] / 2
+    order = np.argsort(levels, kind="stable")
+    levels, areas = levels[order], areas[order]
+    faces = np.split(np.arange(len(levels)), np.flatnonzero(np.diff(levels) > FLAT) + 1)
+    x, y, _ = piece.size
+    large = [face for face in faces if areas[face].sum() > LARGE * x * y / 2]
+    return [round(float(np.average(levels[face], weights=areas[face])), 3) for face in reversed(large)]
+
+
+def _filled(section: Any) -> float:
+    """Area of a section with its holes filled (mm^2)."""
+    return sum(max(_signed(contour), 0.0) for contour in section.to_polygons())
+
+
+def _signed(contour: Any) -> float:
+    x, y = np.asarray(contour, dtype=float).T
+    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2
+
+
+def _manifold(piece: Laid) -> Any:
+    import manifold3d
+
+    mesh = manifold3d.Mesh(piece.vertices.astype(np.float32), piece.faces.astype(np.uint32))
+    solid = manifold3d.Manifold(mesh)
+    if solid.status() != manifold3d.Error.NoError:
+        raise UserError(f"a mesh is not a closed surface ({solid.status()}); make the parts again")
+    return solid
+
+
+# Finds pieces that are equal but for their place: they are made several times, but drawn and listed once.
+#
+# Two pieces are equal if a turn on the bed brings each corner of one mesh to a corner of the other, as it lies or
+# turned over. Mirror images are not equal unless they are also turned images of each other.
+
+NEAR = 5e-3
+"""Corners that are nearer (mm) are the same; single precision leaves a thousandth of it."""
+ALIKE = 1e-4
+"""Relative difference of volumes that is looked at closer."""
+
+
+def groups(pieces: Sequence[tuple[str, Laid]]) -> list[list[int]]:
+    """Indices of equal pieces of one material, each given as (material, mesh); in the order of their first."""
+    kinds: list[list[int]] = []
+    marks: list[tuple[str, float]] = []
+    for index, (material, piece) in enumerate(pieces):
+        volume = volume_of(piece)
+        for group, (other, theirs) in zip(kinds, marks, strict=True):
+            near = abs(volume - theirs) <= ALIKE * theirs
+            if material == other and near and is_equal(piece, pieces[group[0]][1]):
+                group.append(index)
+                break
+        else:
+            kinds.append([index])
+            marks.append((material, volume))
+    return kinds
+
+
+def is_equal(piece: Laid, other: Laid) -> bool:
+    """Whether a turn, as it lies or turned over, and a shift bring the corners of one onto those of the other."""
+    if abs(piece.size[2] - other.size[2]) > NEAR or len(piece.vertices) != len(other.vertices):
+        return False
+    first, second = _centred(piece), _centred(other)
+    over = first * [1.0, -1.0, -1.0] + [0.0, 0.0, piece.size[2]]
+    tree = KDTree(second)
+    return any(_falls_on(corners, second, tree) for corners in (first, over))
+
+
+def _falls_on(first: np.ndarray, second: np.ndarray, tree: KDTree) -> bool:
+    """Whether a turn about the vertical brings each corner onto one of the others."""
+    reach = np.hypot(first[:, 0], first[:, 1])
+    far = int(np.argmax(reach))
+    same = np.abs(np.hypot(second[:, 0], second[:, 1]) - reach[far]) < NEAR
+    same &= np.abs(second[:, 2] - first[far, 2]) < NEAR
+    start = math.atan2(first[far, 1], first[far, 0])
+    for x, y, _ in second[same]:
+        c, s = math.cos(math.atan2(y, x) - start), math.sin(math.atan2(y, x) - start)
+        turned = first @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        if tree.query(turned[::17], distance_upper_bound=NEAR)[0].max() < NEAR:
+            away, at = tree.query(turned, distance_upper_bound=NEAR)
+            if away.max() < NEAR and len(np.unique(at)) == len(second):
+                return True
+    return False
+
+
+def volume_of(piece: Laid) -> float:
+    """Volume of the closed mesh (mm^3)."""
+    corners = piece.triangles
+    return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
+
+
+def _centred(piece: Laid) -> np.ndarray:
+    """Corners about the vertical through their middle."""
+    return piece.vertices - [*piece.vertices[:, :2].mean(axis=0), 0.0]

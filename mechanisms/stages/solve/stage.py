@@ -6,10 +6,9 @@ import sys
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
-from mechanisms.stages.loading.recording import recording
+from mechanisms.stages.loading.inputs import Inputs, observed, recording, sources_state
 from mechanisms.stages.solve import solving
-from mechanisms.stages.solve.body_colours import main_material
+from mechanisms.stages.solve.skeleton_file import main_material
 from shared import contract
 from shared.contract.quantity import written
 from shared.contract.skeleton import write_skeleton
@@ -49,7 +48,7 @@ def run(name: str, parts_are_outdated: bool = False) -> None:
     if _is_fresh(out, parts):
         console.say("solve", f"{name}: nothing to do")
         return
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    from mechanisms.stages.loading.inputs import loaded_inputs
     from mechanisms.stages.solve.motion_file import to_motion
     from mechanisms.stages.solve.skeleton_file import skeleton_of
 

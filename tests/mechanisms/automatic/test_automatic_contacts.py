@@ -15,7 +15,7 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.cams import Cam
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
-from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from shared.shapes.facets import volume_of
 from shared.shapes.polyline import distances

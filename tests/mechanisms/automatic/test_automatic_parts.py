@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
+from mechanisms.stages import shot as shot_stage
 from mechanisms.stages.clearance import stage as clearance_stage
 from mechanisms.stages.parts import stage as parts_stage
-from mechanisms.stages.shot import stage as shot_stage
 from mechanisms.stages.solve import bare_motion
 from mechanisms.stages.solve import stage as solve_stage
 from mechanisms.stages.solve.bare_motion import bare_solution

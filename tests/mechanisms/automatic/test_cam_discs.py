@@ -9,7 +9,7 @@ from OCP.StdFail import StdFail_NotDone
 from mechanisms.stages.automatic import assembly
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.curves import curve_path, set_back
-from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from shared.shapes.cam import cam_disc
 from shared.shapes.facets import volume_of

@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mechanisms.stages.clearance.outlines import least_gap
 from mechanisms.stages.clearance.path import paths, points, relative
 from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search.least import least_gap
-from mechanisms.stages.clearance.search.search import RESOLUTION as SHARP
-from mechanisms.stages.clearance.search.sweep import Sweep
+from mechanisms.stages.clearance.search import RESOLUTION as SHARP
+from mechanisms.stages.clearance.search import Sweep
 from mechanisms.stages.clearance.turn import RESOLUTION, turn_gap
 from shared.contract import Motion
 from shared.stage.errors import UserError

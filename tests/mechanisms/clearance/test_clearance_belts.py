@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
-from mechanisms.stages.clearance.belts import SAG, band, bands
+from mechanisms.stages.clearance.meshing import SAG, band, bands
 from mechanisms.stages.clearance.path import paths
 from mechanisms.stages.clearance.pieces import MeshPiece
 from mechanisms.stages.clearance.stage import check

@@ -10,15 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mechanisms.stages.clearance.outlines import OutlineSearch
 from mechanisms.stages.clearance.path import BodyPath, RelativePath, paths, points
-from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search.facets import nearest, separation
-from mechanisms.stages.clearance.search.outline_search import OutlineSearch
-from mechanisms.stages.clearance.search.search import RESOLUTION as SHARP
-from mechanisms.stages.clearance.search.search import Search
-from mechanisms.stages.clearance.search.spans import Spans
-from mechanisms.stages.clearance.search.sweep import Sweep
-from mechanisms.stages.clearance.tree import FacetTree
+from mechanisms.stages.clearance.pieces import FacetTree, MeshPiece
+from mechanisms.stages.clearance.search import RESOLUTION as SHARP
+from mechanisms.stages.clearance.search import Search, Spans, Sweep, nearest, separation
 from render.film.poses import Moment, Poses
 from shared.contract import BodyMotion, Energy, Motion
 from shared.stage.errors import UserError

@@ -16,10 +16,9 @@ from mbsd import Clearance, tolerances
 from mbsd.measures import largest, samples
 from mechanisms.slider_crank import tolerances as author
 from mechanisms.slider_crank.mechanism import Params, build
+from mechanisms.stages import tolerances as tolerances_stage
 from mechanisms.stages.solve.masses import give_masses
-from mechanisms.stages.tolerances import stage as tolerances_stage
-from mechanisms.stages.tolerances.asked import asked
-from mechanisms.stages.tolerances.summary import advice
+from mechanisms.stages.tolerances import advice, asked
 from shared.stage.errors import UserError
 from tests.studio.command.test_own_folder import mbsd
 

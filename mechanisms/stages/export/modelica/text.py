@@ -9,13 +9,18 @@ from __future__ import annotations
 from typing import Any
 
 import mbsd
-from mechanisms.stages.export.modelica.document import Document
-from mechanisms.stages.export.modelica.expressions import law, number, vector
-from mechanisms.stages.export.modelica.freedoms import chosen
-from mechanisms.stages.export.modelica.identifiers import identifier
-from mechanisms.stages.export.modelica.parts import DRIVERS, FORCES, JOINTS, Parts, amount_of
-from mechanisms.stages.export.modelica.places import Places
-from mechanisms.stages.export.modelica.start import Start, place
+from mechanisms.stages.export.modelica.document import Document, identifier, law, number, vector
+from mechanisms.stages.export.modelica.parts import (
+    DRIVERS,
+    FORCES,
+    JOINTS,
+    Parts,
+    Places,
+    Start,
+    amount_of,
+    chosen,
+    place,
+)
 from mechanisms.stages.export.tree import GROUND
 
 LIBRARY, STANDARD = "1.6.0", "4.0.0"

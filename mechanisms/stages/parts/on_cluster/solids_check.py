@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from mechanisms.stages.parts.mass_properties import combined, mass_of
-from mechanisms.stages.parts.mesh_check import VOLUME_TOLERANCE
+from mechanisms.stages.parts.meshes import VOLUME_TOLERANCE, combined, mass_of
 from mechanisms.stages.parts.on_cluster.answer import parts_from
 from mechanisms.stages.parts_files import read_mesh
 from shared.contract import BodyParts, Mass, Piece

@@ -11,7 +11,7 @@ from mbsd.machines.engines.engine import engine
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.shafts.along import Along
 from mechanisms.stages.automatic.shafts.shaft_solids import Load, balanced_webs, loads, shaft_solid
-from mechanisms.stages.parts.mass_properties import combined, mass_of
+from mechanisms.stages.parts.meshes import combined, mass_of
 from mechanisms.stages.solve.masses import give_masses
 from shared.contract import BodyParts, Mass, Parts, Provenance
 from shared.contract.materials import MATERIALS

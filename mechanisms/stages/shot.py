@@ -1,4 +1,4 @@
-"""shot.py becomes shot.json: what the film shows, as data. Without a shot.py it is ``Shot()``."""
+"""The stage shot: the description of the film, checked: shot.json."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from typing import get_args
 
 import msgspec
 
-from mechanisms.stages.loading.inputs import Inputs, observed
+from mechanisms.stages.loading.inputs import Inputs, observed, recording
 from mechanisms.stages.loading.loading import has, load, package_of
-from mechanisms.stages.loading.recording import recording
 from shared.contract.shot import LookName, Names, Shot, refuse_unknown, refuse_unsound, write_shot
 from shared.stage.console import say
 from shared.stage.errors import UserError
@@ -38,7 +37,7 @@ def run(name: str) -> None:
     if _is_fresh(out, names):
         say("shot", f"{out.name}: nothing to do")
         return
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    from mechanisms.stages.loading.inputs import loaded_inputs
 
     before = set(sys.modules)
     with recording() as recorder:

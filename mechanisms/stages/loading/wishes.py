@@ -1,4 +1,4 @@
-"""How the author of shot.py has a mechanism stand: the one field of shot.py that parts follow from."""
+"""Wishes of parts.py for all parts: the mount and the scale."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from mechanisms.stages.loading.loading import has, load
 from shared.contract.mount import Kind
 from shared.contract.shot import Shot, refuse_unsound
 from shared.stage.paths import shown_file
+from shared.stage.scale import Scale
+
+# How the author of shot.py has a mechanism stand: the one field of shot.py that parts follow from.
 
 _WISHED: ContextVar[Kind | None] = ContextVar("wished", default=None)
 """Mount of the mechanism whose parts are being made."""
@@ -49,3 +52,23 @@ def wishing(kind: Kind | None) -> Iterator[None]:
 def wished() -> Kind | None:
     """How the mechanism whose parts are being made is to stand; None where nobody says."""
     return _WISHED.get()
+
+
+# The scale at which the parts of a mechanism are being made, for automatic parts that a parts.py asks for.
+
+_SCALE: ContextVar[Scale | None] = ContextVar("scale", default=None)
+
+
+@contextmanager
+def scaling(scale: Scale | None) -> Iterator[None]:
+    """Have parts that are made in this block fit a model of this scale; None for the machine itself."""
+    token = _SCALE.set(scale)
+    try:
+        yield
+    finally:
+        _SCALE.reset(token)
+
+
+def wished_scale() -> Scale | None:
+    """The scale of the parts that are being made; None where they are those of the machine itself."""
+    return _SCALE.get()

@@ -1,10 +1,4 @@
-"""The stage ``animate``: the moving skeleton from mechanism.py, as animation.mp4 and animation.gif.
-
-Bodies without a mass have that of their parts where these are there and current; no part is made for it.
-
-The view says what is shown beside the machine: one or more quantities over one another, ``skeleton`` for the machine
-alone, ``each`` for a film of every quantity; without a view all of them side by side in one film.
-"""
+"""The stage animate: the skeleton in motion, from mechanism.py alone: animation.mp4 and animation.gif."""
 
 from __future__ import annotations
 
@@ -14,11 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
-from mechanisms.stages.loading.recording import recording
+from mechanisms.stages.loading.inputs import Inputs, observed, recording, sources_state
 from mechanisms.stages.parts.current import current_parts
 from mechanisms.stages.solve import solving
-from mechanisms.stages.solve.body_colours import body_colours, main_material
+from mechanisms.stages.solve.skeleton_file import body_colours, main_material
 from shared.stage import console
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash
@@ -29,6 +22,7 @@ from shared.stage.suggestions import did_you_mean
 if TYPE_CHECKING:
     from mbsd import Solution
     from shared.contract import Parts
+
 
 QUANTITIES = ("velocities", "accelerations", "forces", "reactions", "energy")
 VIEWS = (*QUANTITIES, "skeleton", "each")
@@ -51,7 +45,7 @@ def run(name: str, view: str = "") -> None:
     if not stale:
         console.say("animate", f"{name}: nothing to do")
         return
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    from mechanisms.stages.loading.inputs import loaded_inputs
 
     before = set(sys.modules)
     with recording() as recorder:

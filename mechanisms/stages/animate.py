@@ -29,9 +29,9 @@ VIEWS = (*QUANTITIES, "skeleton", "each")
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "matplotlib", "pillow", "imageio-ffmpeg")
 SUFFIXES = (".mp4", ".gif")
 _STAGE = (
-    "animate/stage",
-    "loading/variants",
-    *(f"solve/{name}" for name in ("solving", "refined_times", "masses", "estimated_masses", "body_colours")),
+    "animate",
+    "loading/loading",
+    *(f"solve/{name}" for name in ("solving", "masses", "skeleton_file")),
 )
 SOURCES = [ROOT / "mechanisms" / "stages" / f"{name}.py" for name in _STAGE]
 

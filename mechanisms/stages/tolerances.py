@@ -149,7 +149,7 @@ def page(name: str, results: Mapping[str, Tolerances]) -> str:
 # these are there and current, else estimates.
 
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "matplotlib")
-SOURCES = [ROOT / "mechanisms" / "stages" / folder for folder in ("tolerances", "loading", "solve")]
+SOURCES = [ROOT / "mechanisms" / "stages" / name for name in ("tolerances.py", "loading", "solve")]
 SUFFIXES = (".csv", ".svg")
 
 

@@ -256,7 +256,7 @@ def _structure(root: Element, quantities: Sequence[Quantity]) -> None:
 #
 # Source: Functional Mock-up Interface 3.0, fmi-standard.org/docs/3.0 (section 2.5 for the archive).
 
-RUNTIME = Path(__file__).parent / "runtime"
+RUNTIME = Path(__file__).parent / "fmi_runtime"
 FLAGS = ("-std=c11", "-O2", "-fPIC", "-fvisibility=hidden", "-Wall", "-Wextra", "-Wno-unused-const-variable")
 TOLERANCE = 1e-10
 """Tolerance of its own integrator, unless the importer says another."""

@@ -37,15 +37,15 @@ from shared.stage.scale import Scale, scale_of
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 _STAGES = ROOT / "mechanisms" / "stages"
-_STAGE = ("stage", "described_body", "mount_of", "returned_parts", "mass_properties", "mesh_check", "traced_params")
+_STAGE = ("stage", "bodies", "automatic_solids", "meshes", "memory")
 SOURCES = [
     ROOT / "shared" / "shapes",
     _STAGES / "parts_files.py",
     *(_STAGES / "parts" / f"{name}.py" for name in _STAGE),
     *contract_sources(),
 ]
-_MOTION = ("bare_motion", "solving", "refined_times", "masses", "estimated_masses")
-_AUTOMATIC = ("automatic", "parts/automatic_solids.py", "loading/variants.py")
+_MOTION = ("bare_motion", "solving", "masses")
+_AUTOMATIC = ("automatic", "loading/loading.py")
 AUTOMATIC = [
     *SOURCES,
     *(_STAGES / name for name in _AUTOMATIC),

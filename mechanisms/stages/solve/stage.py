@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 NOISE = 1e-9
 """An effort below this part of the largest reaction is rounding."""
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
-_MOTION = ("solving", "refined_times", "masses", "estimated_masses")
-_STAGE = ("stage", *_MOTION, "motion_file", "body_colours", "shapes", "skeleton_file")
+_MOTION = ("solving", "masses")
+_STAGE = ("stage", *_MOTION, "motion_file", "skeleton_file")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / "solve" / f"{name}.py" for name in _STAGE),
-    ROOT / "mechanisms" / "stages" / "loading" / "variants.py",
+    ROOT / "mechanisms" / "stages" / "loading" / "loading.py",
     *contract_sources("skeleton"),
 ]
 

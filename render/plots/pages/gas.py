@@ -15,7 +15,8 @@ from render.report.written import written
 from shared.contract import GasMotion, Motion
 from shared.contract.quantity import angle_step, labelled
 
-BAR, CUBIC_CENTIMETRE = 1e5, 1e-6
+BAR = 1e5
+CUBIC_CENTIMETRE = 1e-6
 FEW = 4
 """Chambers, of which the diagram has the lines of all; of more it has the first's."""
 

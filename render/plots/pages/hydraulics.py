@@ -12,7 +12,8 @@ from render.plots.style import PARTS, page, rows
 from render.report.written import written
 from shared.contract import HydraulicMotion, Motion
 
-BAR, LITRES_PER_MINUTE = 1e5, 1e-3 / 60.0
+BAR = 1e5
+LITRES_PER_MINUTE = 1e-3 / 60.0
 FEW = 4
 """Cylinders that are drawn; of more, those that take most of the supply."""
 

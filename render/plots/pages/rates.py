@@ -15,9 +15,9 @@ from render.plots.inks import ink_of
 from render.plots.marks import mark
 from render.plots.measures import cut, dress_axis, turned
 from render.plots.style import FAINT, INK, LABELLED, PARTS, QUIET, label_ends, page, rows
-from render.report.written import first_peak, speed, written
+from render.report.written import first_peak, speed
 from shared.contract import BodyMotion, Motion, PointMotion
-from shared.contract.quantity import figures
+from shared.contract.quantity import figures, written
 
 G = 9.80665
 """m/s²."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from render.presets import ASPECTS, PRESETS, WIDE, Preset, preset_named
-from render.shown import show_words
+from render.presets import ASPECTS, PRESETS, WIDE, Preset, preset_named, show_words
 from shared.stage.console import run_cli
 from shared.stage.paths import mechanism_name
 
@@ -71,9 +70,9 @@ def main() -> int | None:
     commands.add_parser("overview", help="a table of the runs that its standard input tells of")
     arguments = parser.parse_args()
     if arguments.command == "overview":
-        from render.report import overview
+        from render.report import facts
 
-        return overview.run()
+        return facts.run()
     if arguments.command == "gallery":
         from render import gallery
 
@@ -134,9 +133,9 @@ def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namesp
 
         still.still(name, preset, arguments.frame, show)
     elif command == "contact":
-        from render.frames import contact
+        from render.frames import still
 
-        contact.run(name, preset, show)
+        still.run(name, preset, show)
     elif command == "poster":
         from render.frames import still
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.clock import Clock
-from render.film.composing.filling import View, held, outermost
+from render.film.composing import View, held, outermost
 from render.film.framing import CameraPose, Empty, axes, depth_of_field, half_field, in_studio, in_world, lifted, orbit
 from render.film.scene import Point
 from render.presets import ASPECT

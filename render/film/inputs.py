@@ -57,7 +57,7 @@ def encoder_version() -> str:
 def picture_sources() -> str:
     """Hash of the sources that make pictures; the plots are not among them."""
     room = Path(__file__).parents[1]
-    rooms = [room / name for name in ("presets.py", "letters.py", "looks", "film", "frames", "blender")]
+    rooms = [room / name for name in ("presets.py", "letters.py", "looks.py", "film", "frames", "blender")]
     return sources_hash(*rooms, *contract_sources(*SHARED))
 
 

@@ -10,7 +10,7 @@ from typing import Literal
 import msgspec
 
 from render.film.framing import CameraPose
-from render.looks.look import Look
+from render.looks import Look
 from shared.contract.mount import Z
 from shared.contract.signals import Head
 

@@ -1,28 +1,70 @@
-"""A section: what is beyond a plane, or beyond several at once, is cut away; a quarter has two.
-
-Bodies of a planar machine turn about the normal of its plane alone, so a plane across that normal cuts each of them in
-the same way at every moment. Other planes cut what stands still, as in a model of an engine in a museum; bodies that
-are named are cut as they stand at the start of the motion, and carry their cut with them. Planes that are fixed stay
-where they are instead: what moves through them has another cut at every moment, what moves along them has the same.
-Springs, ropes and belts hang between bodies, and are cut where all that moves is.
-"""
+"""Sections: hatches, and the plane that cuts a machine."""
 
 from __future__ import annotations
 
 import math
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.scene import Plane
+from render.film.scene import Colour, Plane, Point
 from render.film.solids import prism, read_corners
 from shared.contract import Motion, Parts, Piece
 from shared.contract.shot import Section
 from shared.stage.errors import UserError
+
+# Hatches of cut faces: stripes in light and dark of a piece's colour, which lean otherwise than its neighbours'.
+
+STRIPE = 0.05
+"""Width of a light and a dark stripe, as a part of the machine's radius."""
+LIGHT = 0.55
+"""Part of that which is light."""
+MATT = 0.7
+"""Roughness of a cut face."""
+
+
+class Hatch(NamedTuple):
+    """Stripes across a ``way``: a point is in the light as long as (point . way / period) mod 1 < LIGHT."""
+
+    way: Point
+    period: float
+    """In radii of the machine."""
+
+
+def hatch_of(name: str, plane: Plane) -> Hatch:
+    """The hatch of a piece, ``body/piece``, in a plane along z or across it: slope and width follow its name."""
+    x, y, z, _ = plane
+    kind = zlib.crc32(name.encode()) % 4
+    lean = -1.0 if kind % 2 else 1.0
+    way = (1.0, lean, 0.0) if z else (-y, x, lean)  # in a face that stands up, along it and z
+    return Hatch(way, STRIPE * (1 + kind // 2 / 3))
+
+
+def light_of(colour: Colour) -> Colour:
+    """The light tone of a cut face (linear RGB)."""
+    red, green, blue = (0.5 * part + 0.32 for part in colour)
+    return red, green, blue
+
+
+def dark_of(colour: Colour) -> Colour:
+    """The dark tone of a cut face (linear RGB)."""
+    red, green, blue = (0.3 * part + 0.015 for part in colour)
+    return red, green, blue
+
+
+# A section: what is beyond a plane, or beyond several at once, is cut away; a quarter has two.
+#
+# Bodies of a planar machine turn about the normal of its plane alone, so a plane across that normal cuts each of them
+# in the same way at every moment. Other planes cut what stands still, as in a model of an engine in a museum; bodies
+# that are named are cut as they stand at the start of the motion, and carry their cut with them. Planes that are fixed
+# stay where they are instead: what moves through them has another cut at every moment, what moves along them has the
+# same. Springs, ropes and belts hang between bodies, and are cut where all that moves is.
 
 Array = NDArray[np.float64]
 Key = tuple[str, str]

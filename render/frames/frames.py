@@ -1,7 +1,8 @@
-"""Renders the pictures a film still lacks. A picture that is there already is not rendered again."""
+"""The frames of a film: their keys, and the rendering of those that are missing."""
 
 from __future__ import annotations
 
+import hashlib
 import math
 import shutil
 import time
@@ -9,21 +10,79 @@ from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
+
+import msgspec
 
 from render.blender.child import blender
 from render.blender.job import Answer, Job, Picture
 from render.film.film import Film
+from render.film.framing import SENSOR, studio
 from render.film.inputs import blender_version, read_film, stage_key
 from render.film.scene import Scene, State
-from render.frames.keys import frame_key, scene_key
+from render.film.solids import MILLIMETRE
 from render.frames.store import FrameIndex, FrameStore, Timing
 from render.presets import Preset
 from shared.cluster.address import address
+from shared.contract.mount import Z
 from shared.stage import jsonfile
 from shared.stage.console import duration, progress, say, warn
 from shared.stage.errors import UserError
+from shared.stage.files import sources_hash
 from shared.stage.paths import Out, out_root
 from shared.stage.stages import Stage
+
+# The name of a picture is a hash of what it shows, so no picture is rendered twice and no wrong one is kept.
+
+DIGITS = 9
+"""Poses count to a nanometre and a nanoradian."""
+BLENDER = Path(__file__).parents[1] / "blender"
+LETTERS = Path(__file__).parents[1] / "letters.py"
+"""The font of what Blender's side writes."""
+HATCHES = Path(__file__).parents[1] / "film" / "section.py"
+"""Stripes of its cut faces."""
+BLENDER_SOURCES = ("job.py", "picture_file.py", "scene", "worker")
+"""What runs in Blender; the other files of the room start it, and decide nothing that is seen."""
+
+
+def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
+    """Everything that all frames have in common; STL files count by content.
+
+    ``blender`` is the version of bpy. Of other rooms, Blender's side takes the letters and these numbers.
+    """
+    plain = _rounded(msgspec.to_builtins(scene))
+    for piece in plain["pieces"]:
+        del piece["stl"]
+    shown = {key: part for key, part in plain.items() if key not in ("mechanism", "fps")}
+    picture = [preset.width, preset.height, preset.samples, preset.motion_blur]
+    turned = studio(scene.studio.up).tolist()
+    return _hash([shown, picture, _sources(), blender, SENSOR, MILLIMETRE, Z, turned])
+
+
+def frame_key(scene: str, states: Sequence[State]) -> str:
+    """One frame of the scene with that key: its state alone, or with both neighbours' where the shutter blurs them."""
+    return _hash([scene, [_rounded(msgspec.to_builtins(state)) for state in states]])[:32]
+
+
+def _sources() -> str:
+    return sources_hash(*(BLENDER / name for name in BLENDER_SOURCES), LETTERS, HATCHES)
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return round(value, DIGITS) + 0.0  # -0.0 and 0.0 are one place
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(item) for item in value]
+    return value
+
+
+def _hash(value: Any) -> str:
+    return hashlib.sha256(msgspec.json.encode(value, order="sorted")).hexdigest()
+
+
+# Renders the pictures a film still lacks. A picture that is there already is not rendered again.
 
 FEWEST_SAMPLES = 500_000
 """In one picture, for its time to say something about another size."""
@@ -200,9 +259,9 @@ def _makers(job: Job, store: FrameStore, longest: float) -> AbstractContextManag
     """A Blender process here, or the workers of the CLUSTER."""
     if not address():
         return blender(job, longest)
-    from render.frames import on_cluster
+    from render.frames import cluster
 
-    return on_cluster.workers(job, store)
+    return cluster.workers(job, store)
 
 
 def _forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:

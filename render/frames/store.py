@@ -15,8 +15,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from render.blender.picture_file import is_as_named
-from render.blender.received_picture import fault_of_chunks
+from render.blender.picture_file import fault_of_chunks, is_as_named
 from shared.stage import jsonfile, locks
 from shared.stage.console import say
 from shared.stage.errors import Busy, UserError

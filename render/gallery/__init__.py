@@ -1,13 +1,18 @@
-"""``python -m render gallery``: docs/gallery/, a page with every mechanism that has a poster."""
+"""`python -m render gallery`: docs/gallery/, a page with every mechanism that has a poster."""
 
 from __future__ import annotations
 
+import io
+import math
 import os
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from render.freshness import Freshness, current_clearance
-from render.gallery.page import Entry, page, sentences
-from render.gallery.posters import small_poster, strip
 from render.report import description
 from render.report.facts import facts
 from shared.contract import read_motion, read_parts
@@ -16,6 +21,131 @@ from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT, Out, in_workshop, mechanism_file, mechanism_names, out_root
+
+# Posters for a web page: small JPEGs, and all of them in one.
+
+WIDTH = 960
+LARGEST = 120_000
+"""Bytes."""
+QUALITIES = (88, 82, 76, 70, 62, 54, 45)
+TILE = 320, 180
+"""Pixels of a picture in the strip."""
+BESIDE = 4
+"""Pictures in a row of it."""
+ON_STRIP = 16
+LOOK = 24, 14
+"""Pixels in which two pictures are compared."""
+
+
+def small_poster(path: Path) -> bytes:
+    """A picture as a JPEG of at most LARGEST bytes, at the best quality that fits."""
+    from PIL import Image
+
+    with Image.open(path) as whole:
+        picture = whole.convert("RGB")
+    content = b""
+    for width in (WIDTH, 3 * WIDTH // 4, WIDTH // 2):
+        small = picture
+        if picture.width > width:
+            size = width, round(width * picture.height / picture.width)
+            small = picture.resize(size, Image.Resampling.LANCZOS)
+        for quality in QUALITIES:
+            buffer = io.BytesIO()
+            small.save(buffer, format="JPEG", quality=quality, optimize=True, progressive=True)
+            content = buffer.getvalue()
+            if len(content) <= LARGEST:
+                return content
+    return content
+
+
+def strip(posters: Sequence[bytes]) -> bytes:
+    """Small posters in rows, as one JPEG; the last row is filled from its middle.
+
+    More than ``ON_STRIP`` are too many for one look: those are taken that are least like each other.
+    """
+    from PIL import Image, ImageOps
+
+    wide, high = TILE
+    tiles = [ImageOps.fit(Image.open(io.BytesIO(poster)), TILE, Image.Resampling.LANCZOS) for poster in posters]
+    tiles = [tiles[k] for k in unlike([np.asarray(tile.convert("RGB").resize(LOOK), float) for tile in tiles])]
+    rows = math.ceil(len(tiles) / BESIDE)
+    sheet = Image.new("RGB", (BESIDE * wide, rows * high), tiles[0].getpixel((2, 2)))
+    for row in range(rows):
+        beside = tiles[row * BESIDE : (row + 1) * BESIDE]
+        left = (BESIDE - len(beside)) * wide // 2
+        for k, tile in enumerate(beside):
+            sheet.paste(tile, (left + k * wide, row * high))
+    content = b""
+    for quality in QUALITIES:
+        buffer = io.BytesIO()
+        sheet.save(buffer, format="JPEG", quality=quality, optimize=True, progressive=True)
+        content = buffer.getvalue()
+        if len(content) <= 2 * LARGEST:
+            break
+    return content
+
+
+def unlike(looks: Sequence[np.ndarray]) -> list[int]:
+    """Numbers of ON_STRIP pictures in their order: each next one is the one least like all that are taken already."""
+    flat = np.stack([look.ravel() for look in looks])
+    if len(flat) <= ON_STRIP:
+        return list(range(len(flat)))
+    taken = [int(((flat - flat.mean(axis=0)) ** 2).sum(axis=1).argmax())]
+    while len(taken) < ON_STRIP:
+        off = ((flat[:, None] - flat[taken]) ** 2).sum(axis=2).min(axis=1)
+        taken.append(int(off.argmax()))
+    return sorted(taken)
+
+
+# The page of the gallery, Markdown: a poster, what to see in it, the numbers that matter.
+
+LONGEST = 2
+"""Sentences of each."""
+UNSAID = ("SI units.", "SI units and radians.")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One mechanism."""
+
+    name: str
+    said: str
+    facts: list[str]
+    file: str
+    """Its mechanism.py, seen from the page."""
+
+
+def page(entries: Sequence[Entry], own: bool = False) -> str:
+    """The whole page, in the order of the names; ``own``: of the machines of a user's own folder."""
+    first = [
+        "Every mechanism of `mechanisms/` as it comes out of its short file: `make run-<name>` makes the film,",
+        "the parts and the numbers of one, `make gallery` this page.",
+    ]
+    lines = ["# Gallery", "", *([f"`{to_run('gallery')}` makes this page."] if own else first)]
+    for entry in entries:
+        title = entry.name.replace("_", " ")
+        title = title[:1].upper() + title[1:]
+        lines += ["", f"## {title}", "", f"![{title}]({entry.name}.jpg)", ""]
+        lines += [entry.said, ""] if entry.said else []
+        page_of = (
+            f"`{to_run('view', entry.name)}`" if own else f"[the page](../view.md): `{to_run('view', entry.name)}`"
+        )
+        lines += [f"{' · '.join(entry.facts)} · [{entry.file.rpartition('/')[2]}]({entry.file}) · {page_of}"]
+    return "\n".join(lines) + "\n"
+
+
+def sentences(docstring: str) -> str:
+    """The first two sentences of a docstring on one line; what all of them say is left out."""
+    paragraph = " ".join(docstring.split("\n\n")[0].split())
+    said = [
+        sentence
+        for sentence in re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", paragraph)
+        if sentence and sentence not in UNSAID
+    ]
+    return " ".join(said[:LONGEST])
+
+
+# ``python -m render gallery``: docs/gallery/, a page with every mechanism that has a poster.
 
 FOLDER = out_root() / "gallery" if in_workshop() else ROOT / "docs" / "gallery"
 STRIP = "strip.jpg"

@@ -17,13 +17,9 @@ import numpy as np
 from render.film.film import Film
 from render.film.scene import PieceSpec
 from render.film.solids import read_triangles
-from render.glb.animation import Animation
-from render.glb.belts import add_belt
 from render.glb.cut import faces_of, front_of, pieces_of
-from render.glb.document import INDICES, VERTICES, Document
-from render.glb.materials import CLEARCOAT, Paints
-from render.glb.mesh import smooth
-from render.glb.springs import Springs
+from render.glb.document import CLEARCOAT, INDICES, VERTICES, Animation, Document, Paints, smooth
+from render.glb.tubes import Springs, add_belt
 from shared.contract.mount import Vector, Z
 
 Quaternion = tuple[float, float, float, float]

@@ -8,15 +8,13 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from render.film.exploded import exploded
 from render.film.film import Film
 from render.film.inputs import read_film
-from render.film.story.lifting import lifted
+from render.film.pieces import exploded
+from render.film.story.ramps import lifted
 from render.glb import glb_key
-from render.glb.animation import about_z
 from render.glb.build import mesh_of, turn
-from render.glb.document import Document
-from render.glb.materials import CLEARCOAT, Paints
+from render.glb.document import CLEARCOAT, Document, Paints, about_z
 from shared.stage.console import say
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out

@@ -89,7 +89,7 @@ def plots_of(motion: Motion) -> list[str]:
     if any(force.hydraulics is not None for force in motion.forces.values()):
         names.append("hydraulics")
     if motion.analysis == "simulation":
-        from render.crank import crank_of
+        from render.magnitudes import crank_of
 
         names += ["turns"] * (crank_of(motion) is not None)
     names += [f"point-{point}" for point in motion.points]

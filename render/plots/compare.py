@@ -42,8 +42,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     if stage.is_fresh():
         say("compare", f"{owner}: nothing to do")
         return
-    from render.plots.pages.beside import figures
-    from render.plots.pages.beside_spectra import spectra_figure
+    from render.plots.pages.comparison import figures, spectra_figure
     from render.plots.quantities import refuse_unknown_in_all
 
     motions: dict[str, Motion] = {variant: read_motion(file) for variant, file in files.items()}

@@ -7,8 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from render.magnitudes import NOISE, force_scale, speed_scale, torque_scale, without_noise
-from render.shaking import couple_floor, force_floor, moment_floor, shaking
+from render.magnitudes import (
+    NOISE,
+    couple_floor,
+    force_floor,
+    force_scale,
+    moment_floor,
+    shaking,
+    speed_scale,
+    torque_scale,
+    without_noise,
+)
 from shared.contract import Motion
 from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean

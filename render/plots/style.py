@@ -1,9 +1,10 @@
-"""The look of every plot: one page, one set of colours, labels beside the lines they name."""
+"""The style of plots: colours, inks and labels."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
@@ -14,6 +15,10 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import blended_transform_factory
 from scipy.optimize import isotonic_regression
+
+from shared.contract import Motion
+
+# The look of every plot: one page, one set of colours, labels beside the lines they name.
 
 SIZE = (10.0, 6.25)
 """Inches; 1600 x 1000 pixels."""
@@ -122,3 +127,118 @@ def spread(wanted: np.ndarray, gap: float, height: float) -> np.ndarray:
     placed = np.empty(len(wanted))
     placed[order] = np.clip(isotonic_regression(wanted[order] - ranks).x, 0.0, height - ranks[-1]) + ranks
     return placed
+
+
+# Which colour a curve has: that of the body it belongs to, as in every other picture (data.json).
+
+
+def ink_of(motion: Motion, bodies: Sequence[str]) -> str:
+    """The colour of the last of these bodies that moves: the one that a joint, driver or force acts on."""
+    moving = [body for body in bodies if body in motion.bodies]
+    return motion.bodies[moving[-1]].colour if moving else INK
+
+
+def acting_on(motion: Motion, name: str) -> str:
+    """The colour of the body that the force ``name`` acts on."""
+    return ink_of(motion, [action.body for action in motion.forces[name].actions])
+
+
+def apart(inks: Sequence[str]) -> list[str]:
+    """Return these colours, each once: what comes after another of the same colour gets one that nothing has yet.
+
+    Where there are no more, colours repeat.
+    """
+    free = [ink for ink in (*PARTS, *PALETTE) if ink not in inks]
+    out: list[str] = []
+    for ink in inks:
+        out.append(free.pop(0) if ink in out and free else ink)
+    return out
+
+
+# Names beside the points they belong to, each on the side where most room is.
+
+DISTANCE = 15.0
+"""Pixels between a point and its name."""
+DIRECTIONS = np.radians(np.arange(45, 405, 45))
+
+
+@dataclass(frozen=True)
+class _Label:
+    text: str
+    at: tuple[float, float]
+    colour: str
+    size: float
+    weight: str
+    clearance: float
+
+
+class Labels:
+    """Collects names and what they must not cover, then places them one by one."""
+
+    def __init__(self, axes: Axes) -> None:
+        self.axes = axes
+        self.labels: list[_Label] = []
+        self.lines: list[np.ndarray] = []
+
+    def add(
+        self,
+        text: str,
+        at: tuple[float, float],
+        colour: str,
+        size: float = 10.5,
+        weight: str = "normal",
+        clearance: float = 0.0,
+    ) -> None:
+        """A name for the point ``at``, ``clearance`` away from it at least (data coordinates)."""
+        self.labels.append(_Label(text, at, colour, size, weight, clearance))
+
+    def avoid_lines(self, corners: list[tuple[float, float]]) -> None:
+        """A line that the names should leave free (data coordinates)."""
+        self.lines.append(np.asarray(corners, dtype=float))
+
+    def write(self) -> None:
+        """Place every name; the limits of the axes must be final in all but their aspect."""
+        self.axes.apply_aspect()
+        to_pixels = self.axes.transData.transform
+        obstacles = np.concatenate(
+            [_sampled(to_pixels(line)) for line in self.lines] + [to_pixels([label.at]) for label in self.labels]
+            or [np.empty((0, 2))]
+        )
+        frame = self.axes.get_window_extent()
+        boxes: list[np.ndarray] = []
+        scale = self.axes.get_figure(root=True).dpi / 72  # type: ignore[union-attr]
+        for label in self.labels:
+            half = np.array([0.32 * label.size * len(label.text) + 2.0, 0.55 * label.size + 1.0]) * scale
+            origin = to_pixels(label.at)
+            away = max(DISTANCE, 4.0 + float(to_pixels((label.clearance, 0))[0] - to_pixels((0, 0))[0]))
+            middles = [
+                origin + np.array([np.cos(a), np.sin(a)]) * (far * away + half * [abs(np.cos(a)), abs(np.sin(a))])
+                for far in (1.0, 2.0)
+                for a in DIRECTIONS
+            ]
+            middle = min(middles, key=lambda m: _cost(m, half, obstacles, boxes, np.asarray(frame.extents)))
+            boxes.append(np.array([middle - half, middle + half]))
+            x, y = self.axes.transData.inverted().transform(middle)
+            self.axes.text(
+                x, y, label.text, ha="center", va="center", color=label.colour, fontsize=label.size,
+                fontweight=label.weight, path_effects=HALO, zorder=10,
+            )  # fmt: skip
+
+
+def _cost(
+    middle: np.ndarray, half: np.ndarray, obstacles: np.ndarray, boxes: list[np.ndarray], frame: np.ndarray
+) -> float:
+    """Points of lines under the name count one each; another name under it, or the frame's edge, counts much more."""
+    covered = float((np.abs(obstacles - middle) < half).all(axis=1).sum())
+    near = float((np.abs(obstacles - middle) < half + 6.0).all(axis=1).sum())
+    low, high = middle - half, middle + half
+    clashes = sum(bool((low < box[1]).all() and (high > box[0]).all()) for box in boxes)
+    outside = bool((low < frame[:2]).any() or (high > frame[2:]).any())
+    return covered + 0.3 * near + 1000.0 * clashes + 500.0 * outside
+
+
+def _sampled(corners: np.ndarray, step: float = 4.0) -> np.ndarray:
+    """Points every ``step`` pixels along a line."""
+    lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
+    at = np.arange(0.0, lengths[-1] + step, step)
+    return np.stack([np.interp(at, lengths, corners[:, k]) for k in range(2)], axis=1)

@@ -9,9 +9,8 @@ from render import FRAME_SOURCES
 from render.freshness import clearance_files, current_clearance
 from render.report import sections
 from render.report.loads import load_section
-from render.report.moments import event_section
 from render.report.orders import orders_section
-from render.report.transmission_words import transmission_section
+from render.report.transmission import event_section, transmission_section
 from render.report.travel import travel_section
 from shared.contract import Motion, Parts, read_motion, read_parts
 from shared.contract.clearance import Clearance

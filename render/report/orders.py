@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from render.magnitudes import floor_of, force_floor
 from render.report.written import Amounts, table, written
-from render.shaking import floor_of, force_floor
 from shared.contract import Motion
 from shared.contract.vibration import Harmonics
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from render.crank import crank_of, driven_bodies
+from render.magnitudes import crank_of, driven_bodies, shaking
 from render.report.written import Amounts, counted, first_peak, listed, moment, speed, table, turning, written
-from render.shaking import shaking
 from shared.contract import Motion, Parts
 from shared.contract.clearance import Clearance
 from shared.contract.quantity import figures

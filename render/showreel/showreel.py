@@ -5,11 +5,11 @@ from __future__ import annotations
 from contextlib import suppress
 from pathlib import Path
 
-from render.blender.scratch import scratch_folder
+from render.blender.job import scratch_folder
 from render.film.inputs import named
 from render.frames.story.stage import film_of
 from render.freshness import Freshness
-from render.gallery.page import sentences
+from render.gallery import sentences
 from render.presets import Preset
 from render.report import description
 from render.showreel.card import Title

@@ -21,10 +21,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from render.sound.chance import octave_noise
-from render.sound.fourier import irfft, rfft
 from render.sound.ringing import Modes
 from render.sound.setting import RATE, Setting
+from render.sound.waves import irfft, octave_noise, rfft
 
 Array = NDArray[np.float64]
 Spectrum = NDArray[np.complex128]

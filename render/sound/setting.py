@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.camera import angles
+from render.film.clock import TimeMap
 from render.film.film import Film
 from render.film.framing import axes
-from render.film.time_map import TimeMap
-from render.sound.fourier import quick_length
 from render.sound.ringing import Modes, modes_of
+from render.sound.waves import quick_length
 from shared.stage.errors import UserError
 
 Array = NDArray[np.float64]

@@ -1,16 +1,86 @@
-"""One small function per finish: from a surface in plain data to a Blender material."""
+"""Materials in Blender: shader nodes, paints and metals, and the coded image of bodies."""
 
-# pyright: reportAttributeAccessIssue=false
-# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from typing import Any
 
-from render.blender.scene.nodes import Graph
-from render.film.hatches import LIGHT, MATT, Hatch, dark_of, light_of
 from render.film.scene import Colour, SurfaceSpec
+from render.film.section import LIGHT, MATT, Hatch, dark_of, light_of
+
+# Helpers that keep the code of shader graphs readable.
+
+
+class Graph:
+    """Adds nodes to a node tree and wires them: a value that is a socket is linked, anything else is set."""
+
+    def __init__(self, tree: Any) -> None:
+        self.tree = tree
+
+    def clear(self) -> Graph:
+        """Drop the nodes Blender starts with."""
+        self.tree.nodes.clear()
+        return self
+
+    def add(self, kind: str, settings: dict[str, Any] | None = None, **inputs: Any) -> Any:
+        """A node of type ``ShaderNode<kind>``; inputs by name, with underscores for spaces."""
+        node = self.tree.nodes.new(f"ShaderNode{kind}")
+        for name, value in (settings or {}).items():
+            setattr(node, name, value)
+        for name, value in inputs.items():
+            self.set(node, name.replace("_", " "), value)
+        return node
+
+    def set(self, node: Any, name: str | int, value: Any) -> None:
+        """Set one input, or link it."""
+        socket = node.inputs[name]
+        if hasattr(value, "is_output"):
+            self.tree.links.new(value, socket)
+        else:
+            socket.default_value = (*value, 1.0) if isinstance(value, tuple) and socket.type == "RGBA" else value
+
+    def math(self, operation: str, *values: Any) -> Any:
+        """The result of a Math node."""
+        node = self.tree.nodes.new("ShaderNodeMath")
+        node.operation = operation
+        for index, value in enumerate(values):
+            self.set(node, index, value)
+        return node.outputs[0]
+
+    def vector(self, operation: str, *values: Any, **inputs: Any) -> Any:
+        """The result of a Vector Math node that is a vector."""
+        node = self.add("VectorMath", {"operation": operation}, **inputs)
+        for index, value in enumerate(values):
+            self.set(node, index, value)
+        return node.outputs["Vector"]
+
+    def mixed(self, ray: str, others: Any, these: Any) -> Any:
+        """The shader ``these`` for rays of one sort, e.g. "Is Camera Ray", and ``others`` for all else."""
+        mix = self.add("MixShader")
+        for index, value in enumerate((self.add("LightPath").outputs[ray], others, these)):
+            self.set(mix, index, value)
+        return mix.outputs[0]
+
+    def ramp(self, factor: Any, stops: list[tuple[float, tuple[float, float, float]]]) -> Any:
+        """A colour ramp, smooth between its stops."""
+        node = self.tree.nodes.new("ShaderNodeValToRGB")
+        node.color_ramp.interpolation = "EASE"
+        elements = node.color_ramp.elements
+        while len(elements) < len(stops):
+            elements.new(0.5)
+        for element, (position, colour) in zip(elements, stops, strict=True):
+            element.position = position
+            element.color = (*colour, 1.0)
+        self.set(node, "Fac" if "Fac" in node.inputs else 0, factor)
+        return node.outputs["Color"]
+
+
+# One small function per finish: from a surface in plain data to a Blender material.
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+
 
 BARE: Colour = (0.62, 0.63, 0.65)
 IRON: Colour = (0.36, 0.355, 0.35)
@@ -253,3 +323,49 @@ FINISHES: dict[str, Callable[[Graph, SurfaceSpec, float], Any]] = {
     "wood": _wood,
     "glass": _glass,
 }
+
+
+# Materials that tell a drawing what is where: emission whose colour is a code instead of light.
+#
+# A pixel has number + (1 + normal_x) / 4 in red, (1 + normal_y) / 2 in green, the distance in radii in blue; normals
+# are the camera's. Numbers from INKED on are lines of their own: there green is their strength.
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+
+
+INKED = 4096
+
+
+def number(things: list[Any], inked: list[Any], radius: float) -> None:
+    """Give solids and inked things their numbers, and the material that tells them."""
+    made, traced = _material(radius, None), _material(radius, "fade")
+    plain = _material(radius, "")
+    for first, group in ((1, things), (INKED, inked)):
+        for index, thing in enumerate(group):
+            thing.pass_index = first + index
+            fades = first == INKED and thing.type == "MESH" and "fade" in thing.data.attributes
+            for slot in range(len(thing.data.materials)):
+                thing.data.materials[slot] = made if first == 1 else traced if fades else plain
+
+
+def _material(radius: float, strength: str | None) -> Any:
+    """Material of solids; with a ``strength``, of inked things: the attribute of that name, else 1."""
+    import bpy
+
+    made = bpy.data.materials.new("coded")
+    made.use_nodes = True
+    graph = Graph(made.node_tree).clear()
+    seen = graph.add("VectorTransform", {"vector_type": "NORMAL", "convert_from": "WORLD", "convert_to": "CAMERA"})
+    graph.set(seen, 0, graph.add("NewGeometry").outputs["Normal"])
+    normal = graph.add("SeparateXYZ", Vector=seen.outputs[0])
+    quarter = graph.math("MULTIPLY", graph.math("ADD", normal.outputs["X"], 1.0), 0.25)
+    red = graph.math("ADD", graph.add("ObjectInfo").outputs["Object Index"], quarter)
+    green = graph.math("MULTIPLY", graph.math("ADD", normal.outputs["Y"], 1.0), 0.5)
+    if strength is not None:
+        green = graph.add("Attribute", {"attribute_name": strength}).outputs["Fac"] if strength else 1.0
+    away = graph.math("DIVIDE", graph.add("CameraData").outputs["View Distance"], radius)
+    colour = graph.add("CombineXYZ", X=red, Y=green, Z=away).outputs[0]
+    graph.add("OutputMaterial", Surface=graph.add("Emission", Color=colour, Strength=1.0).outputs[0])
+    made.cycles.emission_sampling = "NONE"
+    return made

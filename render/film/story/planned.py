@@ -6,19 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from render.film.film import Film
-from render.film.story.curves import curves_of
-from render.film.story.frame import Shot
-from render.film.story.reason import Reason
+from render.film.story.frame import Reason, Shot
 from render.film.story.scenery import Scenery
 from render.film.story.shots.assembly import assembly
-from render.film.story.shots.last import last
-from render.film.story.shots.loop import loop
-from render.film.story.shots.macro import macro
-from render.film.story.shots.motion import motion
-from render.film.story.shots.reason import reason
-from render.film.story.shots.section import section
-from render.film.story.shots.title import title
-from render.film.story.story import Story
+from render.film.story.shots.close_ups import macro, section
+from render.film.story.shots.motion import last, motion, title
+from render.film.story.shots.reason import loop, reason
+from render.film.story.story import Story, curves_of
 from render.film.story.words import words_in
 from render.presets import Preset
 from shared.contract.shot import STORY_SHOTS

@@ -15,8 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.markers import local_place, moved
-from render.film.poses import Moment, Poses
+from render.film.poses import Moment, Poses, local_place, moved
 from render.film.scene import Point, SurfaceSpec, TubeSpec
 from render.film.tubes.stretched import STEEL, placed
 from shared.contract import ForceMotion, Motion

@@ -11,10 +11,9 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from render.film.story import layout
+from render.film.story import frame
 from render.film.story.frame import Leader, Note, Over
-from render.frames.story.letters import CARD, INK, LINE, QUIET, card, fitted, font, readable
-from render.frames.story.strip import Strip
+from render.frames.story.strip import CARD, INK, LINE, QUIET, Strip, card, fitted, font, readable
 from render.letters import width_of
 
 DARK, SOFT = 0.36, 1 / 42
@@ -128,7 +127,7 @@ class Drawing:
 
     def _heads(self, draw: Any) -> None:
         """Names of variants, each with a line as its curves are."""
-        size, edge = layout.LETTER * self.unit, layout.EDGE * self.unit
+        size, edge = frame.LETTER * self.unit, frame.EDGE * self.unit
         for right, top, words, colour in self.heads:
             wide = size * width_of(words, True) + 3.0 * size
             x, y = self.wide - edge - wide if right else edge, top * self.high + edge
@@ -139,7 +138,7 @@ class Drawing:
 
     def _rate(self, draw: Any, words: str) -> None:
         """At the upper left; where names are there, in the middle between them, or at the right."""
-        size, edge = layout.SMALL * self.unit, layout.EDGE * self.unit
+        size, edge = frame.SMALL * self.unit, frame.EDGE * self.unit
         wide, x = size * width_of(words) + 1.2 * size, edge
         if self.heads:
             x = (self.wide - wide) / 2 if self.wide > self.high else self.wide - edge - wide
@@ -149,7 +148,7 @@ class Drawing:
     def _caption(self, draw: Any, over: Over) -> None:
         """In the middle over the strip, or over where it would be."""
         size, lines = caption_lines(over.caption, self.wide, self.high)
-        low = self.high - self.below - (0.35 if self.below else 0.8) * layout.EDGE * self.unit
+        low = self.high - self.below - (0.35 if self.below else 0.8) * frame.EDGE * self.unit
         half = max(size * width_of(line) for line in lines) / 2 + 0.7 * size
         top, x = low - (LINE * len(lines) + 0.5) * size, self.wide / 2
         card(draw, (x - half, top, x + half, low), size, over.caption_shown)
@@ -159,7 +158,7 @@ class Drawing:
             draw.text((x, y), line, fill=ink, font=font(size), anchor="mm")
 
     def _leader(self, draw: Any, leader: Leader, shown: float) -> None:
-        size, edge = layout.SMALL * self.unit * 1.08, layout.EDGE * self.unit
+        size, edge = frame.SMALL * self.unit * 1.08, frame.EDGE * self.unit
         at, y = (leader.x * self.wide, leader.y * self.high), leader.height * self.high
         words = size * width_of(leader.words, True)
         wide = words + (0.5 * size + size * width_of(leader.quiet) if leader.quiet else 0.0)
@@ -180,7 +179,7 @@ class Drawing:
 
     def _notes(self, draw: Any, notes: tuple[Note, ...], shown: float) -> None:
         """Beyond the tips of arrows, within the picture, and apart from each other."""
-        size, edge = layout.SMALL * self.unit, layout.EDGE * self.unit
+        size, edge = frame.SMALL * self.unit, frame.EDGE * self.unit
         low = self.high - self.below - 0.12 * self.unit
         taken: list[tuple[float, float, float, float]] = []
         for note in notes:
@@ -208,7 +207,7 @@ class Drawing:
 def caption_lines(text: str, wide: int, high: int) -> tuple[float, list[str]]:
     """Height of letters (pixels) and lines of a caption; raises ValueError where it is too long for the frame."""
     unit = min(wide, high)
-    return fitted(text, layout.LETTER * unit, wide - 2 * layout.EDGE * unit - 1.4 * layout.LETTER * unit, layout.LINES)
+    return fitted(text, frame.LETTER * unit, wide - 2 * frame.EDGE * unit - 1.4 * frame.LETTER * unit, frame.LINES)
 
 
 def png(page: Any) -> bytes:

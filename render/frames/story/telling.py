@@ -1,4 +1,4 @@
-"""Reads the files of a machine and makes its story: the films it is rendered from, its shots, what is drawn over."""
+"""The telling of a story: its pictures, shots and words for one mechanism."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ import numpy as np
 from render.film.camera import angles
 from render.film.film import Film
 from render.film.inputs import refuse_missing
+from render.film.scene import Point, Scene, State, Writing
 from render.film.section import seen_from
+from render.film.story.frame import Picture, Reason
 from render.film.story.planned import planned
-from render.film.story.reason import Reason
 from render.film.story.story import Story
 from render.film.story.words import plain
+from render.frames.frames import Pictures
 from render.frames.story.drawing import BETWEEN, Drawing, caption_lines
-from render.frames.story.pictures import Around, StoryPictures
 from render.frames.story.strip import Strip
 from render.freshness import current_clearance
 from render.presets import Preset
 from render.report import description
-from render.report.facts import facts
-from render.report.moments import marks
-from render.report.reasons import reasons
+from render.report.facts import facts, reasons
+from render.report.transmission import marks
 from shared.contract import Motion, read_motion, read_parts
 from shared.contract.shot import Shot, read_shot, shown
 from shared.contract.shot import Story as Wishes
@@ -34,6 +34,60 @@ from shared.contract.spanning import with_rods
 from shared.stage.console import duration
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
+
+# The pictures of a story: states of its film with and without arrows, kept by what they show as all frames are.
+
+Around = tuple[Picture, Picture, Picture]
+
+
+@dataclass
+class StoryPictures(Pictures):
+    """Pictures of one scene; picture k is the middle of ``rows[k]``, between those that its shutter sees."""
+
+    rows: tuple[Around, ...] = ()
+    what: str = ""
+    """What they are, for people."""
+
+    @cached_property
+    def _scene(self) -> Scene:
+        return msgspec.structs.replace(self.film.scene, writing=Writing())
+
+    @property
+    def shown(self) -> Scene:
+        """The scene of the film, without what is written over it: stories have their own words."""
+        return self._scene
+
+    def around(self, frame: int) -> tuple[int, int, int]:
+        """Numbers of states: those of neighbours are negative, so that each picture has its own."""
+        return -2 * frame - 1, frame, -2 * frame - 2
+
+    def state(self, frame: int) -> State:
+        """The state of picture ``frame``; negative ones are neighbours of :meth:`around`."""
+        if frame not in self._states:
+            row, side = (frame, 1) if frame >= 0 else ((-frame - 1) // 2, 0 if frame % 2 else 2)
+            self._states[frame] = _state(self.film, self.rows[row][side])
+        return self._states[frame]
+
+
+def _state(film: Film, picture: Picture) -> State:
+    state = film.state(picture.at, picture.camera)
+    grown = picture.grown if picture.forces else 0.0
+    return msgspec.structs.replace(
+        state,
+        arrows=[(tail, _along(tail, tip, grown)) for tail, tip in state.arrows],
+        arcs=[(middle, sweep * grown) for middle, sweep in state.arcs],
+        number="",
+        lifts=dict(picture.lifts),
+        hidden=picture.hidden,
+    )
+
+
+def _along(tail: Point, tip: Point, part: float) -> Point:
+    x, y, z = (a + part * (b - a) for a, b in zip(tail, tip, strict=True))
+    return x, y, z
+
+
+# Reads the files of a machine and makes its story: the films it is rendered from, its shots, what is drawn over.
 
 SHOWN = {"effort": "forces", "speed": "velocities"}
 """What arrows show by the kind of what a story stops for; reactions else."""

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import blended_transform_factory
 
 from render.magnitudes import centre_of_mass, energy_floor, power_floor, without_noise
-from render.plots.horizon import Horizon, horizon
-from render.plots.pages.rates import draw
+from render.plots.measures import Horizon, horizon
+from render.plots.pages.motion import draw
 from render.plots.style import INK, PARTS, QUIET, page, rows
 from shared.contract import EventMark, Motion
 from shared.contract.quantity import written

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.sound.desk import Blows, Desk
-from render.sound.radiated import of_force
+from render.sound.ringing import of_force
 from render.sound.setting import Setting
 from shared.contract import JointMotion, Shape
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.sound.desk import Desk
-from render.sound.radiated import of_power
+from render.sound.ringing import of_power
 from render.sound.setting import Setting
 from shared.contract import ContactMotion, ForceMotion, JointMotion
 

@@ -13,10 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.sound.desk import Desk
-from render.sound.radiated import of_power
-from render.sound.ringing import modes
+from render.sound.ringing import Matter, modes, of_power
 from render.sound.setting import Setting
-from render.sound.solid_matter import Matter
 from render.sound.sources.impacts import NAME as IMPACTS
 from shared.contract import ForceMotion
 

@@ -13,7 +13,7 @@ from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.inputs import author_files, path_of, recording
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.masses import bodies_of, give_masses
-from render.view.binary import encode
+from render.view.document import encode
 from shared import contract
 from shared.contract.shot import Shot
 from shared.stage import console

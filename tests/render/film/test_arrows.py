@@ -12,15 +12,13 @@ import pytest
 from PIL import Image
 
 from render.blender.scene.arrows import sizes
-from render.film.arrows.arrows import FULL, Arrows
-from render.film.arrows.scales import LONGEST, TINY, round_below, scales_of
-from render.film.arrows.vectors import Vector, at_time, vectors
+from render.film.arrows import FULL, Arrows
 from render.film.framing import project
 from render.film.inputs import named, read_film
 from render.film.scene import ArrowSpec
+from render.film.vectors import LONGEST, TINY, Vector, at_time, round_below, scales_of, vectors
 from render.frames import still
-from render.presets import Preset
-from render.shown import WORDS, show_words
+from render.presets import WORDS, Preset, show_words
 from shared.contract.quantity import written
 from shared.contract.shot import Quantity, Shot, Title, shown
 from shared.contract.signals import SIGNALS, rgb

@@ -31,7 +31,7 @@ import bpy, bmesh
 from render.blender.scene import passing, tubes
 from render.film.framing import CameraPose
 from render.film.scene import Scene, State, StudioSpec, SurfaceSpec, TubeSpec
-from render.looks.studio import STUDIO
+from render.looks import STUDIO
 surface = SurfaceSpec(colour=(0.5, 0.5, 0.5), finish="plastic", roughness=0.5)
 planes = ((0.0, 0.0, 1.0, 0.0), (1.0, 0.0, 0.0, 0.05))
 specs = [TubeSpec(name=name, surface=surface, radius=0.01, points=2, cut=planes) for name in ("rod", "aside")]

@@ -14,11 +14,9 @@ import pytest
 from PIL import Image
 
 from mbsd.dealing.wrong_answer import WrongAnswer
-from render.blender.picture_file import name_of
-from render.blender.received_picture import fault_of, most_bytes
-from render.blender.worker.plain_png import SIGNATURE, without_notes
-from render.frames import on_cluster
-from render.frames.served import Made
+from render.blender.picture_file import SIGNATURE, fault_of, most_bytes, name_of, without_notes
+from render.frames import cluster
+from render.frames.cluster import Made
 from render.frames.store import FrameStore
 from shared.stage.errors import UserError
 
@@ -72,7 +70,7 @@ RUBBISH = {
 
 def reader() -> Any:
     job = SimpleNamespace(width=WIDTH, height=HEIGHT, pictures=[SimpleNamespace(key=KEY, name="frame 3")])
-    return on_cluster.reader(job)  # pyright: ignore[reportArgumentType]
+    return cluster.reader(job)  # pyright: ignore[reportArgumentType]
 
 
 def sent(content: bytes, name: str = "", cycles: float = 0.5, device: str = "CPU") -> bytes:

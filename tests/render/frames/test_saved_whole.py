@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from render.blender.worker.saved import save_whole
+from render.blender.worker.picture import save_whole
 from shared.stage.errors import UserError
 
 

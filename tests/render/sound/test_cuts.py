@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbsd.model.joint import KINDS
-from render.film.time_map import TimeMap
+from render.film.clock import TimeMap
 from render.sound.setting import CONTROL, RATE, Setting
 from render.sound.sound import sound_of
 from render.sound.sources.mesh import crossings, teeth_passed

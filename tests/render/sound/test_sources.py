@@ -8,10 +8,9 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from render.film.time_map import TimeMap
-from render.sound.ringing import modes_of
+from render.film.clock import TimeMap
+from render.sound.ringing import OTHER, matter, modes_of
 from render.sound.setting import RATE, Setting
-from render.sound.solid_matter import OTHER, matter
 from render.sound.sound import SOURCES, sound_of, stems_of
 from render.sound.sources.mesh import crossings, teeth_passed
 from shared.contract.materials import MATERIALS

@@ -8,8 +8,7 @@ import pytest
 from render.film.story.frame import Over, Picture, Shot
 from render.film.story.story import Story
 from render.sound.setting import Setting
-from render.sound.sound import stems_of
-from render.sound.together import STREAMS, Heard, sound_of_all
+from render.sound.sound import STREAMS, Heard, sound_of_all, stems_of
 from shared.contract.shot import Shot as Wishes
 from shared.contract.shot import Sound
 from tests.render.sound.heard import ball, filmed, gears

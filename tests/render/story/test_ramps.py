@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from render.film.story.ramp import Ramp, into, warped
+from render.film.story.ramps import Ramp, into, warped
 
 
 def slope(at, s: float, h: float = 1e-5) -> float:

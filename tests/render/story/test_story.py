@@ -9,15 +9,14 @@ import pytest
 
 from render.film.film import Film
 from render.film.framing import project
-from render.film.story.curves import curves_of
+from render.film.story.frame import Reason
 from render.film.story.planned import planned, scenery_of
-from render.film.story.reason import Reason
 from render.film.story.shots import reason
-from render.film.story.story import Story
+from render.film.story.story import Story, curves_of
 from render.frames.story import kinds
 from render.frames.story.telling import Telling, telling_of
 from render.presets import PRESETS, preset_named
-from render.report.reasons import reasons
+from render.report.facts import reasons
 from shared.contract.shot import STORY_SHOTS, Camera, Section, Shot
 from shared.contract.shot import Story as Wishes
 from shared.stage.errors import UserError
@@ -49,7 +48,7 @@ def check(telling: Telling) -> Story:
 
 
 def _lifts(telling: Telling):
-    from render.film.exploded import exploded
+    from render.film.pieces import exploded
 
     return exploded(telling.film.parts, telling.film.size)
 

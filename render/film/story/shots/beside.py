@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from render.film.story.curves import Curve
 from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
-from render.film.story.ramp import Ramp
+from render.film.story.ramps import Ramp
 from render.film.story.scenery import Scenery
+from render.film.story.story import Curve
 from render.film.story.words import plain
 from shared.contract.quantity import written
 

@@ -59,7 +59,7 @@ class Light(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Sky(msgspec.Struct, kw_only=True, frozen=True):
-    """What shines from all around: from the horizon up to the zenith, and from below."""
+    """Light from all around: from the horizon up to the zenith, and from below."""
 
     zenith: Colour
     horizon: Colour
@@ -67,7 +67,7 @@ class Sky(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Ground(msgspec.Struct, kw_only=True, frozen=True):
-    """What the machine stands on: a texture between two colours."""
+    """The ground below the machine: a texture between two colours."""
 
     texture: Texture
     colour: Colour
@@ -78,7 +78,7 @@ class Ground(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Wall(msgspec.Struct, kw_only=True, frozen=True):
-    """What stands behind: the floor bends up into it (sweep), or boards with holes hang there (pegboard)."""
+    """The wall behind: the floor bends up into it (sweep), or boards with holes hang there (pegboard)."""
 
     kind: Literal["sweep", "pegboard"]
     colour: Colour
@@ -97,7 +97,7 @@ class Drawing(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Screen(msgspec.Struct, kw_only=True, frozen=True):
-    """What the page needs beside, for WebGL has no light that is thrown back by what it falls on."""
+    """Light of the page: WebGL has no light that bounces."""
 
     edge: Colour
     """What the floor fades into."""
@@ -113,7 +113,7 @@ class Look(msgspec.Struct, kw_only=True, frozen=True):
 
     name: str
     dark: bool
-    """Whether what lies over the picture is light on dark."""
+    """True if what lies over the picture is light on dark."""
     ground: Ground
     sky: Sky
     lying: Light = Light()
@@ -347,7 +347,7 @@ LARGE = 0.8
 
 @dataclass(frozen=True)
 class Family:
-    """What decides: how a machine stands, whether gas or a motor moves it, the diagonal of what it sweeps (m)."""
+    """Facts that decide the look: how a machine stands, if gas or a motor moves it, the diagonal of its sweep (m)."""
 
     mount: Kind
     engine: bool

@@ -138,19 +138,19 @@ def torque_scale(motion: Motion) -> float:
 
 
 def effort_floor(motion: Motion, pushes: bool) -> float:
-    """What is rounding in the effort of a driver or force: N where it ``pushes``, else N m."""
+    """Return the rounding in the effort of a driver or force: N if it ``pushes``, else N m."""
     return NOISE * (force_scale(motion) if pushes else torque_scale(motion))
 
 
 def energy_floor(motion: Motion) -> float:
-    """What is rounding in an energy (J)."""
+    """Return the rounding in an energy (J)."""
     kinetic, potential = np.asarray(motion.energy.kinetic), np.asarray(motion.energy.potential)
     moved = max(float(kinetic.max()), float(np.ptp(potential)))
     return max(NOISE * moved, ROUNDING * float(np.abs(potential).max()))
 
 
 def power_floor(motion: Motion) -> float:
-    """What is rounding in a power (W), beside those of drivers, weights, inertia forces and turning itself."""
+    """Return the rounding in a power (W), beside those of drivers, weights, inertia forces and turning itself."""
     gravity = float(np.hypot(*motion.gravity))
     largest = [max(motion.energy.kinetic) * speed_scale(motion)]
     largest += [float(np.abs(driver.power).max()) for driver in motion.drivers.values()]
@@ -233,21 +233,21 @@ def shaking(motion: Motion) -> Shaking:
 
 
 def force_floor(motion: Motion) -> float:
-    """What is rounding in the force (N)."""
+    """Return the rounding in the force (N)."""
     return NOISE * force_scale(motion)
 
 
 def moment_floor(motion: Motion) -> float:
-    """What is rounding in the moment (N m)."""
+    """Return the rounding in the moment (N m)."""
     return NOISE * torque_scale(motion)
 
 
 def couple_floor(motion: Motion) -> float:
-    """What is rounding in the couples (N m)."""
+    """Return the rounding in the couples (N m)."""
     return max(moment_floor(motion), NOISE * force_scale(motion) * motion.couple.reach if motion.couple else 0.0)
 
 
 def floor_of(motion: Motion, name: str, unit: str) -> float:
-    """What is rounding in the harmonics of a quantity of data.json's ``vibration``, in its unit."""
+    """Return the rounding in the harmonics of a quantity of data.json's ``vibration``, in its unit."""
     floors = {"shaking force": force_floor, "shaking couple": couple_floor}
     return floors.get(name, moment_floor if unit == "N m" else force_floor)(motion)

@@ -40,7 +40,7 @@ class Preset:
 
     @property
     def suffix(self) -> str:
-        """What names of files get where the picture is not 16:9: ``-9x16``, else empty."""
+        """Suffix of file names if the picture is not 16:9: ``-9x16``, else empty."""
         _, dash, shape = self.name.partition("-")
         return dash + shape
 
@@ -139,7 +139,7 @@ def _meant(word: str) -> str:
 
 
 def has_sound(text: str) -> bool:
-    """Whether SOUND, ``on`` if nothing is said, asks for a film with sound; raises UserError for another word."""
+    """Return True if SOUND, ``on`` if nothing is said, asks for a film with sound; raises UserError for another word."""
     if text not in ("", "on", "off"):
         raise UserError(f"SOUND={text!r} is neither on nor off; without SOUND a film has its sound")
     return text != "off"

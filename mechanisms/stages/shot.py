@@ -56,7 +56,7 @@ def run(name: str) -> None:
 
 
 def is_fresh(name: str) -> bool:
-    """Whether there is nothing to do."""
+    """Return True if there is nothing to do."""
     out = Out(name)
     return _is_fresh(out, _names(out)) if has(out.name, "shot") else _stage_without_file(out).is_fresh()
 
@@ -127,7 +127,7 @@ class _Parts(msgspec.Struct):
 
 
 def _names(out: Out) -> Names | None:
-    """What the shot may name; None until motion and parts are made and can be read."""
+    """Return the names that a shot may use; None until motion and parts exist and can be read."""
     try:
         motion = msgspec.json.decode(out.motion.read_bytes(), type=_Motion)
         parts = msgspec.json.decode(out.parts.read_bytes(), type=_Parts)

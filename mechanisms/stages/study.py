@@ -173,7 +173,7 @@ def _measured(name: str, module: Any, p: Any, m: Mechanism) -> dict[str, float]:
 
 
 def peaks(solution: Any) -> dict[str, float]:
-    """What is measured where mechanism.py does not say: peaks over the motion, by name and unit."""
+    """Return the peaks over the motion, by name and unit: the measures of a mechanism.py that names none."""
     import numpy as np
 
     out: dict[str, float] = {}

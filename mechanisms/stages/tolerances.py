@@ -120,7 +120,7 @@ def _spread(t: Tolerances) -> str:
 
 
 def advice(t: Tolerances) -> str:
-    """Which dimension to tighten first, and what that brings."""
+    """Return the sentence that says which dimension to tighten first, and what that gains."""
     best = t.tighten[0]
     gain = 1.0 - best.std_halved / t.std if t.std > 0.0 else 0.0
     more = 0.0 if t.yields is None else best.yield_halved - t.yields.part

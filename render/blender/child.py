@@ -57,19 +57,19 @@ def how_it_ended(code: int, doing: str, said: str) -> str:
 
 
 def remedy_of(code: int) -> str:
-    """What to do where Blender ends with this code again and again."""
+    """Return the remedy if Blender ends with this code again and again."""
     if -code == signal.SIGKILL:
         return "close other programs or take a smaller PRESET"
     return "make check tells the device"
 
 
 def is_crash(code: int) -> bool:
-    """Whether an exit code tells of a crash, or of a kill that is no wish of a user to end it."""
+    """Return True if an exit code tells of a crash, or of a kill that is no wish of a user to end it."""
     return code < 0 and -code not in ENDED
 
 
 def how_it_stands(process: int) -> str:
-    """What the system says of a process that is silent, after a comma; nothing if there is nothing to say."""
+    """Return the state of a silent process in words, after a comma; empty if the system reports none."""
     try:
         listing = subprocess.run(["ps", "-o", "stat=", "-p", str(process)], capture_output=True, text=True, timeout=5)
     except (OSError, subprocess.TimeoutExpired):
@@ -177,7 +177,7 @@ class Child:
         self.doing = ""
 
     def answers(self, job: Job) -> Iterator[Answer]:
-        """What the job comes to; starts a process that hangs again, once for each picture."""
+        """Yield the answers to a job; restart a process that hangs, once for each picture."""
         left = {picture.key: picture for picture in job.pictures}
         hung = False
         while True:

@@ -52,7 +52,7 @@ class Job(msgspec.Struct, kw_only=True, frozen=True):
 
     @property
     def drawn(self) -> bool:
-        """Whether the look draws lines instead of light."""
+        """True if the look draws lines instead of light."""
         return self.scene.studio.look.drawing is not None and self.flat is None
 
 

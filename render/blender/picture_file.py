@@ -48,7 +48,7 @@ END = b"\0\0\0\0IEND\xaeB`\x82"
 
 
 def fault(path: Path, width: int, height: int) -> str | None:
-    """What is wrong with a PNG that should be of this size, in words after its name; None if nothing is.
+    """Return the fault of a PNG that should be of this size, in words after its name; None if it has none.
 
     Looks at the size of the file, its last chunk, the checksums of all chunks, and decodes it to its last row.
     """
@@ -81,7 +81,7 @@ def name_of(key: str, content: bytes) -> str:
 
 
 def is_as_named(path: Path, content: bytes) -> bool:
-    """Whether these are the bytes that the file's name was made of."""
+    """Return True if these are the bytes that the file's name was made of."""
     return path.name == name_of(path.stem.partition("-")[0], content)
 
 
@@ -96,7 +96,7 @@ RGB = b"\x08\x02\x00\x00\x00"
 
 
 def fault_of(content: bytes, width: int, height: int) -> str | None:
-    """What is wrong with bytes that should be a whole PNG of this size (pixels), in words after its name; or None.
+    """Return the fault of bytes that should be a whole PNG of this size (pixels), in words after its name; or None.
 
     Its header is looked at first, so that no picture of another size is decoded; last, that its rows are all there and
     nothing follows them.

@@ -40,7 +40,7 @@ def angles(shot: Camera, mount: Mount, aspect: float = ASPECT) -> tuple[float, f
 
 
 class Subject:
-    """What a film is about, in points (n, 3) of the world (m)."""
+    """The subject of a film, in points (n, 3) of the world (m)."""
 
     def __init__(self, machine: Array, around: Array, drawn: Array, sharp: Array, way: Array | None = None) -> None:
         """All of the ``machine`` over the motion, what stands ``around`` it, arrows that are ``drawn`` about it, and

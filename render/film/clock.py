@@ -46,7 +46,7 @@ class TimeMap:
 
     pieces: tuple[TimePiece, ...]
     closes: bool
-    """Whether the next showing goes on with the motion where this one ends, as of a motion with a period."""
+    """True if the next showing goes on with the motion where this one ends, as of a motion with a period."""
 
     @classmethod
     def through(cls, film: Sequence[float], model: Sequence[float], closes: bool) -> TimeMap:
@@ -114,7 +114,7 @@ STEPS = (1.0, 2.0, 5.0)
 
 
 class Clock:
-    """What the frames of a film show, from its motion and its shot."""
+    """Times that the frames of a film show, from its motion and its shot."""
 
     def __init__(self, motion: Motion, shot: Shot) -> None:
         self.shot, self.repeats = shot, motion.period is not None

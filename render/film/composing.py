@@ -83,7 +83,7 @@ def held(view: View, machine: Array, around: Array, drawn: Array, few: Array | N
 
 
 def outermost(points: Array) -> Array:
-    """Those of points (n, 3) that are farthest in some direction of a sphere; few where there are many."""
+    """Return the points (n, 3) that are farthest in some direction of a sphere; few where there are many."""
     if len(points) <= WAYS:
         return points
     k = np.arange(WAYS) + 0.5
@@ -191,7 +191,7 @@ def _cards(rows: Sequence[LegendRow], size: float, aspect: float) -> dict[str, C
 
 
 def _is_free(card: Card, over: Box, aspect: float) -> bool:
-    """Whether a card is in the picture and apart from the words."""
+    """Return True if a card is in the picture and apart from the words."""
     wide, high = sides(aspect)
     right, lower, edge = card.left + card.wide, card.top + card.high, EDGE / 2
     inside = card.left >= edge and card.top >= edge and right <= wide - edge and lower <= high - edge
@@ -240,7 +240,7 @@ def count_held(camera: CameraPose, points: Array, place: Box, aspect: float = AS
 
 
 def is_free(poses: Sequence[CameraPose], moving: Array, place: Box, aspect: float = ASPECT) -> bool:
-    """Whether nothing that moves (n, 3) comes into a place of the picture."""
+    """Return True if nothing that moves (n, 3) comes into a place of the picture."""
     return place[2] <= place[0] or not any(count_held(pose, moving, place, aspect) for pose in poses)
 
 
@@ -273,7 +273,7 @@ WIDEST = 0.9
 
 
 def travels(places: Array, repeats: bool) -> bool:
-    """Whether a machine with points (T, n, 3) at equal steps of the film goes away from where it is, for good.
+    """Return True if a machine with points (T, n, 3) at equal steps of the film goes away from where it is, for good.
 
     A pendulum swings about a place that it always covers, a planet comes back, and so does what ``repeats``.
     """

@@ -82,7 +82,7 @@ class Film:
 
     @cached_property
     def studio(self) -> StudioSpec:
-        """What stands around the machine."""
+        """Studio around the machine."""
         up, azimuth = self.parts.mount.up, angles(self.shot.camera, self.parts.mount, self.aspect)[0]
         middle, points = in_studio(self.space.middle, up), in_studio(self.space.all, up)
         right, away = np.abs((points - middle) @ axes(azimuth, 0.0)[::2].T).max(axis=0)
@@ -98,8 +98,8 @@ class Film:
         )
 
     def state(self, frame: float, camera: CameraPose | None = None) -> State:
-        """What frame ``frame`` shows; frames before 0 or after the first showing go on with the loop. With a ``camera``
-        of its own, it may lie between two frames.
+        """Return the state that frame ``frame`` shows; frames before 0 or after the first showing go on with the loop.
+        With a ``camera`` of its own, it may lie between two frames.
         """
         at = self.clock.moment(frame)
         arrows, arcs = self._arrow_heights
@@ -127,7 +127,7 @@ class Film:
 
     @property
     def subject(self) -> Subject:
-        """What is filmed, in points; those of what is followed are as seen from its way."""
+        """Subject of the film, in points; a subject that is followed has them as seen from its path."""
         return self._subject
 
     @cached_property
@@ -248,7 +248,7 @@ class Film:
 
     @cached_property
     def _subject(self) -> Subject:
-        """What is filmed."""
+        """Return the subject of the film."""
         if self._way is None:
             machine = np.concatenate([self.space.machine, self._tubes])
             return Subject(machine, self.space.around, self._drawn, machine)
@@ -271,7 +271,7 @@ class Film:
         return camera
 
     def _has_a_free_corner(self, camera: FilmCamera) -> bool:
-        """Whether nothing moves where the legend may be."""
+        """Return True if nothing moves where the legend may be."""
         places = self._places_of(composing.cards(self._legend(camera), self._words, self.aspect)).values()
         looks, moving = camera.looks(), self._seen_moving
         return not places or any(composing.is_free(looks, moving, place, self.aspect) for place in places)
@@ -288,7 +288,7 @@ class Film:
 
     @cached_property
     def _lines(self) -> list[LineSpec]:
-        """What is written at the upper left."""
+        """Return the lines of text at the upper left."""
         numbers = sorted({self.number(float(time)) for time in self._times} - {""})
         title, rate = arrows.title(self.motion, self.shot), arrows.rate(self.clock, self.shot)
         return composing.lines(title, numbers, rate, self.aspect)

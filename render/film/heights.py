@@ -44,19 +44,19 @@ class SweptSpace:
 
     @cached_property
     def moving(self) -> Array:
-        """What moves, trails with it; everything if nothing does."""
+        """Return the points that move, with trails; all points if nothing moves."""
         bodies = [cloud for name, cloud in self._bodies.items() if name in self._poses.motion.bodies]
         return np.concatenate([*bodies, *self._trails]) if bodies else self.all
 
     @cached_property
     def machine(self) -> Array:
-        """What moves, without trails; everything if nothing does."""
+        """Return the points that move, without trails; all points if nothing moves."""
         bodies = [cloud for name, cloud in self._bodies.items() if name in self._poses.motion.bodies]
         return np.concatenate(bodies) if bodies else self.all
 
     @cached_property
     def around(self) -> Array:
-        """What stands still: the base and all that is fixed to it; nothing if nothing moves."""
+        """Return the points that stand still: the base and all that is fixed to it; none if nothing moves."""
         moving = self._poses.motion.bodies
         bodies = [cloud for name, cloud in self._bodies.items() if name not in moving]
         return np.concatenate(bodies) if bodies and len(bodies) < len(self._bodies) else np.zeros((0, 3))
@@ -75,7 +75,7 @@ class SweptSpace:
 
     @cached_property
     def standing(self) -> Array:
-        """What stands still: corners of its pieces, and places between any two corners of one piece."""
+        """Return points that stand still: corners of pieces, and places between any two corners of one piece."""
         between = np.linspace(0, 1, 9)[:, None, None, None]
         inside = [
             (between * box[None, :, None] + (1 - between) * box[None, None, :]).reshape(-1, 3)

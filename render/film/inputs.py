@@ -1,4 +1,4 @@
-"""What the picture stages read, and the key that tells whether any of it changed. Cheap to import."""
+"""Inputs of the picture stages, and the key that changes with them. Cheap to import."""
 
 from __future__ import annotations
 

@@ -41,7 +41,9 @@ class Flank:
 
 
 def flank_of(motion: Motion, name: str, centre: Array) -> Flank | None:
-    """That of a roller whose middle is at ``centre`` (T, 2) in a joint or contact; None if nothing rolls in it."""
+    """Return the flank of a roller whose middle is at ``centre`` (T, 2) in a joint or contact; None if nothing rolls in
+    it.
+    """
     joint, contact = motion.joints.get(name), motion.contacts.get(name)
     if joint is not None and joint.shape is not None:
         shape = joint.shape
@@ -139,7 +141,7 @@ class Roller:
 
 
 class Rollers:
-    """Those of a film; what its joint does not tell stands still on its body."""
+    """Rollers of a film; one whose joint gives no rotation stands still on its body."""
 
     def __init__(self, poses: Poses, parts: Parts) -> None:
         self._poses = poses

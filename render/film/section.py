@@ -101,7 +101,7 @@ WHOLE = Cut()
 
 
 def section_of(section: Section | float) -> Section:
-    """What a shot says as a Section; a number is a part of the depth, from the front."""
+    """Return the wish of a shot as a Section; a number is a part of the depth, from the front."""
     return section if isinstance(section, Section) else Section(front=section)
 
 
@@ -205,7 +205,7 @@ class _Solid:
         return corners[: len(corners) // 2]
 
     def _goes_through(self, planes: list[tuple[Normal, float]]) -> bool:
-        """Whether its cut is another one at other moments."""
+        """Return True if its cut is another one at other moments."""
         u, v, theta = self._poses.T
         if len(self._poses) == 1 or all(normal == WAYS["front"] for normal, _ in planes):
             return False
@@ -251,7 +251,7 @@ def _poses(motion: Motion | None, body: str, whole: bool) -> Array:
 
 
 def _nothing(mechanism: str, asked: Section | float, solids: list[_Solid], depths: dict[str, float]) -> str:
-    """What is wrong, and where the middles of pieces are from each side."""
+    """Return the error for a section that cuts nothing, with the middles of pieces from each side."""
     words = []
     for side in depths:
         reaches = [solid.reach(WAYS[side]) for solid in solids]

@@ -41,7 +41,7 @@ def prism(vertices: Array) -> Array:
 
 
 def outermost(points: Array) -> Array:
-    """Those of points (n, 3) that are farthest in some direction: within two thousandths of their size, if they are
+    """Return the points (n, 3) that are farthest in some direction: within two thousandths of their size, if they are
     longer in the plane than high, all are inside.
     """
     angles = np.linspace(0.0, 2 * np.pi, DIRECTIONS, endpoint=False)
@@ -80,7 +80,7 @@ def _convex_outline(points: Array) -> Array:
 
 
 def _not_inside(points: Array) -> Array:
-    """Those of points (n, 2) that are not inside a polygon of outermost ones (Akl, Toussaint 1978): most are."""
+    """Return the points (n, 2) outside a polygon of outermost ones (Akl, Toussaint 1978); most are inside."""
     ways = _around(SIDES)
     corners = points[(ways @ points.T).argmax(axis=1)]
     inside = np.full(len(points), bool((corners != corners[0]).any()))

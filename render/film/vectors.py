@@ -25,7 +25,7 @@ UNITS = {"velocities": "m/s", "accelerations": "m/s²", "forces": "N", "reaction
 
 @dataclass(frozen=True)
 class Acting:
-    """What acts over the times of data.json, at a place."""
+    """A force or torque over the times of data.json, at a place."""
 
     quantity: Quantity
     name: str
@@ -42,7 +42,7 @@ class Vector(Acting):
     value: Array
     """(T, 2) in the unit of its quantity."""
     weight: bool = False
-    """Whether it is the weight of a body, one of the forces."""
+    """True if it is the weight of a body, one of the forces."""
 
     @property
     def size(self) -> Array:
@@ -56,7 +56,7 @@ class Vector(Acting):
 
     @property
     def row(self) -> str:
-        """What the legend calls it: weights have a row and a colour of their own."""
+        """Name in the legend: weights have a row and a colour of their own."""
         return "weights" if self.weight else self.quantity
 
 
@@ -84,7 +84,7 @@ def at_time(time: Array, values: Array, t: float) -> Array:
 
 
 def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
-    """What joints and rigid contacts do to the body that moves."""
+    """Yield the reactions of joints and rigid contacts on the body that moves."""
     for name, joint in (*motion.joints.items(), *motion.contacts.items()):
         on = felt(joint)
         yield Vector(quantity, name, joint.bodies, on.place, on.force)

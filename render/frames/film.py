@@ -55,7 +55,7 @@ def run(name: str, preset: Preset, show: str = "", sound: str = "") -> None:
 
 
 def is_fresh(name: str, preset: Preset, show: str = "", sound: str = "") -> bool:
-    """Whether there is nothing to do. Raises UserError where motion, parts or shot are missing."""
+    """Return True if there is nothing to do. Raises UserError where motion, parts or shot are missing."""
     return _stage(Out(name), preset, show, has_sound(sound)).is_fresh()
 
 
@@ -80,7 +80,7 @@ def _stage(out: Out, preset: Preset, show: str, heard: bool) -> Stage:
 
 
 def sound_key() -> str:
-    """What decides the sound beside the files and the clock."""
+    """Return the key of the sound, without the files and the clock."""
     room = Path(__file__).parents[1]
     return key_of(sources_hash(room / "sound", Path(__file__).with_name("encode.py")), versions("numpy"))
 

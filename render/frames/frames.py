@@ -141,7 +141,7 @@ def picture_of(pictures: Pictures, store: FrameStore, frame: int) -> Path:
 
 @dataclass
 class Tally:
-    """What a run made, and in how many seconds of Blender's own."""
+    """Frames that a run made, and the seconds that Blender took."""
 
     device: str = ""
     rendered: int = 0
@@ -183,7 +183,7 @@ class Pictures:
 
     @property
     def shown(self) -> Scene:
-        """What all of them have in common."""
+        """Scene that all frames share."""
         return self.film.scene
 
     def around(self, frame: int) -> tuple[int, int, int]:

@@ -42,7 +42,7 @@ def poster(name: str, preset: Preset, show: str = "") -> None:
 
 
 def is_fresh_poster(name: str, preset: Preset, show: str = "") -> bool:
-    """Whether there is nothing to do. Raises UserError where motion, parts or shot are missing."""
+    """Return True if there is nothing to do. Raises UserError where motion, parts or shot are missing."""
     return _poster(Out(name), preset, show).is_fresh()
 
 

@@ -202,7 +202,7 @@ FEWER = 1440
 
 
 class Track(NamedTuple):
-    """What one node does, as accurate as data.json."""
+    """Animation of one node, as accurate as data.json."""
 
     node: int
     path: str

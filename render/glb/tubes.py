@@ -198,7 +198,7 @@ class Springs:
     def __init__(
         self, document: Document, animation: Animation, paints: Paints, motion: Motion, front: float = math.inf
     ) -> None:
-        """What is higher than ``front`` (m) is cut away."""
+        """Add the springs of a motion; cut away what is higher than ``front`` (m)."""
         self._document, self._animation, self._paints, self._motion = document, animation, paints, motion
         self._front = front
         self.nodes: list[int] = []

@@ -57,7 +57,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
 
 
 def is_fresh(name: str, spectra: str = "", every: bool = False) -> bool:
-    """Whether there is nothing to do, by the names of the last drawing: the same motion has the same plots.
+    """Return True if there is nothing to do, by the names of the last drawing: the same motion has the same plots.
 
     Raises UserError for a SPECTRA in mechanism.py that is none, OSError where the motion is missing.
     """

@@ -115,7 +115,7 @@ class Horizon:
 
     @property
     def degrees(self) -> bool:
-        """Whether it is an angle."""
+        """True if it is an angle."""
         return self.unit == "°"
 
     def dress(self, axes: Axes) -> None:

@@ -106,7 +106,7 @@ def _moving(motion: Motion, name: str) -> Quantity:
 
 
 def _shaking_quantity(motion: Motion, name: str) -> Quantity:
-    """What inertia puts on the frame."""
+    """Return the forces and moments of inertia on the frame."""
     shaken = shaking(motion)
     if name == "shaking force":
         says = "force of inertia on the frame, \N{MINUS SIGN}Σ m a"

@@ -39,7 +39,7 @@ def run(name: str) -> None:
 
 
 def is_fresh(name: str) -> bool:
-    """Whether there is nothing to do."""
+    """Return True if there is nothing to do."""
     out = Out(name)
     return out.motion.is_file() and _stage(out, description(out.name)).is_fresh()
 

@@ -91,7 +91,7 @@ def _last_turn(motion: Motion) -> list[str]:
 
 
 def frame_section(motion: Motion) -> list[str]:
-    """What inertia does to the frame, of machines with bodies in different places along the normal of the plane."""
+    """Return the lines on inertia forces on the frame, for bodies in different places along the normal of the plane."""
     shaken = shaking(motion)
     if shaken.mx is None or shaken.my is None:
         return []

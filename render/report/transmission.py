@@ -37,7 +37,7 @@ class Loop:
     coupler: str
     follower: str
     slides: bool
-    """Whether the follower slides."""
+    """True if the follower slides."""
     pins: np.ndarray
     """(T, 4, 2) A B C D (m); of a slider-crank D is C moved along the guide's normal."""
     angle: np.ndarray
@@ -75,7 +75,7 @@ class Loop:
 
     @property
     def travel(self) -> float:
-        """What the follower does: the angle it swings through (rad), or its stroke (m)."""
+        """Travel of the follower: the angle it swings through (rad), or its stroke (m)."""
         c, d = self.pins[:, 2], self.pins[:, 3]
         if self.slides:
             normal = (d - c)[0] / np.hypot(*(d - c)[0])
@@ -167,7 +167,7 @@ def transmission_section(motion: Motion) -> list[str]:
 
 
 def _different(dead: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Those of the first turn: later ones are at the same angles of the crank."""
+    """Return the dead points of the first turn: later ones are at the same angles of the crank."""
     first: list[tuple[float, float]] = []
     for at, angle in dead:
         if all(abs(math.remainder(angle - other, 2 * math.pi)) > SAME for _, other in first):

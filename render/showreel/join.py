@@ -36,7 +36,7 @@ CLIP_PATIENCE = 600.0
 
 @dataclass(frozen=True)
 class Parameters:
-    """What players take from the first film of a joined file and use for all."""
+    """Parameters that players take from the first film of a joined file and use for all."""
 
     codec: str
     size: str

@@ -1,4 +1,4 @@
-"""Which films, in which order, and out/films/showreel-<preset>.mp4 with its .srt."""
+"""The showreel: films in their order as out/films/showreel-<preset>.mp4, with its .srt."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def _film(name: str, preset: Preset, show: str, story: str) -> Path:
 
 
 def _has_title(name: str) -> bool:
-    """Whether the story of a mechanism begins with its title."""
+    """Return True if the story of a mechanism begins with its title."""
     shots = read_shot(Out(name).shot).story.shots
     return shots is None or shots[0] == "title"
 

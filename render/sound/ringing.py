@@ -19,7 +19,7 @@ from shared.contract.materials import MATERIALS
 
 @dataclass(frozen=True)
 class Matter:
-    """What a part rings by."""
+    """Material constants that a part rings by."""
 
     modulus: float
     """Young's modulus (Pa)."""
@@ -95,7 +95,7 @@ SLENDER = 2.2
 
 @dataclass(frozen=True)
 class Modes:
-    """What a body rings with: frequencies (Hz), decay (1/s) and strength (Pa at 1 m for a N s), (n,) each."""
+    """Modes of a body: frequencies (Hz), decay (1/s) and strength (Pa at 1 m for a N s), (n,) each."""
 
     frequency: Array
     decay: Array
@@ -118,7 +118,7 @@ class Modes:
 
 
 def modes_of(body: BodyParts) -> Modes | None:
-    """What a body rings with; None where it has no piece of its own."""
+    """Return the modes of a body; None if it has no piece of its own."""
     own = [piece for piece in body.pieces.values() if not piece.dressing and not piece.buy and piece.mass.mass > 0]
     return _of_piece(max(own, key=lambda piece: piece.mass.mass)) if own else None
 

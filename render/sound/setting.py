@@ -1,4 +1,4 @@
-"""What sources read: the motion on the film's time, who is heard, and where in the picture things are.
+"""Setting of all sources of sound: the motion on the film's time, who is heard, and where in the picture things are.
 
 Sources work on series over the times of data.json, and bring them to the film by :meth:`Setting.series`; what happens
 at one moment is at the film seconds that :meth:`Setting.when` gives. Both follow the film's TimeMap and nothing else: a
@@ -75,7 +75,7 @@ class Setting:
         """(M + 1,) moments of the motion (s), and its rate there."""
 
     def heard(self, items: Mapping[str, Item]) -> Iterator[tuple[str, Item]]:
-        """Those that the shot does not silence, by name."""
+        """Yield the items that the shot does not silence, by name."""
         silent = self.film.shot.sound.silent
         return ((name, item) for name, item in items.items() if name not in silent)
 
@@ -126,7 +126,7 @@ class Setting:
         return pose[:, :2] + np.stack([c * x - s * y, s * x + c * y], axis=1)
 
     def modes(self, body: str) -> Modes | None:
-        """What a body, or ground, rings with; None of one without solids."""
+        """Return the modes of a body, or of ground; None for one without solids."""
         if body not in self._modes:
             solids = self.film.parts.bodies.get(body)
             self._modes[body] = modes_of(solids) if solids else None

@@ -40,7 +40,7 @@ def run(name: str) -> None:
 
 
 def is_fresh(name: str) -> bool:
-    """Whether there is nothing to do. Raises UserError where files that it needs are missing."""
+    """Return True if there is nothing to do. Raises UserError where files that it needs are missing."""
     return _stage(name).is_fresh()
 
 

@@ -33,7 +33,7 @@ REMEDY = "set XDG_CACHE_HOME to a folder that you can write to"
 
 
 class Bundle(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
-    """What goes into a page: its script, its style, and the licences of what is in them."""
+    """The bundle of a page: its script, its style, and the licences of their libraries."""
 
     script: str
     style: str

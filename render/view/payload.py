@@ -182,7 +182,7 @@ def _floor(thing: Any, name: str, quiet: Mapping[str, float]) -> float:
 
 
 def couple_of(motion: Motion) -> dict[str, Any] | None:
-    """What inertia does to the frame about axes in the plane, rounding as zero."""
+    """Return the moments of inertia on the frame about axes in the plane, with rounding set to zero."""
     shaken = shaking(motion)
     return None if shaken.mx is None else _series(shaken, "mx", "my")
 

@@ -26,7 +26,7 @@ def chromium() -> str | None:
 
 
 def version_of(browser: str) -> str:
-    """What the program says of its version. Raises UserError where it says nothing."""
+    """Return the version that a browser reports. Raises UserError if it reports none."""
     try:
         done = subprocess.run([browser, "--version"], capture_output=True, text=True, timeout=60, check=False)
     except (OSError, subprocess.TimeoutExpired) as error:

@@ -40,7 +40,7 @@ Shape = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class Meshes:
-    """Those of a page: ``list`` of dicts, ``step`` (m)."""
+    """Meshes of a page: ``list`` of dicts, ``step`` (m)."""
 
     def __init__(self, largest: float) -> None:
         """``largest``: extent of the largest piece (m)."""

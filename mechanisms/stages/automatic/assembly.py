@@ -96,7 +96,7 @@ def refuse_meeting_bores(plan: Plan) -> None:
 
 
 def _what(plan: Plan, body: str, x: float, y: float) -> str:
-    """What the bore at (x, y) of a body is for."""
+    """Return the purpose of the bore at (x, y) of a body."""
     layout = plan.layout
     for kind, things in (("joint", layout.m.joints), ("force", layout.m.forces), ("contact", layout.m.contacts)):
         for name, thing in things.items():

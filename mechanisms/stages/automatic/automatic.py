@@ -229,7 +229,9 @@ class Automatic:
 
     @cached_property
     def layout(self) -> Layout:
-        """What is to be built, with styluses as tall as the layers allow. Raises UserError where there are none."""
+        """Return what is to be built, with styluses as tall as the layers allow. Raises UserError if no layers are
+        possible.
+        """
         return self._found[0]
 
     @cached_property

@@ -64,7 +64,7 @@ def body_shape(eyes: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, i
 
 
 def _outermost(corners: list[int], eyes: list[PlacedEye]) -> list[int]:
-    """Those corners whose eyes neither another eye nor the hull round the others holds already, in their order."""
+    """Return the corners whose eyes lie in no other eye and not in the hull round the others, in their order."""
     circles = {k: (eyes[k][0], eyes[k][1], eyes[k][2].radius) for k in corners}
     for k in corners:
         if any(hull_holds([circle], circles[k]) for other, circle in circles.items() if other != k):
@@ -192,7 +192,7 @@ class _Yoke:
 
     @property
     def has_room(self) -> bool:
-        """Whether the arm meets the slot between its ends, and all other places are well away from it."""
+        """True if the arm meets the slot between its ends, and all other places are well away from it."""
         return self.others[0][0] >= LONG * self.wall and abs(self.others[0][1]) + self.arm <= self.half
 
     def flat(self, thickness: float, edge: float) -> cq.Workplane:
@@ -210,7 +210,7 @@ class _Yoke:
         return eased(shape.clean(), edge)
 
     def _corner(self, radius: float, side: float, thickness: float) -> cq.Workplane:
-        """What fills the corner of wall and arm above (side 1) or below it (-1), up to an arc."""
+        """Return the fillet in the corner of wall and arm, above the arm (side 1) or below it (-1)."""
         e, w, far = self.others[0][1], self.arm, self.wall + radius
         low, high, inside = e + side * w, e + side * (w + radius), e + side * w / 2  # overlaps the arm
         middle = far - radius * math.sqrt(0.5), high - side * radius * math.sqrt(0.5)

@@ -82,7 +82,7 @@ class Cam:
     """Where the cam touches the face, from ``at`` along it."""
     clear: float
     bare: bool = False
-    """Whether the pin itself runs on the cam."""
+    """True if the pin itself runs on the cam."""
 
     @property
     def fills(self) -> str:

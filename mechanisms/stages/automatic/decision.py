@@ -1,4 +1,4 @@
-"""What is decided before anything is built: pins, layers, springs and bridges; or why no order of layers exists."""
+"""Decisions before anything is built: pins, layers, springs and bridges; or the reason why no order of layers exists."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def _listed(names: Sequence[str]) -> str:
 # then a body is built up of two webs; then springs are left out, and that is reported.
 
 DEVICES = ((False, False), (True, False), (True, True))
-"""Whether pivots may be flush with their links, and whether they may hang from bridges."""
+"""True if pivots may be flush with their links, and if they may hang from bridges."""
 MOST_WEBS = 60
 """So many ways to build a body of two webs are tried."""
 
@@ -225,7 +225,7 @@ class _Tried:
         return None
 
     def with_some_springs(self, sizes: Sizes, names: Sequence[str], bridges: bool) -> Outcome | None:
-        """Those springs, one after the other, that leave an order of layers; the others are reported."""
+        """Keep springs one by one while an order of layers is left; report the others."""
         left_out = frozenset(names)
         best = self.attempt(sizes, Springs(False, left_out), True, bridges)
         if best is None:

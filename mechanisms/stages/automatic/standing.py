@@ -190,7 +190,7 @@ def _seen(place: np.ndarray, poses: np.ndarray, upright: Upright | None) -> np.n
 
 
 def named(made: Sequence[Solid], bodies: Mapping[str, Sequence[Solid]]) -> list[Solid]:
-    """What is made, numbered where ``bodies`` have the name."""
+    """Return solids with names that are numbered where ``bodies`` have them already."""
     taken = {solid.name.lower() for solids in bodies.values() for solid in solids}
     renamed: list[Solid] = []
     for solid in made:

@@ -72,7 +72,7 @@ def _edge(piece: MeshPiece, corners: np.ndarray, up: np.ndarray) -> Outline | No
 
 
 def covers(outline: Outline, points: np.ndarray) -> bool:
-    """Whether one of ``points`` (m, 2) is inside the shadow: its edges wind round it."""
+    """Return True if one of ``points`` (m, 2) is inside the shadow: its edges wind round it."""
     a, b = outline.edges[:, 0], outline.edges[:, 1]
     low, high = outline.edges.min(axis=(0, 1)), outline.edges.max(axis=(0, 1))
     points = points[((points >= low) & (points <= high)).all(axis=1)]
@@ -243,7 +243,7 @@ def _outlines(sweep: Sweep, beyond: float) -> tuple[Outline, Outline] | None:
 
 
 def are_over(sweep: Sweep, still: Outline, mover: Outline) -> bool:
-    """Whether one of the two covers a corner of the other at the start."""
+    """Return True if one of the two covers a corner of the other at the start."""
     moment = sweep.times[:1]
     pose = relative(sweep.path.mover.at(moment), sweep.path.still.at(moment))[0]
     c, s = np.cos(pose[2]), np.sin(pose[2])
@@ -267,8 +267,8 @@ BESIDE = 0.2
 
 
 def never_over(sweep: Sweep, gap: float) -> bool:
-    """Whether it is proven that no horizontal face of one piece is within ``gap`` (mm) straight over or under a facet
-    of the other that faces it, at any time. False proves nothing.
+    """Return True if it is proven that no horizontal face of one piece is within ``gap`` (mm) straight over or under a
+    facet of the other that faces it, at any time. False proves nothing.
     """
     for sign in (1.0, -1.0):
         under, over = _near(sweep.still, sweep.mover, sign, gap)

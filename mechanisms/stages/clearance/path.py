@@ -31,8 +31,8 @@ OF_SHAPE = ("radius_first", "radius_second", "pin_radius", "length")
 
 
 def at_scale(motion: Motion, ratio: float) -> Motion:
-    """What the proof of clearance reads of a motion, ``ratio`` times as large; loads, masses and energies stay those of
-    the machine.
+    """Return a motion as the proof of clearance reads it, ``ratio`` times as large; loads, masses and energies stay
+    those of the machine.
     """
     bodies = {name: _body(body, ratio) for name, body in motion.bodies.items()}
     joints = {name: _joint(joint, ratio) for name, joint in motion.joints.items()}

@@ -172,7 +172,7 @@ class MeshPiece:
         return float(np.linalg.norm(self.triangles[:, :, :2].reshape(-1, 2) - self.centre, axis=1).max())
 
     def is_around(self, place: np.ndarray) -> bool:
-        """Whether the circle round it holds a place (2,) of its body's frame."""
+        """Return True if the circle round it holds a place (2,) of its body's frame."""
         return float(np.hypot(*(place - self.centre))) <= self.radius
 
     @cached_property

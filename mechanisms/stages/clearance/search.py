@@ -204,7 +204,7 @@ class Sweep:
         return self.still.manifold.min_gap(self._moved(time), reach)
 
     def is_apart(self, reach: float) -> bool:
-        """Whether the circles round the two pieces stay ``reach`` (mm) apart over the whole motion."""
+        """Return True if the circles round the two pieces stay ``reach`` (mm) apart over the whole motion."""
         spans = Spans(self.path)
         away = np.hypot(*(spans.ends[:, 1, :2] - self.still.centre).T) - spans.travel
         return bool((away - spans.off - self.mover.radius - self.still.radius >= reach).all())
@@ -271,7 +271,7 @@ class Least:
     error: float = 0.0
     """What the time between samples takes off the proven gap (mm)."""
     given_up: bool = False
-    """Whether the search ended at :data:`MOST` candidates."""
+    """True if the search ended at :data:`MOST` candidates."""
 
 
 class Search:

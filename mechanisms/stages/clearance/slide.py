@@ -161,7 +161,7 @@ def _along(angle: float, through: np.ndarray) -> np.ndarray:
 
 
 def _between(piece: Manifold, low: float, high: float) -> Manifold:
-    """What of a piece lies between two places along the line."""
+    """Return the part of a piece between two places along the line."""
     if np.isfinite(low):
         piece = piece.trim_by_plane((0.0, 0.0, 1.0), low)
     return piece.trim_by_plane((0.0, 0.0, -1.0), -high) if np.isfinite(high) else piece

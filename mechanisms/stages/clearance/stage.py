@@ -91,7 +91,7 @@ def run(name: str, scale: str = "") -> None:
 
 
 def is_fresh(name: str) -> bool:
-    """Whether there is nothing to do. Raises OSError where parts or motion are missing."""
+    """Return True if there is nothing to do. Raises OSError where parts or motion are missing."""
     return _stage(Out(name), Out(name)).is_fresh()
 
 

@@ -110,7 +110,7 @@ def _pose(motion: Motion, name: str, row: int) -> tuple[float, float, float]:
 
 
 def _drawn(motion: Motion) -> list[str]:
-    """What films draw and no part is."""
+    """Return names of what films draw without a part."""
     things = {"joint": motion.joints, "driver": motion.drivers, "force": motion.forces, "contact": motion.contacts}
     return [
         f"{what} '{name}' ({thing.kind}, no solid)"

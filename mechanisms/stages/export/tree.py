@@ -61,7 +61,7 @@ class Node:
     joint: Any | None
     """None: nothing holds it, so it moves freely in the plane."""
     own_is_j: bool
-    """Whether the joint's second marker is the one on this body."""
+    """True if the joint's second marker is the one on this body."""
     pose: Pose
 
     @property
@@ -98,7 +98,7 @@ class Tree:
     """What such a description cannot say, by name."""
 
     def children(self, parent: str) -> list[Node]:
-        """Those that are attached to a body."""
+        """Return the nodes that are attached to a body."""
         return [node for node in self.nodes if node.parent == parent]
 
 

@@ -106,7 +106,7 @@ sources_state, package_state = PROJECT.sources_state, PROJECT.package_state
 
 
 def observed(names: Any) -> Inputs | None:
-    """What the inputs with these names, from :meth:`Inputs.names`, hold now; None if that is not what ``names`` are."""
+    """Return the inputs with these names, from :meth:`Inputs.names`, as they are now; None if ``names`` are none."""
     return PROJECT.observed(names)
 
 
@@ -175,7 +175,7 @@ def _count(module: ModuleType, inputs: Inputs, waiting: list[tuple[Path, str]]) 
 
 
 def _is_authors(file: Path) -> bool:
-    """Whether a file belongs neither to an installed package nor to the program."""
+    """Return True if a file belongs neither to an installed package nor to the program."""
     if is_installed(str(file)):
         return False
     if in_workshop() and MECHANISMS.is_relative_to(ROOT) and file.is_relative_to(MECHANISMS):

@@ -238,7 +238,7 @@ def package_of(name: str) -> str:
 
 
 def has(name: str, file: File) -> bool:
-    """Whether a mechanism has this file; parts.py and shot.py may be left out."""
+    """Return True if a mechanism has this file; parts.py and shot.py may be left out."""
     path = mechanism_file(name, file)
     return defines(path, file) if file != "mechanism" and is_single_file(name) else path.is_file()
 
@@ -319,7 +319,7 @@ def _is_below(filename: str, folder: Path) -> bool:
 
 
 def _is_programs(place: str) -> bool:
-    """Whether what lies in a user's folder is an environment's or the program's, as where that folder is a home."""
+    """Return True if what lies in a user's folder is an environment's or the program's, as where that folder is a home."""
     own = MECHANISMS.is_relative_to(ROOT)
     return is_installed(f"{place}{os.sep}") or (not own and Path(place).is_relative_to(ROOT))
 

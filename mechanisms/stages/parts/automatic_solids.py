@@ -64,7 +64,7 @@ def _build(name: str) -> tuple[Mechanism, Any]:
 
 
 def follows_gravity(bodies: Any, wish: Kind | None) -> bool:
-    """Whether solids by hand, which say nothing of it, stand because shot.py says so."""
+    """Return True if solids by hand, which say nothing of it, stand because shot.py says so."""
     return getattr(bodies, "mount", None) is None and wish not in (None, "desk")
 
 

@@ -94,7 +94,9 @@ def _joined(kind: str, values: list[Any]) -> str | None:
 
 
 def only_annotates(files: Iterable[tuple[Path, str]], module: str) -> bool:
-    """Whether these files, each with its package, use of ``module`` nothing but ``Params``, and that in annotations."""
+    """Return True if these files, each with its package, use of ``module`` nothing but ``Params``, and that in
+    annotations.
+    """
     return all(_file_only_annotates(file, package, module) for file, package in files)
 
 
@@ -173,7 +175,9 @@ def refuse_again(out: Out, key_of: KeyOf) -> None:
 
 
 def is_worth_it(error: UserError, seconds: float) -> bool:
-    """Whether a refusal took long to find, and is not of the disk or another process, which may be gone next time."""
+    """Return True if a refusal took long to find, and is not of the disk or another process, which may be gone next
+    time.
+    """
     passing = error.code == BUSY or isinstance(error.__cause__, OSError) or OF_THE_DISK in str(error)
     return seconds >= LONG and not passing
 
@@ -207,7 +211,7 @@ class Kept(msgspec.Struct):
 
 
 class KeptPieces:
-    """Those in ``folder`` that were made by the same program, whose hash is ``program``."""
+    """Pieces in ``folder`` that were made by the same program, whose hash is ``program``."""
 
     def __init__(self, folder: Path, program: str, soon: float = SOON) -> None:
         self.folder, self.program = folder, program
@@ -215,7 +219,7 @@ class KeptPieces:
         self._waiting: dict[str, Kept] = {}
 
     def key(self, shape: Any, solid: Any, along: bool) -> str:
-        """What the piece of ``solid`` is known by; ``shape`` is its ``cadquery.Solid``, as yet without a mesh."""
+        """Return the key of the piece of ``solid``; ``shape`` is its ``cadquery.Solid``, as yet without a mesh."""
         stream = io.BytesIO()
         shape.exportBin(stream)
         return key_of(self.program, stream.getvalue(), replace(solid, shape=None), along)

@@ -89,7 +89,7 @@ def run(name: str, scale: str = "", anyway: bool = False) -> None:
 
 
 class _Wish(NamedTuple):
-    """What an author leaves to the stage, and how the machine is to stand."""
+    """Wishes of an author: what is left to the stage, and how the machine stands."""
 
     by_itself: bool
     """There is no parts.py."""
@@ -102,7 +102,7 @@ class _Wish(NamedTuple):
 
 
 def _wish(name: str, scale: Scale | None = None, with_machine: bool = True) -> _Wish:
-    """What is wished; ``with_machine`` where a model depends on the parts of its machine."""
+    """Return the wishes; ``with_machine`` if a model depends on the parts of its machine."""
     from mechanisms.stages.parts.automatic_solids import masses_of_machine
 
     by_itself = not has(name, "parts")
@@ -134,7 +134,7 @@ def _made_here(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
 
 @dataclass
 class _Seen:
-    """What parts.py was seen to read from its parameters, and what it was made of and read."""
+    """Parameters that parts.py was seen to read, and the files that it was made of and read."""
 
     reads: set[str] = field(default_factory=set)
     inputs: Inputs = field(default_factory=Inputs)
@@ -142,7 +142,7 @@ class _Seen:
 
 
 def _of_mechanism(name: str, before: set[str], recorder: Recorder) -> Inputs:
-    """What mechanism.py was made of and read."""
+    """Return the files that mechanism.py was made of and read."""
     from mechanisms.stages.loading.inputs import loaded_inputs
 
     return loaded_inputs(mechanism_file(name), package_of(name), before).joined(recorder.inputs())
@@ -212,7 +212,9 @@ def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Found
 
 
 def are_current(name: str) -> bool:
-    """Whether the parts that are there are those of the mechanism as it is. Raises UserError for one without Params."""
+    """Return True if the parts that are there are those of the mechanism as it is. Raises UserError for one without
+    Params.
+    """
     out = Out(name)
     return _is_fresh(out, params(out.name), _wish(out.name))
 
@@ -264,7 +266,7 @@ def _is_fresh(out: Out, given: Any, wish: _Wish) -> bool:
 
 
 def _notes(out: Out) -> dict[str, Any]:
-    """What the stage noted when it was done last."""
+    """Return the notes of the last run of the stage."""
     return Stage(out, "parts", "", []).notes()
 
 
@@ -278,7 +280,7 @@ def _key(given: Any, reads: list[str], inputs: Inputs, wish: _Wish) -> str:
 
 
 def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
-    """Whether the parts follow from more of mechanism.py than from the values of parameters.
+    """Return True if the parts follow from more of mechanism.py than from the values of parameters.
 
     A property or method of Params can compute anything, a value may have no text that shows it, and parts.py or what
     it imports may use other names of mechanism.py.

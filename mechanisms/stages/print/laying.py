@@ -265,7 +265,7 @@ def groups(pieces: Sequence[tuple[str, Laid]]) -> list[list[int]]:
 
 
 def is_equal(piece: Laid, other: Laid) -> bool:
-    """Whether a turn, as it lies or turned over, and a shift bring the corners of one onto those of the other."""
+    """Return True if a turn, as it lies or turned over, and a shift bring the corners of one onto those of the other."""
     if abs(piece.size[2] - other.size[2]) > NEAR or len(piece.vertices) != len(other.vertices):
         return False
     first, second = _centred(piece), _centred(other)
@@ -275,7 +275,7 @@ def is_equal(piece: Laid, other: Laid) -> bool:
 
 
 def _falls_on(first: np.ndarray, second: np.ndarray, tree: KDTree) -> bool:
-    """Whether a turn about the vertical brings each corner onto one of the others."""
+    """Return True if a turn about the vertical brings each corner onto one of the others."""
     reach = np.hypot(first[:, 0], first[:, 1])
     far = int(np.argmax(reach))
     same = np.abs(np.hypot(second[:, 0], second[:, 1]) - reach[far]) < NEAR

@@ -128,7 +128,7 @@ def _grams(mass: float) -> str:
 
 
 def bought_of(pieces: Mapping[str, Piece]) -> list[Bought]:
-    """What is to be bought, in the order of the alphabet."""
+    """Return all pieces to buy, in the order of the alphabet."""
     kinds: dict[tuple[str, str], list[str]] = {}
     for name, piece in pieces.items():
         if piece.buy:
@@ -137,7 +137,7 @@ def bought_of(pieces: Mapping[str, Piece]) -> list[Bought]:
 
 
 def made_of(pieces: Mapping[str, Piece], meshes: Sequence[MeshPiece], bed: Bed) -> list[Made]:
-    """What is to be made, equal pieces together, each as it lies on the bed."""
+    """Return all pieces to make, equal pieces together, each as it lies on the bed."""
     down = [laid(mesh.triangles) for mesh in meshes]
     names = [mesh.name for mesh in meshes]
     parts = []

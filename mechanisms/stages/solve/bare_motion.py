@@ -30,6 +30,6 @@ def bare_solution(name: str, masses: Mapping[str, Mass] | None = None) -> Soluti
 
 
 def depends_on_masses(name: str, solution: Solution) -> bool:
-    """Whether the motion is a simulation of bodies some of which have no mass in mechanism.py."""
+    """Return True if the motion is a simulation of bodies some of which have no mass in mechanism.py."""
     m = solving.build(name, loading.load(name, "mechanism"), loading.params(name))
     return solution.work is not None and "estimate" in give_masses(m, None)[0].values()

@@ -47,7 +47,7 @@ class Estimate:
 
 
 def estimated_masses(m: Mechanism) -> dict[str, Estimate]:
-    """What each moving body would weigh, by name, whatever mass it has."""
+    """Return the estimated mass of each moving body, by name, whatever mass it has."""
     discs: dict[str, list[tuple[float, float, float]]] = {name: [] for name in m.bodies}
     for marker, radius in _discs(m):
         discs[marker.body.name].append((marker.x, marker.y, radius))

@@ -336,7 +336,7 @@ def _acts(wrench: Wrench) -> contract.Acts:
 
 
 def _actions(solution: Solution, driver: Joint) -> list[contract.Action]:
-    """What a driver does to its bodies, each where it acts."""
+    """Return the forces and torques of a driver on its bodies, each where it acts."""
     from mbsd.results.acting import actions
 
     number = solution.packed.joints.index(driver)

@@ -253,7 +253,7 @@ def _positive(name: str, module: Any, constant: str, form: str) -> float | None:
 
 
 def _refuse_other(name: str, m: Mechanism, solved: Any) -> None:
-    """What motion() solved may be a variant of the model, with the same name and bodies."""
+    """Raise UserError unless motion() solved the model or a variant of it, with the same name and bodies."""
     if solved is not m and (solved.name not in (name, owner_of(name)) or set(solved.bodies) != set(m.bodies)):
         raise UserError(
             f"{_file(name)}: motion() solved '{solved.name}' with the bodies {', '.join(solved.bodies)}; solve the "

@@ -68,7 +68,7 @@ def run(name: str, parts_are_outdated: bool = False) -> None:
 
 
 def is_fresh(name: str) -> bool:
-    """Whether there is nothing to do. Raises UserError where parts.json cannot be read."""
+    """Return True if there is nothing to do. Raises UserError where parts.json cannot be read."""
     out = Out(name)
     return _is_fresh(out, _parts(out))
 

@@ -53,7 +53,7 @@ def sizes(spec: ArrowSpec, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def channels(
     arrow: Arrow, spec: ArrowSpec, tails: np.ndarray, tips: np.ndarray
 ) -> list[tuple[Any, str, list[np.ndarray]]]:
-    """What is animated: an object, its property, and the values of its components, for tails and tips (n, 3)."""
+    """Return the animated channels: object, property, and values of its components, for tails and tips (n, 3)."""
     across = tips - tails
     length = np.hypot(across[:, 0], across[:, 1])
     there = length > 0

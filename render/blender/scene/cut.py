@@ -144,7 +144,7 @@ def cut_tubes(scene: Any, spec: Scene, states: Sequence[State], tubes: Sequence[
 
 
 def _ever_beyond(paths: Sequence[Sequence[Point]], tube: TubeSpec) -> bool:
-    """Whether any of it is beyond all planes along any of these paths."""
+    """Return True if any of it is beyond all planes along any of these paths."""
     points = np.array(paths).reshape(-1, 3)
     far = [points @ np.array(plane[:3]) > plane[3] - tube.radius for plane in tube.cut]
     return bool(np.all(far, axis=0).any())
@@ -165,7 +165,7 @@ def _take_away(solid: Any, box: Any, painted: bool) -> None:
 
 
 def _box(scene: Any, name: str, planes: Sequence[Plane], reach: float, paints: list[Any]) -> Any:
-    """What is beyond all planes: its k-th face is that along the k-th plane."""
+    """Return the box beyond all planes; its k-th face lies along the k-th plane."""
     import bmesh
     import bpy
 

@@ -40,7 +40,7 @@ def mark_chamfers(mesh: Any) -> None:
 
 
 def engraved(mesh: Any) -> Array:
-    """Whether each triangle is the floor or a wall of what is engraved into the largest level face."""
+    """Return (n,) True for each triangle that is the floor or a wall of what is engraved into the largest level face."""
     places = np.empty((len(mesh.vertices), 3), np.float32)
     mesh.vertices.foreach_get("co", places.ravel())
     corners = np.empty(len(mesh.loops), np.int32)
@@ -52,7 +52,8 @@ def engraved(mesh: Any) -> Array:
 
 
 def sunk(heights: Array, up: Array, areas: Array) -> Array:
-    """Whether each triangle is the floor or a wall of what is cut a little into the largest level face.
+    """Return (n,) True for each triangle that is the floor or a wall of what is cut a little into the largest level
+    face.
 
     ``heights`` (n, 3) are those of the corners (m), ``up`` (n,) those of the unit normals.
     """

@@ -40,7 +40,7 @@ APT = {
 
 
 def missing_library(message: str) -> str:
-    """What to do about the ImportError of bpy with that message."""
+    """Return the remedy for an ImportError of bpy with that message."""
     library = message.split(":")[0]
     package = APT.get(library.split(".so")[0])
     cure = f"sudo apt-get install -y {package}" if package else "install the package that has it"
@@ -107,7 +107,7 @@ def save_scene(built: Any, path: Path) -> None:
 
 
 def _blend_fault(path: Path) -> str | None:
-    """Whether a .blend was cut short: it ends with the table of its compressed pieces, and Blender can read it."""
+    """Return the fault of a .blend that was cut short, or None: a whole one ends with a table of its compressed pieces."""
     import bpy
 
     content = path.read_bytes() if path.exists() else b""
@@ -195,7 +195,7 @@ def _work(job: Job, more: Iterator[Picture], answer: Callable[..., None]) -> Non
 
 
 def _is_drawn(state: State) -> bool:
-    """Whether any arrow is seen: one without a length takes as long as the picture, and changes nothing."""
+    """Return True if any arrow is seen: one without a length takes as long as the picture, and changes nothing."""
     return any(tail != tip for tail, tip in state.arrows) or any(sweep for _, sweep in state.arcs)
 
 

@@ -22,10 +22,10 @@ class Picture(msgspec.Struct, kw_only=True, frozen=True):
     """Frame of the loop, which may lie between two."""
     camera: CameraPose
     forces: bool = False
-    """Whether it is of the scene with arrows, which ``grown`` (0 .. 1) makes long."""
+    """True if it is of the scene with arrows, which ``grown`` (0 .. 1) makes long."""
     grown: float = 0.0
     cut: bool = False
-    """Whether it is of the scene that the shot's section cuts open."""
+    """True if it is of the scene that the shot's section cuts open."""
     lifts: tuple[tuple[str, float], ...] = ()
     hidden: Hidden = ""
 
@@ -55,7 +55,7 @@ class Note(msgspec.Struct, frozen=True):
 
 
 class Over(msgspec.Struct, kw_only=True, frozen=True):
-    """What is laid over a picture; all of it costs Blender nothing."""
+    """The overlay of a picture: words, strip and leaders; Blender draws none of it."""
 
     title: float = 0.0
     """How far the title is there, 0 .. 1, over a picture that is dark and out of focus."""

@@ -22,7 +22,7 @@ from shared.stage.suggestions import did_you_mean
 BUDGET = 2.2
 """Pictures of a story beside those of the loop film; starting Blender twice takes the rest up to 2.5."""
 WAYS = ((True, 1.0), (False, 1.0), (False, 0.75), (False, 0.55), (False, 0.4), (False, 0.25), (False, 0.12))
-"""Whether the camera turns while the machine is shown, and the part of the seconds of moves: the first that fits."""
+"""If the camera turns while the machine is shown, and the part of the seconds of moves: the first that fits."""
 ARROWED = 2.6
 """What a picture with arrows takes, which are rendered for themselves, in one without."""
 TWOS = ("draft", "preview")
@@ -55,7 +55,7 @@ def planned(
 
 
 def scenery_of(film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset) -> Scenery:
-    """What the shots are made of. Raises UserError for an event or a language that is not there."""
+    """Return the scenery that the shots share. Raises UserError for an unknown event or language."""
     wishes, mechanism = film.shot.story, film.motion.mechanism
     base = preset.name.partition("-")[0]
     reasons = _asked(mechanism, wishes.event, reasons)
@@ -72,7 +72,7 @@ def scenery_of(film: Film, forces: Film | None, reasons: Sequence[Reason], prese
 
 
 def _cost(story: Story) -> float:
-    """What the pictures of a story take, in pictures without arrows."""
+    """Return the cost of a story's pictures, in pictures without arrows."""
     return sum(ARROWED if picture.grown else 1.0 for picture in story.pictures)
 
 

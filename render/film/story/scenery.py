@@ -153,13 +153,13 @@ class Scenery:
     scale: float = 1.0
     """Part of the seconds in which pictures move; what is cut is held instead."""
     turning: bool = True
-    """Whether the camera moves while the machine is shown; else later turns find their pictures made."""
+    """True if the camera moves while the machine is shown; else later turns find their pictures made."""
     kept: dict[tuple[float, float, bool, bool], Stand] = field(default_factory=dict)
     """Stands that were looked for; they are the same for every scale."""
 
     @property
     def up(self) -> tuple[float, float, float]:
-        """What points up in the world."""
+        """Direction that points up in the world."""
         return self.film.parts.mount.up
 
     @property
@@ -225,7 +225,7 @@ class Scenery:
 
     @cached_property
     def at_side(self) -> bool:
-        """Whether the strip stands beside the machine, as is better for one that is tall in a wide picture."""
+        """True if the strip stands beside the machine, as is better for one that is tall in a wide picture."""
         if not self.curves or self.film.aspect < WIDE:
             return False
         under, beside = (self._held(0.0, 0.0, True, False, side) for side in (False, True))
@@ -282,6 +282,6 @@ class Scenery:
         return each * max(1, round(seconds / each))
 
     def going(self, time: float, rate: float, strip: bool = True, **more: object) -> Over:
-        """What lies over a picture that moves: how fast time passes, and the strip with its playhead."""
+        """Return the overlay of a moving picture: the rate of time, and the strip with its playhead."""
         over = Over(rate=rate_words(rate, self.say), strip=1.0 if strip and self.curves else 0.0, now=time)
         return msgspec.structs.replace(over, **more)

@@ -67,7 +67,9 @@ def curve_of(motion: Motion, name: str) -> Curve | None:
 
 
 def curves_of(motion: Motion, wished: Sequence[str] | None, reasons: Sequence[Reason]) -> list[Curve]:
-    """Those of ``wished`` names; without a wish what the first reason is about, what drives, and what is fastest."""
+    """Return the curves of ``wished`` names; without a wish those of the first reason, of what drives, and of the
+    fastest body.
+    """
     if wished is not None:
         return [curve for name in wished if (curve := curve_of(motion, name)) is not None]
     first = [reasons[0].name, reasons[0].joint] if reasons else []
@@ -110,7 +112,7 @@ class Story:
     curves: Sequence[Curve] = ()
     """Those of the strip."""
     at_side: bool = False
-    """Whether the strip stands beside the machine."""
+    """True if the strip stands beside the machine."""
 
     @cached_property
     def placed(self) -> list[Placed]:
@@ -137,12 +139,12 @@ class Story:
         return next(placed for placed in self.placed if frame < placed.end)
 
     def picture(self, frame: int) -> Picture:
-        """What Blender makes for a frame."""
+        """Return the picture that Blender makes for a frame."""
         placed = self.at(frame)
         return placed.shot.picture(self._second(placed, frame, self.step))
 
     def around(self, frame: int) -> tuple[Picture, Picture, Picture]:
-        """That of a frame between those that a shutter sees before and after, none of another shot."""
+        """Return the picture of a frame between those that a shutter sees before and after, none of another shot."""
         placed = self.at(frame)
         here = placed.first + (frame - placed.first) // self.step * self.step
         near = (max(here - 1, placed.first), here, min(here + 1, placed.end - 1))
@@ -150,7 +152,7 @@ class Story:
         return before, now, after
 
     def over(self, frame: int) -> Over:
-        """What is laid over it; words go on ones, and the playhead with the picture."""
+        """Return the overlay of a frame; words go on ones, and the playhead with the picture."""
         placed = self.at(frame)
         over = placed.shot.over(self._second(placed, frame, 1))
         still = placed.shot.over(self._second(placed, frame, self.step))

@@ -56,7 +56,7 @@ class Belt:
     """By how much the belt is shown faster than it is."""
 
     alike: bool
-    """Whether all links of a chain have the same plates; else every other link's lie inside its neighbours'."""
+    """True if all links of a chain have the same plates; else every other link's lie inside its neighbours'."""
 
     @property
     def specs(self) -> list[TubeSpec]:
@@ -173,7 +173,7 @@ def belts(motion: Motion, held: Mapping[str, Held]) -> Iterator[Belt]:
 
 
 def _pace(gone: float, apart: float) -> float:
-    """What makes a way a whole number of distances; 1 where that would be none."""
+    """Return the factor that makes a path a whole number of distances; 1 where that would be none."""
     whole = round(gone / apart)
     return whole * apart / gone if whole else 1.0
 

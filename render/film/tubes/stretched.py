@@ -1,4 +1,4 @@
-"""What changes its shape as it moves: coils of springs, cylinder and rod of dampers and linear drivers, ropes. As
+"""Elements that change their shape: coils of springs, cylinder and rod of dampers and linear drivers, ropes. As
 tubes along paths.
 """
 

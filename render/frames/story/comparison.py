@@ -126,7 +126,7 @@ def _strip(preset: Preset, films: Sequence[Film], curves: tuple[list[Curve], lis
 
 
 def _name(out: Out, film: Film) -> str:
-    """What a variant is called; the mechanism itself, as it is."""
+    """Return the name of a variant; "as it is" for the mechanism itself."""
     return plain(variant_of(out.name) or "") or words_in(film.shot.story.language, out.name)("usual")
 
 
@@ -254,7 +254,7 @@ def _stage(outs: list[Out], preset: Preset, heard: bool) -> Stage:
 
 
 def _key(outs: list[Out], preset: Preset) -> str:
-    """What decides the pictures and the words."""
+    """Return the key of the pictures and the words."""
     from render.frames.story.stage import word_sources
 
     return key_of(*(stage_key(out, preset, encoder_version(), KIND, word_sources()) for out in outs))

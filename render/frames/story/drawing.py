@@ -222,7 +222,7 @@ def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float,
 
 
 def _on_arrow(box: tuple[float, float, float, float], note: Note, wide: int, high: int) -> bool:
-    """Whether a box (pixels) that could not go farther lies on the arrow whose tip it names."""
+    """Return True if a box (pixels) that could not go farther lies on the arrow whose tip it names."""
     tip, back = np.array([note.x * wide, note.y * high]), np.linspace(0.0, 0.25 * min(wide, high), 40)
     x, y = (tip[:, None] - np.array([[note.dx], [note.dy]]) * back).tolist()
     return any(box[0] < a < box[2] and box[1] < b < box[3] for a, b in zip(x, y, strict=True))

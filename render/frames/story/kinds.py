@@ -1,4 +1,4 @@
-"""Which film is made: the loop of every day, or a story."""
+"""Kinds of films: the loop of every day, or a story."""
 
 from __future__ import annotations
 

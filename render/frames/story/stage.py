@@ -37,7 +37,7 @@ Page = tuple[str, Any]
 
 @dataclass(frozen=True)
 class Rendered:
-    """What was rendered: the folder, and the file of each frame of the film."""
+    """Rendered frames: the folder, and the file of each frame of the film."""
 
     mechanism: str
     store: FrameStore
@@ -174,7 +174,7 @@ def film_of(out: Out, preset: str, show: str = "", loop: float = 0.0) -> Path:
 
 
 def is_fresh(name: str, preset: Preset, show: str = "", sound: str = "") -> bool:
-    """Whether there is nothing to do. Raises UserError where motion, parts or shot are missing."""
+    """Return True if there is nothing to do. Raises UserError where motion, parts or shot are missing."""
     return _stage(Out(name), preset, show, 0.0, has_sound(sound)).is_fresh()
 
 
@@ -186,7 +186,7 @@ def _stage(out: Out, preset: Preset, show: str, loop: float, heard: bool) -> Sta
 
 
 def _key(out: Out, preset: Preset, show: str, loop: float) -> str:
-    """What decides the pictures and the words."""
+    """Return the key of the pictures and the words."""
     words = word_sources(), _described(out)
     return stage_key(out, preset, encoder_version(), show, KIND, loop, *words, *clearance_files(out))
 

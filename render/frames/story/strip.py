@@ -113,7 +113,7 @@ class Strip:
     others: Sequence[Curve] = ()
     """Curves of another variant, each drawn thinner over that of the same place."""
     side: bool = False
-    """Whether its panels stand over each other at the right edge of the picture, instead of in a row under it."""
+    """True if its panels stand over each other at the right edge of the picture, instead of in a row under it."""
 
     @cached_property
     def unit(self) -> int:

@@ -121,7 +121,7 @@ class Telling:
         return sets
 
     def row(self, frame: int, preset: Preset) -> Around:
-        """What Blender makes for a frame, between its neighbours where the shutter blurs them."""
+        """Return the pictures that Blender makes for a frame, between its neighbours where the shutter blurs them."""
         if preset.motion_blur:
             return self.story.around(frame)
         picture = self.story.picture(frame)
@@ -174,7 +174,7 @@ def _chosen(event: str | None, why: list[Reason]) -> Reason | None:
 
 
 def _shows(motion: Motion, reason: Reason | None) -> str:
-    """What arrows show."""
+    """Return the quantities that arrows show."""
     if reason is None:
         return "velocities"
     show = SHOWN.get(reason.kind, "reactions")

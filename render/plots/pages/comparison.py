@@ -259,7 +259,7 @@ def _panels(motions: Mapping[str, Motion], asked: Sequence[str]) -> list[tuple[s
 
 
 def _stems(axes: Axes, spectra: dict[int, Series], count: int) -> None:
-    """Those of all motions side by side at each order."""
+    """Draw stems of all motions side by side at each order."""
     largest = max(float(sizes.max()) for _, sizes in spectra.values())
     end = max(float(at[-1]) for at, _ in spectra.values())
     for number, (at, sizes) in spectra.items():

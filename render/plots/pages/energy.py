@@ -71,7 +71,7 @@ def powers(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
 
 
 def statement(motion: Motion) -> str:
-    """What is true of this motion's balance, in a line."""
+    """Return the sentence that is true of this motion's energy balance."""
     given, rate = powers(motion)
     others, floor = rate - given, energy_floor(motion)
     largest = float(np.abs(others).max())
@@ -97,7 +97,7 @@ def _tolerance(motion: Motion, given: np.ndarray, rate: np.ndarray) -> float:
 
 
 def _impacts(motion: Motion, floor: float) -> list[EventMark]:
-    """What changed the kinetic energy at once."""
+    """Return marks of events that changed the kinetic energy at once."""
     return [event for event in motion.events if abs(event.energy) > floor]
 
 

@@ -85,7 +85,7 @@ def _last_cycle(chamber: GasMotion) -> np.ndarray:
 
 
 def _subtitle(chambers: list[tuple[str, GasMotion, str]]) -> str:
-    """What the first chambers give."""
+    """Return the work of the first chambers in words."""
     words = []
     for name, chamber, _ in chambers[:2]:
         if chamber.indicated_work and chamber.displaced:

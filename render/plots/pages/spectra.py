@@ -42,7 +42,7 @@ class Spectrum:
     amplitudes: np.ndarray
     """(K, ...) of the columns; at 0 the size of the mean."""
     harmonic: bool
-    """Whether ``at`` are orders."""
+    """True if ``at`` are orders."""
     base: float
     """Frequency of order 1 (Hz), on average where the speed varies; else the resolution."""
     over: str

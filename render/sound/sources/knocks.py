@@ -71,7 +71,7 @@ def _crossings(setting: Setting, joint: JointMotion, force: Array, clearance: fl
 
 
 def _turns(force: Array, size: Array, k: int) -> bool:
-    """Whether the force points the other way after its least value at ``k``."""
+    """Return True if the force points the other way after its least value at ``k``."""
     before, after = force[:, max(0, k - 3)], force[:, min(force.shape[1] - 1, k + 3)]
     return float(before @ after) < 0 and bool(size[k] < size.max())
 

@@ -34,7 +34,7 @@ BAND = (300.0, 5000.0)
 
 
 class Rubbing(NamedTuple):
-    """What rubs: power (W), speed (m/s), places (m), all (T,); wave length of its roughness (m)."""
+    """A sliding pair: power (W), speed (m/s), places (m), all (T,); wave length of its roughness (m)."""
 
     power: Array
     speed: Array

@@ -63,7 +63,7 @@ def farthest(points: Sequence[Sequence[float]]) -> float:
 
 
 def turns_left(path: np.ndarray) -> bool:
-    """Whether a closed path has its inside on its left."""
+    """Return True if a closed path has its inside on its left."""
     return area(path) > 0
 
 

@@ -123,7 +123,7 @@ class Item:
     only: frozenset[str] = frozenset()
     """Names of the items that it keeps away, where it is no thing but a rule; empty: all."""
     spared: bool = True
-    """Whether items that spare its body spare it, too."""
+    """True if items that spare its body spare it, too."""
     stands: str = ""
     """A word for what stands on ground; what has another such word must keep clear of it."""
 
@@ -134,7 +134,7 @@ def choice_of(reach: AnyReach) -> str | None:
 
 
 def spans_meet(a: tuple[int, int] | None, b: tuple[int, int] | None) -> bool:
-    """Whether two spans share a half layer."""
+    """Return True if two spans share a half layer."""
     return a is not None and b is not None and a[0] <= b[1] and b[0] <= a[1]
 
 

@@ -53,7 +53,7 @@ class Clauses:
         self.solver.add_clause(literals)
 
     def at_least(self, body: str, level: int) -> int:
-        """That a body's layer is ``level`` or higher."""
+        """Return the literal that a body's layer is ``level`` or higher."""
         if level <= 0:
             return TRUE
         return self.steps[self.heads[body]][level - 1] if level < self.count else -TRUE
@@ -116,7 +116,7 @@ class Clauses:
         return [([literal], ends[0]), ([-literal], ends[1])]
 
     def _layered(self, reach: AnyReach) -> tuple[str, ...]:
-        """Those of an item's bodies that have a layer."""
+        """Return the bodies of an item that have a layer."""
         return tuple(body for body in reach.bodies if body in self.heads)
 
     def crossings(self, items: Sequence[Item]) -> list[int]:
@@ -159,7 +159,7 @@ class Clauses:
         return list(total.rhs)
 
     def solved(self, assumed: Sequence[int] = (), budget: int | None = None) -> bool | None:
-        """Whether there is a model under assumptions; None if ``budget`` conflicts of the solver do not decide."""
+        """Return True if there is a model under assumptions; None if ``budget`` conflicts of the solver do not decide."""
         if budget is None:
             answer = self.solver.solve(assumptions=assumed)
         else:
@@ -209,7 +209,7 @@ class Purse:
     left: int = ALL
 
     def solved(self, clauses: Clauses, assumed: Sequence[int] = ()) -> bool:
-        """Whether there is a model. Raises Undecided where the purse does not last."""
+        """Return True if there is a model. Raises Undecided where the purse does not last."""
         before = clauses.spent
         answer = clauses.solved(assumed, max(self.left, 1))
         self.left -= clauses.spent - before
@@ -341,7 +341,7 @@ def find_layers(problem: Problem, purse: Purse | None = None) -> dict[str, int] 
 
 
 def _is_impossible(problem: Problem) -> bool:
-    """Whether it is soon seen that there is no order, of however many layers."""
+    """Return True if it is soon seen that there is no order, of however many layers."""
     clauses = problem.clauses(problem.most)
     answer = clauses.solved(budget=BUDGET)
     clauses.close()
@@ -439,6 +439,6 @@ def blocking[Key: Hashable](problem: Problem, keys: Sequence[Key], purse: Purse 
 
 
 def _core[Key: Hashable](clauses: Clauses, literals: Mapping[Key, int], kept: Sequence[Key]) -> list[Key]:
-    """Those of ``kept`` that the solver needed to see that there is no order."""
+    """Return the keys of ``kept`` that the solver needed to prove that no order exists."""
     core = set(clauses.solver.get_core() or ())
     return [key for key in kept if literals[key] in core]

@@ -1,4 +1,4 @@
-"""What is to be built before anything is: places and outlines of all bodies in the plane, and what takes room."""
+"""The layout in the plane: poses, features and outlines of all bodies, and items that take room."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Springs:
-    """Which springs get parts, and where."""
+    """Springs that get parts, and where they lie."""
 
     above: bool = True
-    """Whether they have to lie over both of their bodies."""
+    """True if they have to lie over both of their bodies."""
     left_out: frozenset[str] = frozenset()
     names: list[str] = field(default_factory=list, compare=False)
     """Names of the others, once features are gathered."""
@@ -42,7 +42,7 @@ class Feature(Protocol):
         ...
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """What takes room besides the bodies' own plates."""
+        """Return the items that take room besides the bodies' own plates."""
         ...
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
@@ -51,11 +51,11 @@ class Feature(Protocol):
 
 
 class Layered(Protocol):
-    """What has a layer."""
+    """An element with a layer."""
 
     @property
     def layer(self) -> str:
-        """What decides its layer: its body, or itself."""
+        """Name that decides the layer: that of the body, or its own."""
         ...
 
 
@@ -102,11 +102,11 @@ class Layout:
     yielding: set[frozenset[str]] = field(default_factory=set)
     """Pairs of bodies whose round part is seen to press into a wall: these two pieces touch, and nothing else."""
     flush: bool = False
-    """Whether pivots on ground may end flush with the one link that turns on them."""
+    """True if pivots on ground may end flush with the one link that turns on them."""
     tubes: bool = False
-    """Whether there are wheels on tubes because arms would meet their mates."""
+    """True if there are wheels on tubes because arms would meet their mates."""
     far_posts: bool = False
-    """Whether slotted plates on ground reach farther to their posts."""
+    """True if slotted plates on ground reach farther to their posts."""
     webs: dict[str, str] = field(default_factory=dict)
     """Further plates of bodies, by name, each with its body."""
     rounds: dict[tuple[str, float, float], Feature] = field(default_factory=dict)
@@ -149,7 +149,7 @@ class Layout:
         return next((wheel for wheel in here if not wheel.ring), None)
 
     def _on_wheel(self, anchor: Anchor) -> bool:
-        """Whether the wheel in its body's layer carries it."""
+        """Return True if the wheel in its body's layer carries it."""
         reach = min(anchor.radius, self.sizes.hardware)
         wheels = [wheel for wheel in self.wheels.get(anchor.body, []) if wheel.shares and not wheel.ring]
         return any(math.hypot(anchor.x - w.x, anchor.y - w.y) + reach <= w.root for w in wheels)
@@ -167,7 +167,7 @@ class Layout:
 
     @cached_property
     def bodies(self) -> list[str]:
-        """Those of the model that move and are not left out."""
+        """Names of the bodies that move and are not left out."""
         return [name for name in self.m.bodies if name != "ground" and name not in self.apart]
 
     @cached_property
@@ -203,7 +203,7 @@ class Layout:
         return pairs
 
     def problem(self, fixed: Mapping[str, int] | None = None, hanging: frozenset[str] = frozenset()) -> Problem:
-        """What the search for layers is asked."""
+        """Return the problem that the search for layers solves."""
         between = [feature.order for feature in self.features if getattr(feature, "order", None)]
         together = [*self.together, *((wheel.layer, mate.layer) for wheel, mate in self.meshing)]
         return Problem(self.layered, self.items, self.conflicts, fixed or {}, together, hanging, between)
@@ -219,7 +219,7 @@ class Layout:
         return replace(self, flush=True, far_posts=True, features=list(self.features))
 
     def is_held(self, pin: object) -> bool:
-        """Whether something stands on a pin."""
+        """Return True if something stands on a pin."""
         return any(getattr(feature, "pin", None) is pin for feature in self.features)
 
     def gap(self, first: Item, second: Item) -> tuple[float, float]:
@@ -232,7 +232,7 @@ class Layout:
         return gap, float(self.times[at])
 
     def may_meet(self, first: Item, second: Item) -> bool:
-        """Whether two items that meet in the plane need different heights: no pair by design."""
+        """Return True if two items that meet in the plane need different heights: no pair by design."""
         if first.body == second.body == "ground":
             return bool(first.stands and second.stands) and first.stands != second.stands
         if first.body == second.body:
@@ -248,7 +248,9 @@ class Layout:
         )
 
     def _are_stepped(self, first: Item, second: Item) -> bool:
-        """Whether the first is a wheel on a tube, the second its body's plate, another wheel of it, or a pin beside."""
+        """Return True if the first is a wheel on a tube, the second its body's plate, another wheel of it, or a pin
+        beside.
+        """
         wheels = [wheel for wheel in self.wheels.get(first.body, []) if not wheel.ring]
         if not any(wheel is first.source and wheel.layer == first.what for wheel in wheels):
             return False
@@ -257,8 +259,8 @@ class Layout:
         return second.what == second.body or any(w is second.source and w is not first.source for w in wheels)
 
     def is_covered(self, source: object, half_layer: int, levels: Levels, further: int = 0) -> bool:
-        """Whether something that meets an item of the feature ``source`` in the plane is at a half layer, or up to
-        ``further`` ones from there: what ends in the gap beyond an empty layer may reach into that layer, too.
+        """Return True if something that meets an item of the feature ``source`` in the plane is at a half layer, or up
+        to ``further`` ones from there: what ends in the gap beyond an empty layer may reach into that layer, too.
         """
         mine = {k for k, item in enumerate(self.items) if item.source is source}
         others = {j if i in mine else i for i, j in self.conflicts if (i in mine) != (j in mine)}

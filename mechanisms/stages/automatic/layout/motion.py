@@ -108,7 +108,7 @@ def _tightest(ends: list[tuple[float, bool]]) -> Limits:
 
 
 def _is_same(stop: Joint, joint: Joint) -> bool:
-    """Whether both measure the same: from one place and direction of a body to one place of another."""
+    """Return True if both measure the same: from one place and direction of a body to one place of another."""
     return (
         stop.bodies == joint.bodies
         and all(math.dist((a.x, a.y), (b.x, b.y)) < SAME for a, b in ((stop.i, joint.i), (stop.j, joint.j)))
@@ -117,7 +117,7 @@ def _is_same(stop: Joint, joint: Joint) -> bool:
 
 
 def reached(limits: tuple[float | None, float | None], travel: tuple[float, float], most: float) -> Limits:
-    """Those ends that are no farther beyond the travel than it is long, or than ``most``."""
+    """Return the limits that lie no farther beyond the travel than its length, or than ``most``."""
     far = max(travel[1] - travel[0], most)
     lower, upper = limits
     return (

@@ -96,7 +96,7 @@ class Foot:
     """Places of its screws."""
     dial: bool = False
     road: bool = False
-    """Whether it is of a road, which may be the ground itself."""
+    """True if it is of a road, which may be the ground itself."""
 
 
 @dataclass(frozen=True)

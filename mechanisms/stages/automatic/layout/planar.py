@@ -37,7 +37,7 @@ class Rounded:
 
     @cached_property
     def content(self) -> tuple[tuple[int, ...], bytes, float]:
-        """What two shapes that are alike have in common."""
+        """Key that is equal for two equal shapes."""
         return self.core.shape, self.core.tobytes(), self.radius
 
     @property
@@ -155,7 +155,7 @@ def _cross_each_other(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _parts(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Whether the line through p and q has r and s on either side, and neither on it but for rounding."""
+    """Return True if the line through p and q has r and s on either side, and neither on it but for rounding."""
     to_r, to_s = _turn(q - p, r - p), _turn(q - p, s - p)
     reach = np.abs(r - p).sum(axis=-1) + np.abs(s - p).sum(axis=-1)
     noise = ON_A_LINE * np.abs(q - p).sum(axis=-1) * reach

@@ -45,7 +45,7 @@ NEAR = 0.02
 
 @dataclass(frozen=True)
 class Extent:
-    """What a joint, contact or force says of its own: how far it reaches, and what must have room for its parts."""
+    """Extent of a joint, contact or force: how far it reaches, and which lengths must hold its parts."""
 
     radii: tuple[tuple[Marker, float], ...] = ()
     """Markers and radii (m) round them."""

@@ -215,7 +215,7 @@ def _along(points: np.ndarray, at: np.ndarray, way: np.ndarray) -> tuple[np.ndar
 
 
 def _has_room(bridge: Bridge, others: Sequence[Bridge], waiting: Sequence[Pin]) -> bool:
-    """Whether it is clear of other beams, and of pivots that hang from others."""
+    """Return True if it is clear of other beams, and of pivots that hang from others."""
     own = bridge.beam.core[None]
     for other in others:
         posts = np.array([[end] for end in other.ends])

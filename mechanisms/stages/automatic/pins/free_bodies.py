@@ -68,7 +68,7 @@ class RimMark:
 
     @property
     def points(self) -> bool:
-        """Whether there is a pointer: none where the pin is at the point."""
+        """True if there is a pointer: none where the pin is at the point."""
         return self.raised and math.dist(self.at, (self.x, self.y)) > TIP
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
@@ -113,7 +113,7 @@ class RimMark:
         plan.make(self.body, f"pointer_{self.name}", shape, "brass", 0)
 
     def _is_clear_of(self, joint_pin: Pin) -> bool:
-        """Whether a pin of its body is near, from whose hardware it keeps away by its place."""
+        """Return True if a pin of its body is near, from whose hardware it keeps away by its place."""
         return self.body in joint_pin.places and math.dist(joint_pin.places[self.body], self.at) < math.dist(
             joint_pin.places[self.body], (self.x, self.y)
         )

@@ -100,7 +100,7 @@ def ground_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
 
 
 def upper_end(joint: Pin, plan: Plan, heights: Heights) -> tuple[str, float]:
-    """What holds a pin, and the height of the pin's upper end."""
+    """Return the body that holds a pin, and the height of the pin's upper end."""
     sizes = plan.layout.sizes
     pivot, fit = sizes.pivot, sizes.pivot.fit
     stack = sorted(joint.movers, key=heights.bottom)
@@ -113,7 +113,7 @@ def upper_end(joint: Pin, plan: Plan, heights: Heights) -> tuple[str, float]:
 
 
 def _flush(joint: Pin, holder: str, plan: Plan, heights: Heights) -> bool:
-    """Whether something passes where the head of a hanging pin would be."""
+    """Return True if something passes where the head of a hanging pin would be."""
     half = 2 * heights.levels[holder]
     return any(plan.layout.is_covered(joint, half + above, heights.levels) for above in (1, 2))
 

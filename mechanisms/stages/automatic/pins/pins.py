@@ -51,7 +51,7 @@ def ends(joint: Joint, layout: Layout) -> list[tuple[tuple[float, float], str, t
 
 
 def places(joint: Joint) -> tuple[Place, Place]:
-    """What it joins, in mm."""
+    """Return the two places that the joint joins, in rmm."""
     first, second = ((marker.body.name, 1e3 * marker.x, 1e3 * marker.y) for marker in (joint.i, joint.j))
     return first, second
 
@@ -95,12 +95,12 @@ class Pin:
 
     @property
     def what(self) -> str:
-        """What its item is called."""
+        """Name of its item."""
         return f"the pivot {self.name} on ground" if self.on_ground else f"the pin of {self.name}"
 
     @property
     def on_ground(self) -> bool:
-        """Whether a pedestal or a bridge holds it."""
+        """True if a pedestal or a bridge holds it."""
         return "ground" in self.places
 
     @property
@@ -110,7 +110,7 @@ class Pin:
 
     @property
     def choice(self) -> str:
-        """Whether its lowest body holds it (0) or its highest (1); on ground: the base (0) or a bridge (1)."""
+        """0 if its lowest body holds it, 1 if its highest; on ground, 0 for the base and 1 for a bridge."""
         return f"pin {self.name}"
 
     @property
@@ -121,7 +121,7 @@ class Pin:
         return *self.webs, tuple(body for body in self.movers if body not in self.webs)
 
     def is_flush(self, levels: Levels, layout: Layout) -> bool:
-        """Whether it ends in the plate of the one body on it, because something passes close above."""
+        """Return True if it ends in the plate of the one body on it, because something passes close above."""
         if not self._may_be_flush(layout) or levels[self.choice] == 1:
             return False
         return layout.is_covered(self, 2 * levels[self.movers[0]] + 1, levels)
@@ -133,7 +133,7 @@ class Pin:
 
     @property
     def driven(self) -> bool:
-        """Whether a driver turns what is on it against ground."""
+        """True if a driver turns what is on it against ground."""
         drivers = self.m.drivers.values()
         return self.on_ground and any(d.kind.angular and set(d.bodies) <= set(self.places) for d in drivers)
 

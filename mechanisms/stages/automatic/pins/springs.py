@@ -149,7 +149,7 @@ class Stud:
 
     @property
     def what(self) -> str:
-        """What its item is called."""
+        """Name of its item."""
         return f"the stud {self.name}"
 
     @property
@@ -258,7 +258,7 @@ def _aside(force: Force | Joint, path: np.ndarray, layout: Layout) -> float:
 
 
 def _is_coil(force: Force | Joint) -> bool:
-    """Whether the film draws a coil: what holds energy."""
+    """Return True if the film draws a coil: what holds energy."""
     if force.kind.name == "spring":
         return "stiffness" in force.laws or force.params.get("stiffness", 0.0) > 0
     return force.kind.name == "curve_of_length" and "of_length" in force.laws
@@ -273,7 +273,7 @@ def _is_coil(force: Force | Joint) -> bool:
 @force_kind("gas_strut")
 @force_kind("hydraulic_cylinder")
 def gather(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
-    """Those of all kinds at the first of them, since they share studs."""
+    """Gather springs of all kinds at the first kind, since they share studs."""
     return _all_at(forces[0], m, layout)
 
 

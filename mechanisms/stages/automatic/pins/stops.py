@@ -59,7 +59,7 @@ class Stop:
 
     @property
     def whats(self) -> tuple[str, str]:
-        """What its items are called: those of the first body, and that of the second."""
+        """Names of its items: on the first body, and on the second."""
         return f"the stop {self.name}", f"the stop pin of {self.second} at {self.name}"
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:

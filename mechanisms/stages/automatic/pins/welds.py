@@ -162,7 +162,7 @@ def _taken(body: str, features: Sequence[Feature], layout: Layout) -> list[Ancho
 
 
 def _is_free(weld: Weld, taken: Mapping[str, Sequence[Anchor]], layout: Layout) -> bool:
-    """Whether spacer and bolts stay clear of all hardware on both bodies."""
+    """Return True if spacer and bolts stay clear of all hardware on both bodies."""
     for body, anchors in taken.items():
         (ax, ay), (bx, by) = weld.bolts(body)
         for anchor in anchors:

@@ -69,7 +69,7 @@ class Line:
         self.travel.append((float(along.min()) - beyond, float(along.max()) + beyond))
 
     def is_same(self, other: Line) -> bool:
-        """Whether both are one line with one free side."""
+        """Return True if both are one line with one free side."""
         return bool(np.abs(self.way - other.way).max() < 1e-9 and abs((other.start - self.start) @ self.free) < 1e-6)
 
 
@@ -243,13 +243,13 @@ def _on_road(
 
 
 def _pushes(touch: Touch) -> bool:
-    """Whether a closed curve of a moving body has what touches it outside, as a cam has."""
+    """Return True if a closed curve of a moving body has what touches it outside, as a cam has."""
     closed = touch.params["closed"] and "ground" not in touch.bodies
     return closed and not turns_left(np.array(touch.params["points"], dtype=float))
 
 
 def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Round, bool]:
-    """What touches; ``gap`` is the least one (rmm), below 0 where it presses in."""
+    """Return the round body that touches; ``gap`` is the least one (rmm), below 0 where it presses in."""
     body = touch.j.body.name
     turned = touch.params.get("friction", 0.0) > 0.0
     look: Look = "wheel" if touch.kind.name == "tyre" else _look(m, body, turned)
@@ -313,7 +313,7 @@ def extent_of_discs(touch: Joint, solution: Solution) -> Extent:
 @extent("contact")
 @extent("tyre")
 def extent_of(touch: Touch, solution: Solution) -> Extent:
-    """What touches."""
+    """Return the extent of a disc that touches, and of the closed curve that it touches."""
     radius = touch.params["radius"]
     closed = touch.params.get("closed", False)
     if closed and _pushes(touch):

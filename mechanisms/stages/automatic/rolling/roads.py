@@ -66,8 +66,8 @@ def straight_back(path: np.ndarray, thick: float = THICK) -> np.ndarray:
 
 
 def is_simple(path: np.ndarray, feet: np.ndarray) -> bool:
-    """Whether the polygon of a surface and its lower corners crosses itself nowhere: then its signed area is that of
-    what it goes round.
+    """Return True if the polygon of a surface and its lower corners crosses itself nowhere: then its signed area is
+    that of what it goes round.
     """
     corners = np.vstack([simplified(path, CHORD), feet])
     signed = abs(area(corners)) / 2
@@ -75,15 +75,17 @@ def is_simple(path: np.ndarray, feet: np.ndarray) -> bool:
 
 
 def is_free(path: np.ndarray, feet: np.ndarray, centres: np.ndarray, radius: float) -> bool:
-    """Whether the polygon of a surface and its lower corners crosses itself nowhere, and what runs on the surface, a
-    disc about ``centres`` (T, 2), is clear of its other sides.
+    """Return True if the polygon of a surface and its lower corners crosses itself nowhere, and what runs on the
+    surface, a disc about ``centres`` (T, 2), is clear of its other sides.
     """
     others = np.vstack([path[-1:], feet, path[:1]])
     return is_simple(path, feet) and bool(distances(centres, others).min() >= radius)
 
 
 def is_clear(backing: Band, path: np.ndarray, centres: np.ndarray, radius: float) -> bool:
-    """Whether a disc about ``centres`` (T, 2) that runs on a surface is clear of the other sides of the band there."""
+    """Return True if a disc about ``centres`` (T, 2) that runs on a surface is clear of the other sides of the band
+    there.
+    """
     return bool(distances(centres, np.vstack([path[-1:], backing.back[::-1], path[:1]])).min() >= radius)
 
 
@@ -145,7 +147,7 @@ class Road:
 
     @property
     def is_square(self) -> bool:
-        """Whether it ends square, and in no mitred corner with another wall."""
+        """True if it ends square, and in no mitred corner with another wall."""
         way = self.path[-1] - self.path[0]
         if self.band is not None:
             return False
@@ -201,7 +203,7 @@ class Road:
         plan.feet += [Foot("", float(u), float(v), THICK, road=True) for u, v in ends]
 
     def holds(self, m: Mechanism) -> bool:
-        """Whether gravity holds a wheel on it."""
+        """Return True if gravity holds a wheel on it."""
         pull = np.array(m.gravity or (0.0, 0.0))
         down = behind(self.path[-1] - self.path[0]) @ pull > HELD * np.hypot(*pull) > 0.0
         return bool(down) and any(part.look == "wheel" for part in self.rounds)
@@ -251,7 +253,7 @@ def banded(name: str, rounds: Sequence[Round], path: np.ndarray) -> Road | None:
 
 
 def runs_on_ground(layout: Layout) -> bool:
-    """Whether a wheel runs on a road of ground, and gravity holds it there."""
+    """Return True if a wheel runs on a road of ground, and gravity holds it there."""
     return any(road.holds(layout.m) for road in layout.features if isinstance(road, Road))
 
 

@@ -56,7 +56,7 @@ class Round:
     short: float
     look: Look
     pinned: bool = True
-    """Whether a pin goes through its middle."""
+    """True if a pin goes through its middle."""
     meets: set[str] = field(default_factory=set)
     """Bodies with discs that touch it."""
     pressed: float = 0.0
@@ -92,7 +92,7 @@ class Round:
         return self.made - self.tyre(layout) - layout.sizes.pivot.fit.seat
 
     def hub(self, layout: Layout) -> float:
-        """What is solid in the middle."""
+        """Return the radius of the solid middle (rmm)."""
         if self.look == "wheel":
             return layout.sizes.eye if self.pinned else HUB * self.made
         return min(layout.sizes.eye, WITHIN * self.made)

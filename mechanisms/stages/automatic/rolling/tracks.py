@@ -80,7 +80,7 @@ class Track:
 
     @property
     def inside(self) -> bool:
-        """Whether it lies round what it carries."""
+        """True if it lies round what it carries."""
         return self.feet is None and turns_left(self.path)
 
     @property
@@ -213,7 +213,7 @@ def _hole(layout: Layout) -> float:
 
 
 def _holds(path: np.ndarray, place: tuple[float, float]) -> bool:
-    """Whether a closed path goes round a place."""
+    """Return True if a closed path goes round a place."""
     way = path - place
     turns = np.diff(np.unwrap(np.arctan2(way[:, 1], way[:, 0])))
     return abs(float(turns.sum())) > np.pi

@@ -94,7 +94,7 @@ class Along:
 
     @cached_property
     def machine(self) -> Machine:
-        """What each body becomes."""
+        """Machine that says what each body becomes."""
         free = free_links(self.m, self.left_out)
         return self._machine(self.left_out, self._places(free) if free else {})
 
@@ -171,7 +171,7 @@ class Along:
         return wheels(self.machine, self.measures)
 
     def _mounted(self, shaft: str) -> list[Mounted]:
-        """What sits on a shaft beside its throws."""
+        """Return valves and wheels that sit on a shaft beside its throws."""
         cams = [valve.mounted for valve in self.valves.values() if valve.valve.shaft == shaft]
         return [*(wheel.mounted for wheel in self.wheels.of(shaft)), *cams]
 

@@ -106,7 +106,7 @@ def bore_of(own: Axle, body: str, sizes: Sizes) -> float:
 
 
 def pin_outline(own: Axle, sizes: Sizes) -> Rounded:
-    """What holds the pin with its head in the plane, in the frame of the body that holds it."""
+    """Return the outline of a pin with its head, in the frame of the body that holds it."""
     return disc(*own.places[own.holder], sizes.hardware * sizes.scale)
 
 
@@ -183,7 +183,7 @@ def _height(layers: Sequence[float], level: int, pitch: float) -> float:
 
 
 def _asks(a: Item, b: Item, free: set[str]) -> bool:
-    """Whether two items that meet say something of a free link."""
+    """Return True if two items that meet say something of a free link."""
     if not free.intersection((*a.reach.bodies, *b.reach.bodies)) or (a.body == b.body and a.body == "ground"):
         return False
     return a.body != b.body and a.body not in b.spares and b.body not in a.spares
@@ -225,7 +225,7 @@ class Bearers:
     journals: tuple[Journal, ...]
     """Those that have a bearing."""
     tapered: bool = False
-    """Whether there is room for its arms only as they are, thinner towards the pillars."""
+    """True if there is room for its arms only as they are, thinner towards the pillars."""
 
     @property
     def hub(self) -> float:
@@ -310,7 +310,7 @@ def _arm(plan: ShaftPlan, place: tuple[float, float], radius: float, tapered: bo
 
 
 def _beside(plan: ShaftPlan, journal: Journal, taken: Sequence[Takes]) -> list[Takes]:
-    """What shares heights with a bearing."""
+    """Return the shapes that share heights with a bearing."""
     low, high = heights_of(plan, journal)
     return [space for space in taken if space.low < high and space.high > low]
 
@@ -323,7 +323,7 @@ def heights_of(plan: ShaftPlan, journal: Journal) -> tuple[float, float]:
 
 
 def _is_free(machine: Machine, shape: Rounded, taken: Sequence[Takes]) -> bool:
-    """Whether nothing comes near to a shape on ground."""
+    """Return True if nothing comes near to a shape on ground."""
     still = machine.poses["ground"][::EVERY]
     return all(
         least_gap(space.shape, shape, (machine.poses[space.body][::EVERY], still), ROOM)[0] >= ROOM for space in taken

@@ -184,7 +184,7 @@ SAME = 1e-3
 
 
 def has_places(m: Mechanism) -> bool:
-    """Whether a moving body, or a marker of a joint on one, has a place along the normal of the plane."""
+    """Return True if a moving body, or a marker of a joint on one, has a place along the normal of the plane."""
     moving = [body for name, body in m.bodies.items() if name != "ground"]
     ends = [marker for joint in m.joints.values() for marker in (joint.i, joint.j)]
     return any(body.z is not None for body in moving) or any(
@@ -230,7 +230,7 @@ def planes(m: Mechanism, body: str) -> list[float]:
 
 
 def no_plane(m: Mechanism, joint: str, body: str) -> UserError:
-    """What is raised where a joint lies in no plane."""
+    """Return the error for a joint that lies in no plane."""
     return UserError(
         f"{m.name}: joint '{joint}' of '{body}' has no place z along the normal, and others have; give the body or the "
         f"marker one, such as m.body('{body}', z=0.02)"
@@ -253,7 +253,7 @@ class Mounted:
     inner: float
     """The largest radius of a shaft through it."""
     is_wheel: bool
-    """Whether it may sit beyond the last bearing."""
+    """True if it may sit beyond the last bearing."""
 
     @property
     def low(self) -> float:
@@ -295,7 +295,7 @@ def carrier(machine: Machine, link: Link) -> Link | None:
 
 
 def knuckle_eyes(machine: Machine, link: Link) -> list[LinkEye]:
-    """Those of a carrier that carry rods, and of a carried rod the one on its carrier."""
+    """Return the eyes of a carrier that carry rods, or the eye of a carried rod on its carrier."""
     above = carrier(machine, link)
     if above is not None:
         return [eye for eye in link.eyes if eye.on == above.body]
@@ -304,12 +304,12 @@ def knuckle_eyes(machine: Machine, link: Link) -> list[LinkEye]:
 
 
 def is_carrier(machine: Machine, link: Link) -> bool:
-    """Whether rods hang from it in its plane."""
+    """Return True if rods hang from it in its plane."""
     return carrier(machine, link) is None and bool(knuckle_eyes(machine, link))
 
 
 def carries(machine: Machine, a: Link, b: Link) -> bool:
-    """Whether one of two links hangs from the other in its plane."""
+    """Return True if one of two links hangs from the other in its plane."""
     return carrier(machine, a) is b or carrier(machine, b) is a
 
 
@@ -379,6 +379,6 @@ def _crank_eye(machine: Machine, link: Link) -> LinkEye | None:
 
 
 def _drives(machine: Machine, link: Link) -> bool:
-    """Whether a link moves a piston; pistons are those of the model, as theirs follow links."""
+    """Return True if a link moves a piston; pistons are those of the model, as theirs follow links."""
     slides = {body for joint in machine.m.joints.values() if joint.kind.name == "prismatic" for body in joint.bodies}
     return any(eye.on in slides and eye.on != "ground" for eye in link.eyes)

@@ -45,7 +45,7 @@ FINS, FIN = 7, 0.025
 
 
 def along_x(shape: cq.Workplane) -> cq.Workplane:
-    """What was turned about z, turned about x instead."""
+    """Return a shape turned about z as one turned about x."""
     return shape.rotate((0, 0, 0), (0, 1, 0), 90)
 
 

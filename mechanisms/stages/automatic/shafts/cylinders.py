@@ -176,7 +176,7 @@ def _shaft(machine: Machine, piston: Piston) -> Shaft | None:
 
 
 def _wish(machine: Machine, piston: Piston) -> float:
-    """That of the gas; else square, as far as the neighbours along the shaft leave room."""
+    """Return the bore that the gas has; else one equal to the stroke, as far as neighbours along the shaft leave room."""
     if piston.area is not None:
         return math.sqrt(4 * piston.area / math.pi)
     low, high, _ = _stroke(machine, piston)
@@ -236,7 +236,7 @@ def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, f
 
 
 def rod_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
-    """What a connecting rod takes in the plane: its shank, and its big end."""
+    """Return the shapes of a connecting rod in the plane: its shank, and its big end."""
     if is_carrier(machine, link):
         return [*shank_shapes(machine, link, bore), flange_shape(machine, link, bore)]
     if carrier(machine, link) is not None:
@@ -257,7 +257,7 @@ def shank_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
 
 
 def flange_shape(machine: Machine, link: Link, bore: float) -> Rounded:
-    """What holds the flanges of a carrier: round its knuckle pins and its big end."""
+    """Return the outline of a carrier's flanges, round its knuckle pins and its big end."""
     main = rod_foot(machine, link)
     pins = [eye for eye in link.eyes if eye.on in machine.links]
     turns = [k * math.pi / 6 for k in range(12)] if main is not None else []
@@ -267,7 +267,7 @@ def flange_shape(machine: Machine, link: Link, bore: float) -> Rounded:
 
 
 def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bore: float) -> bool:
-    """Whether no rod meets a liner that begins at ``low``: its own would lean against it, others pass beside it."""
+    """Return True if no rod meets a liner that begins at ``low``: its own would lean against it, others pass beside it."""
     along, own = np.array(piston.along), machine.links[piston.link or ""]
     left = np.array([-along[1], along[0]])
     main = rod_foot(machine, own)

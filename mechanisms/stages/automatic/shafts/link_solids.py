@@ -82,7 +82,7 @@ def rod_pieces(
 
 
 def cut_up(shape: cq.Workplane, cuts: Sequence[Cut]) -> list[Piece]:
-    """What is left of a link, and the cap of each cut."""
+    """Return the rest of a link, and the cap of each cut."""
     caps = []
     for at, towards, reach in cuts:
         shape, cap = split(shape, at, towards, reach)
@@ -93,7 +93,7 @@ def cut_up(shape: cq.Workplane, cuts: Sequence[Cut]) -> list[Piece]:
 def split(
     shape: cq.Workplane, at: tuple[float, float], towards: float, reach: float
 ) -> tuple[cq.Workplane, cq.Workplane]:
-    """What lies ahead of a line through ``at``, in the direction ``towards`` (rad), and what lies behind it."""
+    """Return the parts of a shape ahead of and behind a line through ``at``, seen in the direction ``towards`` (rad)."""
     import cadquery as cq
 
     low, high = rough_box(shape)

@@ -286,13 +286,13 @@ def _pistons(sliding: Collection[str], joints: Collection[Joint]) -> set[str]:
 
 
 def _slides(joint: Joint, body: str) -> bool:
-    """Whether ``body`` slides in a joint on ground."""
+    """Return True if ``body`` slides in a joint on ground."""
     return joint.kind.name == "prismatic" and body != "ground" and "ground" in joint.bodies
 
 
 def _is_shaft(m: Mechanism, body: str, pins: list[Joint]) -> bool:
-    """Whether its markers have places, its links lie in several planes, or it is driven and has no other place than
-    they have.
+    """Return True if its markers have places, its links lie in several planes, or it is driven and has no other place
+    than they have.
     """
     ends = [(marker_on(joint, body), other_on(joint, body)) for joint in pins if "ground" not in joint.bodies]
     if any(own.z is not None for own, _ in ends) or len(planes(m, body)) > 1:

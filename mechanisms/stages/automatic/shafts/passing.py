@@ -34,7 +34,7 @@ class Meeting(UserError):
 
 @dataclass(frozen=True, eq=False)
 class Takes:
-    """What takes room: a shape in the plane that moves with a body, from ``low`` to ``high``."""
+    """Room that is taken: a shape in the plane that moves with a body, from ``low`` to ``high``."""
 
     what: str
     body: str

@@ -100,7 +100,7 @@ class Measures:
         return middle(own, self.axial) if is_carrier(self.machine, link) else own
 
     def outline(self, link: Link) -> Rounded:
-        """What holds it in the plane."""
+        """Return the outline that holds a link in the plane."""
         return around([(eye.x, eye.y) for eye in link.eyes] or [(0.0, 0.0)], self.radius(link))
 
     def radius(self, link: Link) -> float:
@@ -287,7 +287,7 @@ class ShaftPlan:
 
     @property
     def has_weights(self) -> bool:
-        """Whether there is room for counterweights."""
+        """True if there is room for counterweights."""
         return self.counterweight > 1.15 * self.neck
 
     @property
@@ -312,14 +312,14 @@ class ShaftPlan:
 
     @property
     def swept(self) -> float:
-        """What its webs sweep about the axis, and a counterweight at most."""
+        """Radius that webs, and at most a counterweight, sweep about the axis."""
         reach = max((math.hypot(pin.x, pin.y) for pin in self.pins), default=0.0) + self.cheek
         on_it = max((part.radius for part in self.mounted), default=0.0)
         return max(reach, self.counterweight if self.has_weights else 0.0, self.journal, on_it)
 
     @property
     def webs_sweep(self) -> float:
-        """What its webs sweep about the axis, without wheels."""
+        """Radius that its webs sweep about the axis, without wheels."""
         return max(math.hypot(pin.x, pin.y) for pin in self.pins) + self.cheek if self.pins else self.journal
 
     @property
@@ -335,7 +335,7 @@ class ShaftPlan:
 
     @property
     def has_flange(self) -> bool:
-        """Whether its lower end is a flange: that of a crankshaft without a wheel there."""
+        """True if its lower end is a flange: that of a crankshaft without a wheel there."""
         return bool(self.pins) and not any(part.high < self.ends[0] for part in self.mounted)
 
     def bottom(self, flywheel: float) -> float:

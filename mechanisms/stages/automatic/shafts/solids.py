@@ -177,7 +177,7 @@ def _of_body(own: Along, body: str, material: str, is_wished: bool, made: Mappin
 
 
 def _is_closed(own: Along, body: str) -> bool:
-    """Whether a rod that carries others has a big end of one piece."""
+    """Return True if a rod that carries others has a big end of one piece."""
     link = own.machine.links.get(body)
     main = None if link is None else rod_foot(own.machine, link)
     if link is None or main is None or not is_carrier(own.machine, link):

@@ -80,7 +80,7 @@ class ValvePlan:
 
     @property
     def bore(self) -> float:
-        """What all proportions are parts of."""
+        """Bore to which all proportions refer."""
         return self.cylinder.bore
 
     @property
@@ -232,7 +232,7 @@ SEAT = 0.02
 
 
 def along_x(shape: cq.Workplane) -> cq.Workplane:
-    """What was turned about z, turned about x instead."""
+    """Return a shape turned about z as one turned about x."""
     return shape.rotate((0, 0, 0), (0, 1, 0), 90)
 
 
@@ -256,7 +256,7 @@ def valve_solids(own: ValvePlan) -> list[Solid]:
 
 
 def _in_frame(own: ValvePlan, shape: cq.Workplane) -> cq.Workplane:
-    """What was turned about z, with s along it, in the frame of the valve's body where it is closed."""
+    """Return a shape turned about z, with s along it, in the frame of the valve's body where it is closed."""
     valve = own.valve
     marker = own.face + own.clear  # s of the marker on its face
     outward = along_x(shape.translate((0, 0, -marker)))
@@ -264,7 +264,7 @@ def _in_frame(own: ValvePlan, shape: cq.Workplane) -> cq.Workplane:
 
 
 def port_shape(own: ValvePlan, high: float) -> cq.Workplane:
-    """What a valve takes out of a head whose upper face is at s = ``high``: recess, port and guide, about x."""
+    """Return what a valve cuts out of a head whose upper face is at s = ``high``: recess, port and guide, about x."""
     b, start, gap = own.bore, own.cylinder.top - 1.0, own.running
     recess = own.low + CONE * b + gap
     throat = min(recess + 0.55 * HEAD * b, high - 0.02 * b)

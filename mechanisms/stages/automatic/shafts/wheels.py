@@ -81,7 +81,7 @@ class Wheels:
     belts: list[ShaftBelt] = field(default_factory=list)
 
     def of(self, body: str) -> list[ShaftWheel]:
-        """Those of a shaft, each once."""
+        """Return the wheels of a shaft, each once."""
         return [wheel for wheel in self.every if wheel.wheel.body == body]
 
     def takes(self) -> Iterable[Takes]:

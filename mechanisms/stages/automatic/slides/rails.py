@@ -213,7 +213,7 @@ def _way(joint: Joint, line: Joint, solution: Solution) -> np.ndarray:
 
 
 def on_one_line(slide: Slide, other: Slide) -> bool:
-    """Whether two slides of a body guide along the same line of it, this way or the other."""
+    """Return True if two slides of a body guide along the same line of it, this way or the other."""
     x, y, angle = other.rail_at
     aside = (slide.rail_at[1] - y) * math.cos(angle) - (slide.rail_at[0] - x) * math.sin(angle)
     return slide.rail == other.rail and abs(aside) < ON_LINE and abs(math.sin(slide.rail_at[2] - angle)) < ALONG
@@ -264,7 +264,7 @@ def _beside(layout: Layout) -> float:
 
 
 def _may_share(slide: Slide, other: Slide, line: Slide, layout: Layout) -> bool:
-    """Whether two overlapping rails can be one: the blocks never meet, and no stop is in the way of either."""
+    """Return True if two overlapping rails can be one: the blocks never meet, and no stop is in the way of either."""
     first, second = _span(slide, line), _span(other, line)
     if min(first[1], second[1]) - max(first[0], second[0]) < -_beside(layout):
         return False
@@ -332,7 +332,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 
 def _repeats(slide: Slide, other: Slide) -> bool:
-    """Whether another slide of the same two bodies guides along the same line already."""
+    """Return True if another slide of the same two bodies guides along the same line already."""
     return slide.block == other.block and on_one_line(slide, other)
 
 

@@ -69,7 +69,7 @@ class InSlot(Protocol):
 
     @property
     def layer(self) -> str:
-        """What decides the layer of the slot."""
+        """Name that decides the layer of the slot."""
         ...
 
 
@@ -133,7 +133,7 @@ class Slot:
 
     @property
     def layer(self) -> str:
-        """What decides the layer of the slot: its body, or its plate where that is ground."""
+        """Name that decides the layer of the slot: its body, or its plate if the body is ground."""
         return self.slot if self.slot != "ground" else f"slot {self.name}"
 
     @property
@@ -329,7 +329,7 @@ def slot_pin(
 
 
 def _is_below(slot: InSlot, heights: Heights) -> bool:
-    """Whether the pin comes from below."""
+    """Return True if the pin comes from below."""
     return slot.pin == "ground" or heights.bottom(slot.pin) < heights.bottom(slot.layer)
 
 

@@ -71,7 +71,7 @@ def with_own_layers(layout: Layout, beside_arms: bool) -> Layout:
 
 
 def _meets_an_arm(wheel: Wheel, layout: Layout) -> bool:
-    """Whether its mates, or its belt, meet what else its body has in its layer."""
+    """Return True if its mates, or its belt, meet what else its body has in its layer."""
     mates: list[object] = [*wheel.mates]
     mates += [belt for belt in layout.features if isinstance(belt, Belt) and wheel in belt.pulleys]
     near = [item for item in layout.items if item.source in mates and item.body != wheel.body]
@@ -86,7 +86,7 @@ def _is_always_in(item: Item, layer: str) -> bool:
 
 
 def _has_arm(wheel: Wheel, layout: Layout) -> bool:
-    """Whether a joint, a spring, a traced point or a bar's end is on a pulley's body beyond the pulley."""
+    """Return True if a joint, a spring, a traced point or a bar's end is on a pulley's body beyond the pulley."""
     if not isinstance(wheel, Pulley):
         return False
     m, body = layout.m, layout.m.bodies[wheel.body]
@@ -162,7 +162,7 @@ def in_phase(m: Mechanism, toothed: Sequence[Toothed], meshes: Sequence[Mesh], l
 
 
 def _trains(toothed: Sequence[Toothed]) -> list[list[Toothed]]:
-    """Those that mesh with each other, directly or through others; a wheel comes first."""
+    """Return groups of wheels that mesh with each other, directly or through others; a wheel comes first."""
     trains: list[list[Toothed]] = []
     seen: set[int] = set()
     for start in sorted(toothed, key=lambda gear: isinstance(gear, Rack)):
@@ -384,7 +384,7 @@ def _apart(known: list[Wheel], wheel: Wheel, mate: Wheel, tip: float, layout: La
 
 
 def _meet(first: Wheel, second: Wheel, tip: float, layout: Layout) -> bool:
-    """Whether two wheels whose teeth are ``tip`` (rmm) high above their pitch circles meet in the plane."""
+    """Return True if two wheels whose teeth are ``tip`` (rmm) high above their pitch circles meet in the plane."""
     away = layout.seen(second.body, (second.x, second.y), first.body) - (first.x, first.y)
     return bool(np.hypot(*away.T).min() < first.radius + second.radius + 2 * tip + layout.sizes.room)
 

@@ -70,7 +70,7 @@ class Rack:
 
     @property
     def layer(self) -> str:
-        """What decides its layer: itself."""
+        """Name that decides the layer: its own."""
         return self.what
 
     @property

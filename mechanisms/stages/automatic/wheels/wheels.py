@@ -48,7 +48,7 @@ LEAST, LEAST_ON_TUBE = 15.2, 18.0
 
 
 class Mate(Protocol):
-    """What meshes with a wheel: another one, or a rack."""
+    """An element that meshes with a wheel: another wheel, or a rack."""
 
     @property
     def what(self) -> str:
@@ -73,11 +73,11 @@ class Wheel:
     phase: float | None = None
     mates: list[Mate] = field(default_factory=list)
     shares: bool = True
-    """Whether it lies in its body's layer."""
+    """True if it lies in its body's layer."""
 
     @property
     def layer(self) -> str:
-        """What decides its layer: its body, or itself."""
+        """Name that decides the layer: that of the body, or its own."""
         return self.body if self.shares and self.body != "ground" else self.what
 
     @property

@@ -89,7 +89,7 @@ class Start:
 
     @classmethod
     def of(cls, solution: Any) -> Start:
-        """Those of a solution's first output."""
+        """Return the start at a solution's first output."""
         poses, rates = {GROUND: np.zeros(3)}, {GROUND: np.zeros(3)}
         for name in solution.mechanism.bodies:
             if name != GROUND:
@@ -140,7 +140,7 @@ STEP = 1e-6
 
 
 def rows(joint: Any, poses: Poses, size: float) -> list[float]:
-    """What a joint or driver holds, free of dimension."""
+    """Return the residuals of a joint or driver, free of dimension."""
     turn, (x, y) = angle(poses, joint), along(poses, joint) / size
     match joint.kind.name:
         case "revolute":

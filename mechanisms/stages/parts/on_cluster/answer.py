@@ -1,4 +1,4 @@
-"""What a worker sends of the parts of a mechanism, and whether it can be believed.
+"""The parts of a mechanism as a worker sends them, and the checks before they are believed.
 
 Nothing here runs what came, and no file is written under a name that came: names are those that parts.json gives, each
 a plain name beside it. The solids themselves are read by a process of their own (solids_check.py).
@@ -35,12 +35,12 @@ PROJECT = Path(__file__).parents[4]
 
 
 class Notes(msgspec.Struct, forbid_unknown_fields=True):
-    """What the stamp of the stage says of its inputs."""
+    """Notes in the stamp of the stage about its inputs."""
 
     parameters: list[str]
     inputs: dict[str, list[str]]
     machine: bool = True
-    """Whether parts of a model may follow from those of the machine."""
+    """True if parts of a model may follow from those of the machine."""
 
 
 class Made(msgspec.Struct, forbid_unknown_fields=True):

@@ -1,4 +1,4 @@
-"""What authors have written, as contents by their hash, and as files again on a worker.
+"""Files of authors, as contents by their hash, and as files again on a worker.
 
 Of ``mechanisms/`` every file of the mechanism whose parts are made travels, because parts.py may read any of them; of
 the others the Python files, which it may import. Of a user's own folder, which may hold anything, the files of the
@@ -27,7 +27,7 @@ PROGRAM = ("stages",)
 
 
 class Order(msgspec.Struct, frozen=True, kw_only=True):
-    """What a worker receives of the parts of one mechanism."""
+    """An order for the parts of one mechanism, as a worker receives it."""
 
     name: str
     files: dict[str, str]
@@ -83,7 +83,7 @@ def _own_paths(owner: str, read: Iterable[str]) -> Iterator[Path]:
 
 
 def _is_hidden(path: Path) -> bool:
-    """Whether it is of a tool rather than of the author."""
+    """Return True if it is of a tool rather than of the author."""
     return any(part == "__pycache__" or part.startswith(".") for part in path.parts)
 
 

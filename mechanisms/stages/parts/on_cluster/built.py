@@ -1,4 +1,4 @@
-"""What a worker of a cluster does for parts: the same stage in a copy of the program with the author's files in it.
+"""Parts on a worker of a cluster: the same stage in a copy of the program with the author's files in it.
 
 The stage is a process of its own, so neither the author's code nor the CAD kernel can hurt the worker, and nothing of
 one mechanism is left for the next.

@@ -101,7 +101,7 @@ def _refuse_wrong_sums(body: str, solids: BodyParts) -> None:
 
 
 def _alike(first: Mass, second: Mass, size: float, relative: float) -> bool:
-    """Whether two masses agree, ``size`` (m) being how large the solid is."""
+    """Return True if two masses agree, ``size`` (m) being how large the solid is."""
     near = np.isclose([first.mass, first.volume], [second.mass, second.volume], rtol=relative, atol=1e-15).all()
     at = np.allclose(first.com, second.com, rtol=0.0, atol=relative * size + 1e-9)
     close = relative * (first.inertia + first.mass * size**2)

@@ -32,7 +32,7 @@ class Thing:
 
         self.scene, self.radius = scene, radius
         self.seen_only = False
-        """Whether light that bounces passes through what is added from now on."""
+        """True if light that bounces passes through what is added from now on."""
         self.root = bpy.data.objects.new(name, None)
         self.root.location = place
         self.root.rotation_euler = (0.0, 0.0, azimuth)

@@ -52,7 +52,7 @@ def _seen_only(graph: Graph, shader: Any, ground: Ground, bounce: float) -> Any:
 
 
 def glow(graph: Graph, colour: Colour, bounce: float) -> Any:
-    """What light that bounces meets instead of a bright surface that would be lit once more: a tenth of a frame."""
+    """Return the glow that bounced light meets instead of a bright surface: a tenth of the time of a frame."""
     return graph.add("Emission", Color=colour, Strength=bounce).outputs[0]
 
 

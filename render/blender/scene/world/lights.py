@@ -43,7 +43,7 @@ class Lamp(NamedTuple):
 
 
 class Shine(NamedTuple):
-    """What a face mirrors."""
+    """Reflections of a face."""
 
     strength: float
     """How bright the lobe is against what is matt."""

@@ -121,7 +121,7 @@ def _stands(scenery: Scenery, time: float) -> tuple[Stand, Stand]:
 
 
 def _holds_arrows(scenery: Scenery, stand: Stand, time: float) -> bool:
-    """Whether all straight arrows of that moment are in the picture from there."""
+    """Return True if all straight arrows of that moment are in the picture from there."""
     film, seen = scenery.forces, scenery.picture(stand, time, forces=True, grown=1.0, hidden="trails")
     points = [end for arrow in film.state(seen.at, seen.camera).arrows for end in arrow] if film is not None else []
     if film is None or not points:

@@ -356,14 +356,15 @@ class Family:
 
     @classmethod
     def of(cls, motion: Motion, mount: Mount, size: float) -> Family:
-        """The family of a machine with these files."""
+        """Return the family of a machine with these files."""
         engine = any(force.gas is not None for force in motion.forces.values())
         return cls(mount.kind, engine, bool(motion.drivers), size)
 
 
 def chosen(family: Family) -> str:
-    """Vehicles are on a road, engines in the dark studio, what is left to itself before white; what is driven stands
-    on a bench, or in daylight where it is too large for one or hangs at a wall, and in the studio where it lies.
+    """Return the look that suits: vehicles are on a road, engines in the dark studio, what is left to itself before
+    white; what is driven stands on a bench, or in daylight where it is too large for one or hangs at a wall, and in the
+    studio where it lies.
     """
     if family.mount == "ground":
         return "road"
@@ -377,5 +378,5 @@ def chosen(family: Family) -> str:
 
 
 def look_of(shot: Shot, motion: Motion, mount: Mount, size: float) -> Look:
-    """The look that a shot names, else the one chosen."""
+    """Return the look that a shot names, else the one chosen."""
     return LOOKS[shot.look or chosen(Family.of(motion, mount, size))]

@@ -32,19 +32,21 @@ class Crank:
 
 
 def crank_of(motion: Motion) -> Crank | None:
-    """The crank; of several the one that a driver turns, else the first in the file. None where nothing turns so."""
+    """Return the crank; of several the one that a driver turns, else the first in the file. None where nothing turns
+    so.
+    """
     cranks = [crank for body, at in _on_ground(motion).items() if (crank := _crank(motion, body, at)) is not None]
     driven = driven_bodies(motion)
     return min(cranks, key=lambda crank: crank.body not in driven, default=None)
 
 
 def driven_bodies(motion: Motion) -> set[str]:
-    """Bodies that drivers act between, without ground."""
+    """Return bodies that drivers act between, without ground."""
     return {body for driver in motion.drivers.values() for body in driver.bodies or () if body != "ground"}
 
 
 def _on_ground(motion: Motion) -> dict[str, tuple[float, float]]:
-    """Bodies that revolute joints hold on ground, with the axis."""
+    """Return bodies that revolute joints hold on ground, with the axis."""
     pins: dict[str, tuple[float, float]] = {}
     for joint in motion.joints.values():
         if joint.pair == "pin" and "ground" in joint.bodies:
@@ -106,12 +108,12 @@ def centre_of_mass(body: BodyMotion) -> Centre:
 
 
 def speed_scale(motion: Motion) -> float:
-    """The largest angular velocity (rad/s)."""
+    """Return the largest angular velocity (rad/s)."""
     return max((float(np.abs(body.omega).max()) for body in motion.bodies.values()), default=0.0)
 
 
 def force_scale(motion: Motion) -> float:
-    """The largest of reactions, weights and inertia forces (N)."""
+    """Return the largest of reactions, weights and inertia forces (N)."""
     gravity = float(np.hypot(*motion.gravity))
     sizes = [float(np.hypot(joint.fx, joint.fy).max()) for joint in motion.joints.values()]
     for body in motion.bodies.values():
@@ -121,14 +123,14 @@ def force_scale(motion: Motion) -> float:
 
 
 def length_scale(motion: Motion) -> float:
-    """The diagonal of all that joints sweep (m)."""
+    """Return the diagonal of all that joints sweep (m)."""
     x = [value for joint in motion.joints.values() for value in (min(joint.x), max(joint.x))]
     y = [value for joint in motion.joints.values() for value in (min(joint.y), max(joint.y))]
     return float(np.hypot(max(x) - min(x), max(y) - min(y))) if x else 0.0
 
 
 def torque_scale(motion: Motion) -> float:
-    """The largest force on an arm as long as the mechanism, and what turning parts need (N m)."""
+    """Return the largest force on an arm as long as the mechanism, and what turning parts need (N m)."""
     size = length_scale(motion)
     turning = [
         body.inertia * max(float(np.abs(body.alpha).max()), float(np.abs(body.omega).max()) ** 2)
@@ -182,7 +184,7 @@ def floors(motion: Motion) -> dict[str, float]:
 
 
 def without_noise(values: np.ndarray, floor: float) -> np.ndarray:
-    """The values, those below ``floor`` as zero; a constant but for ``floor`` as a constant."""
+    """Return the values, those below ``floor`` as zero; a constant but for ``floor`` as a constant."""
     if len(values) and np.ptp(values) <= floor:
         middle = float(np.median(values))
         return np.full(len(values), middle if abs(middle) > floor else 0.0)
@@ -212,7 +214,7 @@ class Shaking:
 
 
 def shaking(motion: Motion) -> Shaking:
-    """Force, moment and couples of inertia on the frame."""
+    """Return the force, moment and couples of inertia on the frame."""
     crank = crank_of(motion)
     x0, y0 = crank.at if crank else (0.0, 0.0)
     fx, fy, moment = (np.zeros(len(motion.time)) for _ in range(3))

@@ -51,7 +51,7 @@ class Preset:
         return said(preset=base, **({"aspect": shape.replace("x", ":")} if shape else {}))
 
     def framed(self, aspect: str) -> Preset:
-        """The same in another aspect of :data:`ASPECTS`: its shorter side keeps its pixels.
+        """Return the same in another aspect of :data:`ASPECTS`: its shorter side keeps its pixels.
 
         Raises UserError with the known aspects.
         """
@@ -85,7 +85,8 @@ ASPECT = 16 / 9
 
 
 def preset_named(name: str, aspect: str = "") -> Preset:
-    """The preset of that name, in an aspect of :data:`ASPECTS`, which the name may bring along: ``preview-9x16``.
+    """Return the preset of that name, in an aspect of :data:`ASPECTS`, which the name may bring along:
+    ``preview-9x16``.
 
     Raises UserError with the known names.
     """
@@ -96,7 +97,7 @@ def preset_named(name: str, aspect: str = "") -> Preset:
 
 
 def _sides(aspect: str) -> tuple[int, int]:
-    """Width and height of an aspect that is written as ``9:16`` or ``9x16``."""
+    """Return the width and height of an aspect that is written as ``9:16`` or ``9x16``."""
     try:
         return ASPECTS[aspect.strip().replace("x", ":")]
     except KeyError:
@@ -119,7 +120,9 @@ MEANT = {
 
 
 def show_words(text: str) -> str:
-    """The words of SHOW in their order, each once, commas between them; raises UserError for one that is none."""
+    """Return the words of SHOW in their order, each once, commas between them; raises UserError for one that is
+    none.
+    """
     asked = [word.strip() for word in text.split(",") if word.strip()]
     for word in asked:
         if word not in WORDS:
@@ -131,7 +134,7 @@ def show_words(text: str) -> str:
 
 
 def _meant(word: str) -> str:
-    """The word that shows what is asked for, or one that is alike."""
+    """Return the word that shows what is asked for, or one that is alike."""
     meant = [shows for shows, others in MEANT.items() if word.lower().removesuffix("s") + "s" in others]
     if meant:
         return f"; these are among {' and '.join(meant)}"

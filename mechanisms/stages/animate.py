@@ -61,7 +61,9 @@ def run(name: str, view: str = "") -> None:
 
 
 def films_of(view: str) -> list[str]:
-    """The views of the films to make: ``""`` is all quantities side by side. Raises UserError for unknown words."""
+    """Return the views of the films to make: ``""`` is all quantities side by side. Raises UserError for unknown
+    words.
+    """
     words = [word.strip() for word in view.split(",") if word.strip()]
     for word in words:
         if word not in VIEWS:
@@ -77,7 +79,7 @@ def films_of(view: str) -> list[str]:
 
 
 def solve(name: str, parts: Parts | None) -> Solution:
-    """The motion; says which masses are those of the parts, and which are estimated. Raises UserError."""
+    """Return the motion; says which masses are those of the parts, and which are estimated. Raises UserError."""
     from mechanisms.stages.solve.masses import give_masses_aloud
 
     module, p = loading.load(name, "mechanism"), loading.params(name)
@@ -97,7 +99,7 @@ def _fresh(out: Out, parts: Parts | None, words: str) -> bool:
 
 
 def _key(parts: Parts | None, inputs: Inputs) -> str:
-    """Hash of all that a film follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
+    """Return the hash of all that a film follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
     masses = parts and {body: (solids.mass, main_material(solids)) for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
     return key_of(*sources, masses, versions(*PACKAGES), inputs.digest())

@@ -88,7 +88,7 @@ def is_current(name: str) -> bool:
 
 
 def _all_names() -> list[str]:
-    """Mechanisms, each followed by its variants."""
+    """Return mechanisms, each followed by its variants."""
     names = []
     for name in mechanism_names():
         names += [name, *(f"{name}-{variant}" for variant in variants_in(mechanism_file(name)))]
@@ -109,7 +109,7 @@ def _entry(name: str) -> dict[str, object]:
 
 
 def _title(name: str) -> str:
-    """First line of mechanism.py's docstring, read without running the file."""
+    """Return the first line of mechanism.py's docstring, read without running the file."""
     try:
         docstring = ast.get_docstring(ast.parse(mechanism_file(name).read_bytes()))
     except SyntaxError as error:

@@ -28,7 +28,9 @@ FORM = "name=from:to:count or name=value,value, with ';' between names, as in cr
 
 
 def grid_of(name: str, words: str, p: Any) -> dict[str, list[Any]]:
-    """Values of fields of ``p`` (a Params) by name. Raises UserError for what is no grid, and for unknown fields."""
+    """Return values of fields of ``p`` (a Params) by name. Raises UserError for what is no grid, and for unknown
+    fields.
+    """
     fields = [field.name for field in dataclasses.fields(p) if field.init]
     grid: dict[str, list[Any]] = {}
     for part in filter(None, (part.strip() for part in words.split(";"))):
@@ -48,7 +50,7 @@ def grid_of(name: str, words: str, p: Any) -> dict[str, list[Any]]:
 
 
 def _values(name: str, field: str, said: str, usual: Any, others: int) -> list[Any]:
-    """Values of one field; ``others``: how many points those before it make."""
+    """Return values of one field; ``others``: how many points those before it make."""
     if ":" in said:
         first, last, count = _range(name, field, said)
         refuse_too_many(name, others * count)
@@ -79,7 +81,7 @@ def _range(name: str, field: str, said: str) -> tuple[float, float, int]:
 
 
 def _value(name: str, field: str, word: str, usual: Any) -> Any:
-    """A value of the kind that the field has."""
+    """Return a value of the kind that the field has."""
     if isinstance(usual, bool):
         if word.lower() in ("true", "false"):
             return word.lower() == "true"
@@ -144,7 +146,7 @@ def run(name: str, words: str) -> None:
 
 
 def _client() -> AbstractContextManager[Any]:
-    """The scheduler that CLUSTER names, else this machine."""
+    """Return the scheduler that CLUSTER names, else this machine."""
     if not os.environ.get("CLUSTER"):
         return nullcontext()
     from shared.cluster.address import connected
@@ -191,7 +193,7 @@ def peaks(solution: Any) -> dict[str, float]:
 
 
 def _summary(name: str, table: pandas.DataFrame, varied: list[str]) -> list[str]:
-    """Where each measure is least and largest, and why points failed."""
+    """Return where each measure is least and largest, and why points failed."""
     rows: list[dict[str, Any]] = table.to_dict("records")
     good = [row for row in rows if not isinstance(row["reason"], str)]
     failed = [row for row in rows if isinstance(row["reason"], str)]

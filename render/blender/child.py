@@ -38,7 +38,7 @@ class Silent(Exception):
 
 
 def how_it_ended(code: int, doing: str, said: str) -> str:
-    """The reason for an exit code other than 0, which is the negative number of a signal after a kill or crash.
+    """Return the reason for an exit code other than 0, which is the negative number of a signal after a kill or crash.
 
     What Blender ``said`` last explains an error that it noticed itself, never a kill from outside.
     """
@@ -125,12 +125,12 @@ class Memory:
 
 
 def limit(settled: float) -> float:
-    """Bytes that a process may take which took ``settled`` bytes after its first pictures."""
+    """Return bytes that a process may take which took ``settled`` bytes after its first pictures."""
     return GROWTH * settled + SLACK
 
 
 def resident(process: int) -> float:
-    """Bytes of memory that a process takes; 0 where that cannot be asked."""
+    """Return bytes of memory that a process takes; 0 where that cannot be asked."""
     import psutil
 
     with suppress(psutil.Error):
@@ -207,7 +207,7 @@ class Child:
             job = msgspec.structs.replace(job, pictures=list(left.values()))
 
     def attempt(self, job: Job) -> Iterator[Answer]:
-        """The answers of one process; raises Silent, Grown or UserError if it does not make all of the job."""
+        """Yield the answers of one process; raises Silent, Grown or UserError if it does not make all of the job."""
         paper = self.scratch / "job.json"
         write_bytes(paper, msgspec.json.encode(job))
         self.patience.pictures, self.doing = 0, "starts"
@@ -237,7 +237,7 @@ class Child:
             self._end(self.process, chat)
 
     def _lines(self, process: subprocess.Popen[bytes]) -> Iterator[bytes]:
-        """Whole lines of its answers; raises Silent when none comes for too long.
+        """Yield the whole lines of its answers; raises Silent when none comes for too long.
 
         Silence is counted in ticks, so that a stop of this process itself (Ctrl-Z, a laptop that sleeps) is none.
         """
@@ -288,7 +288,7 @@ class Child:
 
 
 def _environment(home: Path, scratch: Path) -> dict[str, str]:
-    """Everything Blender writes for itself goes below ``out``, nothing into the home folder."""
+    """Return the environment in which Blender writes below ``out`` alone, nothing into the home folder."""
     return dict(
         os.environ,
         BLENDER_USER_RESOURCES=str(home / "user"),

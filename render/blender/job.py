@@ -102,7 +102,7 @@ class Patience:
         self.pictures += 1
 
     def limit(self, doing: str) -> float:
-        """Seconds of silence that are too long for what Blender does now."""
+        """Return seconds of silence that are too long for what Blender does now."""
         if "kernels" in doing:
             floor = KERNELS
         else:
@@ -110,7 +110,7 @@ class Patience:
         return max(self.scaled(floor), min(TIMES * self.longest, LONGEST))
 
     def scaled(self, seconds: float) -> float:
-        """Seconds in the proportion that the environment asks for."""
+        """Return seconds in the proportion that the environment asks for."""
         return seconds * _scale()
 
 

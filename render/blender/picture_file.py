@@ -24,7 +24,7 @@ def make_plain(path: Path) -> None:
 
 
 def without_notes(content: bytes) -> bytes:
-    """The chunks that decide what is seen, bytes as they are; the same content if it is no whole PNG."""
+    """Return the chunks that decide what is seen, bytes as they are; the same content if it is no whole PNG."""
     kept, place = [SIGNATURE], len(SIGNATURE)
     if not content.startswith(SIGNATURE):
         return content
@@ -76,7 +76,7 @@ def fault(path: Path, width: int, height: int) -> str | None:
 
 
 def name_of(key: str, content: bytes) -> str:
-    """The file name of a picture: what it shows, and a hash of its bytes together with that."""
+    """Return the file name of a picture: what it shows, and a hash of its bytes together with that."""
     return f"{key}-{hashlib.sha256(key.encode() + content).hexdigest()[:32]}.png"
 
 
@@ -105,7 +105,9 @@ def fault_of(content: bytes, width: int, height: int) -> str | None:
 
 
 def fault_of_chunks(content: bytes, width: int, height: int) -> str | None:
-    """The same without decoding the rows: size, header, the checksum of every chunk, and nothing beside the picture."""
+    """Return the same without decoding the rows: size, header, the checksum of every chunk, and nothing beside the
+    picture.
+    """
     if not content.startswith(SIGNATURE):
         return "is no PNG"
     if len(content) > most_bytes(width, height):
@@ -128,13 +130,15 @@ def fault_of_chunks(content: bytes, width: int, height: int) -> str | None:
 
 
 def most_bytes(width: int, height: int) -> int:
-    """Bytes that a picture of this size has at most: three a pixel without any compression, and what is around them."""
+    """Return bytes that a picture of this size has at most: three a pixel without any compression, and what is around
+    them.
+    """
     rows = (3 * width + 1) * height
     return rows + rows // 100 + 65_536
 
 
 def _chunks(content: bytes) -> Iterator[tuple[bytes, bytes, bytes]]:
-    """Kind, data and all bytes of each chunk that is whole."""
+    """Yield the kind, data and all bytes of each chunk that is whole."""
     place = len(SIGNATURE)
     while place + 12 <= len(content):
         end = place + 12 + int.from_bytes(content[place : place + 4])

@@ -35,7 +35,7 @@ class Arrows:
         """Those that are seen at some time."""
 
     def specs(self) -> list[ArrowSpec]:
-        """Their looks, in the order of ``vectors``."""
+        """Return their looks, in the order of ``vectors``."""
         return [
             ArrowSpec(
                 name=f"{vector.quantity} {vector.name}",
@@ -49,7 +49,9 @@ class Arrows:
         ]
 
     def legend(self, width: float) -> list[LegendRow]:
-        """A row for each quantity, and for weights, in a picture that is ``width`` (m) wide where the machine is."""
+        """Return a row for each quantity, and for weights, in a picture that is ``width`` (m) wide where the machine
+        is.
+        """
         rows = []
         for quantity, unit in dict.fromkeys((vector.row, vector.unit) for vector in self.vectors):
             scale = self.scales[unit]
@@ -73,7 +75,7 @@ class Arrows:
         return rows
 
     def at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, Point]]:
-        """Tail and tip of each at time ``t``, ``heights`` (m) over the base; equal where it is left out."""
+        """Return the tail and tip of each at time ``t``, ``heights`` (m) over the base; equal where it is left out."""
         out = []
         for vector, z in zip(self.vectors, heights, strict=True):
             x, y, u, v = (float(k) for k in at_time(self.time, np.hstack([vector.place, vector.value]), t))
@@ -85,7 +87,9 @@ class Arrows:
         return out
 
     def tips(self, heights: Sequence[float], way: Array | None = None) -> list[Array]:
-        """Where each tip is (n, 3) over the whole motion (m), wherever there is one, as seen from a ``way`` (T, 3)."""
+        """Return where each tip is (n, 3) over the whole motion (m), wherever there is one, as seen from a ``way`` (T,
+        3).
+        """
         out = []
         for vector, z in zip(self.vectors, heights, strict=True):
             length = self._lengths(vector)
@@ -126,7 +130,7 @@ class Arcs:
         """Those that are seen at some time."""
 
     def specs(self) -> list[ArcSpec]:
-        """Their looks, in the order of ``torques``; those about one point lie around each other."""
+        """Return their looks, in the order of ``torques``; those about one point lie around each other."""
         return [
             ArcSpec(
                 name=f"{torque.quantity} {torque.name}",
@@ -140,7 +144,7 @@ class Arcs:
         ]
 
     def legend(self) -> list[LegendRow]:
-        """A row for each quantity, with an arc that reaches as far as that torque's does in the picture."""
+        """Return a row for each quantity, with an arc that reaches as far as that torque's does in the picture."""
         scale = self.scale
         if scale is None:
             return []
@@ -155,7 +159,9 @@ class Arcs:
         ]
 
     def at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, float]]:
-        """Centre and sweep (rad, positive counter-clockwise) of each at time ``t``, ``heights`` (m) over the base."""
+        """Return the centre and sweep (rad, positive counter-clockwise) of each at time ``t``, ``heights`` (m) over the
+        base.
+        """
         out = []
         for torque, z in zip(self.torques, heights, strict=True):
             x, y, value = (float(k) for k in at_time(self.time, np.column_stack([torque.place, torque.value]), t))
@@ -164,7 +170,7 @@ class Arcs:
         return out
 
     def rims(self, heights: Sequence[float], way: Array | None = None) -> list[Array]:
-        """Points (8 T, 3) around each over the whole motion (m), as seen from a ``way`` (T, 3)."""
+        """Return points (8 T, 3) around each over the whole motion (m), as seen from a ``way`` (T, 3)."""
         turn = math.tau * np.arange(8) / 8
         out = []
         for k, (torque, z) in enumerate(zip(self.torques, heights, strict=True)):
@@ -175,7 +181,7 @@ class Arcs:
         return out
 
     def _radius(self, k: int) -> float:
-        """Radius of arc number ``k`` (m): wider than those before it about the same point."""
+        """Return the radius of arc number ``k`` (m): wider than those before it about the same point."""
         mine = self.torques[k].place
         inside = sum(bool(np.abs(torque.place - mine).max() < RADIUS * self.size / 4) for torque in self.torques[:k])
         return (RADIUS + APART * inside) * self.size
@@ -184,7 +190,7 @@ class Arcs:
         return self._sweep(torque.value)
 
     def _sweep(self, values: Array) -> Array:
-        """(T,) rad of torques (T,) in N m."""
+        """Return (T,) rad of torques (T,) in N m."""
         if self.scale is None:
             return np.zeros(len(values))
         return FULL_TURN * np.clip(values / self.scale.largest, -LONGEST, LONGEST)
@@ -197,7 +203,7 @@ FIGURES = 3
 
 
 def title(motion: Motion, shot: Shot) -> str:
-    """The shot's title, or the mechanism's name in words; empty where none is asked for."""
+    """Return the shot's title, or the mechanism's name in words; empty where none is asked for."""
     if shot.title is None:
         return ""
     if shot.title.text is not None:
@@ -207,7 +213,9 @@ def title(motion: Motion, shot: Shot) -> str:
 
 
 def rate(clock: Clock, shot: Shot) -> str:
-    """How fast the film goes: with a title, and always where a motion that does not repeat is not in real time."""
+    """Return how fast the film goes: with a title, and always where a motion that does not repeat is not in real
+    time.
+    """
     real = abs(clock.rate - 1) < 0.02
     if real:
         return "real time" if shot.title is not None else ""
@@ -218,7 +226,7 @@ def rate(clock: Clock, shot: Shot) -> str:
 
 
 def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
-    """The number that lives, as a function of time; it stands still."""
+    """Return the number that lives, as a function of time; it stands still."""
     name = shot.title.number if shot.title is not None else ""
     if name is None:
         name = _told(motion)
@@ -242,7 +250,7 @@ def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
 
 
 def _told(motion: Motion) -> str:
-    """The first of the drivers that give something; of those that act in their place; of the traced points."""
+    """Return the first of the drivers that give something; of those that act in their place; of the traced points."""
     drivers = [name for name, driver in motion.drivers.items() if any(driver.effort)]
     acting = [
         name

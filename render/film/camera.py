@@ -27,8 +27,8 @@ and from farther aside what stands is narrower."""
 
 
 def angles(shot: Camera, mount: Mount, aspect: float = ASPECT) -> tuple[float, float]:
-    """Azimuth and elevation (rad) of the camera; what the shot does not say follows from how the machine stands, and
-    from the ``aspect`` of the picture.
+    """Return the azimuth and elevation (rad) of the camera; what the shot does not say follows from how the machine
+    stands, and from the ``aspect`` of the picture.
     """
     lies = mount.kind == "desk"
     part = min(max((ASPECT - aspect) / (ASPECT - TALL), 0.0), 1.0)
@@ -81,8 +81,8 @@ class FilmCamera:
         return self._posed(azimuth, at)
 
     def looks(self) -> list[CameraPose]:
-        """Some of its poses that say where things are in the picture, of what is followed as it stands at the start of
-        its way.
+        """Return some of its poses that say where things are in the picture, of what is followed as it stands at the
+        start of its way.
         """
         if not self.shot.orbit:
             return [self._still]
@@ -144,6 +144,6 @@ class FilmCamera:
 
 
 def point(vector: Array) -> Point:
-    """Three floats of a vector (3,)."""
+    """Return three floats of a vector (3,)."""
     x, y, z = (float(value) for value in vector)
     return x, y, z

@@ -50,7 +50,7 @@ class TimeMap:
 
     @classmethod
     def through(cls, film: Sequence[float], model: Sequence[float], closes: bool) -> TimeMap:
-        """The map with straight pieces between moments ``model`` (s) at film seconds ``film``, both (n,).
+        """Return the map with straight pieces between moments ``model`` (s) at film seconds ``film``, both (n,).
 
         Two moments at one film second are a cut.
         """
@@ -70,12 +70,12 @@ class TimeMap:
         return cuts + [b.film[0] for a, b in rows if abs(b.model[0] - a.model[1]) > 1e-9 * max(1.0, abs(a.model[1]))]
 
     def held(self, seconds: float) -> TimeMap:
-        """The same showing, whose last moment is held until it is so many film seconds long."""
+        """Return the same showing, whose last moment is held until it is so many film seconds long."""
         end, moment = self.seconds, self.pieces[-1].model[1]
         return TimeMap((*self.pieces, TimePiece((end, seconds), (moment, moment))), False) if seconds > end else self
 
     def at(self, film: Array) -> tuple[Array, Array]:
-        """Moments of the motion (s) and rates, (n,) each, at seconds ``film`` (n,) of a showing."""
+        """Return moments of the motion (s) and rates, (n,) each, at seconds ``film`` (n,) of a showing."""
         starts = np.array([piece.film[0] for piece in self.pieces])
         k = np.clip(np.searchsorted(starts, film, side="right") - 1, 0, len(starts) - 1)
         first = np.array([piece.model[0] for piece in self.pieces])
@@ -83,7 +83,7 @@ class TimeMap:
         return first[k] + rate * (film - starts[k]), rate
 
     def when(self, model: Array) -> tuple[Array, NDArray[np.intp]]:
-        """Film seconds at which moments ``model`` (n,) are shown, and the index of each moment.
+        """Return the film seconds at which moments ``model`` (n,) are shown, and the index of each moment.
 
         A moment that a film shows twice is there twice, and one that it leaves out is not there. The end of a motion
         is its start where it closes.
@@ -151,7 +151,7 @@ class Clock:
         return TimeMap.through(film, model, closes=self.repeats)
 
     def moment(self, frame: float) -> Moment:
-        """The moment that a frame shows; those beyond one showing, or before frame 0, go on with the loop.
+        """Return the moment that a frame shows; those beyond one showing, or before frame 0, go on with the loop.
 
         The same place in a showing gives the same float in every one, so later ones find their pictures made.
         """
@@ -161,22 +161,24 @@ class Clock:
         return Moment(self.end if step >= self.moving else self.start + (self.end - self.start) * step / self.moving, 0)
 
     def around(self, frame: int) -> tuple[int, int, int]:
-        """The frame between those that a shutter sees before and after: none of another showing, if it begins anew."""
+        """Return the frame between those that a shutter sees before and after: none of another showing, if it begins
+        anew.
+        """
         if self.repeats:
             return frame - 1, frame, frame + 1
         first = frame - frame % self.frames
         return max(first, frame - 1), frame, min(first + self.frames - 1, frame + 1)
 
     def frame_at(self, part: float) -> int:
-        """The frame that shows the motion at a part of it, 0 .. 1."""
+        """Return the frame that shows the motion at a part of it, 0 .. 1."""
         return min(round(part * self.moving), self.frames - 1) if not self.repeats else round(part * self.moving)
 
     def phase(self, frame: float) -> float:
-        """Part of the showing that has passed, 0 .. 1."""
+        """Return the part of the showing that has passed, 0 .. 1."""
         return (frame % self.frames) / self.frames
 
     def trail_times(self, frame: float, tail: float, count: int) -> Array:
-        """(count,) times of the motion from now back to the end of a trail ``tail`` turns long.
+        """Return (count,) times of the motion from now back to the end of a trail ``tail`` turns long.
 
         The trail of a motion that does not repeat grows from its start.
         """
@@ -189,7 +191,7 @@ class Clock:
         return self.start + span * (phase - np.floor(phase))
 
     def said(self) -> str:
-        """How fast it plays and how often it is shown, for people."""
+        """Return how fast it plays and how often it is shown, for people."""
         seconds = self.moving / self.shot.fps
         if self.repeats:
             turns = "turn" if self.turns == 1 else f"{self.turns} turns"
@@ -199,7 +201,7 @@ class Clock:
 
 
 def turns_of(motion: Motion) -> int:
-    """Whole turns of the slowest driver that turns in one period; 1 where none does."""
+    """Return the whole turns of the slowest driver that turns in one period; 1 where none does."""
     turns = [
         round(abs(driver.value[-1] - driver.value[0]) / math.tau)
         for driver in motion.drivers.values()
@@ -209,7 +211,7 @@ def turns_of(motion: Motion) -> int:
 
 
 def natural_rate(span: float) -> float:
-    """Seconds of the motion in a second of film: 1, or the round factor nearest to it with a watchable film."""
+    """Return seconds of the motion in a second of film: 1, or the round factor nearest to it with a watchable film."""
     powers = np.arange(-12, 13)
     rates = sorted((step * 10.0**k for k in powers for step in STEPS), key=lambda rate: abs(math.log(rate)))
     return next((rate for rate in rates if SHORTEST <= span / rate <= LONGEST), span / TURN)

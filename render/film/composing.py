@@ -42,11 +42,11 @@ class View:
     """Part of the width that stays empty at the right."""
 
     def stand(self, points: Array) -> tuple[Array, float]:
-        """The closest place (3,) of a camera that holds points (n, 3), and its distance (m) to their middle."""
+        """Return the closest place (3,) of a camera that holds points (n, 3), and its distance (m) to their middle."""
         return fit(points, self.azimuth, self.elevation, self.lens, self.margin, self.empty, self.aspect, self.aside)
 
     def filled(self, points: Array, position: Array) -> tuple[float, float]:
-        """Parts of the picture's width and height that points (n, 3) take, seen from ``position`` (3,)."""
+        """Return parts of the picture's width and height that points (n, 3) take, seen from ``position`` (3,)."""
         u, v, w = ((points - position) @ axes(self.azimuth, self.elevation).T).T
         half = half_field(self.lens, self.aspect)
         across, up = (float(np.ptp(part / w)) / (2 * side) for part, side in zip((u, v), half, strict=True))
@@ -54,9 +54,9 @@ class View:
 
 
 def held(view: View, machine: Array, around: Array, drawn: Array, few: Array | None = None) -> Array:
-    """Points (n, 3) that a picture holds: all of the ``machine`` (m, 3), arrows that are ``drawn`` (k, 3) about it, and
-    what stands ``around`` (l, 3) as far as the machine then fills :data:`FILLED`; beyond that, it may leave the frame.
-    ``few`` are the :func:`outermost` of the machine, where they are known.
+    """Return points (n, 3) that a picture holds: all of the ``machine`` (m, 3), arrows that are ``drawn`` (k, 3) about
+    it, and what stands ``around`` (l, 3) as far as the machine then fills :data:`FILLED`; beyond that, it may leave the
+    frame. ``few`` are the :func:`outermost` of the machine, where they are known.
     """
     middle = (machine.min(axis=0) + machine.max(axis=0)) / 2
     drawn = middle + DRAWN * (drawn - middle)
@@ -125,13 +125,13 @@ Box = tuple[float, float, float, float]
 
 
 def sides(aspect: float) -> tuple[float, float]:
-    """Width and height of a picture, in its shorter side."""
+    """Return the width and height of a picture, in its shorter side."""
     return max(1.0, aspect), max(1.0, 1 / aspect)
 
 
 def lines(title: str, numbers: Sequence[str], rate: str, aspect: float) -> list[LineSpec]:
-    """The lines at the upper left: the title, the number that lives (with no words, and as large as its widest value in
-    ``numbers`` allows), the rate. None leaves the picture.
+    """Return the lines at the upper left: the title, the number that lives (with no words, and as large as its widest
+    value in ``numbers`` allows), the rate. None leaves the picture.
     """
     wide = sides(aspect)[0] - 2 * EDGE
     widest = max(numbers, key=width_of, default="")
@@ -152,14 +152,14 @@ def lines(title: str, numbers: Sequence[str], rate: str, aspect: float) -> list[
 
 
 def box_of(lines: Sequence[LineSpec]) -> Box:
-    """The place that the lines at the upper left take, from the picture's corner on; empty without lines."""
+    """Return the place that the lines at the upper left take, from the picture's corner on; empty without lines."""
     if not lines:
         return 0.0, 0.0, 0.0, 0.0
     return 0.0, 0.0, max(line.x + line.width for line in lines), max(line.y + LINE * line.size for line in lines)
 
 
 def cards(rows: Sequence[LegendRow], over: Box, aspect: float) -> dict[str, Card]:
-    """The places in which a legend may be, by their corners: in the picture, and clear of the words at ``over``.
+    """Return the places in which a legend may be, by their corners: in the picture, and clear of the words at ``over``.
 
     Its letters shrink where there is no such place.
     """
@@ -199,23 +199,25 @@ def _is_free(card: Card, over: Box, aspect: float) -> bool:
 
 
 def in_picture(box: Box, aspect: float) -> Box:
-    """A box in parts of the picture's width and height."""
+    """Return a box in parts of the picture's width and height."""
     wide, high = sides(aspect)
     return box[0] / wide, box[1] / high, box[2] / wide, box[3] / high
 
 
 def around(card: Card) -> Box:
-    """The place that a legend keeps free: its card, out to the picture's edges."""
+    """Return the place that a legend keeps free: its card, out to the picture's edges."""
     return card.left - EDGE, card.top - EDGE, card.left + card.wide + EDGE, card.top + card.high + EDGE
 
 
 def _fitting(words: str, size: float, wide: float) -> float:
-    """The size of letters with which a line is not wider than that."""
+    """Return the size of letters with which a line is not wider than that."""
     return min(size, wide / width_of(words))
 
 
 def _broken(words: str, size: float, wide: float) -> tuple[float, list[str]]:
-    """Size and lines of a title: in one line, if need be smaller; else in two that are as alike as they can be."""
+    """Return the size and lines of a title: in one line, if need be smaller; else in two that are as alike as they can
+    be.
+    """
     alone = min(size, wide / width_of(words, True))
     spaces = [k for k, letter in enumerate(words) if letter == " "]
     if alone >= SMALLER * size or not spaces:
@@ -232,7 +234,9 @@ PARTS = 0.0, 0.04, 0.08, 0.12, 0.16, 0.2, 0.24
 
 
 def count_held(camera: CameraPose, points: Array, place: Box, aspect: float = ASPECT) -> int:
-    """How many of ``points`` (n, 3) are in a place of the picture: left, upper, right and lower edge, in its parts."""
+    """Return how many of ``points`` (n, 3) are in a place of the picture: left, upper, right and lower edge, in its
+    parts.
+    """
     left, upper, right, lower = place
     size = np.array([aspect, 1.0])
     x, y = (project(camera, points, *size) / size).T
@@ -247,7 +251,9 @@ def is_free(poses: Sequence[CameraPose], moving: Array, place: Box, aspect: floa
 def emptiest(
     poses: Sequence[CameraPose], moving: Array, standing: Array, places: Mapping[str, Box], aspect: float = ASPECT
 ) -> str:
-    """The corner of the picture that holds the fewest points of what moves (n, 3), then of what stands (m, 3)."""
+    """Return the corner of the picture that holds the fewest points of what moves (n, 3), then of what stands (m,
+    3).
+    """
 
     def crowd(corner: str) -> tuple[int, ...]:
         here = places[corner]
@@ -289,8 +295,8 @@ def travels(places: Array, repeats: bool) -> bool:
 
 
 def way(places: Array, frames: int, fps: float, repeats: bool) -> Array:
-    """The way (frames, 3) of the camera's target past a machine with points (T, n, 3) in the first T frames; it stands
-    at its last place in the others.
+    """Return the way (frames, 3) of the camera's target past a machine with points (T, n, 3) in the first T frames; it
+    stands at its last place in the others.
     """
     middles = (places.min(axis=1) + places.max(axis=1)) / 2
     middles = np.concatenate([middles, np.repeat(middles[-1:], max(0, frames - len(middles)), axis=0)])[:frames]
@@ -298,7 +304,7 @@ def way(places: Array, frames: int, fps: float, repeats: bool) -> Array:
 
 
 def damped(values: Array, width: float, repeats: bool) -> Array:
-    """Series (T, k) averaged with a bell of that standard deviation, in steps; held at its ends, or closed."""
+    """Return series (T, k) averaged with a bell of that standard deviation, in steps; held at its ends, or closed."""
     reach = max(1, int(np.ceil(3.5 * width)))
     weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / width) ** 2)
     weights /= weights.sum()

@@ -115,11 +115,13 @@ class Film:
         )
 
     def camera(self, frame: int) -> CameraPose:
-        """Where the camera is at a frame."""
+        """Return where the camera is at a frame."""
         return self._camera.pose(frame)
 
     def way(self, frame: float) -> Array:
-        """How far (3,) what is followed has come at a frame, in the world (m); nothing where the camera stands."""
+        """Return how far (3,) what is followed has come at a frame, in the world (m); nothing where the camera
+        stands.
+        """
         if self._way is None:
             return np.zeros(3)
         at = np.arange(len(self._way))

@@ -62,7 +62,7 @@ class SweptSpace:
         return np.concatenate(bodies) if bodies and len(bodies) < len(self._bodies) else np.zeros((0, 3))
 
     def places(self, times: Array) -> Array:
-        """The outermost points (T, n, 3) of all that moves at ``times`` (T,); none if nothing moves."""
+        """Return the outermost points (T, n, 3) of all that moves at ``times`` (T,); none if nothing moves."""
         corners: list[Array] = [np.zeros((len(times), 0, 3))]
         for body, points in self._farthest.items():
             if body in self._poses.motion.bodies:
@@ -70,7 +70,7 @@ class SweptSpace:
         return np.concatenate(corners, axis=1)
 
     def outlines(self, body: str) -> list[Array]:
-        """The upright prism (n, 3) around each piece of a body, in its frame (m)."""
+        """Return the upright prism (n, 3) around each piece of a body, in its frame (m)."""
         return self._outlines.get(body, [])
 
     @cached_property
@@ -94,11 +94,11 @@ class SweptSpace:
         return float(np.linalg.norm(np.ptp(self.all, axis=0)))
 
     def tops_at(self, body: str, x: float, y: float, at: Moment) -> list[float]:
-        """Heights of the body's pieces whose box, in the body's frame, holds the point (x, y) at that moment."""
+        """Return heights of the body's pieces whose box, in the body's frame, holds the point (x, y) at that moment."""
         return self.tops_under(body, np.array([[x, y]]), at)[0]
 
     def tops_under(self, body: str, points: Array, at: Moment) -> list[list[float]]:
-        """The same of each of points (n, 2)."""
+        """Return the same of each of points (n, 2)."""
         if body not in self._boxes:
             return [[] for _ in points]
         low, high, top = self._boxes[body]
@@ -172,13 +172,13 @@ LIES = 1.25
 
 
 def tops(parts: Parts, body: str) -> list[float]:
-    """Heights of all pieces of a body."""
+    """Return heights of all pieces of a body."""
     solids = parts.bodies.get(body)
     return [piece.z_range[1] for piece in solids.pieces.values()] if solids else []
 
 
 def trail_heights(motion: Motion, parts: Parts, trails: Iterable[Trail]) -> dict[str, float]:
-    """Heights of each trail, by its point: as the shot says, else just over the body that carries the point."""
+    """Return heights of each trail, by its point: as the shot says, else just over the body that carries the point."""
     moving = [top for body in motion.bodies for top in tops(parts, body)]
     out = {}
     for trail in trails:
@@ -209,7 +209,9 @@ class Heights:
         return max(heights, default=float(self.space.moving[:, 2].max())) + OVER
 
     def spring(self, shape: Shape, radius: float) -> tuple[float, tuple[float, float]]:
-        """Height of something of that radius over what is at its two ends at the start, and the tops there."""
+        """Return the height of something of that radius over what is at its two ends at the start, and the tops
+        there.
+        """
         at = self.clock.moment(0)
         places = [placed(self.poses.body(b, at), marker) for b, marker in zip(shape.bodies, shape.markers, strict=True)]
         ends = []
@@ -220,7 +222,7 @@ class Heights:
         return max(ends) + LIES * radius, (ends[0], ends[1])
 
     def site(self, bodies: tuple[str, str], places: Array, radius: float) -> Site | None:
-        """Room for a spiral of that radius (m) over the pin of two bodies, whose places (T, 2) are given.
+        """Return the room for a spiral of that radius (m) over the pin of two bodies, whose places (T, 2) are given.
 
         The stud is on the body that is higher, where it is solid so far from the pin; None where neither is.
         """
@@ -239,7 +241,7 @@ class Heights:
         return Site(outer, direction, base, hub, max(hub, self._passing(places, radius)))
 
     def _passing(self, places: Array, radius: float) -> float:
-        """The highest piece that is ever over a disc that is at these places (T, 2) of the motion."""
+        """Return the highest piece that is ever over a disc that is at these places (T, 2) of the motion."""
         time = self.poses.time
         turns = math.tau * np.arange(8) / 8
         disc = radius * np.concatenate([[(0.0, 0.0)], np.stack([np.cos(turns), np.sin(turns)], axis=1)])
@@ -263,7 +265,9 @@ class Heights:
         return x, y, max(heights, default=float(self.space.moving[:, 2].max())) + LABEL * self.space.size
 
     def words(self, label: Label, at: Moment) -> Point:
-        """Place of a label of the shot: also over all that ever passes under its words, which nothing cuts through."""
+        """Return the place of a label of the shot: also over all that ever passes under its words, which nothing cuts
+        through.
+        """
         if label not in self._passed:
             path = self.poses.motion.points.get(label.at) or self.poses.motion.joints[label.at]
             half = LETTER / 2 * len(label.text) * label.size * self.space.size

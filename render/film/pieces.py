@@ -29,8 +29,8 @@ GREY, DARKEST = 0.9, 0.14
 
 
 def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = None) -> list[PieceSpec]:
-    """All solids, whose STL files are in ``folder``, as far as the shot's section leaves them; ``motion`` says where
-    bodies stand that a section names.
+    """Return all solids, whose STL files are in ``folder``, as far as the shot's section leaves them; ``motion`` says
+    where bodies stand that a section names.
 
     Raises UserError for a material that is not known, and for a section that cuts nothing.
     """
@@ -87,13 +87,15 @@ def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> 
 
 
 def as_pane(surface: SurfaceSpec) -> SurfaceSpec:
-    """A pane of glass in a light tint of the surface's colour."""
+    """Return a pane of glass in a light tint of the surface's colour."""
     red, green, blue = (TINT * channel + (1 - TINT) for channel in surface.colour)
     return SurfaceSpec(colour=(red, green, blue), finish="glass", roughness=PANE)
 
 
 def neutral(surface: SurfaceSpec) -> SurfaceSpec:
-    """The surface as grey as it is light: beside arrows no body has a colour, signal colours belong to quantities."""
+    """Return the surface as grey as it is light: beside arrows no body has a colour, signal colours belong to
+    quantities.
+    """
     light = sum(part * channel for part, channel in zip((0.2126, 0.7152, 0.0722), surface.colour, strict=True))
     grey = GREY * max(light, DARKEST) if max(surface.colour) - min(surface.colour) > COLOURED else light
     red, green, blue = (KEPT * channel + (1 - KEPT) * grey for channel in surface.colour)
@@ -142,7 +144,7 @@ class Lift(NamedTuple):
 
 
 def exploded(parts: Parts, size: float) -> list[Lift]:
-    """All pieces in the order in which they are put together; ``size`` (m) is that of the machine.
+    """Return all pieces in the order in which they are put together; ``size`` (m) is that of the machine.
 
     What is lowest stays where it is. A machine of a single layer comes apart nowhere: all its distances are 0.
     """

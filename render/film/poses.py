@@ -16,7 +16,9 @@ Array = NDArray[np.float64]
 
 
 def moved(motion: Motion, body: str, marker: tuple[float, float, float]) -> tuple[Array, Array]:
-    """Where a marker (x, y, angle) of a body is (T, 2), and its angle (T,), at the times of data.json (m, rad)."""
+    """Return where a marker (x, y, angle) of a body is (T, 2), and its angle (T,), at the times of data.json (m,
+    rad).
+    """
     x, y, turn = marker
     count = len(motion.time)
     if body not in motion.bodies:
@@ -28,7 +30,7 @@ def moved(motion: Motion, body: str, marker: tuple[float, float, float]) -> tupl
 
 
 def local_place(body: BodyMotion, x: float, y: float) -> tuple[float, float]:
-    """A place of the world at the first time, in the body's frame (m)."""
+    """Return a place of the world at the first time, in the body's frame (m)."""
     dx, dy, c, s = x - body.x[0], y - body.y[0], math.cos(body.theta[0]), math.sin(body.theta[0])
     return c * dx + s * dy, c * dy - s * dx
 
@@ -55,7 +57,7 @@ class Quintic:
         self._time, self._starts = time, np.flatnonzero(np.diff(time) > 0)
 
     def at(self, t: Array | float) -> Quintic.Weights:
-        """Weights of times ``t`` (m,)."""
+        """Return weights of times ``t`` (m,)."""
         time, starts = self._time, self._starts
         t = np.clip(np.atleast_1d(np.asarray(t, dtype=float)), time[0], time[-1])
         i = starts[np.clip(np.searchsorted(time[starts], t, side="right") - 1, 0, len(starts) - 1)]
@@ -80,7 +82,7 @@ class Quintic:
         second: tuple[Array, Array, Array]
 
         def of(self, value: Array, rate: Array, acceleration: Array) -> Array:
-            """A series (n,) at these times (m,)."""
+            """Return a series (n,) at these times (m,)."""
             i, h, (a, b, c), (d, e, f) = self.i, self.h, self.first, self.second
             return (
                 value[i] * a
@@ -131,14 +133,14 @@ class Poses:
         return x, y, theta + math.tau * whole * at.turns
 
     def over(self, name: str, times: Array) -> Array:
-        """Poses (n, 3) of a body at times (n,) of the motion's first period."""
+        """Return poses (n, 3) of a body at times (n,) of the motion's first period."""
         if name not in self.motion.bodies:
             return np.zeros((len(times), 3))
         weights = self._quintic.at(times)
         return np.stack([weights.of(*self._series[name, k]) for k in ("x", "y", "theta")], axis=1)
 
     def point(self, name: str, times: Array) -> Array:
-        """Positions (n, 2) of a traced point at mechanism times (n,)."""
+        """Return positions (n, 2) of a traced point at mechanism times (n,)."""
         weights = self._quintic.at(times)
         return np.stack([weights.of(*self._points[name, k]) for k in ("x", "y")], axis=1)
 

@@ -67,7 +67,7 @@ def _always(normal: Array) -> Flank:
 
 
 def _leaving(normal: Array, contact: ContactMotion) -> Flank:
-    """A contact that opens: before the first time it is closed the roller does not turn, later it is free."""
+    """Return a contact that opens: before the first time it is closed the roller does not turn, later it is free."""
     closed = np.array([state != "open" for state in contact.state])
     return Flank(normal, closed, ~closed & (np.cumsum(closed) > 0))
 
@@ -84,7 +84,7 @@ def _pushed(across: Array, joint: JointMotion, sense: float, there: Mask | None 
 
 
 def _in_wheel(motion: Motion, joint: JointMotion, shape: Shape) -> Flank:
-    """The crank's pin, which pushes the wheel (the second body)."""
+    """Return the crank's pin, which pushes the wheel (the second body)."""
     (crank, wheel), (first, second) = shape.bodies, shape.markers
     place, turn = moved(motion, crank, first)
     arm, middle = np.stack([np.cos(turn), np.sin(turn)], axis=1), moved(motion, wheel, second)[0]
@@ -95,12 +95,12 @@ def _in_wheel(motion: Motion, joint: JointMotion, shape: Shape) -> Flank:
 
 
 def _across(angle: Array) -> Array:
-    """(T, 2) to the left of directions (rad)."""
+    """Return (T, 2) to the left of directions (rad)."""
     return np.stack([-np.sin(angle), np.cos(angle)], axis=1)
 
 
 def _nearest(motion: Motion, shape: Shape, centre: Array) -> tuple[Array, Array]:
-    """(T, 2) each: from the roller's centre to the nearest point of the outline, and along the outline there."""
+    """Return (T, 2) each: from the roller's centre to the nearest point of the outline, and along the outline there."""
     place, angle = moved(motion, shape.bodies[0], shape.markers[0])
     c, s = np.cos(angle), np.sin(angle)
     off = centre - place
@@ -164,7 +164,7 @@ class Rollers:
 
 
 def turned(motion: Motion, body: str, rolls: Rolling) -> Array:
-    """(T,) angle (rad) by which a roller has turned against its body since the start.
+    """Return (T,) angle (rad) by which a roller has turned against its body since the start.
 
     It stands still on its body where nothing tells what it touches; where it has left a cam it turns on as it did.
     """
@@ -191,7 +191,7 @@ def turned(motion: Motion, body: str, rolls: Rolling) -> Array:
 
 
 def _velocity(motion: Motion, body: str, places: Array) -> Array:
-    """(T, 2) of the material of a body at places (T, 2) of the world."""
+    """Return (T, 2) of the material of a body at places (T, 2) of the world."""
     if body not in motion.bodies:
         return np.zeros_like(places)
     frame = motion.bodies[body]

@@ -38,7 +38,7 @@ class Hatch(NamedTuple):
 
 
 def hatch_of(name: str, plane: Plane) -> Hatch:
-    """The hatch of a piece, ``body/piece``, in a plane along z or across it: slope and width follow its name."""
+    """Return the hatch of a piece, ``body/piece``, in a plane along z or across it: slope and width follow its name."""
     x, y, z, _ = plane
     kind = zlib.crc32(name.encode()) % 4
     lean = -1.0 if kind % 2 else 1.0
@@ -47,13 +47,13 @@ def hatch_of(name: str, plane: Plane) -> Hatch:
 
 
 def light_of(colour: Colour) -> Colour:
-    """The light tone of a cut face (linear RGB)."""
+    """Return the light tone of a cut face (linear RGB)."""
     red, green, blue = (0.5 * part + 0.32 for part in colour)
     return red, green, blue
 
 
 def dark_of(colour: Colour) -> Colour:
-    """The dark tone of a cut face (linear RGB)."""
+    """Return the dark tone of a cut face (linear RGB)."""
     red, green, blue = (0.3 * part + 0.015 for part in colour)
     return red, green, blue
 
@@ -106,7 +106,7 @@ def section_of(section: Section | float) -> Section:
 
 
 def cuts_of(parts: Parts, asked: Section | float, folder: Path, motion: Motion | None) -> dict[Key, Cut]:
-    """How each piece is cut that is cut at all; ``motion`` is asked where bodies stand and what they go through.
+    """Return how each piece is cut that is cut at all; ``motion`` is asked where bodies stand and what they go through.
 
     Raises UserError for a section that cuts no piece open.
     """
@@ -120,8 +120,8 @@ def cuts_of(parts: Parts, asked: Section | float, folder: Path, motion: Motion |
 
 
 def between_bodies(parts: Parts, asked: Section | float, folder: Path, motion: Motion | None) -> tuple[Plane, ...]:
-    """The planes of the world beyond all of which springs, ropes and belts are cut away: those of a section that cuts
-    everything that moves where it is, from the front or by fixed planes; none of one that names its pieces.
+    """Return the planes of the world beyond all of which springs, ropes and belts are cut away: those of a section that
+    cuts everything that moves where it is, from the front or by fixed planes; none of one that names its pieces.
     """
     section = section_of(asked)
     if section.only or not (section.fixed or section == Section(front=section.front)):
@@ -133,7 +133,7 @@ def between_bodies(parts: Parts, asked: Section | float, folder: Path, motion: M
 def _planned(
     parts: Parts, section: Section, folder: Path, motion: Motion | None
 ) -> tuple[dict[str, float], list[_Solid], list[tuple[Normal, float]]]:
-    """Sides with their parts, the solids that they may cut, and a plane for each."""
+    """Return sides with their parts, the solids that they may cut, and a plane for each."""
     depths = {side: getattr(section, side) for side in WAYS if getattr(section, side)}
     if not depths:
         return depths, [], []
@@ -145,13 +145,15 @@ def _planned(
 
 
 def seen_from(section: Section | float, azimuth: float) -> float:
-    """The azimuth (degrees) from which the cut faces are seen of a machine that is looked at from another one."""
+    """Return the azimuth (degrees) from which the cut faces are seen of a machine that is looked at from another
+    one.
+    """
     asked = section_of(section)
     return max(azimuth, ASIDE) if asked.right else min(azimuth, -ASIDE) if asked.left else azimuth
 
 
 def in_body(plane: Plane, pose: Pose) -> Plane:
-    """A plane of the world in the frame of a body that stands there."""
+    """Return a plane of the world in the frame of a body that stands there."""
     (x, y, z, place), (u, v, theta) = plane, pose
     c, s = math.cos(theta), math.sin(theta)
     return c * x + s * y, c * y - s * x, z, place - x * u - y * v
@@ -165,7 +167,7 @@ class _Solid:
         self._reach: dict[Normal, tuple[float, float]] = {}
 
     def reach(self, normal: Normal) -> tuple[float, float]:
-        """Least and largest place along a normal of the world (m)."""
+        """Return the least and largest place along a normal of the world (m)."""
         if normal == WAYS["front"]:
             return self._piece.z_range
         if normal not in self._reach:
@@ -189,7 +191,7 @@ class _Solid:
         return float((along + least).min()), float((along + most).max())
 
     def _extents(self, ways: Array) -> tuple[Array, Array]:
-        """Least and largest place (n,) of its outline along ways (n, 2) of its body (m)."""
+        """Return the least and largest place (n,) of its outline along ways (n, 2) of its body (m)."""
         rolls = self._piece.rolls
         if rolls is not None and len(self._poses) > 1:  # it turns against its body
             centre = np.array([rolls.x, rolls.y])
@@ -214,8 +216,8 @@ class _Solid:
 
 
 def _cut(parts: Parts, section: Section, depths: dict[str, float], moves: bool) -> Iterator[tuple[Key, Piece]]:
-    """The pieces that are cut: those that are named; else all from the front, or by planes through which bodies move,
-    and from other sides what stands still.
+    """Return the pieces that are cut: those that are named; else all from the front, or by planes through which bodies
+    move, and from other sides what stands still.
 
     Raises UserError where nothing stands still.
     """
@@ -235,14 +237,14 @@ def _cut(parts: Parts, section: Section, depths: dict[str, float], moves: bool) 
 
 
 def _plane(normal: Normal, part: float, solids: list[_Solid]) -> tuple[Normal, float]:
-    """A plane with this normal, beyond which the ``part`` of the reach of all pieces is."""
+    """Return a plane with this normal, beyond which the ``part`` of the reach of all pieces is."""
     reaches = [solid.reach(normal) for solid in solids]
     low, high = min(low for low, _ in reaches), max(high for _, high in reaches)
     return normal, high - part * (high - low)
 
 
 def _poses(motion: Motion | None, body: str, whole: bool) -> Array:
-    """Where a body stands (n, 3): at the start, or over the ``whole`` motion."""
+    """Return where a body stands (n, 3): at the start, or over the ``whole`` motion."""
     if motion is None or body not in motion.bodies:
         return np.zeros((1, 3))
     moved = motion.bodies[body]

@@ -69,13 +69,15 @@ class Moves(NamedTuple):
 
 
 def vectors(motion: Motion, show: Sequence[Quantity]) -> list[Vector]:
-    """All that ``show`` asks for, in the order of the file; vectors that are nothing all the time are among them."""
+    """Return all that ``show`` asks for, in the order of the file; vectors that are nothing all the time are among
+    them.
+    """
     made = {"velocities": _movements, "accelerations": _movements, "forces": _forces, "reactions": _reactions}
     return [vector for quantity in show for vector in made[quantity](motion, quantity)]
 
 
 def at_time(time: Array, values: Array, t: float) -> Array:
-    """Rows of ``values`` (T, n) at ``t``, linear between rows; of rows that share a time the later counts."""
+    """Return rows of ``values`` (T, n) at ``t``, linear between rows; of rows that share a time the later counts."""
     t = min(max(t, float(time[0])), float(time[-1]))
     starts = np.flatnonzero(np.diff(time) > 0)
     i = starts[max(int(np.searchsorted(time[starts], t, side="right")) - 1, 0)]
@@ -91,7 +93,7 @@ def _reactions(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
 
 
 def _forces(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
-    """Forces and drivers on each moving body that feels them, and the weights."""
+    """Yield forces and drivers on each moving body that feels them, and the weights."""
     for name, load in (*motion.forces.items(), *motion.drivers.items()):
         for action in load.actions:
             if action.body != "ground":
@@ -106,7 +108,9 @@ def _forces(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
 
 
 def _movements(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
-    """Arrows of traced points, of pins and other moving joints, and of centres of mass of bodies that have neither."""
+    """Yield arrows of traced points, of pins and other moving joints, and of centres of mass of bodies that have
+    neither.
+    """
     fast = quantity == "velocities"
     slack = SAME * _extent(motion)
     shown: list[Array] = []
@@ -125,7 +129,7 @@ def _movements(motion: Motion, quantity: Quantity) -> Iterator[Vector]:
 
 
 def _marked(motion: Motion) -> Iterator[tuple[str, str, Moves]]:
-    """Traced points, then the second markers of joints: name, body, and how each moves."""
+    """Yield traced points, then the second markers of joints: name, body, and how each moves."""
     for name, point in motion.points.items():
         yield name, point.body, Moves(_two(point.x, point.y), _two(point.vx, point.vy), _two(point.ax, point.ay))
     for name, joint in motion.joints.items():
@@ -137,7 +141,7 @@ def _marked(motion: Motion) -> Iterator[tuple[str, str, Moves]]:
 
 
 def at_body(body: BodyMotion, x: float, y: float) -> Moves:
-    """How the place (x, y) of a body's frame moves."""
+    """Return how the place (x, y) of a body's frame moves."""
     theta, omega, alpha = (np.asarray(s)[:, None] for s in (body.theta, body.omega, body.alpha))
     arm = np.hstack([np.cos(theta) * x - np.sin(theta) * y, np.sin(theta) * x + np.cos(theta) * y])
     across = np.stack([-arm[:, 1], arm[:, 0]], axis=1)
@@ -149,7 +153,7 @@ def at_body(body: BodyMotion, x: float, y: float) -> Moves:
 
 
 def _extent(motion: Motion) -> float:
-    """The larger side (m) of what joints, points and frames sweep."""
+    """Return the larger side (m) of what joints, points and frames sweep."""
     things = [*motion.bodies.values(), *motion.joints.values(), *motion.points.values()]
     return max((float(max(np.ptp(thing.x), np.ptp(thing.y))) for thing in things), default=0.0) or 1.0
 
@@ -184,7 +188,7 @@ class Torque(Acting):
 
 
 def torques(motion: Motion, show: Sequence[Quantity]) -> list[Torque]:
-    """All that ``show`` asks for, in the order of the file; those that are nothing all the time are among them.
+    """Return all that ``show`` asks for, in the order of the file; those that are nothing all the time are among them.
 
     A torque between two bodies is there once: as the second one feels it, or the first where the second is ground.
     """
@@ -193,20 +197,20 @@ def torques(motion: Motion, show: Sequence[Quantity]) -> list[Torque]:
 
 
 def rounding(vectors: Sequence[Vector], size: float) -> float:
-    """Torques up to this (N m) are rounding beside these forces in a mechanism that is ``size`` (m) large."""
+    """Return the rounding (N m) in torques beside these forces in a mechanism that is ``size`` (m) large."""
     forces = [float(vector.size.max()) for vector in vectors if vector.unit == "N"]
     return NOTHING * max(forces, default=0.0) * size
 
 
 def _reaction_torques(motion: Motion, quantity: Quantity) -> Iterator[Torque]:
-    """Torques of joints and contacts, about where they act."""
+    """Yield torques of joints and contacts, about where they act."""
     for name, joint in (*motion.joints.items(), *motion.contacts.items()):
         on = felt(joint)
         yield Torque(quantity, name, joint.bodies, on.place, on.torque)
 
 
 def _applied(motion: Motion, quantity: Quantity) -> Iterator[Torque]:
-    """Torques of forces and drivers."""
+    """Yield torques of forces and drivers."""
     for name, load in (*motion.forces.items(), *motion.drivers.items()):
         several = getattr(load, "several", False)
         moving = [action for action in load.actions if action.body != "ground"]
@@ -275,6 +279,6 @@ def scales_of(things: Sequence[Sized], least: Mapping[str, float] | None = None)
 
 
 def round_below(value: float) -> float:
-    """The largest of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ... that is not above ``value`` > 0."""
+    """Return the largest of ..., 0.1, 0.2, 0.5, 1, 2, 5, 10, ... that is not above ``value`` > 0."""
     power = 10.0 ** math.floor(math.log10(value) + 1e-9)
     return next(step for step in (5.0, 2.0, 1.0, 0.5) if step * power <= value * (1 + 1e-9)) * power

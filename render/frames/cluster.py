@@ -55,7 +55,7 @@ class _Kept:
         self.used = 0.0
 
     def for_film(self, files: Mapping[str, Path], common: str) -> KeptBlender:
-        """The process that has this film's scene."""
+        """Return the process that has this film's scene."""
         if self.blender is None or self.common != common:
             self.stop()
             job = msgspec.json.decode(files[common].read_bytes(), type=Job)
@@ -84,7 +84,7 @@ _workers: dict[str, _Kept] = {}
 
 
 def picture(files: Mapping[str, Path], common: str, order: tuple[int, str, str]) -> bytes:
-    """One frame: number of its state, key, and what messages call it; :class:`Made` as MessagePack.
+    """Return one frame: number of its state, key, and what messages call it; :class:`Made` as MessagePack.
 
     Raises UserError if Blender cannot make it.
     """
@@ -130,7 +130,7 @@ def workers(job: Job, store: FrameStore) -> Iterator[Iterator[Answer]]:
 
 
 def dealt(client: Client, job: Job) -> Deal:
-    """The pictures of the job as orders for workers."""
+    """Return the pictures of the job as orders for workers."""
     needed: dict[str, Callable[[], bytes]] = {piece.sha256: Path(piece.stl).read_bytes for piece in job.scene.pieces}
     pieces = [msgspec.structs.replace(piece, stl="") for piece in job.scene.pieces]
     scene = msgspec.structs.replace(job.scene, pieces=pieces)

@@ -51,7 +51,7 @@ def refuse_other_than(
 
 
 def _measured(listing: str) -> tuple[int, str, float]:
-    """Number of frames, their size and the film's seconds in a listing of ffmpeg's framecrc.
+    """Return the number of frames, their size and the film's seconds in a listing of ffmpeg's framecrc.
 
     A line for each frame: stream, dts, pts, duration (in units of the time base), size, checksum.
     """
@@ -154,7 +154,7 @@ class _Watch:
 
 
 def _room(film: Path) -> str:
-    """How much room the film's disk has, after a semicolon: ffmpeg seldom says that it was full."""
+    """Return how much room the film's disk has, after a semicolon: ffmpeg seldom says that it was full."""
     with suppress(OSError):
         free = shutil.disk_usage(film.parent).free
         return f"; {free / 1e6:.1f} MB are free at {film.parent}"
@@ -162,7 +162,7 @@ def _room(film: Path) -> str:
 
 
 def ffmpeg() -> str:
-    """The ffmpeg that imageio-ffmpeg brings, or the system's; raises UserError if there is none."""
+    """Return the ffmpeg that imageio-ffmpeg brings, or the system's; raises UserError if there is none."""
     try:
         import imageio_ffmpeg
 

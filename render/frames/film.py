@@ -60,12 +60,12 @@ def is_fresh(name: str, preset: Preset, show: str = "", sound: str = "") -> bool
 
 
 def wav_of(film: Path) -> Path:
-    """The WAV file beside a film."""
+    """Return the WAV file beside a film."""
     return film.with_suffix(".wav")
 
 
 def write_sound(out: Out, preset: Preset, show: str, target: Path) -> Path:
-    """The sound of a film as a WAV file, written whole."""
+    """Return the sound of a film as a WAV file, written whole."""
     from render.sound.sound import sound_of, wav
 
     write_bytes(target, wav(sound_of(read_film(out, show, preset.aspect))))
@@ -86,7 +86,7 @@ def sound_key() -> str:
 
 
 def _silent_film(out: Out, preset: Preset, show: str, store: FrameStore, index: FrameIndex) -> Path:
-    """The pictures encoded, in the folder of the frames; not again, where these have not changed."""
+    """Return the pictures encoded, in the folder of the frames; not again, where these have not changed."""
     from render.frames import encode
 
     film = named(out.film(preset.name), show)
@@ -100,7 +100,7 @@ def _silent_film(out: Out, preset: Preset, show: str, store: FrameStore, index: 
 
 
 def _pictures(mechanism: str, store: FrameStore, names: Sequence[str]) -> Iterator[bytes]:
-    """The pictures in order, each compared with the hash in its name; the bytes compared are the bytes filmed."""
+    """Yield the pictures in order, each compared with the hash in its name; the bytes compared are the bytes filmed."""
     for number, name in enumerate(names):
         content = store.read(name)
         if content is None:

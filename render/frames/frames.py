@@ -46,7 +46,7 @@ BLENDER_SOURCES = ("job.py", "picture_file.py", "scene", "worker")
 
 
 def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
-    """Everything that all frames have in common; STL files count by content.
+    """Return everything that all frames have in common; STL files count by content.
 
     ``blender`` is the version of bpy. Of other rooms, Blender's side takes the letters and these numbers.
     """
@@ -60,7 +60,9 @@ def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
 
 
 def frame_key(scene: str, states: Sequence[State]) -> str:
-    """One frame of the scene with that key: its state alone, or with both neighbours' where the shutter blurs them."""
+    """Return one frame of the scene with that key: its state alone, or with both neighbours' where the shutter blurs
+    them.
+    """
     return _hash([scene, [_rounded(msgspec.to_builtins(state)) for state in states]])[:32]
 
 
@@ -129,7 +131,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
 
 
 def picture_of(pictures: Pictures, store: FrameStore, frame: int) -> Path:
-    """The file of a rendered frame; raises UserError if something removed or changed it meanwhile."""
+    """Return the file of a rendered frame; raises UserError if something removed or changed it meanwhile."""
     path = store.find(pictures.key(frame))
     if path is None:
         raise UserError(
@@ -187,22 +189,22 @@ class Pictures:
         return self.film.scene
 
     def around(self, frame: int) -> tuple[int, int, int]:
-        """The frame between those that its shutter sees."""
+        """Return the frame between those that its shutter sees."""
         return self.film.clock.around(frame)
 
     def state(self, frame: int) -> State:
-        """The state a frame shows."""
+        """Return the state a frame shows."""
         if frame not in self._states:
             self._states[frame] = self.film.state(frame)
         return self._states[frame]
 
     def key(self, frame: int) -> str:
-        """The name of the picture a frame shows."""
+        """Return the name of the picture a frame shows."""
         around = self.around(frame) if self.preset.motion_blur else (frame,)
         return frame_key(self.scene, [self.state(f) for f in around])
 
     def job(self, frames: Sequence[int], store: FrameStore) -> Job:
-        """The work order for these frames; a blurred frame has its neighbours beside it on the timeline."""
+        """Return the work order for these frames; a blurred frame has its neighbours beside it on the timeline."""
         states: list[State] = []
         pictures = []
         for frame in frames:
@@ -256,7 +258,7 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
 
 
 def _makers(job: Job, store: FrameStore, longest: float) -> AbstractContextManager[Iterator[Answer]]:
-    """A Blender process here, or the workers of the CLUSTER."""
+    """Return a Blender process here, or the workers of the CLUSTER."""
     if not address():
         return blender(job, longest)
     from render.frames import cluster
@@ -265,7 +267,7 @@ def _makers(job: Job, store: FrameStore, longest: float) -> AbstractContextManag
 
 
 def _forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:
-    """Seconds a picture, and where the number is from; None if nothing comparable was rendered here yet.
+    """Return seconds a picture, and where the number is from; None if nothing comparable was rendered here yet.
 
     The last run of this preset counts, else the run nearest in size, scaled by samples. Below a certain size it is
     not the samples that take the time, so postage stamps do not count.

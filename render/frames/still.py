@@ -119,7 +119,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
 
 
 def frames_of(film: Film) -> list[int]:
-    """Twelve frames in equal steps: of a motion that repeats over one period, of another until it ends.
+    """Return twelve frames in equal steps: of a motion that repeats over one period, of another until it ends.
 
     Where a period has several turns of the drivers, each step is a little longer, so that no turn is shown as another.
     """
@@ -131,12 +131,14 @@ def frames_of(film: Film) -> list[int]:
 
 
 def columns(aspect: float) -> int:
-    """Number of columns of a sheet of frames with that width over height: the sheet is about as wide as a screen."""
+    """Return the number of columns of a sheet of frames with that width over height: the sheet is about as wide as a
+    screen.
+    """
     return 4 if aspect > 1.2 else 6
 
 
 def sheet(pictures: list[Path], captions: list[str], title: str) -> bytes:
-    """A PNG of frames in rows, each with its words under it."""
+    """Return a PNG of frames in rows, each with its words under it."""
     from PIL import Image, ImageDraw
 
     with Image.open(pictures[0]) as first:
@@ -158,12 +160,12 @@ def sheet(pictures: list[Path], captions: list[str], title: str) -> bytes:
 
 
 def _fitting(captions: list[str], wide: int) -> float:
-    """The size of letters with which no time is wider than its frame."""
+    """Return the size of letters with which no time is wider than its frame."""
     return min(14.0, 0.9 * wide / max(width_of(words) for words in captions))
 
 
 def _captions(film: Film, frames: list[int]) -> list[str]:
-    """Times in as many decimals as tell the frames apart."""
+    """Return times in as many decimals as tell the frames apart."""
     times = [film.clock.moment(frame).time for frame in frames]
     decimals = max(0, math.ceil(1 - math.log10(max(max(times) - min(times), 1e-9) / len(times))))
     return [f"{time:.{min(decimals, 9)}f} s" for time in times]

@@ -73,7 +73,9 @@ class FrameStore:
         self.timing = folder / "timing.json"
 
     def find(self, key: str) -> Path | None:
-        """The picture with this key, if it is there and has the bytes that its name tells; a damaged one is removed."""
+        """Return the picture with this key, if it is there and has the bytes that its name tells; a damaged one is
+        removed.
+        """
         for path in sorted(self.folder.glob(f"{key}-*.png")):
             try:
                 if self._is_picture(path, path.read_bytes()):
@@ -87,7 +89,7 @@ class FrameStore:
         return None
 
     def read(self, name: str) -> bytes | None:
-        """The bytes of the picture with this file name, if they are those that were rendered; else None."""
+        """Return the bytes of the picture with this file name, if they are those that were rendered; else None."""
         path = self.folder / name
         with suppress(OSError):
             content = path.read_bytes()
@@ -148,7 +150,7 @@ class FrameStore:
         return len(unused[spare:])
 
     def read_timing(self) -> Timing | None:
-        """The timing of the last run, if there was one."""
+        """Return the timing of the last run, if there was one."""
         try:
             return jsonfile.read(self.timing, Timing)
         except UserError:

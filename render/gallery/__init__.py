@@ -38,7 +38,7 @@ LOOK = 24, 14
 
 
 def small_poster(path: Path) -> bytes:
-    """A picture as a JPEG of at most LARGEST bytes, at the best quality that fits."""
+    """Return a picture as a JPEG of at most LARGEST bytes, at the best quality that fits."""
     from PIL import Image
 
     with Image.open(path) as whole:
@@ -59,7 +59,7 @@ def small_poster(path: Path) -> bytes:
 
 
 def strip(posters: Sequence[bytes]) -> bytes:
-    """Small posters in rows, as one JPEG; the last row is filled from its middle.
+    """Return small posters in rows, as one JPEG; the last row is filled from its middle.
 
     More than ``ON_STRIP`` are too many for one look: those are taken that are least like each other.
     """
@@ -86,7 +86,9 @@ def strip(posters: Sequence[bytes]) -> bytes:
 
 
 def unlike(looks: Sequence[np.ndarray]) -> list[int]:
-    """Numbers of ON_STRIP pictures in their order: each next one is the one least like all that are taken already."""
+    """Return numbers of ON_STRIP pictures in their order: each next one is the one least like all that are taken
+    already.
+    """
     flat = np.stack([look.ravel() for look in looks])
     if len(flat) <= ON_STRIP:
         return list(range(len(flat)))
@@ -116,7 +118,7 @@ class Entry:
 
 
 def page(entries: Sequence[Entry], own: bool = False) -> str:
-    """The whole page, in the order of the names; ``own``: of the machines of a user's own folder."""
+    """Return the whole page, in the order of the names; ``own``: of the machines of a user's own folder."""
     first = [
         "Every mechanism of `mechanisms/` as it comes out of its short file: `make run-<name>` makes the film,",
         "the parts and the numbers of one, `make gallery` this page.",
@@ -135,7 +137,7 @@ def page(entries: Sequence[Entry], own: bool = False) -> str:
 
 
 def sentences(docstring: str) -> str:
-    """The first two sentences of a docstring on one line; what all of them say is left out."""
+    """Return the first two sentences of a docstring on one line; what all of them say is left out."""
     paragraph = " ".join(docstring.split("\n\n")[0].split())
     said = [
         sentence

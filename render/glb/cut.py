@@ -25,7 +25,8 @@ NEAR = 1e-9
 
 
 def striped(triangles: Array, hatch: Hatch, light: float) -> tuple[Array, Array]:
-    """Triangles (n, 3, 3) (m) split along the edges of stripes: those in the ``light`` part of each, and the dark ones.
+    """Return triangles (n, 3, 3) (m) split along the edges of stripes: those in the ``light`` part of each, and the
+    dark ones.
 
     The hatch's period is in m.
     """
@@ -37,7 +38,7 @@ def striped(triangles: Array, hatch: Hatch, light: float) -> tuple[Array, Array]
 
 
 def along_rim(triangles: Array, plane: Plane, hatch: Hatch, light: float, level: float) -> Array:
-    """Triangles (n, 3, 3) (m) whose edges that lie in a plane, within ``level``, are split where stripes end."""
+    """Return triangles (n, 3, 3) (m) whose edges that lie in a plane, within ``level``, are split where stripes end."""
     way, normal = np.array(hatch.way), np.array(plane[:3])
     on_it = np.abs(triangles @ normal - plane[3]) < level
     at_rim = on_it.sum(axis=1) == 2
@@ -54,7 +55,7 @@ def along_rim(triangles: Array, plane: Plane, hatch: Hatch, light: float, level:
 
 
 def _lines(points: Array, hatch: Hatch, light: float) -> list[float]:
-    """Where stripes of points (..., 3) begin and end along the hatch's way."""
+    """Return where stripes of points (..., 3) begin and end along the hatch's way."""
     if not len(points):
         return []
     along = points @ np.array(hatch.way)
@@ -63,7 +64,9 @@ def _lines(points: Array, hatch: Hatch, light: float) -> list[float]:
 
 
 def _split(triangles: Array, sides: Array) -> Array:
-    """Triangles (n, 3, 3) split where ``sides`` (n, 3), how far corners are beyond a line (m), change their sign."""
+    """Return triangles (n, 3, 3) split where ``sides`` (n, 3), how far corners are beyond a line (m), change their
+    sign.
+    """
     sign = np.where(sides > NEAR, 1, np.where(sides < -NEAR, -1, 0))
     both = (sign.max(axis=1) > 0) & (sign.min(axis=1) < 0)
     touched = both & (sign == 0).any(axis=1)
@@ -82,7 +85,7 @@ def _split(triangles: Array, sides: Array) -> Array:
 
 
 def _turned(triangles: Array, sides: Array, which: NDArray[np.bool_], first: NDArray[np.intp]) -> tuple[Array, Array]:
-    """Corners (3, m, 3) and sides (3, m) of some triangles, each from its corner ``first`` on."""
+    """Return corners (3, m, 3) and sides (3, m) of some triangles, each from its corner ``first`` on."""
     order = (first[which, None] + np.arange(3)) % 3
     corners = np.take_along_axis(triangles[which], order[..., None], axis=1)
     return corners.transpose(1, 0, 2), np.take_along_axis(sides[which], order, axis=1).T
@@ -93,7 +96,7 @@ def _crosses(u: Array, v: Array) -> NDArray[np.bool_]:
 
 
 def _between(a: Array, b: Array, u: Array, v: Array) -> Array:
-    """Where edges (m, 3) from ``a`` to ``b`` meet the line; the same bits from either end."""
+    """Return where edges (m, 3) from ``a`` to ``b`` meet the line; the same bits from either end."""
     ahead = (u > v)[:, None]
     a, b = np.where(ahead, a, b), np.where(ahead, b, a)
     u, v = np.maximum(u, v), np.minimum(u, v)
@@ -110,13 +113,15 @@ PART = "cut as they stand at the start, for meshes of a file cannot be cut anew 
 
 
 def pieces_of(film: Film) -> list[PieceSpec]:
-    """The film's pieces as files of meshes have them: those that go through fixed planes are cut as they start."""
+    """Return the film's pieces as files of meshes have them: those that go through fixed planes are cut as they
+    start.
+    """
     return [piece for each in film.scene.pieces if (piece := _at_start(film, each)) is not None]
 
 
 def front_of(film: Film) -> float:
-    """The height (m) beyond which springs, ropes and belts are cut away; infinite where they are not, as by planes that
-    stand up, for what hangs between bodies passes those in every other shape.
+    """Return the height (m) beyond which springs, ropes and belts are cut away; infinite where they are not, as by
+    planes that stand up, for what hangs between bodies passes those in every other shape.
     """
     return film.cut[0][3] if film.cut and all(plane[2] for plane in film.cut) else math.inf
 
@@ -131,8 +136,8 @@ def said_of(film: Film) -> str:
 
 
 def faces_of(triangles: Array, piece: PieceSpec, radius: float) -> list[tuple[Array, SurfaceSpec]]:
-    """Triangles (n, 3, 3) (m) of what a piece's section leaves, with their surfaces: its own, and the light and dark
-    stripes of its cut faces, as wide as a machine of this ``radius`` (m) has them.
+    """Return triangles (n, 3, 3) (m) of what a piece's section leaves, with their surfaces: its own, and the light and
+    dark stripes of its cut faces, as wide as a machine of this ``radius`` (m) has them.
 
     Raises UserError where manifold3d is missing, or the piece is not closed.
     """
@@ -148,13 +153,13 @@ def faces_of(triangles: Array, piece: PieceSpec, radius: float) -> list[tuple[Ar
 
 
 def _hatch(piece: PieceSpec, plane: Plane, radius: float) -> Hatch:
-    """Stripes of a piece in a plane, their period in m."""
+    """Return stripes of a piece in a plane, their period in m."""
     hatch = hatch_of(f"{piece.body}/{piece.name}", plane)
     return Hatch(hatch.way, radius * hatch.period)
 
 
 def cut_open(triangles: Array, piece: PieceSpec) -> tuple[Array, list[Array]]:
-    """Triangles (n, 3, 3) (m) of what a piece's section leaves: of its surface, and of the cut along each plane.
+    """Return triangles (n, 3, 3) (m) of what a piece's section leaves: of its surface, and of the cut along each plane.
 
     Raises UserError where manifold3d is missing, or the piece is not closed.
     """
@@ -175,7 +180,7 @@ def cut_open(triangles: Array, piece: PieceSpec) -> tuple[Array, list[Array]]:
 
 
 def _sorted(kept: Array, planes: Sequence[tuple[float, ...]]) -> tuple[Array, list[Array]]:
-    """Triangles on no plane, and those on each."""
+    """Return triangles on no plane, and those on each."""
     left, caps = np.ones(len(kept), bool), []
     for *normal, place in planes:
         on_it = left & (np.abs(kept @ np.array(normal) - place) < LEVEL).all(axis=1)
@@ -185,7 +190,9 @@ def _sorted(kept: Array, planes: Sequence[tuple[float, ...]]) -> tuple[Array, li
 
 
 def _rest(solid: Any, piece: PieceSpec, corners: Array) -> Any:
-    """The solid without what is beyond all planes; a single one is exact, several are a wedge that is taken away."""
+    """Return the solid without what is beyond all planes; a single one is exact, several are a wedge that is taken
+    away.
+    """
     if len(piece.cut) == 1:
         x, y, z, place = piece.cut[0]
         return solid.trim_by_plane((-x, -y, -z), -place)
@@ -199,7 +206,7 @@ def _rest(solid: Any, piece: PieceSpec, corners: Array) -> Any:
 
 
 def _at_start(film: Film, piece: PieceSpec) -> PieceSpec | None:
-    """A piece cut where it stands at the start of the motion; None if nothing of it is left there."""
+    """Return a piece cut where it stands at the start of the motion; None if nothing of it is left there."""
     if not piece.fixed:
         return piece
     pose = film.poses.body(piece.body, film.clock.moment(0))

@@ -42,7 +42,9 @@ class Document:
         return len(self.json[kind]) - 1
 
     def array(self, values: np.ndarray, target: int | None = None, bounds: bool = False) -> int:
-        """The accessor of an array (n,) or (n, 2 .. 4) of float32, uint32 or uint16; ``bounds`` tells its range."""
+        """Return the accessor of an array (n,) or (n, 2 .. 4) of float32, uint32 or uint16; ``bounds`` tells its
+        range.
+        """
         self._buffer.extend(b"\0" * (-len(self._buffer) % 4))
         view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self._buffer), "byteLength": values.nbytes}
         if target is not None:
@@ -60,7 +62,7 @@ class Document:
         return self.add("accessors", accessor)
 
     def values(self, number: int) -> np.ndarray:
-        """The array of an accessor."""
+        """Return the array of an accessor."""
         accessor = self.json["accessors"][number]
         kind = next(name for name, code in COMPONENTS.items() if code == accessor["componentType"])
         shape = next(tail for tail, name in TYPES.items() if name == accessor["type"])
@@ -70,7 +72,7 @@ class Document:
         return flat.reshape(accessor["count"], *shape).astype(kind)
 
     def content(self) -> bytes:
-        """The file's bytes."""
+        """Return the file's bytes."""
         binary = bytes(self._buffer) + b"\0" * (-len(self._buffer) % 4)
         self.json["buffers"] = [{"byteLength": len(binary)}]
         text = json.dumps(self.json, separators=(",", ":"), allow_nan=False).encode()
@@ -100,7 +102,7 @@ class Paints:
         self._known: dict[SurfaceSpec, int] = {}
 
     def of(self, surface: SurfaceSpec) -> int:
-        """The number of a surface's material."""
+        """Return the number of a surface's material."""
         if surface not in self._known:
             made = material(surface, f"{surface.finish} {len(self._known)}")
             self._known[surface] = self._document.add("materials", made)
@@ -108,7 +110,7 @@ class Paints:
 
 
 def material(surface: SurfaceSpec, name: str) -> dict[str, Any]:
-    """The material of a surface; colours are linear in both."""
+    """Return the material of a surface; colours are linear in both."""
     tone = TONE.get(surface.finish, 1.0)
     out: dict[str, Any] = {
         "name": name,
@@ -139,7 +141,7 @@ Floats = NDArray[np.float32]
 
 
 def smooth(triangles: NDArray[np.floating]) -> tuple[Floats, Floats, NDArray[np.unsignedinteger]]:
-    """Positions (n, 3), unit normals (n, 3) and corners (3 m,) of triangles (m, 3, 3); flat ones are left out.
+    """Return positions (n, 3), unit normals (n, 3) and corners (3 m,) of triangles (m, 3, 3); flat ones are left out.
 
     The normal at a corner is the mean of those of the triangles that meet there and turn by less than SHARP against
     its own, weighted by their angles at the corner.
@@ -160,14 +162,14 @@ def smooth(triangles: NDArray[np.floating]) -> tuple[Floats, Floats, NDArray[np.
 
 
 def _angles(triangles: NDArray[np.floating]) -> NDArray[np.floating]:
-    """(m, 3) of the triangles at their corners (rad)."""
+    """Return (m, 3) of the triangles at their corners (rad)."""
     ahead = _unit(np.roll(triangles, -1, axis=1) - triangles)
     back = _unit(np.roll(triangles, 1, axis=1) - triangles)
     return np.arccos(np.clip((ahead * back).sum(axis=-1), -1.0, 1.0))
 
 
 def _means(vertex: np.ndarray, normals: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """(k, 3) for each corner, from all corners at the same vertex."""
+    """Return (k, 3) for each corner, from all corners at the same vertex."""
     order = np.argsort(vertex, kind="stable")
     counts = np.bincount(vertex)
     starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
@@ -229,7 +231,7 @@ class Animation:
         self._channels: list[dict[str, Any]] = []
 
     def rows(self, values: np.ndarray) -> NDArray[np.intp]:
-        """Numbers of the times of values."""
+        """Return numbers of the times of values."""
         return self.kept if len(values) == len(self.kept) else self.fewer
 
     def add(self, node: int, path: str, values: np.ndarray) -> None:
@@ -238,7 +240,7 @@ class Animation:
         self._sample(node, path, values)
 
     def turn(self, node: int, angle: Array) -> np.ndarray:
-        """Turn a node about z by angles (n,) (rad); returns the quaternions (n, 4)."""
+        """Return the turn a node about z by angles (n,) (rad); returns the quaternions (n, 4)."""
         self.tracks.append(Track(node, "angle", angle))
         turn = about_z(angle)
         self._sample(node, "rotation", turn)
@@ -269,6 +271,6 @@ class Animation:
 
 
 def about_z(angle: Array) -> Array:
-    """Quaternions (n, 4) of turns by angles (n,) about z (rad)."""
+    """Return quaternions (n, 4) of turns by angles (n,) about z (rad)."""
     half, zero = angle / 2, np.zeros(len(angle))
     return np.stack([zero, zero, np.sin(half), np.cos(half)], axis=1)

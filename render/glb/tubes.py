@@ -29,7 +29,8 @@ Tube = tuple[Array, Array, NDArray[np.signedinteger]]
 
 
 def below(tube: Tube, place: float) -> Tube:
-    """A tube without what is higher than ``place`` (m), closed by a flat cut face; without corners where all of it is.
+    """Return a tube without what is higher than ``place`` (m), closed by a flat cut face; without corners where all of
+    it is.
 
     What is beyond is laid into the plane, and goes between rings that are wholly there: exact for a tube that stands
     upright, to within a facet for one that lies level, to within a ring for a coil.
@@ -45,7 +46,7 @@ def below(tube: Tube, place: float) -> Tube:
 
 
 def tube_mesh(document: Document, paints: Paints, spec: TubeSpec, name: str, tubes: list[Tube]) -> int:
-    """The number of a mesh; tubes beyond the first are shapes that it may be blended to."""
+    """Return the number of a mesh; tubes beyond the first are shapes that it may be blended to."""
     (positions, normals, _), *others = tubes
     part = primitive(document, paints, spec, tubes[0])
     if others:
@@ -63,7 +64,7 @@ def tube_mesh(document: Document, paints: Paints, spec: TubeSpec, name: str, tub
 
 
 def primitive(document: Document, paints: Paints, spec: TubeSpec, tube: Tube) -> dict[str, Any]:
-    """A tube as a part of a mesh."""
+    """Return a tube as a part of a mesh."""
     positions, normals, corners = tube
     return {
         "attributes": {
@@ -76,7 +77,7 @@ def primitive(document: Document, paints: Paints, spec: TubeSpec, tube: Tube) ->
 
 
 def tube(path: Array, radius: float) -> Tube:
-    """Positions and normals (n, 3) and corners (m,) of a tube along a path (k, 3) with flat ends."""
+    """Return positions and normals (n, 3) and corners (m,) of a tube along a path (k, 3) with flat ends."""
     line = [(float(x), float(y), float(z)) for x, y, z in path]
     rings = vertices(line, radius).astype(float).reshape(-1, SIDES, 3)
     middles = np.asarray(path)[:, None]
@@ -106,7 +107,7 @@ def tube(path: Array, radius: float) -> Tube:
 def add_belt(
     document: Document, animation: Animation, paints: Paints, poses: Poses, belt: Belt, front: float = math.inf
 ) -> list[int]:
-    """Its nodes, which stand at the root; what is higher than ``front`` (m) is cut away."""
+    """Return its nodes, which stand at the root; what is higher than ``front`` (m) is cut away."""
     moments = [Moment(float(poses.time[k]), 0) for k in animation.fewer]
     runs = [belt.run(poses, at) for at in moments]
     places = np.array([place.points(every) for place, every in runs])  # (T, count, 3)
@@ -132,18 +133,18 @@ def add_belt(
 
 
 def _cut(shape: Tube, left: float) -> Tube:
-    """A tube about the belt's middle without what is higher than ``left`` (m)."""
+    """Return a tube about the belt's middle without what is higher than ``left`` (m)."""
     return below(shape, left) if left < math.inf else shape
 
 
 def _flat(belt: Belt) -> Array:
-    """The loop's points (n, 3) from its first centre, the second on the x axis."""
+    """Return the loop's points (n, 3) from its first centre, the second on the x axis."""
     return np.array(belt.still().points(belt.closed)) - [0.0, 0.0, belt.z]
 
 
 def _links(document: Document, paints: Paints, belt: Belt, ahead: Array, left: float) -> list[int]:
-    """Meshes of the links that take turns, without what is higher than ``left`` over their middle (m); none where
-    nothing is left.
+    """Return meshes of the links that take turns, without what is higher than ``left`` over their middle (m); none
+    where nothing is left.
     """
     length = float(np.hypot(*np.moveaxis(ahead[..., :2], -1, 0)).mean())
     specs = {
@@ -169,7 +170,7 @@ def _links(document: Document, paints: Paints, belt: Belt, ahead: Array, left: f
 def _units(
     document: Document, animation: Animation, meshes: Sequence[int], name: str, places: Array, ways: Array
 ) -> list[int]:
-    """Equal things at places (T, n, 3), turned to ways (T, n, 3) about z."""
+    """Return equal things at places (T, n, 3), turned to ways (T, n, 3) about z."""
     nodes = []
     for k in range(places.shape[1] if meshes else 0):
         nodes.append(document.add("nodes", {"name": f"{name} {k + 1}", "mesh": meshes[k % len(meshes)]}))
@@ -243,7 +244,7 @@ class Springs:
             self._upright(spec, spec.name, places, low, spring.top)
 
     def _ends(self, body: str, marker: tuple[float, float, float], z: float) -> Array:
-        """(T, 3) of a marker, at the height of what hangs on it."""
+        """Return (T, 3) of a marker, at the height of what hangs on it."""
         place = moved(self._motion, body, marker)[0][self._animation.fewer]
         return np.column_stack([place, np.full(len(place), z)])
 
@@ -284,8 +285,8 @@ class Springs:
         self._document.json["nodes"][node]["scale"] = scale[0].astype(np.float32).tolist()
 
     def _node(self, spec: TubeSpec, name: str, tubes: list[Tube], height: float = 0.0) -> int | None:
-        """A node at a height (m) with a tube as its mesh; tubes beyond the first are shapes that it may be blended to.
-        None where all of it is cut away.
+        """Return a node at a height (m) with a tube as its mesh; tubes beyond the first are shapes that it may be
+        blended to. None where all of it is cut away.
         """
         if self._front < math.inf:
             tubes = [below(shape, self._front - height) for shape in tubes]
@@ -297,5 +298,5 @@ class Springs:
 
 
 def _in_plane(places: Array) -> Array:
-    """(n, 3) of places (n, 2), at height 0."""
+    """Return (n, 3) of places (n, 2), at height 0."""
     return np.column_stack([places, np.zeros(len(places))])

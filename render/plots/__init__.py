@@ -76,7 +76,7 @@ def _stage(out: Out, names: list[str]) -> Stage:
 
 
 def plots_of(motion: Motion) -> list[str]:
-    """Names of the plots that this motion has something to show in."""
+    """Return names of the plots that this motion has something to show in."""
     names = ["path", "bodies", "energy"]
     if motion.joints:
         names += ["reactions", "hodographs"]
@@ -97,7 +97,7 @@ def plots_of(motion: Motion) -> list[str]:
 
 
 def _spectra(motion: Motion, name: str, words: str, every: bool) -> list[str]:
-    """Plots of the spectra that are asked for; a variant may lack what mechanism.py names."""
+    """Return plots of the spectra that are asked for; a variant may lack what mechanism.py names."""
     asked = spectra_asked(name, words)
     if not asked:
         return []

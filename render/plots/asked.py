@@ -11,7 +11,7 @@ FORM = 'write names in quotes: SPECTRA = ("shaking force", "motor")'
 
 
 def spectra_asked(name: str, words: str = "") -> list[str]:
-    """Names of quantities, each once: those of ``words``, commas between them, else those of mechanism.py.
+    """Return names of quantities, each once: those of ``words``, commas between them, else those of mechanism.py.
 
     The file is read without running it. Raises UserError where its SPECTRA is no plain tuple or list of texts.
     """

@@ -16,7 +16,7 @@ from shared.contract.skeleton import Skeleton
 
 
 def spectrum_of(motion: Motion, name: str) -> Figure:
-    """Spectrum of the quantity whose name has hyphens for spaces in ``name``."""
+    """Return the spectrum of the quantity whose name has hyphens for spaces in ``name``."""
     return spectrum_page(motion, next(known for known in known_names(motion) if known.replace(" ", "-") == name))
 
 

@@ -58,7 +58,7 @@ def dress_plane(
 
 
 def turned(x: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Curve of an angle (T,) in degrees over x (T,): within one turn, broken where the next one begins.
+    """Return the curve of an angle (T,) in degrees over x (T,): within one turn, broken where the next one begins.
 
     What makes no whole turn is moved by whole turns alone, so that its middle is within half a turn of zero.
     """
@@ -74,7 +74,7 @@ def turned(x: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cut(axes: Axes, curves: Sequence[np.ndarray], margin: np.ndarray | None, unit: str) -> bool:
-    """Limit the vertical axis where curves (T,) go far beyond their usual near a singular pose, and say so.
+    """Return the limit the vertical axis where curves (T,) go far beyond their usual near a singular pose, and say so.
 
     ``margin`` (T,): how far each pose is from a singular one. Returns whether it was cut.
     """
@@ -126,7 +126,8 @@ class Horizon:
 
 
 def horizon(motion: Motion) -> Horizon:
-    """The driver's angle in degrees if there is one driver, it is an angle and it never turns back; else time in s.
+    """Return the driver's angle in degrees if there is one driver, it is an angle and it never turns back; else time in
+    s.
 
     A driver that turns clockwise has its angle counted that way, so that what comes later is always at the right.
     """
@@ -145,7 +146,7 @@ def horizon(motion: Motion) -> Horizon:
 
 
 def _pace(motion: Motion, angle: np.ndarray) -> str:
-    """How long a turn takes, of a driver that turns evenly."""
+    """Return how long a turn takes, of a driver that turns evenly."""
     even = np.interp(motion.time, [motion.time[0], motion.time[-1]], [angle[0], angle[-1]])
     if np.abs(angle - even).max() > 1e-6 * np.ptp(angle):
         return ""

@@ -66,7 +66,7 @@ def refuse_unknown_in_all(motions: Sequence[Motion], names: Sequence[str]) -> No
 
 
 def known_names(motion: Motion) -> list[str]:
-    """All names of quantities."""
+    """Return all names of quantities."""
     whole = [*SHAKING, *([COUPLE] if motion.couple else [])]
     own = [motion.joints, motion.drivers, motion.forces, motion.points, motion.bodies]
     return list(dict.fromkeys([*whole, *(name for group in own for name in group)]))
@@ -93,7 +93,7 @@ def quantity(motion: Motion, name: str) -> Quantity:
 
 
 def _moving(motion: Motion, name: str) -> Quantity:
-    """The acceleration of a point, or of a body: of its angle where it turns."""
+    """Return the acceleration of a point, or of a body: of its angle where it turns."""
     moving = motion.points.get(name) or motion.bodies[name]
     fastest = speed_scale(motion)
     if name not in motion.points and np.ptp(motion.bodies[name].theta) > NOISE:
@@ -122,7 +122,7 @@ def _shaking_quantity(motion: Motion, name: str) -> Quantity:
 
 
 def _xy(x: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> dict[str, np.ndarray]:
-    """Both components; one that is always zero is left out."""
+    """Return both components; one that is always zero is left out."""
     both = {"x": np.asarray(x), "y": np.asarray(y)}
     largest = max(float(np.abs(values).max()) for values in both.values())
     return {axis: v for axis, v in both.items() if np.abs(v).max() > NOISE * largest} or {"x": both["x"]}

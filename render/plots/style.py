@@ -79,7 +79,7 @@ def house_style() -> Iterator[None]:
 
 
 def page(mechanism: str, title: str, subtitle: str) -> Figure:
-    """An empty figure with its title, upper left."""
+    """Return an empty figure with its title, upper left."""
     figure = Figure(figsize=SIZE)
     FigureCanvasAgg(figure)
     name = mechanism.replace("_", "-").capitalize()
@@ -89,7 +89,7 @@ def page(mechanism: str, title: str, subtitle: str) -> Figure:
 
 
 def rows(figure: Figure, count: int) -> list[Axes]:
-    """Stacked axes that share x; room for labels at the right, titles above."""
+    """Return stacked axes that share x; room for labels at the right, titles above."""
     grid = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
     figure.subplots_adjust(left=0.095, right=0.885, top=0.855, bottom=0.085, hspace=0.13)
     figure.align_ylabels(list(grid))
@@ -97,7 +97,7 @@ def rows(figure: Figure, count: int) -> list[Axes]:
 
 
 def colour(index: int) -> str:
-    """The colour of the thing with this place in its file."""
+    """Return the colour of the thing with this place in its file."""
     return PALETTE[index % len(PALETTE)]
 
 
@@ -117,7 +117,7 @@ def label_ends(axes: Axes, x: float, lines: Sequence[tuple[str, float, str]], ga
 
 
 def spread(wanted: np.ndarray, gap: float, height: float) -> np.ndarray:
-    """Positions in the order of ``wanted``: ``gap`` apart where ``height`` has room, each near its own wish.
+    """Return positions in the order of ``wanted``: ``gap`` apart where ``height`` has room, each near its own wish.
 
     Least squares: with ``gap`` times its rank taken off each wish, the answer need only not fall.
     """
@@ -133,13 +133,13 @@ def spread(wanted: np.ndarray, gap: float, height: float) -> np.ndarray:
 
 
 def ink_of(motion: Motion, bodies: Sequence[str]) -> str:
-    """The colour of the last of these bodies that moves: the one that a joint, driver or force acts on."""
+    """Return the colour of the last of these bodies that moves: the one that a joint, driver or force acts on."""
     moving = [body for body in bodies if body in motion.bodies]
     return motion.bodies[moving[-1]].colour if moving else INK
 
 
 def acting_on(motion: Motion, name: str) -> str:
-    """The colour of the body that the force ``name`` acts on."""
+    """Return the colour of the body that the force ``name`` acts on."""
     return ink_of(motion, [action.body for action in motion.forces[name].actions])
 
 
@@ -189,7 +189,7 @@ class Labels:
         weight: str = "normal",
         clearance: float = 0.0,
     ) -> None:
-        """A name for the point ``at``, ``clearance`` away from it at least (data coordinates)."""
+        """Add a name for the point ``at``, ``clearance`` away from it at least (data coordinates)."""
         self.labels.append(_Label(text, at, colour, size, weight, clearance))
 
     def avoid_lines(self, corners: list[tuple[float, float]]) -> None:
@@ -228,7 +228,9 @@ class Labels:
 def _cost(
     middle: np.ndarray, half: np.ndarray, obstacles: np.ndarray, boxes: list[np.ndarray], frame: np.ndarray
 ) -> float:
-    """Points of lines under the name count one each; another name under it, or the frame's edge, counts much more."""
+    """Return the penalty of a place: points of lines under the name count one each; another name under it, or the
+    frame's edge, counts much more.
+    """
     covered = float((np.abs(obstacles - middle) < half).all(axis=1).sum())
     near = float((np.abs(obstacles - middle) < half + 6.0).all(axis=1).sum())
     low, high = middle - half, middle + half
@@ -238,7 +240,7 @@ def _cost(
 
 
 def _sampled(corners: np.ndarray, step: float = 4.0) -> np.ndarray:
-    """Points every ``step`` pixels along a line."""
+    """Return points every ``step`` pixels along a line."""
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
     at = np.arange(0.0, lengths[-1] + step, step)
     return np.stack([np.interp(at, lengths, corners[:, k]) for k in range(2)], axis=1)

@@ -51,7 +51,7 @@ def _stage(out: Out, said: str) -> Stage:
 
 
 def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, said: str = "") -> str:
-    """The whole document, Markdown."""
+    """Return the whole document, Markdown."""
     title = motion.mechanism.replace("_", " ").replace("-", ": ")
     lines = [f"# {title[:1].upper()}{title[1:]}", ""]
     lines += [said, ""] if said else []
@@ -77,7 +77,7 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
 
 
 def description(name: str) -> str:
-    """The docstring of mechanism.py, read without running it; empty where there is none."""
+    """Return the docstring of mechanism.py, read without running it; empty where there is none."""
     try:
         return ast.get_docstring(ast.parse(mechanism_file(name).read_bytes())) or ""
     except (SyntaxError, OSError):

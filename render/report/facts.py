@@ -21,7 +21,7 @@ from shared.stage.paths import Out
 
 
 def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> list[str]:
-    """Freedoms, time, fastest place, largest effort and reaction, transmission angle, mass, clearance."""
+    """Return freedoms, time, fastest place, largest effort and reaction, transmission angle, mass, clearance."""
     span, amount = motion.time[-1] - motion.time[0], Amounts(motion)
     out = [f"{counted(motion.diagnostics.dof, 'degree')} of freedom"]
     out.append(f"repeats after {moment(motion.period)}" if motion.period else f"{moment(span)} of motion")
@@ -50,7 +50,9 @@ def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> l
 
 
 def fastest(motion: Motion) -> tuple[str, float]:
-    """The traced point, joint or body (by its centre of mass) that is the fastest at any time, and its speed (m/s)."""
+    """Return the traced point, joint or body (by its centre of mass) that is the fastest at any time, and its speed
+    (m/s).
+    """
     speeds = {name: _speed_of(body) for name, body in motion.bodies.items()}
     speeds |= {name: float(np.hypot(point.vx, point.vy).max()) for name, point in motion.points.items()}
     speeds |= {name: v for name, v in _joint_speeds(motion).items() if name not in speeds}
@@ -59,7 +61,7 @@ def fastest(motion: Motion) -> tuple[str, float]:
 
 
 def _speed_of(body: BodyMotion) -> float:
-    """Speed of its centre of mass (m/s)."""
+    """Return the speed of its centre of mass (m/s)."""
     (x, y), omega, theta = body.com, np.array(body.omega), np.array(body.theta)
     vx = np.array(body.vx) - omega * (np.sin(theta) * x + np.cos(theta) * y)
     vy = np.array(body.vy) + omega * (np.cos(theta) * x - np.sin(theta) * y)
@@ -67,7 +69,7 @@ def _speed_of(body: BodyMotion) -> float:
 
 
 def _efforts(motion: Motion) -> list[tuple[str, str]]:
-    """Peak efforts of what moves the mechanism where no driver does, those that give most power first."""
+    """Return the peak efforts of what moves the mechanism where no driver does, those that give most power first."""
     efforts = []
     for name, force in motion.forces.items():
         if force.drives and force.effort is not None and np.any(force.effort) and max(force.power) > 0:
@@ -76,7 +78,7 @@ def _efforts(motion: Motion) -> list[tuple[str, str]]:
 
 
 def _joint_speeds(motion: Motion) -> dict[str, float]:
-    """Speeds of the second markers of joints, from their bodies' frames (m/s)."""
+    """Return speeds of the second markers of joints, from their bodies' frames (m/s)."""
     out = {}
     for name, joint in motion.joints.items():
         body = motion.bodies.get(joint.bodies[1])
@@ -112,14 +114,14 @@ def run(lines: Iterable[str] = sys.stdin) -> None:
 
 
 def row_of(line: str) -> list[str]:
-    """The words of a row. Results of a failed run are left out, because they may be of an earlier one."""
+    """Return the words of a row. Results of a failed run are left out, because they may be of an earlier one."""
     name, seconds, outcome = line.split()
     numbers = _numbers(Out(name)) if outcome == "done" else [""] * 4
     return [name, duration(float(seconds)), *numbers, outcome]
 
 
 def _numbers(out: Out) -> list[str]:
-    """Pieces, peak speed, peak effort, least gap; empty where a file is missing or cannot be read."""
+    """Return pieces, peak speed, peak effort, least gap; empty where a file is missing or cannot be read."""
     try:
         motion = read_motion(out.motion, out.name)
         parts = read_parts(out.parts, out.name)
@@ -137,7 +139,7 @@ def _numbers(out: Out) -> list[str]:
 
 
 def _effort(motion: Motion) -> str:
-    """The largest force or torque of a driver; of forces where nothing is driven, or drivers push by nothing."""
+    """Return the largest force or torque of a driver; of forces where nothing is driven, or drivers push by nothing."""
     drivers = {name: (driver.effort, driver.effort_unit == "N") for name, driver in motion.drivers.items()}
     forces = {
         name: (force.effort, force.effort_unit == "N")
@@ -168,7 +170,7 @@ EDGE = 0.02
 
 
 def reasons(motion: Motion) -> list[Reason]:
-    """All of them; the best first: what happens once, then what is largest."""
+    """Return all of them; the best first: what happens once, then what is largest."""
     everything = [
         *(*_impacts(motion), *_dead_points(motion), *_events(motion)),
         *(*_effort_peaks(motion), *_reactions(motion), *_speeds(motion)),
@@ -180,7 +182,7 @@ def reasons(motion: Motion) -> list[Reason]:
 
 
 def _impacts(motion: Motion) -> Iterator[Reason]:
-    """The hardest impact of each contact, the hardest of all first."""
+    """Yield the hardest impact of each contact, the hardest of all first."""
     hardest: dict[str, tuple[float, float]] = {}
     for event in motion.events:
         if event.what == "impact" and abs(event.impulse) > hardest.get(event.name, (0.0, 0.0))[0]:
@@ -191,7 +193,7 @@ def _impacts(motion: Motion) -> Iterator[Reason]:
 
 
 def _dead_points(motion: Motion) -> Iterator[Reason]:
-    """Where followers of cranks turn back, the one with the largest reaction first."""
+    """Yield where followers of cranks turn back, the one with the largest reaction first."""
     time = np.asarray(motion.time)
     rows = [(at, loop.follower) for loop in loops(motion) for at, _ in loop.dead_points(time)]
     if len(rows) > FEW:
@@ -201,7 +203,7 @@ def _dead_points(motion: Motion) -> Iterator[Reason]:
 
 
 def _events(motion: Motion) -> Iterator[Reason]:
-    """Other events, in their order."""
+    """Yield other events, in their order."""
     for event in motion.events:
         if event.what not in ("end", "impact"):
             yield _reason(
@@ -210,7 +212,7 @@ def _events(motion: Motion) -> Iterator[Reason]:
 
 
 def _effort_peaks(motion: Motion) -> Iterator[Reason]:
-    """Peaks of drivers and of forces that drive, those that give or take most power first."""
+    """Yield peaks of drivers and of forces that drive, those that give or take most power first."""
     rows = []
     for name, load in (*motion.drivers.items(), *motion.forces.items()):
         if load.effort is None or (name in motion.forces and not motion.forces[name].drives):
@@ -225,7 +227,7 @@ def _effort_peaks(motion: Motion) -> Iterator[Reason]:
 
 
 def _reactions(motion: Motion) -> Iterator[Reason]:
-    """Peaks of joints, the largest first."""
+    """Yield peaks of joints, the largest first."""
     floor, rows = 1e-6 * force_scale(motion), []
     for name, joint in motion.joints.items():
         size = np.hypot(joint.fx, joint.fy)
@@ -237,7 +239,7 @@ def _reactions(motion: Motion) -> Iterator[Reason]:
 
 
 def _speeds(motion: Motion) -> Iterator[Reason]:
-    """The fastest of all, and every traced point at its fastest."""
+    """Yield the fastest of all, and every traced point at its fastest."""
     name, most = fastest(motion) if motion.bodies else ("", 0.0)
     sizes = {point: np.hypot(p.vx, p.vy) for point, p in motion.points.items()}
     if name and name not in sizes and most > 1e-9:
@@ -260,7 +262,7 @@ def _reason(motion: Motion, at: float, kind: Kind, name: str, amount: str, words
 
 
 def _carried(motion: Motion, at: float) -> tuple[str, float]:
-    """The joint that carries most at a time, and how much (N)."""
+    """Return the joint that carries most at a time, and how much (N)."""
     sizes = {
         name: float(np.interp(at, motion.time, np.hypot(joint.fx, joint.fy))) for name, joint in motion.joints.items()
     }

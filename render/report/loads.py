@@ -14,7 +14,7 @@ from shared.contract import Motion
 
 
 def gas_section(motion: Motion) -> list[str]:
-    """A row for each force that comes from gas behind a piston."""
+    """Return a row for each force that comes from gas behind a piston."""
     rows, amount = [], Amounts(motion)
     for name, force in motion.forces.items():
         gas = force.gas
@@ -50,7 +50,7 @@ def gas_section(motion: Motion) -> list[str]:
 
 
 def hydraulics_section(motion: Motion) -> list[str]:
-    """A row for each hydraulic cylinder."""
+    """Return a row for each hydraulic cylinder."""
     rows, time, amount = [], np.array(motion.time), Amounts(motion)
     for name, force in motion.forces.items():
         cylinder = force.hydraulics
@@ -81,7 +81,7 @@ ROUNDING = 1e-9
 
 
 def load_section(motion: Motion) -> list[str]:
-    """Reactions, drivers, forces, gas, contacts."""
+    """Return reactions, drivers, forces, gas, contacts."""
     time, amount = np.array(motion.time), Amounts(motion)
     lines: list[str] = []
     forces = {name: np.hypot(joint.fx, joint.fy) for name, joint in motion.joints.items()}
@@ -159,14 +159,14 @@ def _rms(values: np.ndarray, time: np.ndarray) -> float:
 
 
 def _powers(power: np.ndarray, amount: Amounts) -> tuple[str, str]:
-    """The highest and the lowest; rounding beside the larger one is nothing."""
+    """Return the highest and the lowest; rounding beside the larger one is nothing."""
     floor = ROUNDING * float(np.abs(power).max(initial=0.0))
     most, least = (amount(value if abs(value) > floor else 0.0, "W") for value in (power.max(), power.min()))
     return most, least
 
 
 def _work(power: np.ndarray, time: np.ndarray, amount: Amounts) -> str:
-    """Work over all the time; rounding counts as none."""
+    """Return the work over all the time; rounding counts as none."""
     work = float(np.trapezoid(power, time))
     most = float(np.abs(power).max(initial=0.0)) * float(time[-1] - time[0])
     return amount(work if abs(work) > ROUNDING * most else 0.0, "J")

@@ -52,7 +52,9 @@ class Loop:
         return np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
 
     def dead_points(self, time: np.ndarray) -> list[tuple[float, float]]:
-        """Time (s) and angle of the crank (rad, 0 .. 2 pi) at each; one on the seam of a period once, at its start."""
+        """Return the time (s) and angle of the crank (rad, 0 .. 2 pi) at each; one on the seam of a period once, at its
+        start.
+        """
         a, b, c = (self.pins[:, k] for k in (0, 1, 2))
         first, second = b - a, c - b
         turn = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
@@ -91,7 +93,9 @@ class Loop:
 
 
 def loops(motion: Motion) -> list[Loop]:
-    """All loops of a mechanism whose crank a driver turns against ground, or which forces turn round and round."""
+    """Return all loops of a mechanism whose crank a driver turns against ground, or which forces turn round and
+    round.
+    """
     out = []
     pins: dict[frozenset[str], np.ndarray] = {}
     for joint in motion.joints.values():
@@ -117,7 +121,9 @@ def loops(motion: Motion) -> list[Loop]:
 
 
 def _driven(motion: Motion) -> list[str]:
-    """Bodies that a driver turns against ground; of files that do not tell, those whose angle is the driver's."""
+    """Return bodies that a driver turns against ground; of files that do not tell, those whose angle is the
+    driver's.
+    """
     out = []
     for driver in motion.drivers.values():
         if driver.unit != "rad":
@@ -131,13 +137,13 @@ def _driven(motion: Motion) -> list[str]:
 
 
 def _turning(motion: Motion) -> list[str]:
-    """The crank of a motion that forces make."""
+    """Return the crank of a motion that forces make."""
     crank = crank_of(motion) if motion.analysis == "simulation" else None
     return [] if crank is None else [crank.body]
 
 
 def _normal(c: np.ndarray) -> np.ndarray:
-    """(2,) unit normal of the way that a slider goes on ground."""
+    """Return (2,) unit normal of the way that a slider goes on ground."""
     middle = c - c.mean(axis=0)
     along = np.linalg.svd(middle, full_matrices=False)[2][0]
     return np.array([-along[1], along[0]])
@@ -159,7 +165,7 @@ SAME = math.radians(1.0)
 
 
 def transmission_section(motion: Motion) -> list[str]:
-    """Section on every four-bar and slider-crank in the mechanism."""
+    """Return the section on every four-bar and slider-crank in the mechanism."""
     lines: list[str] = []
     for loop in loops(motion):
         lines += [*_loop_lines(loop, np.array(motion.time)), ""]
@@ -226,7 +232,7 @@ MOST = 24
 
 
 def marks(motion: Motion) -> list[tuple[float, str]]:
-    """Times (s) and words, in their order: dead points of driven cranks, and all events but the end."""
+    """Return times (s) and words, in their order: dead points of driven cranks, and all events but the end."""
     time = np.asarray(motion.time)
     moments = [(at, f"{loop.follower} turns back") for loop in loops(motion) for at, _ in loop.dead_points(time)]
     if motion.period:  # what is at the start of a period is at its end

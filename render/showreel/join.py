@@ -107,7 +107,7 @@ def write_subtitles(films: Sequence[Path], chapters: Sequence[Sequence[Clip]], f
 
 
 def captions_beside(film: Path) -> list[Caption]:
-    """The captions of the subtitle file beside a film; none where there is no such file.
+    """Return the captions of the subtitle file beside a film; none where there is no such file.
 
     Raises UserError for a file that is not SubRip.
     """
@@ -145,7 +145,7 @@ def write_sound(row: Sequence[Clip], fps: int, target: Path) -> bool:
 
 
 def _samples(clip: Clip) -> bytes:
-    """The samples of a film; empty of one without a sound."""
+    """Return the samples of a film; empty of one without a sound."""
     command = [ffmpeg(), "-v", "error", "-i", str(clip.path), "-map", "0:a:0?", "-ac", "2", "-ar", str(RATE)]
     done = subprocess.run([*command, "-f", "s16le", "-"], capture_output=True, timeout=CLIP_PATIENCE)
     return done.stdout if done.returncode == 0 else b""
@@ -197,7 +197,7 @@ def join(films: Sequence[Entry], preset: Preset, target: Path, scratch: Path) ->
 
 
 def _difference(clip: Clip, other: Clip) -> str:
-    """Why a film cannot be copied, in words."""
+    """Return why a film cannot be copied, in words."""
     ours, two = clip.parameters, other.parameters
     if clip.fps != other.fps:
         return f"{clip.fps} frames a second, not {other.fps}"
@@ -207,7 +207,7 @@ def _difference(clip: Clip, other: Clip) -> str:
 
 
 def _encoded_anew(clip: Clip, preset: Preset, fps: int, target: Path) -> Clip:
-    """The film at this size and rate."""
+    """Return the film at this size and rate."""
     wide, high = preset.width, preset.height
     fit = f"fps={fps},scale={wide}:{high}:force_original_aspect_ratio=decrease:flags=lanczos"
     fit += f",pad={wide}:{high}:(ow-iw)/2:(oh-ih)/2,setsar=0"
@@ -284,7 +284,9 @@ def _check(row: Sequence[Clip], films: Sequence[Path], part: Path, name: str, pr
 
 
 def _first_picture(film: Path, whole: bool = False) -> Image:
-    """The first picture; ``whole``: the film is decoded to its end. Raises UserError naming the film if that fails."""
+    """Return the first picture; ``whole``: the film is decoded to its end. Raises UserError naming the film if that
+    fails.
+    """
     from PIL import Image
 
     command = [encode.ffmpeg(), "-v", "error", *["-xerror"] * whole, "-i", str(film)]

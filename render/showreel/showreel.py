@@ -85,7 +85,7 @@ def _is_older(freshness: Freshness, name: str, film: Path, preset: Preset) -> bo
 
 
 def _film(name: str, preset: Preset, show: str, story: str) -> Path:
-    """The story of a mechanism if it is made and asked for, else its loop."""
+    """Return the story of a mechanism if it is made and asked for, else its loop."""
     explains = film_of(Out(name), preset.name, show)
     return explains if story == "explain" and explains.is_file() else _loop(name, preset, show)
 
@@ -101,7 +101,7 @@ def _loop(name: str, preset: Preset, show: str) -> Path:
 
 
 def title_of(name: str) -> Title:
-    """Words for a mechanism or variant; what it is comes from mechanism.py."""
+    """Return words for a mechanism or variant; what it is comes from mechanism.py."""
     owner, _, variant = name.partition("-")
     words = owner.replace("_", " ") + (f": {variant.replace('_', ' ')}" if variant else "")
     return Title(words[:1].upper() + words[1:], sentences(description(owner)))

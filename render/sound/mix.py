@@ -34,7 +34,7 @@ ABSOLUTE, RELATIVE = -70.0, -10.0
 
 @lru_cache(maxsize=1)
 def weighting(count: int) -> NDArray[np.complex128]:
-    """The K-weighting at the frequencies of the spectrum of a ring of so many samples."""
+    """Return the K-weighting at the frequencies of the spectrum of a ring of so many samples."""
     z = np.exp(-2j * np.pi * np.fft.rfftfreq(count))
     gain = np.ones_like(z)
     for above, below in (SHELF, HIGH_PASS):
@@ -43,8 +43,9 @@ def weighting(count: int) -> NDArray[np.complex128]:
 
 
 def energies(spectrum: NDArray[np.complex128], count: int) -> Array:
-    """(m,) mean squares of each ms of a ring of so many samples, K-weighted, both channels together, from its spectrum
-    (2, count // 2 + 1)."""
+    """Return (m,) mean squares of each ms of a ring of so many samples, K-weighted, both channels together, from its
+    spectrum (2, count // 2 + 1).
+    """
     square = (irfft(spectrum * weighting(count), count) ** 2).sum(axis=0)
     if count < STEP:
         return np.array([square.mean()])
@@ -53,7 +54,7 @@ def energies(spectrum: NDArray[np.complex128], count: int) -> Array:
 
 
 def of_energies(energy: Array, showings: int = 1, floor: float = ABSOLUTE) -> float:
-    """Integrated loudness (LUFS) of a ring with these mean squares a ms, played so many times; -inf of silence.
+    """Return integrated loudness (LUFS) of a ring with these mean squares a ms, played so many times; -inf of silence.
 
     ``floor`` is the absolute gate (LUFS), for waves that have no level yet.
     """
@@ -71,7 +72,7 @@ def of_energies(energy: Array, showings: int = 1, floor: float = ABSOLUTE) -> fl
 
 
 def loudness(wave: Array, showings: int = 1, floor: float = ABSOLUTE) -> float:
-    """Integrated loudness (LUFS) of a ring (2, N) that is played so many times."""
+    """Return integrated loudness (LUFS) of a ring (2, N) that is played so many times."""
     return of_energies(energies(rfft(wave), wave.shape[1]), showings, floor)
 
 
@@ -102,7 +103,7 @@ MOST, LESS = 36.0, 12.0
 
 
 def true_peaks(wave: Array) -> Array:
-    """(m,) largest size within each ms of a ring (2, N), also between the samples."""
+    """Return (m,) largest size within each ms of a ring (2, N), also between the samples."""
     count = wave.shape[1]
     steps = max(1, count // STEP)
     edges = (np.arange(steps + 1) * (count / steps)).astype(int)
@@ -115,7 +116,7 @@ def true_peaks(wave: Array) -> Array:
 
 
 def _upsampled(wave: Array) -> Array:
-    """(2, FINER n) the wave between its samples (2, n); its ends are not to be used."""
+    """Return (2, FINER n) the wave between its samples (2, n); its ends are not to be used."""
     count = wave.shape[1]
     spectrum = rfft(wave) * FINER
     if count % 2 == 0:
@@ -124,8 +125,8 @@ def _upsampled(wave: Array) -> Array:
 
 
 def levelled(spectrum: Spectrum, beside: Spectrum, count: int, wanted: float, ceiling: float, showings: int) -> Array:
-    """A ring (2, count) with this spectrum and that of what is heard ``beside`` it, (2, count // 2 + 1) each, together
-    at ``wanted`` LUFS, as far as peaks below ``ceiling`` (1 is full scale) let the former be.
+    """Return a ring (2, count) with this spectrum and that of what is heard ``beside`` it, (2, count // 2 + 1) each,
+    together at ``wanted`` LUFS, as far as peaks below ``ceiling`` (1 is full scale) let the former be.
 
     What is beside it counts: the second gate of the loudness depends on how quiet the rest is.
     """
@@ -148,7 +149,7 @@ def levelled(spectrum: Spectrum, beside: Spectrum, count: int, wanted: float, ce
 def _gain(
     peaks: Array, energy: Array, quiet: Array, wanted: float, plain: float, ceiling: float, showings: int
 ) -> Array:
-    """(m,) gain in each ms: ``plain`` without pressing any peak, then with as much more as it takes."""
+    """Return (m,) gain in each ms: ``plain`` without pressing any peak, then with as much more as it takes."""
     low, high, more, gain = -LESS, MOST, 0.0, peaks
     for _ in range(HALVINGS):
         factor = plain * 10 ** (more / 20)
@@ -162,7 +163,7 @@ def _gain(
 
 
 def _pressed(peaks: Array, ceiling: float) -> Array:
-    """(m,) gains with which no step of a ring of peaks is above the ceiling."""
+    """Return (m,) gains with which no step of a ring of peaks is above the ceiling."""
     gain = np.minimum(1.0, ceiling / np.maximum(peaks, 1e-12))
     reach = min(REACH, (len(gain) - 1) // 2)
     if not reach:
@@ -197,7 +198,7 @@ STREAMS = 100
 
 
 def air_noise(count: int) -> NDArray[np.complex128]:
-    """(2, count // 2 + 1) the spectrum of the room alone, at its level."""
+    """Return (2, count // 2 + 1) the spectrum of the room alone, at its level."""
     f = frequencies(count)
     slope = np.where(f > 20.0, 1 / np.sqrt(1 + (f / KNEE) ** 2), 0.0)
     middle, left, right = (shaped_spectrum(count, STREAMS + k, slope) for k in range(3))
@@ -207,7 +208,7 @@ def air_noise(count: int) -> NDArray[np.complex128]:
 
 
 def walls(count: int) -> NDArray[np.complex128]:
-    """(2, count // 2 + 1) what the room makes of a ring's spectrum: itself, and what the walls give back."""
+    """Return (2, count // 2 + 1) what the room makes of a ring's spectrum: itself, and what the walls give back."""
     length = round(1.2 * DECAY * RATE)
     fall = np.exp(-6.9 * np.arange(length) / RATE / DECAY)
     dull = 1 / (1 + (frequencies(length) / DULL) ** 2)
@@ -237,7 +238,7 @@ LOWEST = 28.0
 
 
 def mixed(stems: Mapping[str, Spectrum], count: int, showings: int) -> Array:
-    """(2, count) a ring that is played so many times, from spectra of stems (2, count // 2 + 1) in Pa."""
+    """Return (2, count) a ring that is played so many times, from spectra of stems (2, count // 2 + 1) in Pa."""
     high = 1 / (1 + (LOWEST / frequencies(count)) ** 8)
     loud = {name: of_energies(energies(stem * high, count), 4, QUIETEST) for name, stem in stems.items()}
     heard = {name: level for name, level in loud.items() if level > QUIETEST}

@@ -52,7 +52,9 @@ OTHER = (70e9, 0.01)
 
 
 def matter(material: str) -> Matter:
-    """How a material rings; one that is in no family rings as aluminium does, with its own density where it has one."""
+    """Return how a material rings; one that is in no family rings as aluminium does, with its own density where it has
+    one.
+    """
     modulus, loss = next((numbers for word, numbers in _FAMILIES.items() if material.startswith(word)), OTHER)
     known = MATERIALS.get(material)
     return Matter(modulus, known.density if known else 2700.0, loss)
@@ -107,7 +109,9 @@ class Modes:
     matter: Matter
 
     def response(self, count: int, rate: float) -> Array:
-        """(count,) what is heard at ``rate`` samples a second after a N s at sample 0; what is longer is folded in."""
+        """Return (count,) the wave that is heard at ``rate`` samples a second after a N s at sample 0; what is longer
+        is folded in.
+        """
         length = max(count, math.ceil(rate * 7.0 / float(self.decay.min())))
         t = np.arange(length) / rate
         sound = np.zeros(-(-length // count) * count)
@@ -142,7 +146,7 @@ def _of_piece(piece: Piece) -> Modes:
 
 
 def modes(frequency: Array, made_of: Matter, mass: float, area: float, size: float) -> Modes:
-    """Modes at these frequencies (Hz) of a body of that mass (kg) and area (m^2), as far as they are heard.
+    """Return modes at these frequencies (Hz) of a body of that mass (kg) and area (m^2), as far as they are heard.
 
     One that is too small or too large to ring where one hears it keeps its lowest or highest, at the end of the range.
     """
@@ -163,10 +167,10 @@ def modes(frequency: Array, made_of: Matter, mass: float, area: float, size: flo
 
 
 def of_power(power: Array, efficiency: float) -> Array:
-    """(n,) pressure (Pa) at 1 m of powers (W)."""
+    """Return (n,) pressure (Pa) at 1 m of powers (W)."""
     return np.sqrt(efficiency * np.maximum(power, 0.0) * AIR * SPEED_OF_SOUND / (4 * np.pi))
 
 
 def of_force(force: Array, frequency: Array) -> Array:
-    """(n,) pressure (Pa) at 1 m of forces (N) that change at a frequency (Hz)."""
+    """Return (n,) pressure (Pa) at 1 m of forces (N) that change at a frequency (Hz)."""
     return np.abs(force) * frequency / (2 * SPEED_OF_SOUND)

@@ -25,7 +25,7 @@ SOURCES = (impacts, knocks, mesh, gas, motor, sliding, springs)
 
 
 def sound_of(film: Film, time_map: TimeMap | None = None) -> Array:
-    """(2, n) the sound of a film at 48 kHz, 1 being full scale: that of a showing, as often as it is shown.
+    """Return (2, n) the sound of a film at 48 kHz, 1 being full scale: that of a showing, as often as it is shown.
 
     With a ``time_map`` it is that of another film of the same motion, once.
     """
@@ -39,7 +39,7 @@ def sound_of(film: Film, time_map: TimeMap | None = None) -> Array:
 
 
 def stems_of(setting: Setting) -> dict[str, Spectrum]:
-    """(2, N // 2 + 1) the spectrum of what each source of a machine is heard as in a showing (Pa at 1 m)."""
+    """Return (2, N // 2 + 1) the spectrum of what each source of a machine is heard as in a showing (Pa at 1 m)."""
     desk = Desk(setting)
     for source in SOURCES:
         if source.NAME not in setting.film.shot.sound.without:
@@ -63,7 +63,7 @@ class Heard(NamedTuple):
 
 
 def sound_of_all(machines: Sequence[Heard]) -> Array:
-    """(2, n) the sound of machines whose time maps are of one length, at 48 kHz, 1 being full scale.
+    """Return (2, n) the sound of machines whose time maps are of one length, at 48 kHz, 1 being full scale.
 
     Sources of one kind are balanced and levelled as one, so the louder machine is the louder one in the film.
     """
@@ -81,7 +81,7 @@ FULL = 32767
 
 
 def wav(sound: NDArray[np.float64]) -> bytes:
-    """The file of waves (2, n), 1 being full scale; what is beyond is cut."""
+    """Return the file of waves (2, n), 1 being full scale; what is beyond is cut."""
     samples = np.rint(np.clip(sound, -1.0, 1.0) * FULL).astype("<i2")
     buffer = io.BytesIO()
     with wave.open(buffer, "wb") as file:

@@ -17,17 +17,17 @@ Spectrum = NDArray[np.complex128]
 
 
 def rfft(wave: Array) -> Spectrum:
-    """(..., n // 2 + 1) the spectrum of rings (..., n)."""
+    """Return (..., n // 2 + 1) the spectrum of rings (..., n)."""
     return np.asarray(scipy.fft.rfft(wave))
 
 
 def irfft(spectrum: Spectrum, count: int) -> Array:
-    """(..., count) the rings with these spectra (..., count // 2 + 1)."""
+    """Return (..., count) the rings with these spectra (..., count // 2 + 1)."""
     return np.asarray(scipy.fft.irfft(spectrum, count))
 
 
 def quick_length(count: int) -> int:
-    """The least number from ``count`` on that 2, 3 and 5 alone divide."""
+    """Return the least number from ``count`` on that 2, 3 and 5 alone divide."""
     return int(scipy.fft.next_fast_len(count, real=True) or count)
 
 
@@ -45,18 +45,18 @@ OCTAVE = 0.5
 
 
 def uniform(count: int, stream: int) -> Array:
-    """(count,) numbers 0 .. 1 of a stream."""
+    """Return (count,) numbers 0 .. 1 of a stream."""
     raw = np.random.Philox(key=[KEY, stream]).random_raw(count)
     return (raw >> np.uint64(11)).astype(np.float64) * 2.0**-53
 
 
 def shaped(count: int, stream: int, amplitude: Array) -> Array:
-    """(count,) noise of rms 1 whose spectrum has these amplitudes (count // 2 + 1,)."""
+    """Return (count,) noise of rms 1 whose spectrum has these amplitudes (count // 2 + 1,)."""
     return irfft(shaped_spectrum(count, stream, amplitude), count)
 
 
 def shaped_spectrum(count: int, stream: int, amplitude: Array) -> NDArray[np.complex128]:
-    """(count // 2 + 1,) its spectrum; the rms is that of Parseval's theorem."""
+    """Return (count // 2 + 1,) its spectrum; the rms is that of Parseval's theorem."""
     spectrum = amplitude.astype(np.complex128) * np.exp(2j * np.pi * uniform(len(amplitude), stream))
     spectrum[0] = 0.0
     if count % 2 == 0:
@@ -67,10 +67,10 @@ def shaped_spectrum(count: int, stream: int, amplitude: Array) -> NDArray[np.com
 
 
 def octave_noise(count: int, centre: float, stream: int) -> Array:
-    """(count,) noise of rms 1 about a frequency (Hz)."""
+    """Return (count,) noise of rms 1 about a frequency (Hz)."""
     return shaped(count, stream, np.exp(-0.5 * (np.log2(frequencies(count) / centre) / OCTAVE) ** 2))
 
 
 def frequencies(count: int) -> Array:
-    """Frequencies (Hz) of the spectrum of a ring; the first is near 0 and not 0."""
+    """Return frequencies (Hz) of the spectrum of a ring; the first is near 0 and not 0."""
     return np.maximum(np.fft.rfftfreq(count, 1 / RATE), 1e-3)

@@ -27,7 +27,7 @@ class Names:
         self._taken: set[str] = set()
 
     def path(self, name: str) -> str:
-        """The path of a new prim for something that is called so: ``rod 1`` becomes ``rod_1``."""
+        """Return the path of a new prim for something that is called so: ``rod 1`` becomes ``rod_1``."""
         wish = valid = Tf.MakeValidIdentifier(name)
         number = 1
         while valid in self._taken:
@@ -81,7 +81,7 @@ def _op(thing: UsdGeom.Xformable, path: str) -> UsdGeom.XformOp:
 
 
 def _plain(track: Track) -> list[Any]:
-    """Values as USD takes them."""
+    """Return values as USD takes them."""
     if track.path == "angle":
         return [math.degrees(angle) for angle in track.values]
     return [Gf.Vec3d(*value) for value in track.values.tolist()]
@@ -101,7 +101,7 @@ class Surfaces:
         self._made = [(_material(stage, names.path(made["name"]), made), _colour(made)) for made in materials]
 
     def of(self, number: int) -> tuple[UsdShade.Material, Colour]:
-        """A material by its number, and its colour (linear)."""
+        """Return a material by its number, and its colour (linear)."""
         return self._made[number]
 
 
@@ -141,7 +141,7 @@ class Meshes:
         self._stage, self._document, self._surfaces = stage, document, surfaces
 
     def add(self, path: str, primitive: dict[str, Any]) -> UsdGeom.Mesh:
-        """A part of a mesh of the document, with its material."""
+        """Return a part of a mesh of the document, with its material."""
         corners = self._document.values(primitive["indices"]).astype(np.int32)
         mesh = UsdGeom.Mesh.Define(self._stage, path)
         mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
@@ -165,7 +165,7 @@ class Meshes:
             _shape(mesh, codes[k], *blended)
 
     def _arrays(self, attributes: dict[str, int]) -> list[np.ndarray]:
-        """Points and normals (n, 3)."""
+        """Return points and normals (n, 3)."""
         return [self._document.values(attributes[key]) for key in ("POSITION", "NORMAL")]
 
 
@@ -188,7 +188,7 @@ def _shape(mesh: UsdGeom.Mesh, when: Any, points: Floats, normals: Floats) -> No
 
 
 def stage_of(film: Film) -> Usd.Stage:
-    """The stage, in memory."""
+    """Return the stage, in memory."""
     document, animation = scene_of(film, pieces_of(film), front_of(film))
     clock = Clock(np.asarray(film.motion.time))
     stage = Usd.Stage.CreateInMemory()

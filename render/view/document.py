@@ -27,7 +27,7 @@ TYPES = {"float32": "f4", "float64": "f8", "int8": "i1", "uint8": "u1", "int16":
 
 
 def encode(payload: dict[str, Any], compress: bool = True) -> bytes:
-    """The bytes of dicts, lists, strings, numbers and arrays (flattened); the same each time."""
+    """Return the bytes of dicts, lists, strings, numbers and arrays (flattened); the same each time."""
     blocks = bytearray()
 
     def plain(value: Any) -> Any:
@@ -67,7 +67,7 @@ TOLD = {"ink": "ink", "paper": "paper"}
 
 
 def sketch(skeleton: dict[str, Any]) -> str:
-    """An ``<svg>`` of what payload.skeleton says; marks that are shown on demand are left out."""
+    """Return an ``<svg>`` of what payload.skeleton says; marks that are shown on demand are left out."""
     pad = PAD * skeleton["unit"]
     low = [value - pad for value in skeleton["low"]]
     size = [high + pad - least for high, least in zip(skeleton["high"], low, strict=True)]
@@ -125,7 +125,8 @@ FILE = """<!doctype html>
 def document(
     title: str, payload: bytes, bundle: Bundle, more: str = "", connect: str = "'none'", sketch: str = ""
 ) -> bytes:
-    """The file's bytes. ``payload``: from binary.encode; ``sketch``: an SVG that is seen until the script has run.
+    """Return the file's bytes. ``payload``: from binary.encode; ``sketch``: an SVG that is seen until the script has
+    run.
 
     A live page adds ``more`` HTML before the script, which may set window.mbsdLive (page/src/main.js), and ``connect``:
     the addresses that it may speak to, as a Content-Security-Policy says.

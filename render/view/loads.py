@@ -65,7 +65,7 @@ def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
 
 
 def middle(first: Array, second: Array) -> Array:
-    """(3,) halfway between the two nearest points of triangles (n, 3, 3) and (m, 3, 3)."""
+    """Return (3,) halfway between the two nearest points of triangles (n, 3, 3) and (m, 3, 3)."""
     size = max(float(np.ptp(faces.reshape(-1, 3), axis=0).max()) for faces in (first, second))
     # Far triangles of a large piece need no points: those within reach of the other's box alone.
     near = [_beside(faces, other, size / 4) for faces, other in ((first, second), (second, first))]
@@ -83,7 +83,7 @@ def _beside(faces: Array, other: Array, reach: float) -> Array:
 
 
 def _points(triangles: Array, apart: float) -> Array:
-    """(k, 3) corners, and places inside of triangles that are larger than ``apart``."""
+    """Return (k, 3) corners, and places inside of triangles that are larger than ``apart``."""
     edges = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
     parts = np.clip(np.ceil(edges / apart), 1, 200).astype(int)
     total = int(((parts + 1) * (parts + 2) // 2).sum())
@@ -106,7 +106,7 @@ def _placed(triangles: Array, pose: tuple[float, float, float]) -> Array:
 
 
 def _seen(x: float, y: float, pose: tuple[float, float, float]) -> tuple[float, float]:
-    """A place of the world in a body's frame."""
+    """Return a place of the world in a body's frame."""
     u, v, c, s = x - pose[0], y - pose[1], math.cos(pose[2]), math.sin(pose[2])
     return c * u + s * v, c * v - s * u
 
@@ -127,7 +127,7 @@ PAIRS = 60
 
 
 def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> dict[str, Any]:
-    """Straight arrows of all quantities; ``size`` (m) of the machine, ``heights`` where it has parts."""
+    """Return straight arrows of all quantities; ``size`` (m) of the machine, ``heights`` where it has parts."""
     arrows = Arrows(np.asarray(motion.time), vectors(motion, ALL), size)
     return {
         "full": FULL * size,
@@ -151,7 +151,7 @@ def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> di
 
 
 def arcs_of(motion: Motion, size: float, heights: Heights | None = None) -> dict[str, Any]:
-    """Curved arrows: torques of joints, drivers, springs, loads."""
+    """Return curved arrows: torques of joints, drivers, springs, loads."""
     least = rounding(vectors(motion, ("forces", "reactions")), size)
     arcs = Arcs(np.asarray(motion.time), torques(motion, ALL), size, least)
     return {
@@ -174,7 +174,7 @@ def arcs_of(motion: Motion, size: float, heights: Heights | None = None) -> dict
 
 
 def clearance_of(clearance: Clearance, film: Film | None = None) -> dict[str, Any]:
-    """The nearest pairs; with their places where the machine has parts."""
+    """Return the nearest pairs; with their places where the machine has parts."""
     places = gap_places(film, clearance) if film else [None] * len(clearance.pairs)
     return {
         "limit": clearance.limit,

@@ -63,7 +63,7 @@ EFFORTS = ("effort", "normal", "friction")
 
 
 def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bool = True) -> dict[str, Any]:
-    """Everything but the parts; arrows and arcs only if ``arrows``.
+    """Return everything but the parts; arrows and arcs only if ``arrows``.
 
     ``motion`` may have more bodies than the skeleton: rods of the parts.
     """
@@ -130,8 +130,8 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
 
 
 def skeleton(moving: Moving) -> dict[str, Any]:
-    """Strokes {points (2 n,), closed, ink, fill, alpha, width, order, dash, sign, carrier, shapes (k, 2 n)}, in the
-    order in which they are drawn; names {text, at, clearance, ink, carrier}; carriers {kind, ends: [{body, x, y}]}.
+    """Return strokes {points (2 n,), closed, ink, fill, alpha, width, order, dash, sign, carrier, shapes (k, 2 n)}, in
+    the order in which they are drawn; names {text, at, clearance, ink, carrier}; carriers {kind, ends: [{body, x, y}]}.
     """
     return {
         "unit": moving.unit,
@@ -157,7 +157,7 @@ def skeleton(moving: Moving) -> dict[str, Any]:
 
 
 def title_of(mechanism: str) -> str:
-    """The name in words: ``Four bar``, ``Slider crank: no gravity``."""
+    """Return the name in words: ``Four bar``, ``Slider crank: no gravity``."""
     words = mechanism.replace("_", " ").replace("-", ": ")
     return words[:1].upper() + words[1:]
 
@@ -188,7 +188,7 @@ def couple_of(motion: Motion) -> dict[str, Any] | None:
 
 
 def frame_of(motion: Motion) -> dict[str, Any] | None:
-    """Force of inertia, centre of mass, and the largest size of each harmonic."""
+    """Return the force of inertia, centre of mass, and the largest size of each harmonic."""
     vibration = motion.vibration
     if vibration is None or motion.couple is None:
         return None
@@ -259,7 +259,7 @@ def _stroke(stroke: Stroke) -> dict[str, Any]:
 
 
 def read_payload(out: Out) -> dict[str, Any]:
-    """The whole payload of a mechanism. Raises UserError for files that do not fit together."""
+    """Return the whole payload of a mechanism. Raises UserError for files that do not fit together."""
     motion, skeleton = read_motion(out.motion, out.name), read_skeleton(out.skeleton)
     if skeleton.moving is None:
         raise UserError(f"{out.name}: {out.skeleton} is of an earlier version; run {to_run('solve', out.name)} again")

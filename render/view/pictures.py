@@ -21,7 +21,7 @@ MINUTES = 5
 
 
 def chromium() -> str | None:
-    """The browser's program: $CHROMIUM, or the first one in PATH."""
+    """Return the browser's program: $CHROMIUM, or the first one in PATH."""
     return missing.program("chromium")
 
 
@@ -37,14 +37,16 @@ def version_of(browser: str) -> str:
 
 
 def stage_of(out: Out, version: str) -> Stage:
-    """The picture's stage: the page's bytes, the browser's version and the script that takes the picture decide."""
+    """Return the picture's stage: the page's bytes, the browser's version and the script that takes the picture
+    decide.
+    """
     scripts = [PAGE / "browser" / name for name in ("picture.cjs", "browser.cjs")]
     key = key_of(out.view, version, *scripts, *(PAGE / name for name in LOCKED), LOOKS)
     return Stage(out, "view_picture", key, [picture_of(out)])
 
 
 def picture_of(out: Out) -> Path:
-    """The file."""
+    """Return the file."""
     return out.view.with_suffix(".png")
 
 

@@ -49,7 +49,9 @@ class Meshes:
         self._known: dict[str, int] = {}
 
     def add(self, shape: Shape) -> tuple[int, list[float]]:
-        """Number of the mesh of a shape (positions, normals, corners), and where its lowest corner is (m)."""
+        """Return the number of the mesh of a shape (positions, normals, corners), and where its lowest corner is
+        (m).
+        """
         positions, normals, corners = shape
         low = positions.min(axis=0)
         whole = np.round((positions - low) / self.step).astype(np.int64)
@@ -67,7 +69,7 @@ class Meshes:
 
 
 def shapes(files: list[Path]) -> Iterator[Shape]:
-    """Shapes of STL files, in their order; one that is another moved is worked out once."""
+    """Yield shapes of STL files, in their order; one that is another moved is worked out once."""
     known: dict[bytes, tuple[np.ndarray, Shape]] = {}
     for file in files:
         triangles = read_triangles(file)
@@ -80,7 +82,7 @@ def shapes(files: list[Path]) -> Iterator[Shape]:
 
 
 def _sorted(triangles: np.ndarray) -> np.ndarray:
-    """Each with its least corner first, in the order of these; the side they show stays."""
+    """Return each with its least corner first, in the order of these; the side they show stays."""
     least = triangles.argmin(axis=1)
     turned = np.take_along_axis(triangles, (least[:, None] + np.arange(3)) % 3, axis=1)
     return turned[np.lexsort(turned.T[::-1])]
@@ -95,7 +97,7 @@ def _differences(triangles: np.ndarray, count: int) -> np.ndarray:
 
 
 def _octahedral(normals: np.ndarray) -> np.ndarray:
-    """(n, 2) int8 of unit vectors (n, 3)."""
+    """Return (n, 2) int8 of unit vectors (n, 3)."""
     x, y, z = (normals / np.abs(normals).sum(axis=1, keepdims=True)).T
     below = z < 0
     u = np.where(below, (1 - np.abs(y)) * np.where(x >= 0, 1, -1), x)
@@ -139,7 +141,7 @@ def as_shown(look: Look, stands: bool) -> dict[str, Any]:
 
 
 def _box(box: Softbox, times: float) -> list[Any]:
-    """Its radiance is what a lamp of its power and size has; one that is too bright is larger instead."""
+    """Return a painted lamp with the radiance of its power and size; one that is too bright is larger instead."""
     wide, high = box.size
     radiance = times * box.power / (math.pi * wide * high)
     larger = min(LARGER, math.sqrt(max(1.0, radiance / BRIGHTEST)))
@@ -169,7 +171,7 @@ COAT = {"anodised": 0.18, "plastic": 0.25, "wood": 0.1}
 
 
 def with_parts(payload: dict[str, Any], film: Film) -> dict[str, Any]:
-    """The payload of the film's motion with its parts, and arrows and trails at their heights."""
+    """Return the payload of the film's motion with its parts, and arrows and trails at their heights."""
     size, heights = film.space.size, film.trails.heights
     trails = [
         record | {"z": heights[trail.point], "radius": trail.radius * size}

@@ -148,7 +148,7 @@ def refuse_letters(name: str, word: str) -> None:
 
 
 def marked(shape: cq.Workplane, plan: Plan, body: str, thickness: float) -> cq.Workplane:
-    """The plate of ``body``, z = 0 to ``thickness``, with its words.
+    """Return the plate of ``body``, z = 0 to ``thickness``, with its words.
 
     Raises UserError naming word, body and place where a word is not wholly on the plate.
     """
@@ -186,8 +186,8 @@ MOST_LETTERS = 3
 
 
 def base(plan: Plan, engraved_too: bool = True) -> list[Solid]:
-    """The plate, the ground's main piece, ``engraved_too`` unless nobody is to see it; screws and feet, or spacers to a
-    wall, where it is on no stand. Nothing where the ground itself is all that one needs.
+    """Return the plate, the ground's main piece, ``engraved_too`` unless nobody is to see it; screws and feet, or
+    spacers to a wall, where it is on no stand. Nothing where the ground itself is all that one needs.
     """
     back = back_plate(plan)
     if back is None:
@@ -212,7 +212,7 @@ def base(plan: Plan, engraved_too: bool = True) -> list[Solid]:
 
 
 def back_plate(plan: Plan) -> BackPlate | None:
-    """The plate (rmm) as its mount has it; None where the ground itself is all that one needs."""
+    """Return the plate (rmm) as its mount has it; None where the ground itself is all that one needs."""
     if plan.mount.kind == "ground" and all(stand.road for stand in plan.feet) and not plan.base_under:
         return None
     upright, sizes = Upright.of(plan.mount), plan.layout.sizes
@@ -232,7 +232,7 @@ class _Screw:
 
 
 def _corner_screw(sizes: Sizes) -> _Screw:
-    """The standard screw next to 5 rmm; of 5 rmm where none is near."""
+    """Return the standard screw next to 5 rmm; of 5 rmm where none is near."""
     nominal = min(SOCKET, key=lambda size: abs(size - 5.0 * sizes.finished))
     diameter = nominal / sizes.finished
     room = head_diameter(nominal) / sizes.finished + 0.5, diameter + 0.4
@@ -246,7 +246,7 @@ def _corner_screw(sizes: Sizes) -> _Screw:
 
 
 def _extent(plan: Plan, upright: Upright) -> tuple[float, float, float, float]:
-    """Extent of the plate: round all feet; without any, under what moves; and as far as one wishes."""
+    """Return the extent of the plate: round all feet; without any, under what moves; and as far as one wishes."""
     if plan.feet:
         places = np.array([[stand.x, stand.y] for stand in plan.feet])
     else:
@@ -281,7 +281,7 @@ def _seen(stand: Foot, upright: Upright) -> Foot:
 
 
 def _letters(stand: Foot, middle: float, feet: Sequence[Foot]) -> list[cq.Face]:
-    """The joint's name beside its foot, away from the others, if it is short and its place is free."""
+    """Return the joint's name beside its foot, away from the others, if it is short and its place is free."""
     if not 0 < len(stand.label) <= MOST_LETTERS or any(letter not in LETTERS for letter in stand.label):
         return []
     aside = stand.radius + 10.5 + 3.0 * (len(stand.label) - 1) + (4.0 if stand.dial else 0.0)
@@ -292,7 +292,7 @@ def _letters(stand: Foot, middle: float, feet: Sequence[Foot]) -> list[cq.Face]:
 
 
 def _ruler(sizes: Sizes, reach: float, x: float, y0: float) -> list[cq.Face]:
-    """A rule in millimetres of the finished piece, its strokes 3 to 8 rmm apart."""
+    """Return a rule in millimetres of the finished piece, its strokes 3 to 8 rmm apart."""
     step = next(
         s for power in range(-3, 6) for s in (10.0**power, 5 * 10.0**power) if s * 0.999 / sizes.finished >= 3.0
     )
@@ -311,7 +311,7 @@ def _ruler(sizes: Sizes, reach: float, x: float, y0: float) -> list[cq.Face]:
 
 
 def built(plan: Plan, heights: Heights, engraved_too: bool = True) -> dict[str, list[Solid]]:
-    """All solids by body, in mm; ``engraved_too``: the base with its names, rule and dial.
+    """Return all solids by body, in mm; ``engraved_too``: the base with its names, rule and dial.
 
     Raises UserError where two bores of a body meet.
     """
@@ -331,12 +331,12 @@ def built(plan: Plan, heights: Heights, engraved_too: bool = True) -> dict[str, 
 
 
 def fitted(bodies: dict[str, list[Solid]]) -> dict[str, list[Solid]]:
-    """The same, marked as pieces whose sizes were chosen for what is made."""
+    """Return the same, marked as pieces whose sizes were chosen for what is made."""
     return {body: [replace(solid, fitted=True) for solid in solids] for body, solids in bodies.items()}
 
 
 def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
-    """All that is one piece in the layer of a body, and its number of through holes."""
+    """Return all that is one piece in the layer of a body, and its number of through holes."""
     if body in plan.wheels:
         return _geared(plan, body, thickness)
     eyes = plan.eyes.get(body, [])
@@ -360,7 +360,7 @@ def _plate(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
 
 
 def _geared(plan: Plan, body: str, thickness: float) -> tuple[cq.Workplane, int]:
-    """The plate of a body with teeth: a wheel that carries its eyes, or a wheel and a plate round its eyes."""
+    """Return the plate of a body with teeth: a wheel that carries its eyes, or a wheel and a plate round its eyes."""
     eyes, own_wheel = plan.eyes.get(body, []), plan.wheels[body]
     wheel, holes = shape_of(own_wheel, thickness, [(x - own_wheel.x, y - own_wheel.y, eye) for x, y, eye in eyes])
     wheel = placed(wheel, own_wheel.x, own_wheel.y)
@@ -384,7 +384,7 @@ def _is_held(eye: PlacedEye, circle: Circle) -> bool:
 
 
 def _blanks(plan: Plan, body: str, eyes: list[PlacedEye]) -> list[PlacedEye]:
-    """Places that the outline reaches without an eye there."""
+    """Return places that the outline reaches without an eye there."""
     return [
         (anchor.x, anchor.y, Eye(anchor.radius, 0.0))
         for anchor in plan.layout.anchors[body]

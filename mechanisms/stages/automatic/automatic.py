@@ -210,7 +210,7 @@ class Automatic:
 
     @cached_property
     def along(self) -> Along | None:
-        """The plan of a machine whose bodies have places along the normal of the plane; None of others."""
+        """The plan of a machine whose bodies have places along the normal of the plane; None for others."""
         if not has_places(self.m):
             return None
         plan = Along(self.m, self.solution, self.wishes(), frozenset(self._left_out), frozenset(self._flywheels))
@@ -258,8 +258,9 @@ class Automatic:
         return heights_of
 
     def solids(self, engraved_too: bool = True) -> Bodies:
-        """Every piece by the body it moves with, in mm; the first of each list is the body's main piece. ``on_stand()``
-        adds a stand. ``engraved_too``: the base with its names, rule and dial, which cost as much as a link.
+        """Return every piece by the body it moves with, in mm; the first of each list is the body's main piece.
+        ``on_stand()`` adds a stand. ``engraved_too``: the base with its names, rule and dial, which cost as much as a
+        link.
         """
         from mechanisms.stages.automatic.assembly import back_plate, built, fitted
         from shared.shapes.bodies import Bodies
@@ -307,7 +308,7 @@ class Automatic:
             raise UserError(f"{self.m.name}: {method} is for plates in layers, and bodies here have places z; {remedy}")
 
     def span(self, body: str) -> tuple[float, float]:
-        """Lower and upper face (mm) of the plate of ``body``."""
+        """Return the lower and upper face (mm) of the plate of ``body``."""
         self._known(body)
         if self.along is not None:
             return self.along.span(body)
@@ -315,7 +316,7 @@ class Automatic:
         return self.heights.bottom(body) * scale, self.heights.top(body) * scale
 
     def plan(self) -> Plan:
-        """Eyes, feet and hardware, before plates and base are built."""
+        """Return eyes, feet and hardware, before plates and base are built."""
         from mechanisms.stages.automatic.layout.plan import Plan
 
         rods = dict.fromkeys(self.layout.rods, ROD)
@@ -337,7 +338,7 @@ class Automatic:
         return decided(self._layout, self.wishes(), self._layers)
 
     def wishes(self) -> list[Sizes]:
-        """Sizes of pins and all that goes with them, the most wanted first."""
+        """Return sizes of pins and all that goes with them, the most wanted first."""
         scale, thinnest = wished_scale(), THINNEST_ALONG if has_places(self.m) else THINNEST
         if scale is None and self._pin is not None:
             return [of_pin(self._pin, self._fit)]
@@ -374,8 +375,8 @@ class Automatic:
 def automatic(
     m: Mechanism, pin: float | None = None, solution: Solution | None = None, fit: Fit | None = None
 ) -> Automatic:
-    """Parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder,
-    or of its variant that is made.
+    """Return parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder, or of its
+    variant that is made.
 
     ``pin``: diameter (mm) of its pins; by default it follows from the links. ``fit``: clearances (mm), such as
     ``Fit(running=0.3)`` for printed parts; by default they follow from the pins. Raises UserError where it cannot move.

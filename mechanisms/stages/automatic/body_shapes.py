@@ -47,7 +47,7 @@ CORNER = 2.5
 
 
 def body_shape(eyes: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, int]:
-    """The plate from z = 0 up, in the body's frame, and its number of through holes."""
+    """Return the plate from z = 0 up, in the body's frame, and its number of through holes."""
     points = np.array([[x, y] for x, y, _ in eyes])
     if len(eyes) == 1:
         return _round(eyes[0], [], thickness), int(eyes[0][2].bore > 0)
@@ -77,13 +77,13 @@ def _outermost(corners: list[int], eyes: list[PlacedEye]) -> list[int]:
 
 
 def _round(eye: PlacedEye, inner: list[PlacedEye], thickness: float) -> cq.Workplane:
-    """A plate that one eye fills."""
+    """Return a plate that one eye fills."""
     x, y, own = eye
     return plate_link([eye, (x, y + 0.5 * own.radius, Eye(own.radius, 0.0))], thickness, inner=inner)
 
 
 def _bar(ends: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> cq.Workplane:
-    """A waisted bar with I section where it is long enough, else one with straight sides."""
+    """Return a waisted bar with I section where it is long enough, else one with straight sides."""
     (x0, y0, start), (x1, y1, end) = ends
     length, turn = math.hypot(x1 - x0, y1 - y0), math.atan2(y1 - y0, x1 - x0)
     c, s = math.cos(turn), math.sin(turn)
@@ -100,13 +100,15 @@ def _bar(ends: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> cq.
 
 
 def first_made(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane:
-    """The first shape that has room and that the CAD kernel can make; the last one must."""
+    """Return the first shape that has room and that the CAD kernel can make; the last one must."""
     made = first_sound(ways[:-1])
     return ways[-1]() if made is None else made
 
 
 def _plate(corners: list[PlacedEye], inner: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, int]:
-    """A plate with curved sides and a window where it is wide, else one with straight sides; its number of windows."""
+    """Return a plate with curved sides and a window where it is wide, else one with straight sides; its number of
+    windows.
+    """
     points = np.array([[x, y] for x, y, _ in corners])
     sides = np.roll(points, -1, axis=0) - points
     lengths = np.linalg.norm(sides, axis=1)
@@ -125,7 +127,7 @@ def _plate(corners: list[PlacedEye], inner: list[PlacedEye], thickness: float) -
 
 
 def _rims(corners: list[PlacedEye], points: np.ndarray, lengths: np.ndarray, waist: float) -> list[float] | None:
-    """Insets of the window's sides that leave an even band round it and enough round each eye; None if it is too
+    """Return insets of the window's sides that leave an even band round it and enough round each eye; None if it is too
     small.
     """
     radii = np.array([eye.radius for _, _, eye in corners])
@@ -151,7 +153,7 @@ ROD_WIDTH = 0.85
 
 
 def rod_shape(eyes: list[PlacedEye], thickness: float) -> tuple[cq.Workplane, int]:
-    """A slim straight shaft between two eyes, from z = 0 up, and its number of through holes."""
+    """Return a slim straight shaft between two eyes, from z = 0 up, and its number of through holes."""
     (_, _, start), (length, _, end) = sorted(eyes, key=lambda eye: eye[0])
     widths = ROD_WIDTH * start.radius, ROD_WIDTH * end.radius
     straight: list[tuple[float, float, Eye]] = [(0.0, 0.0, start), (length, 0.0, end)]
@@ -196,7 +198,7 @@ class _Yoke:
         return self.others[0][0] >= LONG * self.wall and abs(self.others[0][1]) + self.arm <= self.half
 
     def flat(self, thickness: float, edge: float) -> cq.Workplane:
-        """Wall of the slot, arm and filled corners, with rounded edges."""
+        """Return the wall of the slot, arm and filled corners, with rounded edges."""
         (h, e, end), w = self.others[0], self.arm
         shape = extruded(outline.hull([(0.0, -self.half, self.wall), (0.0, self.half, self.wall)]), thickness)
         arm = extruded(outline.bar(h, (self.wall, end), (2 * w, 2 * w), END_FILLET), thickness)
@@ -220,7 +222,7 @@ class _Yoke:
 
 
 def yoke_shape(eyes: list[PlacedEye], ends: list[tuple[float, float]], thickness: float) -> cq.Workplane | None:
-    """The plate from z = 0 up, in the body's frame; ``ends`` are the middles of the slot's ends, an eye at each.
+    """Return the plate from z = 0 up, in the body's frame; ``ends`` are the middles of the slot's ends, an eye at each.
 
     None where other eyes than one or two are beside the slot, or these lie so that a T is no better than a plate.
     """
@@ -264,22 +266,22 @@ class Joined:
     sharp: bool
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """None: the plate need not reach round it."""
+        """Return an empty list: the plate need not reach round it."""
         return []
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Its convex hull at the height of the plate."""
+        """Return its convex hull at the height of the plate."""
         places = [self.outline.positionAt(k / SAMPLES) for k in range(SAMPLES)]
         points = np.array([(place.x, place.y) for place in places])
         shape = Rounded(convex_hull(points / layout.sizes.scale), 0.0)
         return [Item(f"the outline of {self.body}", self.body, shape, Reach((self.body,)), source=self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Nothing."""
+        """Return an empty list."""
         return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """A part of the plate."""
+        """Build a part of the plate."""
         scale = plan.layout.sizes.scale
         shape = extruded(self.outline, heights.thickness * scale, holes=self.holes)
         shape = shape.newObject([shape.val().scale(1 / scale)])

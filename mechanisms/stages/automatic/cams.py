@@ -99,14 +99,14 @@ class Cam:
         return Slot(self.name, self.cam, self.follower, np.array([self.centre]), self.at[:2])
 
     def shoe(self) -> list[tuple[float, float]]:
-        """Middles of the shoe's round ends, in the follower's frame."""
+        """Return middles of the shoe's round ends, in the follower's frame."""
         x, y, angle = self.at
         along, up = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
         ends = [np.array([x, y]) + s * along + (self.clear + SHOE) * up for s in self.face]
         return [(float(end[0]), float(end[1])) for end in ends]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """The cam's hub; an eye that holds the roller's pin, or a plate behind the shoe."""
+        """Return the cam's hub; an eye that holds the roller's pin, or a plate behind the shoe."""
         eye = layout.sizes.eye
         anchors = [Anchor(self.cam, *self.centre, eye)]
         if self.roller is not None:
@@ -114,7 +114,7 @@ class Cam:
         return [*anchors, *(Anchor(self.follower, x, y, SHOE + 1.0) for x, y in self.shoe())]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The cam, and what touches it at its height."""
+        """Yield the cam, and what touches it at its height."""
         both = frozenset((self.cam, self.follower))
         hull = around([(x, y) for x, y in evenly(self.outline, HULL)], 0.3)
         yield Item(f"the cam of {self.name}", self.cam, hull, Reach((self.cam,)), source=self)
@@ -132,13 +132,13 @@ class Cam:
 
 @kind("cam_roller")
 def rollers(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint."""
+    """Return one feature for each joint."""
     return [_cam(m, joint, layout) for joint in joints]
 
 
 @kind("cam_flat")
 def faces(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint."""
+    """Return one feature for each joint."""
     return [_cam(m, joint, layout) for joint in joints]
 
 
@@ -162,7 +162,7 @@ def _cam(m: Mechanism, joint: Joint, layout: Layout) -> Cam:
 
 
 def pushing_cam(touch: Joint, layout: Layout) -> list[Feature]:
-    """The cam of a contact whose closed curve pushes a disc that may leave it; none if the disc runs inside.
+    """Return the cam of a contact whose closed curve pushes a disc that may leave it; none if the disc runs inside.
 
     A point is the bare end of a pin, and the cam is smaller by that pin's radius. Raises UserError where nothing of
     the cam would be left.
@@ -183,7 +183,7 @@ def pushing_cam(touch: Joint, layout: Layout) -> list[Feature]:
 
 
 def with_room(path: np.ndarray, back: float, touch: Joint | Force, layout: Layout) -> np.ndarray:
-    """A closed curve set back (rmm) from what touches it, because that is larger than in the model.
+    """Return a closed curve set back (rmm) from what touches it, because that is larger than in the model.
 
     Raises UserError where nothing of it would be left.
     """
@@ -226,7 +226,7 @@ def _profile(joint: Joint) -> CamProfile:
 
 @extent("cam_roller")
 def roller_extent(joint: Joint, solution: Solution) -> Extent:
-    """Disc and roller; a hub in the base circle, a pin in the roller."""
+    """Return the disc and roller; a hub in the base circle, a pin in the roller."""
     profile = _profile(joint)
     base, roller = profile.sizes["base_radius"], profile.sizes["roller_radius"]
     farthest = float(np.hypot(*profile.outline.T).max())
@@ -235,7 +235,7 @@ def roller_extent(joint: Joint, solution: Solution) -> Extent:
 
 @extent("cam_flat")
 def face_extent(joint: Joint, solution: Solution) -> Extent:
-    """The disc; a hub in its base circle."""
+    """Return the disc; a hub in its base circle."""
     profile = _profile(joint)
     farthest = float(np.hypot(*profile.outline.T).max())
     return Extent(((joint.i, farthest),), ((profile.sizes["base_radius"], BASE),))
@@ -290,7 +290,7 @@ class GenevaDrive:
         return self.wheel
 
     def face_of(self, body: str, layout: Layout) -> Face | None:
-        """Face of the wheel: within its slots."""
+        """Return the face of the wheel: within its slots."""
         bottom = self.shape.bottom
         return Face(*self.wheel_at[:2], bottom - 1.0) if body == self.wheel else None
 
@@ -307,14 +307,14 @@ class GenevaDrive:
         return self.pin
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Eyes for the axes, and one that holds the pin."""
+        """Return eyes for the axes, and one that holds the pin."""
         eye = layout.sizes.eye
         anchors = [Anchor(body, at[0], at[1], eye) for body, at in self._ends()]
         return [*anchors, Anchor(self.crank, *self.pin.pin_at, eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The wheel, the pin through it, the locking disc; and a rule: the crank, whose disc stands in the wheel's
-        layer, is in another one even where its arm never comes near the wheel.
+        """Yield the wheel, the pin through it, the locking disc; and a rule: the crank, whose disc stands in the
+        wheel's layer, is in another one even where its arm never comes near the wheel.
         """
         both, between = frozenset((self.crank, self.wheel)), Reach((self.crank, self.wheel))
         wheel, lock = disc(*self.wheel_at[:2], self.shape.rim), disc(*self.crank_at[:2], self.shape.lock)
@@ -337,7 +337,7 @@ class GenevaDrive:
 
 @kind("geneva")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint."""
+    """Return one feature for each joint."""
     drives: list[Feature] = []
     for joint in joints:
         refuse_ground(m, joint, joint.i.body.name, joint.j.body.name)
@@ -358,7 +358,7 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 @extent("geneva")
 def extent_of(joint: Joint, solution: Solution) -> Extent:
-    """The pin's circle and the wheel; room for hubs where the two come near each other's axes."""
+    """Return the pin's circle and the wheel; room for hubs where the two come near each other's axes."""
     apart, radius, slots = distance(joint, solution), joint.params["radius"], joint.params["slots"]
     rim = apart * math.cos(math.pi / slots)
     return Extent(

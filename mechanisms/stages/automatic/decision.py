@@ -33,7 +33,9 @@ CROSSED = (
 
 
 def refusal(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None) -> str:
-    """A sentence or two, of meetings that together leave no order: without any one of them there would be one."""
+    """Return a sentence or two, of meetings that together leave no order: without any one of them there would be
+    one.
+    """
     items, kept = layout.items, _kept(layout, fixed, purse)
     bodies = _bodies(layout, kept)
     pins = [rule for rule in kept if any(items[k].source is not None for k in rule)] or kept
@@ -50,7 +52,7 @@ def refusal(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None
 
 
 def undecided(layout: Layout) -> str:
-    """A sentence for a search that was given up."""
+    """Return a sentence for a search that was given up."""
     return (
         f"{layout.m.name}: the search for an order of layers of {len(layout.layered)} bodies and "
         f"{len(layout.conflicts)} places where something meets was given up after {ALL} conflicts, with none "
@@ -60,7 +62,7 @@ def undecided(layout: Layout) -> str:
 
 
 def in_the_way(layout: Layout, fixed: Mapping[str, int], purse: Purse | None = None) -> list[str]:
-    """Bodies that leave no order of layers. Raises ValueError where there is one."""
+    """Return bodies that leave no order of layers. Raises ValueError where there is one."""
     return _bodies(layout, _kept(layout, fixed, purse))
 
 
@@ -124,8 +126,8 @@ type Outcome = tuple[Layout, dict[str, int]]
 
 
 def decided(layout_of: LayoutOf, wishes: Sequence[Sizes], fixed: Mapping[str, int]) -> Outcome:
-    """The layout, and the layers and choices. ``wishes`` are sizes, the most wanted first; ``fixed`` are layers that
-    are asked for. Raises UserError that names what cannot pass each other if there is no order with any of them.
+    """Return the layout, and the layers and choices. ``wishes`` are sizes, the most wanted first; ``fixed`` are layers
+    that are asked for. Raises UserError that names what cannot pass each other if there is no order with any of them.
     """
     tried = _Tried(layout_of, fixed)
     try:
@@ -176,14 +178,14 @@ class _Tried:
     def attempt(
         self, sizes: Sizes, springs: Springs, flush: bool, bridges: bool, tubes: bool = False
     ) -> Outcome | None:
-        """None where there is no order of layers."""
+        """Return None where there is no order of layers."""
         layout = self.layout(sizes, springs, tubes)
         if not springs.above and not springs.left_out and not layout.springs.names:
             return None  # without springs it was tried before
         return self.ordered(layout.with_flush_pivots() if flush else layout, bridges)
 
     def ordered(self, layout: Layout, bridges: bool) -> Outcome | None:
-        """A layout with its layers, and with the bridges that these need."""
+        """Return a layout with its layers, and with the bridges that these need."""
         self._show(layout)
         levels = find_layers(layout.problem(self.fixed, may_hang(layout) if bridges else frozenset()), self.purse)
         if levels is None:
@@ -198,7 +200,7 @@ class _Tried:
         self.shown[0].advance(f"{len(layout.layered)} bodies, pins of {layout.sizes.finished_pin:g} mm")
 
     def with_far_posts(self, wishes: Sequence[Sizes]) -> Outcome | None:
-        """Where there are curved slots on ground, with the thickest pins that leave an order."""
+        """Return where there are curved slots on ground, with the thickest pins that leave an order."""
         for bridges, sizes in product((False, True), wishes):
             layout = self.layout(sizes, Springs())
             if not any(isinstance(feature, CurvedSlot) and feature.slot == "ground" for feature in layout.features):
@@ -242,7 +244,9 @@ class _Tried:
         return best if bridges else self.with_styluses(best)
 
     def with_styluses(self, low: Outcome) -> Outcome:
-        """Styluses as tall as layers allow without a layer more; else pointers alone, if there is room for them."""
+        """Return styluses as tall as layers allow without a layer more; else pointers alone, if there is room for
+        them.
+        """
         layout, least = low
         if not layout.m.traces:
             return low

@@ -48,26 +48,28 @@ class LooseEye:
     bored: bool
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """The eye."""
+        """Return the eye."""
         return [Anchor(self.body, self.x, self.y, layout.sizes.eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Nothing besides the plate."""
+        """Return an empty list: the plate alone takes room."""
         return []
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Nothing."""
+        """Return an empty list."""
         return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """A bore; without one the plate goes round the place anyway."""
+        """Build a bore; without one the plate goes round the place anyway."""
         if self.bored:
             sizes = plan.layout.sizes
             plan.eye(self.body, self.x, self.y, Eye(sizes.eye, sizes.pivot.running))
 
 
 def gathered(layout: Layout) -> list[Feature]:
-    """All features of joints, forces, contacts and drivers. Raises UserError for a kind of joint that has no parts."""
+    """Return all features of joints, forces, contacts and drivers. Raises UserError for a kind of joint that has no
+    parts.
+    """
     m = layout.m
     by_kind: dict[str, list[Joint]] = {}
     loose: list[Joint] = []
@@ -100,7 +102,7 @@ def gathered(layout: Layout) -> list[Feature]:
 def _of[Thing: (Force, Joint)](
     kinds: Mapping[str, Gather[Thing]], m: Mechanism, things: Iterable[Thing], layout: Layout
 ) -> list[Feature]:
-    """Features of forces, contacts or drivers whose kinds have parts; the others need none."""
+    """Return features of forces, contacts or drivers whose kinds have parts; the others need none."""
     by_kind: dict[str, list[Thing]] = {}
     for thing in things:
         if thing.kind.name in kinds and not layout.apart.intersection(thing.bodies):
@@ -109,7 +111,7 @@ def _of[Thing: (Force, Joint)](
 
 
 def _loose_eyes(joints: list[Joint], features: list[Feature], layout: Layout) -> list[Feature]:
-    """One for each moving body and place of a joint whose other body is left out, unless something is there."""
+    """Return one for each moving body and place of a joint whose other body is left out, unless something is there."""
     taken = [anchor for feature in features for anchor in feature.anchors(layout)]
     eyes: list[LooseEye] = []
     for joint in joints:
@@ -126,7 +128,7 @@ def _loose_eyes(joints: list[Joint], features: list[Feature], layout: Layout) ->
 
 
 def laid_out(layout: Layout, joined: Sequence[Joined], tubes: bool, tall: bool, pointers: bool) -> Layout:
-    """The layout with all that takes room in it. Raises UserError for what has no part.
+    """Return the layout with all that takes room in it. Raises UserError for what has no part.
 
     ``joined``: pieces that the author added; ``tubes``: wheels stand on tubes; ``tall``: with styluses that stand up,
     not flush ones; ``pointers``: with those of points on rims.

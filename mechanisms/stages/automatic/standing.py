@@ -38,26 +38,26 @@ class Upright:
 
     @classmethod
     def of(cls, mount: Mount) -> Upright:
-        """Upright of a mount."""
+        """Return the upright axes of a mount."""
         x, y, _ = mount.up
         return cls() if mount.kind == "desk" else cls(math.atan2(-x, y) + 0.0)
 
     def seen(self, places: np.ndarray) -> np.ndarray:
-        """Places (..., 2) of the model, as right and up."""
+        """Return places (..., 2) of the model, as right and up."""
         c, s = math.cos(self.angle), math.sin(self.angle)
         return places if self.angle == 0.0 else places @ np.array([[c, -s], [s, c]])
 
     def seen_place(self, x: float, y: float) -> tuple[float, float]:
-        """One place of the model, as right and up."""
+        """Return one place of the model, as right and up."""
         u, v = self.seen(np.array([x, y]))
         return float(u), float(v)
 
     def as_seen(self, shape: cq.Workplane) -> cq.Workplane:
-        """A shape of the model in these axes."""
+        """Return a shape of the model in these axes."""
         return placed(shape, turn=-math.degrees(self.angle)) if self.angle else shape
 
     def in_model(self, shape: cq.Workplane) -> cq.Workplane:
-        """A shape in these axes as the model has it."""
+        """Return a shape in these axes as the model has it."""
         return placed(shape, turn=math.degrees(self.angle)) if self.angle else shape
 
 
@@ -91,7 +91,7 @@ class BackPlate:
         return BackPlate((x0, y0, x1, y1), top, thickness, unit, seat, holes, hull, scale * self.corner)
 
     def inside(self, x: float, y: float) -> float:
-        """How far a place is from the rim; below 0 outside."""
+        """Return how far a place is from the rim; below 0 outside."""
         x0, y0, x1, y1 = self.corners
         border = self.hull or ((x0, y0), (x1, y0), (x1, y1), (x0, y1))
         return self.corner + min(
@@ -132,7 +132,7 @@ class Hull:
 
     @classmethod
     def of(cls, solid: Solid, shape: cq.Workplane | None = None) -> Hull:
-        """Hull of its ``shape`` or one that is turned, by a coarse mesh."""
+        """Return the hull of its ``shape`` or one that is turned, by a coarse mesh."""
         whole = (solid.shape if shape is None else shape).solids()
         faces = facets(whole.vals()[0], CHORD * rough_size(whole), ANGLE, relative=True).astype(float)
         places = faces.reshape(-1, 3)
@@ -179,7 +179,7 @@ def standing(bodies: Mapping[str, Sequence[Solid]], poses: Mapping[str, np.ndarr
 
 
 def _seen(place: np.ndarray, poses: np.ndarray, upright: Upright | None) -> np.ndarray:
-    """(T, 2) a place of a body's frame over its poses (T, 3), as right and up; without a turn as it is."""
+    """Return (T, 2) a place of a body's frame over its poses (T, 3), as right and up; without a turn as it is."""
     c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
     x = poses[:, 0] + c * place[0] - s * place[1]
     y = poses[:, 1] + s * place[0] + c * place[1]
@@ -244,7 +244,7 @@ class Dimensions:
 
 
 def dimensions(plate: BackPlate, load: Standing) -> Dimensions:
-    """Dimensions of the stand of a plate and all that it carries."""
+    """Return dimensions of the stand of a plate and all that it carries."""
     unit, x0, y0, x1, y1 = plate.unit, *plate.corners
     top = max(float(load.high[1]), y1)
     clear = max(CLEAR * unit, CLEARANCE * (top - min(load.moving, y0)))
@@ -267,7 +267,7 @@ def dimensions(plate: BackPlate, load: Standing) -> Dimensions:
 
 
 def foot_spans(load: Standing, ground: float) -> tuple[Span, Span, Span]:
-    """Where what stands on ``ground`` has to reach, so that it does not tip: right, up, towards the viewer."""
+    """Return where what stands on ``ground`` has to reach, so that it does not tip: right, up, towards the viewer."""
     reach = TIPS * (load.centres[:, 1] - ground)
     spans = [(float((load.centres[:, k] - reach).min()), float((load.centres[:, k] + reach).max())) for k in range(3)]
     return spans[0], spans[1], spans[2]
@@ -282,8 +282,8 @@ def evened(low: float, high: float, middle: float) -> Span:
 
 
 def screw_places(plate: BackPlate, own: Dimensions, clear: float) -> list[tuple[float, float]]:
-    """Where screws of a column go into the plate: near the corners of what they share, ``clear`` (radius) of all holes
-    of its face.
+    """Return where screws of a column go into the plate: near the corners of what they share, ``clear`` (radius) of all
+    holes of its face.
     """
     (x0, x1), (y0, y1) = _shared(plate, own, 2.2 * clear)
     grid = [(x, y) for x in np.linspace(x0, x1, 9) for y in np.linspace(y0, y1, 13)]
@@ -302,7 +302,7 @@ def screw_places(plate: BackPlate, own: Dimensions, clear: float) -> list[tuple[
 
 
 def _shared(plate: BackPlate, own: Dimensions, inset: float) -> tuple[Span, Span]:
-    """Right and up: what plate and column share, without its rim."""
+    """Return right and up of what plate and column share, without its rim."""
     half = own.widths[1] / 2 - inset
     low = max(plate.corners[1], own.column[0][0] + SCREWS_OF_FOOT * plate.thickness) + inset
     high = own.column[0][1] - inset
@@ -341,7 +341,7 @@ class Stand:
     """Millimetres of the finished piece for one here."""
 
     def __call__(self, bodies: Mapping[str, Sequence[Solid]]) -> list[Solid]:
-        """The solids of ground with the stand: its first, the back plate, has holes for screws now."""
+        """Return the solids of ground with the stand: its first, the back plate, has holes for screws now."""
         load = standing(bodies, self.poses, self.upright)
         own, plate = dimensions(self.plate, load), self.plate
         thick, deep, into = _size(own.column[1]), _size(own.foot[1]), INTO * plate.thickness
@@ -390,7 +390,7 @@ class Stand:
         return seated(shape, feet, "y", _size(y), below)
 
     def _bolt(self, wish: float, through: float, into: float, seat: float) -> Bolt:
-        """A screw that goes through so much matter, its head below the face, and ``into`` what is behind."""
+        """Return a screw that goes through so much matter, its head below the face, and ``into`` what is behind."""
         longest = through - 1.1 * wish + seat + 0.85 * into
         return bolt(wish * self.ratio, longest * self.ratio).at_scale(1.0 / self.ratio)
 
@@ -414,7 +414,7 @@ def _size(span: tuple[float, float]) -> float:
 
 
 def _below(own: Dimensions, below: Bolt) -> list[tuple[float, float, float]]:
-    """Places, on the lower face of the foot, of screws that go up into the column."""
+    """Return places, on the lower face of the foot, of screws that go up into the column."""
     half = max(own.widths[0] / 2 - 2.2 * below.seat, below.seat)
     z = sum(own.column[1]) / 2
     return [(own.middle + side * half, own.foot[1][0], z) for side in (-1.0, 1.0)]
@@ -441,7 +441,7 @@ class GroundSlab:
     tolerance: float | None = None
 
     def __call__(self, bodies: Mapping[str, Sequence[Solid]]) -> list[Solid]:
-        """The solids of ground with the slab, on which its lowest one lies."""
+        """Return the solids of ground with the slab, on which its lowest one lies."""
         load = standing(bodies, self.poses, self.upright)
         fixed = standing({"ground": bodies["ground"]}, {}, self.upright)
         over = min(fixed.low[1] - self.seat, load.moving - CLEAR * self.unit)

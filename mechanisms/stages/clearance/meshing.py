@@ -47,7 +47,7 @@ class Rolling:
         return float(np.ptp(self.angles))
 
     def time_of(self, angle: float, pitch: float) -> float:
-        """The first time at which phi is ``angle`` or a number of pitches from it."""
+        """Return the first time at which phi is ``angle`` or a number of pitches from it."""
         passed = np.floor((self.angles - angle) / pitch)
         k = int(np.flatnonzero(np.diff(passed) != 0)[0])
         low, high = self.angles[k], self.angles[k + 1]
@@ -57,7 +57,7 @@ class Rolling:
 
 
 def rolling(path: RelativePath, about: np.ndarray, ratio: float, reach: float) -> Rolling | None:
-    """Ideal rolling about the point ``about`` (mm, frame of the first body) with that ratio, next to the motion.
+    """Return ideal rolling about the point ``about`` (mm, frame of the first body) with that ratio, next to the motion.
 
     ``off`` holds for points within ``reach`` (mm) of the second body's centre and for all time: at PARTS times in
     each interval it is looked at, and between them a function is within h^2 / 8 max |f''| of the larger of its ends.
@@ -132,7 +132,7 @@ type Meshes = dict[frozenset[str], list[Gears]]
 
 
 def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
-    """The gear pairs of a motion, with the numbers of teeth that data.json has, else those of the meshes."""
+    """Return the gear pairs of a motion, with the numbers of teeth that data.json has, else those of the meshes."""
     by_bodies: Meshes = {}
     for joint in motion.joints.values():
         shape = joint.shape
@@ -150,7 +150,9 @@ def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
 
 
 def least_in_mesh(sweep: Sweep, known: Meshes, where: dict[str, BodyPath]) -> Least | None:
-    """The least gap of two pieces over the motion, if they are wheels in mesh and one pitch shows it; else None."""
+    """Return the least gap of two pieces over the motion, if they are wheels in mesh and one pitch shows it; else
+    None.
+    """
     pieces = {sweep.mover.body: sweep.mover, sweep.still.body: sweep.still}
     for gears in known.get(frozenset(pieces), []):
         first, second = (pieces[body] for body in gears.bodies)
@@ -200,7 +202,9 @@ def _least(sweep: Sweep, gears: Gears, first: MeshPiece, second: MeshPiece, wher
 
 
 def _one_pitch(ideal: Rolling, gears: Gears, pitch: float, off: float) -> RelativePath:
-    """The second wheel's frame about its centre, while that goes on by a pitch in a second, seen from the first."""
+    """Return the second wheel's frame about its centre, while that goes on by a pitch in a second, seen from the
+    first.
+    """
     time = np.linspace(0.0, 1.0, STEPS + 1)
     angle = ideal.start + pitch * time
     ray = ideal.distance * np.column_stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)])
@@ -235,7 +239,7 @@ class Band:
 
 
 def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterator[Band]:
-    """Bands of all belts that pieces hold, as far as their pulleys leave room for a path."""
+    """Yield bands of all belts that pieces hold, as far as their pulleys leave room for a path."""
     for name, joint in motion.joints.items():
         own, held = _holding(parts, name)
         if joint.look != "band" or held is None or joint.shape is None:
@@ -261,7 +265,9 @@ def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterat
 
 
 def band(way: BeltPath, wide: float, high: float) -> np.ndarray:
-    """(n, 3, 3): facets round all places within ``wide`` of the belt in the plane, and ``high`` over and under it."""
+    """Return (n, 3, 3): facets round all places within ``wide`` of the belt in the plane, and ``high`` over and under
+    it.
+    """
     import manifold3d
 
     starts = np.concatenate([[0.0], np.cumsum(way.parts)])
@@ -288,7 +294,9 @@ def _holding(parts: Parts, name: str) -> tuple[frozenset[tuple[str, str]], Held 
 
 
 def _path(joint: JointMotion, where: Mapping[str, BodyPath]) -> tuple[BodyPath, float]:
-    """The motion of the first centre and of the line of centres, and the distance of the centres at the start (mm)."""
+    """Return the motion of the first centre and of the line of centres, and the distance of the centres at the start
+    (mm).
+    """
     assert joint.shape is not None
     ends = [
         _centre(where[body], mm(x), mm(y))
@@ -304,7 +312,7 @@ def _path(joint: JointMotion, where: Mapping[str, BodyPath]) -> tuple[BodyPath, 
 
 
 def _centre(path: BodyPath, x: float, y: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(n, 2) each: place, velocity and acceleration of a point of a body."""
+    """Return (n, 2) each: place, velocity and acceleration of a point of a body."""
     c, s = np.cos(path.pose[:, 2]), np.sin(path.pose[:, 2])
     arm = np.column_stack([c * x - s * y, s * x + c * y])
     across = np.column_stack([-arm[:, 1], arm[:, 0]])

@@ -34,8 +34,8 @@ class Outline(Tree):
 
 
 def outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
-    """Outline of what ``piece`` has between two heights (mm); None if that is nothing. It is kept with the piece: many
-    others have the same heights in common with it.
+    """Return the outline of what ``piece`` has between two heights (mm); None if that is nothing. It is kept with the
+    piece: many others have the same heights in common with it.
     """
     span = max(low, piece.z_range[0]), min(high, piece.z_range[1])
     if span not in piece.outlines:
@@ -54,14 +54,16 @@ def _outline(piece: MeshPiece, low: float, high: float) -> Outline | None:
 
 
 def edge_of(facets: np.ndarray, piece: MeshPiece) -> Outline | None:
-    """Edge of the shadow of ``facets`` (n, 3, 3) of a piece, which all look up or all look down; None without any."""
+    """Return the edge of the shadow of ``facets`` (n, 3, 3) of a piece, which all look up or all look down; None
+    without any.
+    """
     index = np.arange(3 * len(facets)).reshape(-1, 3)
     (x, y), (u, v) = (facets[0, k, :2] - facets[0, 0, :2] for k in (1, 2))
     return _edge(piece, facets.reshape(-1, 3), index if x * v > y * u else index[:, ::-1])
 
 
 def _edge(piece: MeshPiece, corners: np.ndarray, up: np.ndarray) -> Outline | None:
-    """The edge of the shadow of facets ``up`` (m, 3) whose numbers run counter-clockwise seen from above."""
+    """Return the edge of the shadow of facets ``up`` (m, 3) whose numbers run counter-clockwise seen from above."""
     edges = np.concatenate([up[:, (0, 1)], up[:, (1, 2)], up[:, (2, 0)]])
     grid = np.round(corners[:, :2] / (ROUNDING * piece.radius))
     _, first, place = np.unique(grid, axis=0, return_index=True, return_inverse=True)
@@ -87,7 +89,7 @@ def covers(outline: Outline, points: np.ndarray) -> bool:
 
 
 def _between(piece: MeshPiece, low: float, high: float) -> tuple[np.ndarray, np.ndarray] | None:
-    """Corners (n, 3) and facets (m, 3) of what is between two heights."""
+    """Return corners (n, 3) and facets (m, 3) of what is between two heights."""
     solid = piece.manifold
     if low > piece.z_range[0]:
         solid = solid.trim_by_plane((0.0, 0.0, 1.0), low)
@@ -100,7 +102,7 @@ def _between(piece: MeshPiece, low: float, high: float) -> tuple[np.ndarray, np.
 
 
 def _unmatched(edges: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of numbers below ``count`` (n, 2) that are there more often than turned round, and how much more."""
+    """Return pairs of numbers below ``count`` (n, 2) that are there more often than turned round, and how much more."""
     edges = edges[edges[:, 0] != edges[:, 1]]
     keys, number = np.unique(edges[:, 0] * count + edges[:, 1], return_counts=True)
     forth = np.stack([keys // count, keys % count], axis=1)
@@ -111,7 +113,7 @@ def _unmatched(edges: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _divided(segments: np.ndarray, longest: float) -> np.ndarray:
-    """Segments (n, 2, 2) in equal pieces that are not longer."""
+    """Return segments (n, 2, 2) in equal pieces that are not longer."""
     way = segments[:, 1] - segments[:, 0]
     number = np.maximum(np.ceil(np.hypot(*way.T) / longest), 1).astype(int)
     which = np.repeat(np.arange(len(segments)), number)
@@ -157,7 +159,9 @@ class OutlineSearch(Search):
 
 
 def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distance (n,) of segments p and q (n, 2; x + i y), 0 where they cross, and the way (n,) from p to q."""
+    """Return the distance (n,) of segments p and q (n, 2; x + i y), 0 where they cross, and the way (n,) from p to
+    q.
+    """
     ways = np.stack([-_way(q[:, 0], p), -_way(q[:, 1], p), _way(p[:, 0], q), _way(p[:, 1], q)])
     size = np.abs(ways)
     best = size.argmin(axis=0)
@@ -167,7 +171,7 @@ def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _way(point: np.ndarray, segment: np.ndarray) -> np.ndarray:
-    """(n,): from each point to the nearest one of a segment."""
+    """Return (n,): from each point to the nearest one of a segment."""
     start, along = segment[:, 0], segment[:, 1] - segment[:, 0]
     square = np.maximum((along * along.conj()).real, 1e-300)
     part = np.clip(((point - start) * along.conj()).real / square, 0.0, 1.0)
@@ -183,7 +187,7 @@ def _side(segment: np.ndarray, point: np.ndarray) -> np.ndarray:
 
 
 def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Least | None:
-    """The least gap over the motion with its proof; None where outlines do not suffice.
+    """Return the least gap over the motion with its proof; None where outlines do not suffice.
 
     ``gap`` (mm) of the pieces was measured at ``time``, after ``poses`` measurements. What is near in height depends on
     the least gap, so that is looked for in the common heights alone before.
@@ -207,7 +211,7 @@ def least_by_outlines(sweep: Sweep, gap: float, time: float, poses: int) -> Leas
 
 
 def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
-    """How far (mm) outlines prove the pieces to stay apart, of the ``gap`` that was measured at ``time``.
+    """Return how far (mm) outlines prove the pieces to stay apart, of the ``gap`` that was measured at ``time``.
 
     Walls that lean or bulge bring the outlines nearer than the pieces, so that it may be much less than the least gap.
     """
@@ -219,12 +223,12 @@ def proven_by_outlines(sweep: Sweep, gap: float, time: float) -> float:
 
 
 def slack(sweep: Sweep) -> float:
-    """How far (mm) outlines may be off, since corners that are near are one."""
+    """Return how far (mm) outlines may be off, since corners that are near are one."""
     return 4 * ROUNDING * (sweep.still.radius + sweep.mover.radius)
 
 
 def _measured(sweep: Sweep, least: Least, gap: float, time: float) -> tuple[float, float, int]:
-    """The least gap that is known of the pieces, its time, and how many poses were measured."""
+    """Return the least gap that is known of the pieces, its time, and how many poses were measured."""
     if least.gap < gap:
         measured = sweep.gap_at(least.time, gap)
         if measured < gap:
@@ -233,7 +237,9 @@ def _measured(sweep: Sweep, least: Least, gap: float, time: float) -> tuple[floa
 
 
 def _outlines(sweep: Sweep, beyond: float) -> tuple[Outline, Outline] | None:
-    """Outlines of both pieces within ``beyond`` (mm) of their common heights; None if none, or one covers the other."""
+    """Return outlines of both pieces within ``beyond`` (mm) of their common heights; None if none, or one covers the
+    other.
+    """
     low = max(sweep.still.z_range[0], sweep.mover.z_range[0]) - beyond
     high = min(sweep.still.z_range[1], sweep.mover.z_range[1]) + beyond
     still, mover = (outline(piece, low, high) if low < high else None for piece in (sweep.still, sweep.mover))
@@ -279,8 +285,8 @@ def never_over(sweep: Sweep, gap: float) -> bool:
 
 
 def _near(lying: MeshPiece, other: MeshPiece, sign: float, gap: float) -> tuple[np.ndarray, np.ndarray]:
-    """Horizontal faces of ``lying`` that look up (``sign`` 1) or down (-1), and the facets of ``other`` that face them;
-    of both only those that have the other within ``gap`` in height.
+    """Return horizontal faces of ``lying`` that look up (``sign`` 1) or down (-1), and the facets of ``other`` that
+    face them; of both only those that have the other within ``gap`` in height.
     """
     faces, facets = facing(lying, other, sign)
     low, high = (sign * facets[:, :, 2]).min(axis=1), (sign * facets[:, :, 2]).max(axis=1)
@@ -307,7 +313,7 @@ FIRST = 5
 
 
 def least_gap(sweep: Sweep, reach: float) -> Least:
-    """The least gap over the motion, ``reach`` (mm) if it is larger; an overlap ends the search.
+    """Return the least gap over the motion, ``reach`` (mm) if it is larger; an overlap ends the search.
 
     Where the search in space is given up, what the outlines prove holds still.
     """

@@ -61,7 +61,9 @@ def _times(values: list[float], ratio: float) -> list[float]:
 
 
 def what_shrinks(scale: Scale) -> str:
-    """The end of a refusal of parts at ``scale``: why a parts.py that fits its machine need not fit the model."""
+    """Return the end of a refusal of parts at ``scale``: why a parts.py that fits its machine need not fit the
+    model.
+    """
     running = Fit().running
     return (
         f"what a parts.py gives in millimetres, clearances too, shrinks with the machine: Fit(running="
@@ -122,11 +124,11 @@ class BodyPath:
         return _largest(angle, self.width, 1), _largest(angle, self.width, 2)
 
     def interval(self, time: np.ndarray) -> np.ndarray:
-        """(m,): the interval in which each time lies; of two that meet there, the later."""
+        """Return (m,) the interval in which each time lies; of two that meet there, the later."""
         return np.clip(np.searchsorted(self.start, time, side="right") - 1, 0, len(self.start) - 1)
 
     def within(self, k: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """(m, 3) poses at times that lie in the intervals ``k``."""
+        """Return (m, 3) poses at times that lie in the intervals ``k``."""
         u = ((time - self.start[k]) / self.width[k])[:, None]
         point = self.control[k]
         while point.shape[1] > 1:  # de Casteljau
@@ -134,7 +136,7 @@ class BodyPath:
         return point[:, 0]
 
     def at(self, time: np.ndarray) -> np.ndarray:
-        """(m, 3) poses at any times."""
+        """Return (m, 3) poses at any times."""
         return self.within(self.interval(time), time)
 
     @cached_property
@@ -155,12 +157,12 @@ class BodyPath:
         return largest[0].max(axis=0), largest[1].max(axis=0)
 
     def interpolation_error(self, reach: float) -> np.ndarray:
-        """(m,): the same for a point ``reach`` mm from the origin (mm)."""
+        """Return (m,) the same for a point ``reach`` mm from the origin (mm)."""
         return self.error[0] + reach * self.error[1]
 
 
 def paths(motion: Motion) -> dict[str, BodyPath]:
-    """The path of every body, ``ground`` included."""
+    """Return the path of every body, ``ground`` included."""
     time = np.array(motion.time)
     still = np.zeros((len(time), 3))
     by_body = {"ground": BodyPath(time, still, still, still)}
@@ -172,14 +174,14 @@ def paths(motion: Motion) -> dict[str, BodyPath]:
 
 
 def relative(pose: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """(m, 3): poses seen from the frame of ``reference``."""
+    """Return (m, 3): poses seen from the frame of ``reference``."""
     c, s = np.cos(reference[:, 2]), np.sin(reference[:, 2])
     dx, dy = pose[:, 0] - reference[:, 0], pose[:, 1] - reference[:, 1]
     return np.column_stack([c * dx + s * dy, c * dy - s * dx, pose[:, 2] - reference[:, 2]])
 
 
 def points(pose: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """(m, 2): where a point (2,) of a body is, at each pose."""
+    """Return (m, 2) where a point (2,) of a body is, at each pose."""
     c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
     x, y = point
     return np.column_stack([pose[:, 0] + c * x - s * y, pose[:, 1] + s * x + c * y])
@@ -210,18 +212,22 @@ class RelativePath:
         """(m,): every mm between a point and the centre adds this to its acceleration (1/s^2)."""
 
     def place(self, k: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """(n, 3): the centre's place (mm) and the angle (rad) in the other's frame, at times in intervals ``k``."""
+        """Return (n, 3) the centre's place (mm) and the angle (rad) in the other's frame, at times in intervals
+        ``k``.
+        """
         pose = self.mover.within(k, time)
         pose[:, :2] = points(pose, self.centre)
         return relative(pose, self.still.within(k, time))
 
     def bend(self, radius: float) -> float:
-        """How far (mm) points within ``radius`` of the centre stray from straight lines in the intervals, in all."""
+        """Return how far (mm) points within ``radius`` of the centre stray from straight lines in the intervals, in
+        all.
+        """
         return float((self.mover.width**2 / 8 * (self.push + radius * self.spin)).sum())
 
 
 def _largest(control: np.ndarray, width: np.ndarray, order: int) -> np.ndarray:
-    """(m,): a bound of a derivative's norm in each interval, from control points (m, 6, d)."""
+    """Return (m,) a bound of a derivative's norm in each interval, from control points (m, 6, d)."""
     factor = {1: 5.0, 2: 20.0}[order] / width**order
     return factor * np.linalg.norm(np.diff(control, n=order, axis=1), axis=2).max(axis=1)
 
@@ -233,7 +239,7 @@ type Axes = dict[frozenset[str], dict[str, np.ndarray]]
 
 
 def axes_of(motion: Motion, parts: Parts, where: Mapping[str, BodyPath]) -> Axes:
-    """Axes of bodies that a revolute joint or a rod's end connects, and of those that turn on a common pin."""
+    """Return axes of bodies that a revolute joint or a rod's end connects, and of those that turn on a common pin."""
     axes: Axes = {}
     for joint in motion.joints.values():
         if joint.kind != "revolute":
@@ -273,7 +279,7 @@ def _with_common_pins(axes: Axes) -> Axes:
 
 
 def far_bodies(pieces: Sequence[MeshPiece], where: Mapping[str, BodyPath], reach: float) -> set[frozenset[str]]:
-    """Pairs of bodies whose pieces are ``reach`` (mm) apart or more over the whole motion."""
+    """Return pairs of bodies whose pieces are ``reach`` (mm) apart or more over the whole motion."""
     radius: dict[str, float] = {}
     for piece in pieces:
         radius[piece.body] = max(radius.get(piece.body, 0.0), piece.reach)
@@ -290,6 +296,6 @@ def far_bodies(pieces: Sequence[MeshPiece], where: Mapping[str, BodyPath], reach
 
 
 def error_of(first: MeshPiece, second: MeshPiece, where: Mapping[str, BodyPath]) -> float:
-    """How far two pieces may at most be from where they are taken to be (mm)."""
+    """Return how far two pieces may at most be from where they are taken to be (mm)."""
     ends = [where[piece.body].interpolation_error(piece.reach) for piece in (first, second)]
     return float((ends[0] + ends[1]).max(initial=0.0))

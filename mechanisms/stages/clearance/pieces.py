@@ -23,7 +23,7 @@ _FACTORS = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9,
 
 
 def distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distinct rows of (n, k) float64, k up to 4: one number of each, and (n,) which of these each row is.
+    """Return distinct rows of (n, k) float64, k up to 4: one number of each, and (n,) which of these each row is.
 
     Their order follows from the rows alone. -0.0 and 0.0 are alike; no row is like another that is not.
     """
@@ -99,12 +99,12 @@ class FacetTree(Tree):
 
 
 def longest_in(radius: float) -> float:
-    """How long (mm) facets of a piece may be that a circle of this radius holds."""
+    """Return how long (mm) facets of a piece may be that a circle of this radius holds."""
     return max(2 * radius / SIDES, SHORTEST)
 
 
 def _axis_of_walls(walls: np.ndarray) -> complex:
-    """The direction, up to quarter turns, of the longest normals together."""
+    """Return the direction, up to quarter turns, of the longest normals together."""
     turned = np.sum(np.abs(walls) * np.exp(4j * np.angle(walls)))
     return complex(np.exp(1j * float(np.angle(turned)) / 4))
 
@@ -123,7 +123,7 @@ def _order(centres: np.ndarray) -> np.ndarray:
 
 
 def _halved(t: np.ndarray, longest: float) -> np.ndarray:
-    """Triangles halved across their longest edge until none is longer than ``longest`` in the plane."""
+    """Return triangles halved across their longest edge until none is longer than ``longest`` in the plane."""
     done = []
     while len(t):
         length = np.hypot(*np.moveaxis((np.roll(t, -1, axis=1) - t)[:, :, :2], -1, 0))
@@ -226,15 +226,16 @@ class MeshPiece:
 
 
 def facing(lying: MeshPiece, other: MeshPiece, sign: float) -> tuple[np.ndarray, np.ndarray]:
-    """The horizontal facets of ``lying`` that look up (``sign`` 1) or down (-1), and the facets of ``other`` that look
-    the other way, upright ones left out: (n, 3, 3) each.
+    """Return the horizontal facets of ``lying`` that look up (``sign`` 1) or down (-1), and the facets of ``other``
+    that look the other way, upright ones left out: (n, 3, 3) each.
     """
     faces = lying.triangles[lying.level & (sign * lying.upward > 0)]
     return faces, other.triangles[sign * other.upward < -UPRIGHT * other.size]
 
 
 def height_between(first: MeshPiece, second: MeshPiece) -> float:
-    """The least height (mm) between a horizontal face of one piece and what faces it in the other, wherever they are.
+    """Return the least height (mm) between a horizontal face of one piece and what faces it in the other, wherever they
+    are.
 
     Infinite if nothing does. From a horizontal facet the way to the nearest point of another solid is vertical, unless
     a facet beside it is on that way too; the other end is a corner of a facet that faces it.
@@ -282,8 +283,8 @@ class Union:
 
 
 def turned_union(triangles: np.ndarray, centre: np.ndarray, count: int, band: tuple[float, float]) -> Union | None:
-    """The facets with a part between two distances (mm) from ``centre``, and their copies turned by 1 / count of a
-    turn; None where that makes far more of them.
+    """Return the facets with a part between two distances (mm) from ``centre``, and their copies turned by 1 / count of
+    a turn; None where that makes far more of them.
     """
     facets = triangles - np.append(centre, 0.0)
     low, high = _distances(facets)
@@ -301,13 +302,15 @@ def turned_union(triangles: np.ndarray, centre: np.ndarray, count: int, band: tu
 
 
 def extent(triangles: np.ndarray, centre: np.ndarray) -> tuple[float, float]:
-    """How near to ``centre`` facets come in the plane at least (a lower bound), and how far from it they reach (mm)."""
+    """Return how near to ``centre`` facets come in the plane at least (a lower bound), and how far from it they reach
+    (mm).
+    """
     low, high = _distances(triangles - np.append(centre, 0.0))
     return float(low.min(initial=np.inf)), float(high.max(initial=0.0))
 
 
 def order(pieces: list[MeshPiece], body: str, centre: np.ndarray, radius: float) -> int:
-    """How many equal turns about ``centre`` leave the upright facets next to a pitch radius (mm) as they are.
+    """Return how many equal turns about ``centre`` leave the upright facets next to a pitch radius (mm) as they are.
 
     The body's piece with most of these facets counts; 1 where there is none.
     """
@@ -345,7 +348,9 @@ def _turned(facets: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def _distinct(facets: np.ndarray) -> tuple[np.ndarray, float]:
-    """Facets with corners next to each other made one, each facet once; and how far a corner was moved at most."""
+    """Return facets with corners next to each other made one, each facet once; and how far a corner was moved at
+    most.
+    """
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree

@@ -47,15 +47,17 @@ class Spans:
         return len(self.start)
 
     def middle(self, spans: np.ndarray) -> np.ndarray:
-        """(n,): the time (s) in the middle of each span."""
+        """Return (n,) the time (s) in the middle of each span."""
         return (self.start[spans] + self.end[spans]) / 2
 
     def stray(self, spans: np.ndarray, reach: np.ndarray) -> np.ndarray:
-        """(n,): how far (mm) points within ``reach`` of the centre are from where they are at the middle, at most."""
+        """Return (n,) how far (mm) points within ``reach`` of the centre are from where they are at the middle, at
+        most.
+        """
         return self.travel[spans] + reach * self.turn[spans]
 
     def halves(self, spans: np.ndarray) -> np.ndarray:
-        """(n,): the first half of each span; the second is the next one."""
+        """Return (n,) the first half of each span; the second is the next one."""
         new = np.unique(spans[self._half[spans] < 0])
         if len(new):
             middle = self.middle(new)
@@ -104,7 +106,8 @@ FLAT = 1e-6
 
 
 def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distance (n,) of triangles p and q (n, 3, 3) that do not pierce each other, and the way (n, 3) from p to q.
+    """Return the distance (n,) of triangles p and q (n, 3, 3) that do not pierce each other, and the way (n, 3) from p
+    to q.
 
     The nearest points of two triangles lie on two edges, or on a corner and a face. For triangles that pierce each
     other the distance of their edges and corners comes out, and no direction separates them by it (:func:`separation`).
@@ -120,14 +123,18 @@ def nearest(p: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def separation(direction: np.ndarray, p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """(n,): how far q (n, 3, 3) is beyond p along unit directions (n, 3); below zero where they overlap along it."""
+    """Return (n,) how far q (n, 3, 3) is beyond p along unit directions (n, 3); below zero where they overlap along
+    it.
+    """
     along_p = np.einsum("nki,ni->nk", p, direction)
     along_q = np.einsum("nki,ni->nk", q, direction)
     return along_q.min(axis=1) - along_p.max(axis=1)
 
 
 def normals(t: np.ndarray) -> np.ndarray:
-    """(n, 3): unit normals, zero for triangles that are lower than :data:`FLAT`; their edges say where they are."""
+    """Return (n, 3) unit normals, zero for triangles that are lower than :data:`FLAT`; their edges say where they
+    are.
+    """
     normal = np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0])
     size = np.linalg.norm(normal, axis=1)
     longest = np.linalg.norm(t[:, NEXT] - t, axis=2).max(axis=1)
@@ -135,7 +142,7 @@ def normals(t: np.ndarray) -> np.ndarray:
 
 
 def _edge_ways(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """(n, 9, 3): from the nearest point of each edge of p to the nearest point of each edge of q."""
+    """Return (n, 9, 3): from the nearest point of each edge of p to the nearest point of each edge of q."""
     n = len(p)
     a, d = np.repeat(p, 3, axis=1), np.repeat(p[:, NEXT] - p, 3, axis=1)
     b, e = np.tile(q, (1, 3, 1)), np.tile(q[:, NEXT] - q, (1, 3, 1))
@@ -154,7 +161,9 @@ def _edge_ways(p: np.ndarray, q: np.ndarray) -> np.ndarray:
 
 
 def _corner_ways(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """(n, 3, 3): from each corner of p straight to the plane of q where it meets q's inside; infinite elsewhere."""
+    """Return (n, 3, 3): from each corner of p straight to the plane of q where it meets q's inside; infinite
+    elsewhere.
+    """
     normal = normals(q)
     height = _dot(p - q[:, :1], normal[:, None])
     foot = p - height[..., None] * normal[:, None]
@@ -200,7 +209,7 @@ class Sweep:
         self.times = self.path.mover.time
 
     def gap_at(self, time: float, reach: float) -> float:
-        """Exact gap (mm) at a time, 0 if the pieces overlap, ``reach`` if it is larger."""
+        """Return exact gap (mm) at a time, 0 if the pieces overlap, ``reach`` if it is larger."""
         return self.still.manifold.min_gap(self._moved(time), reach)
 
     def is_apart(self, reach: float) -> bool:
@@ -218,7 +227,7 @@ class Sweep:
         return Overlap(float(times[deepest]), float(depth[deepest]), float(touching[0]), float(touching[-1]))
 
     def depth_at(self, time: float) -> float:
-        """How deep (mm) the pieces overlap: the least width of what they share, in height or in the plane."""
+        """Return how deep (mm) the pieces overlap: the least width of what they share, in height or in the plane."""
         common = self.still.manifold ^ self._moved(time)
         if common.is_empty():
             return 0.0
@@ -319,7 +328,9 @@ class Search:
 
     @staticmethod
     def _taken(todo: list[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-        """Some candidates off the end of the list, the nearest of them if there are many: depth before breadth."""
+        """Return some candidates off the end of the list, the nearest of them if there are many: depth before
+        breadth.
+        """
         parts = [todo.pop()]
         while todo and sum(len(low) for _, low in parts) < BATCH // 4:
             parts.append(todo.pop())
@@ -331,7 +342,7 @@ class Search:
         return rows, low
 
     def _look(self, rows: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The candidates that follow from these, and their lower bounds."""
+        """Return the candidates that follow from these, and their lower bounds."""
         _, b, span = rows.T
         stray = self.spans.stray(span, self.b.reach[b])
         low = np.maximum(low, self._apart(rows) - stray)
@@ -348,7 +359,9 @@ class Search:
         return np.concatenate([part for part, _ in parts]), np.concatenate([bound for _, bound in parts])
 
     def _sought(self, span: np.ndarray) -> np.ndarray:
-        """(n,): what is proven to be this far apart (mm) in these spans is of no more interest."""
+        """Return (n,) the distance beyond which nothing is of interest: what is proven to be this far apart (mm) in
+        these spans is of no more interest.
+        """
         return self.best - self.resolution + np.minimum(self.spans.off[span], FARTHEST_OFF)
 
     def _settle(self, rows: np.ndarray, low: np.ndarray) -> None:
@@ -363,13 +376,13 @@ class Search:
             self.proven, self.off = float(proven[least]), float(error[least])
 
     def _apart(self, rows: np.ndarray) -> np.ndarray:
-        """(n,): the gap (mm) of the two groups' cylinders at the middle of the span."""
+        """Return (n,) the gap (mm) of the two groups' cylinders at the middle of the span."""
         a, b, span = rows.T
         way = self.spans.place[span, 1] + self.spans.turned[span, 1] * self._centre_b[b] - self._centre_a[a]
         return np.hypot(np.maximum(np.abs(way) - self.a.radius[a] - self.b.radius[b], 0.0), self._height(a, b))
 
     def _boxes_apart(self, rows: np.ndarray) -> np.ndarray:
-        """(n,): how far (mm) the two groups' boxes stay apart over the whole span, along a side of either.
+        """Return (n,) how far (mm) the two groups' boxes stay apart over the whole span, along a side of either.
 
         A side's direction is that of the still box, or that of the mover's at the middle of the span; along it the
         boxes are apart by the least of what they are at start and end.
@@ -405,11 +418,13 @@ class Search:
         return np.hypot(np.maximum(most, 0.0), self._height(a, b))
 
     def _height(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        """(n,): the height (mm) between two groups, 0 where they share some."""
+        """Return (n,) the height (mm) between two groups, 0 where they share some."""
         return np.maximum(np.maximum(self.a.low[a] - self.b.high[b], self.b.low[b] - self.a.high[a]), 0.0)
 
     def _measured(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pairs of facets: the gap at the middle, the bound over the span, and the halves of spans that need them."""
+        """Return pairs of facets: the gap at the middle, the bound over the span, and the halves of spans that need
+        them.
+        """
         if not len(rows):
             return rows, np.empty(0)
         a, b, span = rows.T
@@ -427,7 +442,7 @@ class Search:
         return self._halved_spans(rows[open_], np.maximum(low[open_], 0.0))
 
     def _bounded(self, a: np.ndarray, b: np.ndarray, span: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) each, of pairs of single facets: the gap (mm) at the middle of the span; what the best direction
+        """Return (n,) each, of pairs of single facets: the gap (mm) at the middle of the span; what the best direction
         separates them by at both its ends.
         """
         p, q = self.a.facets[a] + self.offset, self.b.facets[b]
@@ -449,7 +464,7 @@ class Search:
         return np.concatenate([first, first + np.array([0, 0, 1])]), np.tile(low, 2)
 
     def _halved_groups(self, rows: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The larger group of each candidate in two."""
+        """Return the larger group of each candidate in two."""
         if not len(rows):
             return rows, low
         a, b, _ = rows.T
@@ -463,7 +478,7 @@ class Search:
 
 
 def _placed(q: np.ndarray, pose: np.ndarray) -> np.ndarray:
-    """Facets (n, 3, 3) at poses (n, 3) of x, y, theta."""
+    """Return facets (n, 3, 3) at poses (n, 3) of x, y, theta."""
     c, s = np.cos(pose[:, 2:]), np.sin(pose[:, 2:])
     x = pose[:, :1] + c * q[:, :, 0] - s * q[:, :, 1]
     y = pose[:, 1:2] + s * q[:, :, 0] + c * q[:, :, 1]
@@ -471,6 +486,6 @@ def _placed(q: np.ndarray, pose: np.ndarray) -> np.ndarray:
 
 
 def _facing(normal: np.ndarray, way: np.ndarray) -> np.ndarray:
-    """Normals (n, 3) turned to the side that the way goes to."""
+    """Return normals (n, 3) turned to the side that the way goes to."""
     side = np.einsum("ni,ni->n", normal, way)
     return normal * np.where(side < 0, -1.0, 1.0)[:, None]

@@ -96,7 +96,7 @@ def is_fresh(name: str) -> bool:
 
 
 def _stage(out: Out, machine: Out, scale: Scale | None = None) -> Stage:
-    """The stage of the model in ``out``, which moves as its machine does."""
+    """Return the stage of the model in ``out``, which moves as its machine does."""
     scaled = [] if scale is None else [str(scale)]
     key = key_of(out.parts, machine.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH, *scaled)
     return Stage(out, "clearance", key, [out.clearance])
@@ -194,7 +194,7 @@ def check(
 def _turn(
     first: MeshPiece, second: MeshPiece, axes: Axes, sweep: Sweep, limit: float, reach: float
 ) -> PairClearance | None:
-    """The gap at every angle of a pair round the joint between its bodies; None if that is not enough."""
+    """Return the gap at every angle of a pair round the joint between its bodies; None if that is not enough."""
     from mechanisms.stages.clearance.turn import turn_gap
 
     axis = axes.get(frozenset((first.body, second.body)))
@@ -210,7 +210,9 @@ def _turn(
 
 
 def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float, reach: float) -> PairClearance | None:
-    """The gap at every place along the line of a prismatic joint between two bodies; None if that is not enough."""
+    """Return the gap at every place along the line of a prismatic joint between two bodies; None if that is not
+    enough.
+    """
     from mechanisms.stages.clearance.slide import slide_gap
 
     slid = slide_gap(first, second, slides, reach)
@@ -228,7 +230,8 @@ def _sliced(
     limit: float,
     reach: float,
 ) -> PairClearance | None:
-    """The gap of a pair of which most is proven along a line and the rest by the motion; None if that is not enough.
+    """Return the gap of a pair of which most is proven along a line and the rest by the motion; None if that is not
+    enough.
 
     Only for a pair that stays near: else the motion alone proves it sooner.
     """
@@ -277,7 +280,7 @@ def _pair(
 
 
 def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str:
-    """One sentence on the worst pair, a word on the others."""
+    """Return one sentence on the worst pair, a word on the others."""
     refused = sorted(refused, key=lambda item: (-item[0].depth_at(item[1].time), item[1].gap))
     sweep, least = refused[0]
     pair = f"{sweep.mover.body}: {sweep.mover.name} and {sweep.still.body}: {sweep.still.name}"

@@ -24,7 +24,7 @@ MANY = 4_000_000
 
 
 def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float = 0.0) -> tuple[float, float]:
-    """The gap (mm) between two meshes (n, 3, 3) that turn about the z axis: what is reached, and what is proven.
+    """Return the gap (mm) between two meshes (n, 3, 3) that turn about the z axis: what is reached, and what is proven.
 
     The first number is the distance of two points that some angle brings there; the second is below the gap at
     every angle, and less than the first by :data:`RESOLUTION` as a rule. Gaps beyond ``reach`` are given as
@@ -58,7 +58,7 @@ def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float =
 
 
 def _boxes(t: np.ndarray) -> np.ndarray:
-    """(n, 4): least r, largest r, least z, largest z of each triangle, rounded outwards."""
+    """Return (n, 4): least r, largest r, least z, largest z of each triangle, rounded outwards."""
     r = np.hypot(t[:, :, 0], t[:, :, 1])
     z = t[:, :, 2]
     low = np.column_stack([_least_radius(t)[0], z.min(axis=1)])
@@ -68,7 +68,9 @@ def _boxes(t: np.ndarray) -> np.ndarray:
 
 
 def _least_radius(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The least r of each triangle (0 if the axis pierces it), and (n, 2) the nearest point of its edges, in (r, z)."""
+    """Return the least r of each triangle (0 if the axis pierces it), and (n, 2) the nearest point of its edges, in (r,
+    z).
+    """
     p, q = t, np.roll(t, -1, axis=1)
     d = q - p
     length = np.einsum("nij,nij->ni", d[:, :, :2], d[:, :, :2])
@@ -108,7 +110,7 @@ def _near(t: np.ndarray, box: np.ndarray, other: np.ndarray, reach: float) -> tu
 
 
 def _box_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(n, m): distances between boxes."""
+    """Return (n, m): distances between boxes."""
     return _pair_gap(a[:, None], b[None])
 
 
@@ -127,8 +129,8 @@ def _bounds(a: np.ndarray, b: np.ndarray, enough: float) -> tuple[np.ndarray, np
 
 
 def _grouped(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Boxes in groups of :data:`GROUP` that are near each other, the last box as often as is missing; the place of each
-    of ``boxes`` in them; (groups, 4) the box round each group.
+    """Return boxes in groups of :data:`GROUP` that are near each other, the last box as often as is missing; the place
+    of each of ``boxes`` in them; (groups, 4) the box round each group.
     """
     count = -(-len(boxes) // GROUP)
     strips = max(1, round(count**0.5))
@@ -144,14 +146,14 @@ def _grouped(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _pair_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Distances of boxes (..., 4)."""
+    """Return distances of boxes (..., 4)."""
     r = np.maximum(np.maximum(a[..., 0] - b[..., 1], b[..., 0] - a[..., 1]), 0.0)
     z = np.maximum(np.maximum(a[..., 2] - b[..., 3], b[..., 2] - a[..., 3]), 0.0)
     return np.hypot(r, z)
 
 
 def _reached(a: np.ndarray, b: np.ndarray) -> float:
-    """The least distance between points of the two surfaces in (r, z): an upper bound."""
+    """Return the least distance between points of the two surfaces in (r, z): an upper bound."""
     from scipy.spatial import KDTree
 
     first, second = sorted((_samples(a), _samples(b)), key=len)
@@ -159,7 +161,7 @@ def _reached(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _samples(t: np.ndarray) -> np.ndarray:
-    """(n, 2) in (r, z): the corners of the triangles, and the points of their edges nearest to the axis.
+    """Return (n, 2) in (r, z): the corners of the triangles, and the points of their edges nearest to the axis.
 
     One point stands for all within :data:`ROUNDING` of each other, as corners of a turned part are.
     """

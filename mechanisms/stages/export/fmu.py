@@ -41,7 +41,7 @@ ENTRIES = ("advance", "derivative", "project", "jacobian")
 def data_header(
     equations: Any, quantities: Sequence[Quantity], frames: Sequence[tuple[int, float, float, float]]
 ) -> str:
-    """The text of model.h; its token is still to be put in."""
+    """Return the text of model.h; its token is still to be put in."""
     packed, tables = equations.ready.packed, {entry: equations.table(entry) for entry in ENTRIES}
     reals = {"START_TIME": equations.ready.start, "TOLERANCE": equations.tolerance, "DRIFT": DRIFT, "FAR": FAR}
     numbers = {**_counts(equations, quantities), **_places(equations), **_scalars(tables)}
@@ -89,7 +89,7 @@ def _counts(equations: Any, quantities: Sequence[Quantity]) -> dict[str, int]:
 
 
 def _places(equations: Any) -> dict[str, int]:
-    """Where the arrays are that the C sources read and write, in bytes from the start of the memory."""
+    """Return where the arrays are that the C sources read and write, in bytes from the start of the memory."""
     packed, dynamics, run, state = equations.ready.packed, equations.ready.dynamics, equations.run, equations.state
     arrays = {
         "Y": state.y, "DY": state.dy, "LAM": state.lam, "CLOCK": state.clock, "COUNT": state.count,
@@ -103,7 +103,7 @@ def _places(equations: Any) -> dict[str, int]:
 
 
 def _scalars(tables: dict[str, dict[str, list[Any]]]) -> dict[str, int]:
-    """Where the numbers stand in the tables that change from call to call; see NativeEquations.arguments."""
+    """Return where the numbers stand in the tables that change from call to call; see NativeEquations.arguments."""
     places = {
         "ADVANCE_END": ("advance", "5"), "ADVANCE_STEPS": ("advance", "6"),
         "ADVANCE_RELATIVE": ("advance", "4.relative"), "DERIVATIVE_TIME": ("derivative", "2"),
@@ -113,7 +113,7 @@ def _scalars(tables: dict[str, dict[str, list[Any]]]) -> dict[str, int]:
 
 
 def _word(table: dict[str, list[Any]], path: str) -> int:
-    """Where a number stands in a table."""
+    """Return where a number stands in a table."""
     at = 0
     for name, words in table.items():
         if name == path:
@@ -123,7 +123,7 @@ def _word(table: dict[str, list[Any]], path: str) -> int:
 
 
 def _joints(packed: Any) -> Iterable[str]:
-    """One line for each joint; see wrenches in mbsd/arrays/reactions.py."""
+    """Yield one line for each joint; see wrenches in mbsd/arrays/reactions.py."""
     system = packed.system
     for (i, j), first, last in zip(packed.markers, packed.first_row, packed.first_row[1:], strict=False):
         carrier = int(system.marker_body[j])
@@ -133,7 +133,7 @@ def _joints(packed: Any) -> Iterable[str]:
 
 
 def _relocations(functions: Sequence[tuple[int, str]]) -> str:
-    """The function that writes addresses of functions into the memory."""
+    """Return the function that writes addresses of functions into the memory."""
     names = sorted({name for _, name in functions})
     lines = [f"extern void *const {name};" for name in names]
     lines.append("static inline void relocate(unsigned char *memory) {\n    (void)memory;")
@@ -142,7 +142,7 @@ def _relocations(functions: Sequence[tuple[int, str]]) -> str:
 
 
 def _array(kind: str, name: str, items: Sequence[str]) -> str:
-    """A constant; one of no items has one of zeros, which nobody reads."""
+    """Return a constant; one of no items has one of zeros, which nobody reads."""
     rows = ",\n".join(", ".join(items[k : k + 8]) for k in range(0, len(items), 8)) or "{0}" if items else "0"
     if not items and kind in ("Frame", "Joint", "Word", "Variable"):
         rows = "{0}"
@@ -171,8 +171,9 @@ def description(
     name: str, token: str, identifier: str, quantities: Sequence[Quantity], span: tuple[float, float, float],
     tolerance: float, early: bool, exchange: bool,
 ) -> str:  # fmt: skip
-    """The text. ``span``: start, end and step (s); ``early``: whether a step may end where contacts begin and end;
-    ``exchange``: whether the unit may be integrated by the importer."""
+    """Return the text. ``span``: start, end and step (s); ``early``: whether a step may end where contacts begin and
+    end; ``exchange``: whether the unit may be integrated by the importer.
+    """
     root = Element("fmiModelDescription", fmiVersion="3.0", modelName=name, instantiationToken=token,
                    description=f"{name}, a planar mechanism", generationTool="mbsd",
                    variableNamingConvention="flat")  # fmt: skip
@@ -204,7 +205,7 @@ def _units(root: Element, quantities: Sequence[Quantity]) -> None:
 
 
 def _exponents(unit: str) -> dict[str, str]:
-    """Exponents of the base units in a unit like N.m/rad."""
+    """Return exponents of the base units in a unit like N.m/rad."""
     above, _, below = unit.partition("/")
     out: dict[str, int] = {}
     for side, parts in ((1, above), (-1, below)):
@@ -268,7 +269,7 @@ DATED = (1980, 1, 1, 0, 0, 0)
 
 
 def fmu(solution: Any) -> tuple[bytes, list[str]]:
-    """The archive, and what it leaves out. Raises UserError without a C compiler or for what needs Python."""
+    """Return the archive, and what it leaves out. Raises UserError without a C compiler or for what needs Python."""
     from mbsd import ModelError
     from mbsd.native.equations import NativeEquations
     from mbsd.native.quantities import frames_of, quantities_of, with_inputs
@@ -297,7 +298,7 @@ def fmu(solution: Any) -> tuple[bytes, list[str]]:
 
 
 def _compiler(name: str) -> str:
-    """The C compiler: CC, else what the system calls cc, gcc or clang. Raises UserError where there is none."""
+    """Return the C compiler: CC, else what the system calls cc, gcc or clang. Raises UserError where there is none."""
     for command in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
         where = command and shutil.which(command)
         if where:
@@ -306,7 +307,7 @@ def _compiler(name: str) -> str:
 
 
 def _linked(name: str, compiler: str, assembly: str, header: str) -> bytes:
-    """The shared library. Raises UserError with the compiler's words where it fails."""
+    """Return the shared library. Raises UserError with the compiler's words where it fails."""
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         for file in RUNTIME.iterdir():
@@ -322,7 +323,9 @@ def _linked(name: str, compiler: str, assembly: str, header: str) -> bytes:
 
 
 def _platform() -> str:
-    """Name of the folder of this platform's binaries. Raises UserError for one that the standard does not name."""
+    """Return the name of the folder of this platform's binaries. Raises UserError for one that the standard does not
+    name.
+    """
     machine, system = platform.machine(), platform.system()
     if system not in SYSTEMS:
         raise UserError(f"FMI has no name for the system {system}; export on Linux, macOS or Windows")
@@ -330,7 +333,7 @@ def _platform() -> str:
 
 
 def _identifier(name: str) -> str:
-    """The mechanism's name as one of C."""
+    """Return the mechanism's name as one of C."""
     made = re.sub(r"\W", "_", name, flags=re.ASCII)
     return made if made[:1].isalpha() else f"m_{made}"
 

@@ -21,7 +21,7 @@ SMALLEST = 1e-9
 
 
 def mjcf(solution: Any) -> tuple[str, list[str]]:
-    """The file's text, and what it leaves out."""
+    """Return the file's text, and what it leaves out."""
     m = solution.mechanism
     tree = tree_of(m, poses_of(solution))
     size = max(float(solution.packed.size), 1e-6)
@@ -54,7 +54,7 @@ class _Sites:
         self.wanted: list[tuple[str, str, Any]] = []
 
     def at(self, marker: Any) -> str:
-        """The name of the site of a marker."""
+        """Return the name of the site of a marker."""
         name = f"{marker.body.name} {len(self.wanted)}"
         self.wanted.append((name, marker.body.name, marker))
         return name
@@ -85,7 +85,7 @@ def _bodies(element: Element, tree: Tree, parent: str, size: float, sites: _Site
 
 
 def _joints(below: Element, node: Node) -> list[str]:
-    """The joints of a body: one for each freedom against its parent, in the order in which they act."""
+    """Return the joints of a body: one for each freedom against its parent, in the order in which they act."""
     name = node.body.name
     hinge = {"type": "hinge", "axis": "0 0 1"}
     if node.joint is None:
@@ -215,12 +215,12 @@ class _Writer:
 
 
 def _in_order(tree: Tree, parent: str) -> list[Node]:
-    """Bodies in the order of the file."""
+    """Return bodies in the order of the file."""
     return [node for child in tree.children(parent) for node in (child, *_in_order(tree, child.body.name))]
 
 
 def _speeds(solution: Any, node: Node) -> list[float]:
-    """Rates of a body's joints at the first output."""
+    """Return rates of a body's joints at the first output."""
     view = solution.body(node.body.name)
     if node.joint is None:
         return [float(view.vx[0]), float(view.vy[0]), float(view.omega[0])]
@@ -238,7 +238,7 @@ def _speeds(solution: Any, node: Node) -> list[float]:
 
 
 def _sliding(solution: Any, node: Node) -> float:
-    """How fast the body moves along the guide, seen from its parent."""
+    """Return how fast the body moves along the guide, seen from its parent."""
     joint = node.joint
     assert joint is not None
     own, other = (joint.j, joint.i) if node.own_is_j else (joint.i, joint.j)

@@ -65,7 +65,7 @@ def is_fresh(name: str, form: str) -> bool:
 
 
 def file_of(out: Out, form: str) -> Path:
-    """Where the file of a format is."""
+    """Return where the file of a format is."""
     return out.folder / "export" / f"{out.name}{FORMATS[form][0]}"
 
 
@@ -74,7 +74,9 @@ def _parts(out: Out) -> contract.Parts | None:
 
 
 def _key(parts: contract.Parts | None, inputs: Inputs, form: str, time: float) -> str:
-    """Hash of all that a file follows from; that of the solids takes them whole, others their masses alone."""
+    """Return the hash of all that a file follows from; that of the solids takes them whole, others their masses
+    alone.
+    """
     solids = parts.provenance.inputs if parts is not None and form == "step" else ""
     return str(key_of(solving.motion_key(parts, inputs), solids, form, time, sources_hash(*SOURCES)))
 

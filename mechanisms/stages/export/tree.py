@@ -14,12 +14,12 @@ ROUNDING = 1e-15
 
 
 def number(value: float) -> str:
-    """One number with all the digits that matter."""
+    """Return one number with all the digits that matter."""
     return f"{value:.{DIGITS}g}"
 
 
 def numbers(*values: float) -> str:
-    """Several, with spaces between."""
+    """Return several, with spaces between."""
     return " ".join(number(0.0 if abs(value) < ROUNDING else value) for value in values)
 
 
@@ -103,7 +103,7 @@ class Tree:
 
 
 def tree_of(m: Any, poses: dict[str, Pose]) -> Tree:
-    """The tree of a mechanism whose bodies stand so at the start."""
+    """Return the tree of a mechanism whose bodies stand so at the start."""
     tree, attached = Tree(), {GROUND}
     waiting = _spanning(m)
     used = {joint.name for joint in waiting}
@@ -134,8 +134,8 @@ def tree_of(m: Any, poses: dict[str, Pose]) -> Tree:
 
 
 def _spanning(m: Any) -> list[Any]:
-    """Joints that connect what they can without a loop: pins that are driven before those that cannot close a loop,
-    other pins last.
+    """Return joints that connect what they can without a loop: pins that are driven before those that cannot close a
+    loop, other pins last.
     """
     driven = {frozenset(driver.bodies) for driver in m.drivers.values() if driver.kind.angular}
 
@@ -161,7 +161,7 @@ def _spanning(m: Any) -> list[Any]:
 
 
 def poses_of(solution: Any) -> dict[str, Pose]:
-    """Where the frames of all bodies are at the first output."""
+    """Return where the frames of all bodies are at the first output."""
     poses = {GROUND: Pose(0.0, 0.0, 0.0)}
     for name in solution.mechanism.bodies:
         if name != GROUND:

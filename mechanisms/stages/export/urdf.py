@@ -13,7 +13,7 @@ from mechanisms.stages.export.tree import GROUND, Node, number, numbers, poses_o
 
 
 def urdf(solution: Any) -> tuple[str, list[str]]:
-    """The file's text, and what it leaves out."""
+    """Return the file's text, and what it leaves out."""
     m = solution.mechanism
     tree = tree_of(m, poses_of(solution))
     root = Element("robot", name=m.name)

@@ -74,14 +74,16 @@ class _Project(Places):
         return file.startswith(PROGRAM)
 
     def acts_for_itself(self, file: str) -> bool:
-        """The stages, except automatic parts, which act for the author."""
+        """Return True for the stages, except automatic parts, which act for the author."""
         return file.startswith(STAGES) or os.path.dirname(file) == DOORS
 
     def hash_of(self, path: Path) -> str:
         return file_hash(path)
 
     def module_state(self, name: str) -> str:
-        """The author's modules count by what they mean; those of the program by their bytes, as in the stages' keys."""
+        """Return the author's modules count by what they mean; those of the program by their bytes, as in the stages'
+        keys.
+        """
         if os.path.dirname(name) == "mechanisms" or name.startswith(OURS):
             return self.file_state(name)
         return recalled(("module", self.path_of(name)), lambda: super(_Project, self).module_state(name))
@@ -127,7 +129,7 @@ def recording() -> Iterator[Recorder]:
 
 
 def loaded_inputs(start: Path, package: str, before: set[str], leave_out: Path | None = None) -> Inputs:
-    """Files, rooms and packages that ``start``, a file of the package ``package``, was made of.
+    """Return files, rooms and packages that ``start``, a file of the package ``package``, was made of.
 
     ``before``: names of the modules that were loaded before it; later ones count although no import
     statement names them. ``leave_out`` and what only that file imports do not count.
@@ -141,7 +143,7 @@ def loaded_inputs(start: Path, package: str, before: set[str], leave_out: Path |
 
 
 def author_files(start: Path, package: str, leave_out: Path) -> list[tuple[Path, str]]:
-    """The author's own files that ``start`` was made of, itself included, each with its package."""
+    """Return the author's own files that ``start`` was made of, itself included, each with its package."""
     seen: dict[Path, str] = {}
     waiting = [(start, package)]
     while waiting:

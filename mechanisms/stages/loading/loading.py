@@ -91,7 +91,9 @@ def worded(
 
 
 def _operation(error: BaseException) -> tuple[str | None, str]:
-    """The outermost operation of :data:`OPERATIONS` in the traceback, and its numbers and texts as ``name=value``."""
+    """Return the outermost operation of :data:`OPERATIONS` in the traceback, and its numbers and texts as
+    ``name=value``.
+    """
     for frame, _ in traceback.walk_tb(error.__traceback__):
         if frame.f_code.co_name in OPERATIONS and "cadquery" in Path(frame.f_code.co_filename).parts:
             return frame.f_code.co_name, _arguments(frame)
@@ -233,7 +235,7 @@ def params(name: str) -> Any:
 
 
 def package_of(name: str) -> str:
-    """The Python package of a mechanism's files, which its variants share."""
+    """Return the Python package of a mechanism's files, which its variants share."""
     return f"mechanisms.{owner_of(name)}"
 
 
@@ -271,7 +273,7 @@ def author_code(name: str) -> Iterator[None]:
 
 
 def _folder_of(name: str) -> Path:
-    """The folder of a mechanism; where it would be on a worker of a cluster, which has its functions alone."""
+    """Return the folder of a mechanism; where it would be on a worker of a cluster, which has its functions alone."""
     try:
         return mechanism_folder(name) if in_workshop() else MECHANISMS / owner_of(name)
     except UserError:
@@ -279,7 +281,7 @@ def _folder_of(name: str) -> Path:
 
 
 def running(folder: str) -> str:
-    """The name of a folder's mechanism, or of its variant whose files are running just now."""
+    """Return the name of a folder's mechanism, or of its variant whose files are running just now."""
     name = _RUNNING.get()
     return name if name is not None and owner_of(name) == folder else folder
 
@@ -297,7 +299,7 @@ class _SourceOnly(SourceFileLoader):
 
 
 def _author_folder(path: str) -> FileFinder:
-    """Path hook: finds the modules in folders of the author's, below a mechanism or outside of the project.
+    """Find, as a path hook, the modules in folders of the author's, below a mechanism or outside of the project.
 
     Raises ImportError for the program's own folders, those of installed packages and the standard library.
     """

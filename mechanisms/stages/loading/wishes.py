@@ -50,7 +50,7 @@ def wishing(kind: Kind | None) -> Iterator[None]:
 
 
 def wished() -> Kind | None:
-    """How the mechanism whose parts are being made is to stand; None where nobody says."""
+    """Return how the mechanism whose parts are being made is to stand; None where nobody says."""
     return _WISHED.get()
 
 
@@ -70,5 +70,5 @@ def scaling(scale: Scale | None) -> Iterator[None]:
 
 
 def wished_scale() -> Scale | None:
-    """The scale of the parts that are being made; None where they are those of the machine itself."""
+    """Return the scale of the parts that are being made; None where they are those of the machine itself."""
     return _SCALE.get()

@@ -69,7 +69,7 @@ def follows_gravity(bodies: Any, wish: Kind | None) -> bool:
 
 
 def mount_of(name: str, bodies: Any, wish: Kind | None) -> Mount:
-    """The mount of what ``parts()`` returned; solids by hand lie on a desk unless shot.py says otherwise.
+    """Return the mount of what ``parts()`` returned; solids by hand lie on a desk unless shot.py says otherwise.
 
     Raises UserError for one that parts() says and that cannot be.
     """
@@ -101,7 +101,7 @@ ALIKE = 1e-9
 
 
 def solids_of(name: str) -> dict[str, list[Solid]]:
-    """Every piece by body. Raises UserError where the model cannot move, or has no automatic parts."""
+    """Return every piece by body. Raises UserError where the model cannot move, or has no automatic parts."""
     from mechanisms.stages.automatic.automatic import automatic
 
     if wished_scale() is not None:
@@ -134,7 +134,7 @@ def masses_of_machine(name: str) -> dict[str, Mass]:
 
 
 def _masses(solids: dict[str, list[Solid]]) -> dict[str, Mass]:
-    """Masses of all pieces of each moving body together."""
+    """Return masses of all pieces of each moving body together."""
     from mechanisms.stages.parts.meshes import combined, mass_of
     from shared.contract.materials import MATERIALS
 

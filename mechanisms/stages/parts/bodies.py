@@ -122,7 +122,7 @@ def described_body(
 
 
 def spans(places: tuple[Place, Place]) -> tuple[End, End]:
-    """The places (mm) that a rod joins, as parts.json has them."""
+    """Return the places (mm) that a rod joins, as parts.json has them."""
     first, second = (End(body=body, x=metres(x), y=metres(y)) for body, x, y in places)
     return first, second
 

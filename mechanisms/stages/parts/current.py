@@ -10,7 +10,7 @@ from shared.stage.paths import Out
 
 
 def current_parts(out: Out, stage: str) -> Parts | None:
-    """The parts that are there, unless what they follow from has changed since, which ``stage`` says."""
+    """Return the parts that are there, unless what they follow from has changed since, which ``stage`` says."""
     from mechanisms.stages.parts.stage import are_current
 
     if not out.parts.is_file():

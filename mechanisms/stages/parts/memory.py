@@ -31,7 +31,9 @@ from shared.stage.stages import Stage, key_of
 
 
 def traced(params: Any) -> tuple[Any, set[str]]:
-    """A stand-in for a frozen dataclass instance, and the set in which the names that are read from it collect."""
+    """Return a stand-in for a frozen dataclass instance, and the set in which the names that are read from it
+    collect.
+    """
     kind = type(params)
     seen: set[str] = set()
 
@@ -49,7 +51,7 @@ def traced(params: Any) -> tuple[Any, set[str]]:
 
 
 def fields_of(params: Any) -> dict[str, Any]:
-    """Every field by name."""
+    """Return every field by name."""
     return {field.name: getattr(params, field.name) for field in dataclasses.fields(params)}
 
 
@@ -57,7 +59,7 @@ def fields_of(params: Any) -> dict[str, Any]:
 
 
 def plain_text(value: Any) -> str | None:
-    """The text, or None for a value that has none (a function, an object of a class that is no dataclass).
+    """Return the text, or None for a value that has none (a function, an object of a class that is no dataclass).
 
     ``repr`` would not do: it shortens arrays and shows addresses of objects.
     """
@@ -225,7 +227,7 @@ class KeptPieces:
         return key_of(self.program, stream.getvalue(), replace(solid, shape=None), along)
 
     def get(self, key: str) -> Kept | None:
-        """The piece, if it is there whole."""
+        """Return the piece, if it is there whole."""
         try:
             return msgspec.msgpack.decode((self.folder / key).read_bytes(), type=Kept)
         except (OSError, msgspec.MsgspecError):

@@ -90,7 +90,7 @@ def _edges(mesh: Any) -> str:
 
 
 def mass_of(solid: Any, density: float, along: bool = False) -> Mass:
-    """Mass properties (kg, m, kg m^2, m^3) of a ``cadquery.Shape`` in mm, with ``density`` in kg/m^3.
+    """Return the mass properties (kg, m, kg m^2, m^3) of a ``cadquery.Shape`` in mm, with ``density`` in kg/m^3.
 
     The centre of mass is in the body's frame; the inertia is about the axis through it, along z. ``along``: with z of
     the centre of mass and the products of inertia, which count where z is that of the model.
@@ -120,7 +120,7 @@ def mass_of(solid: Any, density: float, along: bool = False) -> Mass:
 
 
 def combined(masses: Iterable[Mass]) -> Mass:
-    """One body of several pieces: parallel-axis theorem (Steiner) about the common centre of mass."""
+    """Return one body of several pieces: parallel-axis theorem (Steiner) about the common centre of mass."""
     pieces = list(masses)
     mass = sum(piece.mass for piece in pieces)
     if mass == 0:

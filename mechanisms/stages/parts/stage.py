@@ -192,7 +192,7 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
 
 
 def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Found | None:
-    """The parts that a worker of the cluster made; None where they did not follow from what is here."""
+    """Return the parts that a worker of the cluster made; None where they did not follow from what is here."""
     from mechanisms.stages.parts.on_cluster.dealt import made_elsewhere
 
     name, known = out.name, observed(_notes(out).get("inputs")) or Inputs()
@@ -271,7 +271,7 @@ def _notes(out: Out) -> dict[str, Any]:
 
 
 def _key(given: Any, reads: list[str], inputs: Inputs, wish: _Wish) -> str:
-    """Hash of all that the parts follow from; ``reads`` are the attributes of Params that parts() reads."""
+    """Return the hash of all that the parts follow from; ``reads`` are the attributes of Params that parts() reads."""
     fields = fields_of(given)
     values = {read: plain_text(fields[read]) for read in reads if read in fields}
     densities = {material: MATERIALS[material].density for material in sorted(MATERIALS)}
@@ -297,7 +297,7 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
 
 
 def _build(name: str, given: Any, seen: _Seen) -> dict[str, list[Any]]:
-    """The solids by body; ``seen`` gets what parts.py reads, also where it fails."""
+    """Return the solids by body; ``seen`` gets what parts.py reads, also where it fails."""
     from mechanisms.stages.loading.inputs import loaded_inputs
     from mechanisms.stages.parts.bodies import refuse_unfit
     from mechanisms.stages.parts.cad_reads import reported_cad_files

@@ -52,13 +52,13 @@ class Laid:
         return self.vertices[self.faces]
 
     def turned(self, angle: float) -> Laid:
-        """The same, turned on the bed by ``angle`` (rad)."""
+        """Return the same, turned on the bed by ``angle`` (rad)."""
         c, s = math.cos(angle), math.sin(angle)
         return _standing(self.vertices, self.faces, np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]), self)
 
 
 def laid(triangles: np.ndarray) -> Laid:
-    """A piece, (n, 3, 3) in mm, on the face that it prints best on, turned to need the smallest rectangle."""
+    """Return a piece, (n, 3, 3) in mm, on the face that it prints best on, turned to need the smallest rectangle."""
     corners, index = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
     faces = index.reshape(-1, 3)
     down = _standing(corners, faces, _to_bed(best_face(corners, faces)))
@@ -66,7 +66,7 @@ def laid(triangles: np.ndarray) -> Laid:
 
 
 def fitting(piece: Laid, bed: tuple[float, float]) -> Laid | None:
-    """The piece as it is, or turned so that it fits the bed; None if it does not in any direction."""
+    """Return the piece as it is, or turned so that it fits the bed; None if it does not in any direction."""
     for degrees in range(180):
         turned = piece.turned(math.radians(degrees)) if degrees else piece
         x, y, _ = turned.size
@@ -80,7 +80,7 @@ def _within(x: float, y: float, bed: tuple[float, float]) -> bool:
 
 
 def best_face(corners: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """(3,): the normal of the face to lie on; straight down where there is no flat face to stand on."""
+    """Return (3,): the normal of the face to lie on; straight down where there is no flat face to stand on."""
     across = np.cross(
         corners[faces[:, 1]] - corners[faces[:, 0]],
         corners[faces[:, 2]] - corners[faces[:, 0]],
@@ -102,7 +102,7 @@ def best_face(corners: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def _resting(corners: np.ndarray) -> list[np.ndarray]:
-    """Normals of the largest faces of the convex hull: what has a flat face there can stand on it."""
+    """Return normals of the largest faces of the convex hull: what has a flat face there can stand on it."""
     hull = ConvexHull(corners)
     p, q, r = (corners[hull.simplices[:, k]] for k in range(3))
     areas = np.linalg.norm(np.cross(q - p, r - p), axis=1) / 2
@@ -119,7 +119,7 @@ def _exact(normal: np.ndarray) -> np.ndarray:
 
 
 def _to_bed(normal: np.ndarray) -> np.ndarray:
-    """The turn that brings ``normal`` to -z by the shortest way."""
+    """Return the turn that brings ``normal`` to -z by the shortest way."""
     if normal[2] > 1 - 1e-9:
         return np.diag([1.0, -1.0, -1.0])
     x, y, z = normal
@@ -128,7 +128,7 @@ def _to_bed(normal: np.ndarray) -> np.ndarray:
 
 
 def _least_rectangle(vertices: np.ndarray) -> float:
-    """The angle (rad) by which a piece is turned so that its rectangle is least, a long side along x."""
+    """Return the angle (rad) by which a piece is turned so that its rectangle is least, a long side along x."""
     hull = vertices[ConvexHull(vertices[:, :2]).vertices, :2]
     edges = np.roll(hull, -1, axis=0) - hull
     best, least = 0.0, np.inf
@@ -177,7 +177,7 @@ class Sheet:
 
 
 def sheet_of(piece: Laid) -> Sheet | None:
-    """The sheet that a laid piece can be cut from; None if its outline changes on the way up."""
+    """Return the sheet that a laid piece can be cut from; None if its outline changes on the way up."""
     body = _manifold(piece)
     x, y, height = piece.size
     levels = _upper_faces(piece)
@@ -203,7 +203,7 @@ def sheet_of(piece: Laid) -> Sheet | None:
 
 
 def _upper_faces(piece: Laid) -> list[float]:
-    """Heights of large faces that look up, from the highest down."""
+    """Return heights of large faces that look up, from the highest down."""
     corners = piece.triangles
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     up = across[:, 2] > 0.9999 * np.linalg.norm(across, axis=1)
@@ -217,7 +217,7 @@ def _upper_faces(piece: Laid) -> list[float]:
 
 
 def _filled(section: Any) -> float:
-    """Area of a section with its holes filled (mm^2)."""
+    """Return the area of a section with its holes filled (mm^2)."""
     return sum(max(_signed(contour), 0.0) for contour in section.to_polygons())
 
 
@@ -248,7 +248,7 @@ ALIKE = 1e-4
 
 
 def groups(pieces: Sequence[tuple[str, Laid]]) -> list[list[int]]:
-    """Indices of equal pieces of one material, each given as (material, mesh); in the order of their first."""
+    """Return indices of equal pieces of one material, each given as (material, mesh); in the order of their first."""
     kinds: list[list[int]] = []
     marks: list[tuple[str, float]] = []
     for index, (material, piece) in enumerate(pieces):
@@ -292,11 +292,11 @@ def _falls_on(first: np.ndarray, second: np.ndarray, tree: KDTree) -> bool:
 
 
 def volume_of(piece: Laid) -> float:
-    """Volume of the closed mesh (mm^3)."""
+    """Return the volume of the closed mesh (mm^3)."""
     corners = piece.triangles
     return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
 
 
 def _centred(piece: Laid) -> np.ndarray:
-    """Corners about the vertical through their middle."""
+    """Return corners about the vertical through their middle."""
     return piece.vertices - [*piece.vertices[:, :2].mean(axis=0), 0.0]

@@ -65,7 +65,7 @@ class Bought:
 
 
 def markdown(title: str, bed: str, made: Sequence[Made], bought: Sequence[Bought]) -> str:
-    """The lists as a page."""
+    """Return the lists as a page."""
     count = sum(len(part.names) for part in made)
     mass = sum(len(part.names) * part.mass for part in made)
     lines = [f"# Pieces of {title}", "", f"## To make: {count}, {written(mass, 'kg')}", ""]
@@ -88,7 +88,7 @@ def markdown(title: str, bed: str, made: Sequence[Made], bought: Sequence[Bought
 
 
 def table(made: Sequence[Made], bought: Sequence[Bought]) -> str:
-    """The lists as CSV: a row for each kind of piece, ``do`` is make or buy."""
+    """Return the lists as CSV: a row for each kind of piece, ``do`` is make or buy."""
     rows: list[list[object]] = []
     for part in made:
         size = [f"{length:.2f}" for length in part.piece.size]
@@ -150,7 +150,7 @@ def made_of(pieces: Mapping[str, Piece], meshes: Sequence[MeshPiece], bed: Bed) 
 
 
 def _bed_for(part: Made, bed: Bed) -> str:
-    """The bed that a piece needs, in whole millimetres."""
+    """Return the bed that a piece needs, in whole millimetres."""
     x, y, z = (math.ceil(length - 1e-6) for length in part.piece.size)
     return f"{x} x {y}" + (f" x {z}" if math.isfinite(bed[2]) else "")
 

@@ -35,7 +35,7 @@ class Place:
 
 
 def packed(rectangles: Sequence[tuple[float, float]], bed: tuple[float, float], gap: float) -> list[Place]:
-    """A place for each rectangle (x, y in mm), at least ``gap`` apart.
+    """Return a place for each rectangle (x, y in mm), at least ``gap`` apart.
 
     Raises ValueError if one is larger than the bed.
     """
@@ -58,7 +58,9 @@ def packed(rectangles: Sequence[tuple[float, float]], bed: tuple[float, float], 
 
 
 def _fullest(sizes: np.ndarray, room: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Bounds (m, 2, 2) of the rectangles that the fullest of several orders puts on a plate, and which these are."""
+    """Return bounds (m, 2, 2) of the rectangles that the fullest of several orders puts on a plate, and which these
+    are.
+    """
     from trimesh.path.packing import rectangles_single
 
     random, areas = np.random.default_rng(0), np.prod(sizes, axis=1)
@@ -77,7 +79,8 @@ LAYER = "CUT"
 
 
 def section(step: Path, piece: Laid, height: float) -> Any:
-    """A ``cadquery.Workplane`` with the solid's section at ``height`` above the bed, moved to z = 0, as it is laid.
+    """Return a ``cadquery.Workplane`` with the solid's section at ``height`` above the bed, moved to z = 0, as it is
+    laid.
 
     Raises UserError if the file cannot be read.
     """
@@ -95,7 +98,9 @@ def section(step: Path, piece: Laid, height: float) -> Any:
 
 
 def dxf(cut: Any, thickness: float) -> bytes:
-    """The DXF (R2013) of a section; its layer says how thick the sheet is. No times and no random marks are in it."""
+    """Return the DXF (R2013) of a section; its layer says how thick the sheet is. No times and no random marks are in
+    it.
+    """
     from cadquery.occ_impl.exporters.dxf import DxfDocument
 
     with without_times():
@@ -106,12 +111,12 @@ def dxf(cut: Any, thickness: float) -> bytes:
 
 
 def layer_of(thickness: float) -> str:
-    """The layer of what is cut from a sheet of this thickness (mm)."""
+    """Return the layer of what is cut from a sheet of this thickness (mm)."""
     return f"{LAYER}_{thickness:g}MM"
 
 
 def file_of(name: str, thickness: float) -> str:
-    """The name of a piece's outline."""
+    """Return the name of a piece's outline."""
     return f"{name}_{thickness:g}mm.dxf"
 
 
@@ -149,12 +154,12 @@ class Placed:
 
 
 def stl(plate: Sequence[Placed]) -> bytes:
-    """All pieces of a plate in one binary STL (mm)."""
+    """Return all pieces of a plate in one binary STL (mm)."""
     return binary_stl(np.concatenate([part.vertices[part.piece.faces] for part in plate]).astype(np.float32))
 
 
 def three_mf(title: str, plate: Sequence[Placed]) -> bytes:
-    """A 3MF (mm) with an object for each kind of piece, an item for each piece, both with names, and colours."""
+    """Return a 3MF (mm) with an object for each kind of piece, an item for each piece, both with names, and colours."""
     import lib3mf
 
     model: Any = lib3mf.get_wrapper().CreateModel()
@@ -196,7 +201,7 @@ def _transform(lib3mf: Any, matrix: np.ndarray) -> Any:
 
 
 def _colour(lib3mf: Any, material: str) -> Any:
-    """A material's colour, which is linear, in the curve of sRGB (IEC 61966-2-1)."""
+    """Return a material's colour, which is linear, in the curve of sRGB (IEC 61966-2-1)."""
     linear = np.array(MATERIALS[material].colour)
     curve = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     return lib3mf.Color(*(round(255 * float(channel)) for channel in curve), 255)

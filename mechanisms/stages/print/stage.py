@@ -39,7 +39,7 @@ SKIN = 1e-4
 
 
 def thinnest(triangles: np.ndarray) -> float:
-    """The thinnest wall (mm) of a closed mesh (n, 3, 3) that its rays find; infinite where they find none."""
+    """Return the thinnest wall (mm) of a closed mesh (n, 3, 3) that its rays find; infinite where they find none."""
     across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     size = np.linalg.norm(across, axis=1)
     sound = size > 1e-9
@@ -54,7 +54,7 @@ def thinnest(triangles: np.ndarray) -> float:
 
 
 def _inside(triangles: np.ndarray, normals: np.ndarray, start: np.ndarray, way: np.ndarray) -> float:
-    """How far it is to the next face along a ray (Moeller and Trumbore 1997); infinite where that leans."""
+    """Return how far it is to the next face along a ray (Moeller and Trumbore 1997); infinite where that leans."""
     first, second = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     aside = np.cross(way, second)
     volume = np.einsum("ij,ij->i", first, aside)
@@ -128,7 +128,7 @@ def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
 def laid_out(
     out: Out, parts: Parts, meshes: list[MeshPiece], bed: Bed, gap: float
 ) -> tuple[dict[str, bytes], list[Made], list[Bought]]:
-    """The files by their names, the lists last, and what is on these."""
+    """Return the files by their names, the lists last, and what is on these."""
     from mechanisms.stages.print.making import bought_of, made_of, markdown, outlined, plates_of, table
 
     pieces = {name: piece for body in parts.bodies.values() for name, piece in body.pieces.items()}
@@ -142,7 +142,7 @@ def laid_out(
 
 
 def bed_of(text: str) -> Bed:
-    """A bed from words like 220x220 or 220x220x250; raises UserError if it is none."""
+    """Return a bed from words like 220x220 or 220x220x250; raises UserError if it is none."""
     lengths = text.lower().split("x")
     if len(lengths) not in (2, 3) or not all(_LENGTH.fullmatch(length) and float(length) > 0 for length in lengths):
         example = said(bed="220x220")
@@ -152,7 +152,7 @@ def bed_of(text: str) -> Bed:
 
 
 def gap_of(text: str) -> float:
-    """A gap (mm); raises UserError if it is none."""
+    """Return a gap (mm); raises UserError if it is none."""
     if not _LENGTH.fullmatch(text):
         raise UserError(f"{said(gap=text)} is no gap; write what pieces keep apart in mm, such as {said(gap='5')}")
     return float(text)

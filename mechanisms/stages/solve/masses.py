@@ -59,7 +59,7 @@ def estimated_masses(m: Mechanism) -> dict[str, Estimate]:
 
 
 def _discs(m: Mechanism) -> Iterator[tuple[Marker, float]]:
-    """Every marker that is used, with the radius of the wheel about it (m), or 0."""
+    """Yield every marker that is used, with the radius of the wheel about it (m), or 0."""
     from mbsd.model.force import ForceKind
     from mbsd.model.teeth import with_radii
 
@@ -159,7 +159,7 @@ def give_masses_aloud(stage: str, name: str, m: Mechanism, parts: Parts | None) 
 
 
 def bodies_of(parts: Parts) -> dict[str, BodyParts]:
-    """The bodies of parts.json without its rods, which are none of mechanism.py."""
+    """Return the bodies of parts.json without its rods, which are none of mechanism.py."""
     return {name: body for name, body in parts.bodies.items() if body.spans is None}
 
 
@@ -177,7 +177,7 @@ def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
 
 
 def _some(masses: list[str]) -> str:
-    """The first of them, and how many others there are."""
+    """Return the first of them, and how many others there are."""
     more = len(masses) - LISTED
     return ", ".join(masses) if more <= 1 else f"{', '.join(masses[:LISTED])} and {more} others"
 

@@ -28,7 +28,7 @@ POINTS = 240
 
 
 def shape_of(element: Joint | Force) -> Shape:
-    """The shape between the two markers of a joint, force or contact."""
+    """Return the shape between the two markers of a joint, force or contact."""
     from mbsd.model.force import Force as AnyForce
     from mbsd.model.force import ForceKind
     from mbsd.model.teeth import with_radii
@@ -69,7 +69,7 @@ def _positive(value: float | None) -> float | None:
 
 
 def _cam(data: Any) -> tuple[list[tuple[float, float]], dict[str, float]]:
-    """The disc as it is cut, and the radius of its roller if it has one."""
+    """Return the disc as it is cut, and the radius of its roller if it has one."""
     from mbsd.cams import cam_from
 
     profile = cam_from(data)
@@ -78,7 +78,7 @@ def _cam(data: Any) -> tuple[list[tuple[float, float]], dict[str, float]]:
 
 
 def _curve(points: Any, closed: bool) -> list[tuple[float, float]]:
-    """The smooth curve through the points of a joint or terrain."""
+    """Return the smooth curve through the points of a joint or terrain."""
     import numpy as np
 
     from mbsd.model.plane_curves import curve_pieces
@@ -93,7 +93,7 @@ def _curve(points: Any, closed: bool) -> list[tuple[float, float]]:
 
 
 def _profile(curve: Any) -> list[tuple[float, float]]:
-    """The profile y(x) of a surface with give."""
+    """Return the profile y(x) of a surface with give."""
     import numpy as np
 
     x = np.linspace(float(curve.x[0]), float(curve.x[-1]), POINTS + 1)
@@ -113,7 +113,9 @@ WHOLE = 1e-6
 
 
 def vibration(solution: Solution) -> contract.Vibration | None:
-    """None where nothing has mass, or the motion does not repeat after whole turns of something on ground."""
+    """Return the inertia forces; None where nothing has mass, or the motion does not repeat after whole turns of
+    something on ground.
+    """
     m = solution.mechanism
     if solution.period is None or not any(body.mass > 0 for body in m.bodies.values()):
         return None
@@ -172,7 +174,7 @@ def _axis(solution: Solution, crank: str) -> tuple[float, float]:
 
 
 def _harmonics(solution: Solution, crank: str, turns: int, unit: str, values: np.ndarray) -> contract.Harmonics | None:
-    """None of what has too few rows for the orders."""
+    """Return vibrations; None if there are too few rows for the orders."""
     orders = solution.orders(values, crank, turns)
     count = HIGHEST * turns
     if len(orders.order) < count:
@@ -201,7 +203,7 @@ def to_motion(
     packages: dict[str, str],
     sources: Mapping[str, Source] | None = None,
 ) -> contract.Motion:
-    """The solution as the contract has it; bodies without solids have no height.
+    """Return the solution as the contract has it; bodies without solids have no height.
 
     Times at which efforts do not exist are left out, and its notes say so.
     ``sources`` says where the mass of each body is from; if it is not given, from the parts.
@@ -345,7 +347,7 @@ def _actions(solution: Solution, driver: Joint) -> list[contract.Action]:
 
 
 def _look(look: str, holds_energy: bool) -> Look:
-    """A coil that holds no energy is a damper, such a spiral nothing that is seen."""
+    """Return the kind that is drawn: a coil that holds no energy is a damper, such a spiral is not seen."""
     if not holds_energy:
         look = {"coil": "cylinder", "spiral": ""}.get(look, look)
     return look  # pyright: ignore[reportReturnType]  (the contract lists them)
@@ -382,7 +384,7 @@ def _hydraulics(view: ForceView) -> contract.HydraulicMotion | None:
 
 
 def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
-    """Motion of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
+    """Return the motion of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
     from mbsd.model.contact import ContactKind
     from mbsd.results.acting import acting
 

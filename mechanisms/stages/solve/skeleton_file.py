@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
 
 def body_colours(m: Mechanism, parts: Parts | None) -> dict[str, str]:
-    """The ink (``#rrggbb``, on light paper) of each moving body; bodies of one material have shades that differ."""
+    """Return the ink (``#rrggbb``, on light paper) of each moving body; bodies of one material have shades that
+    differ.
+    """
     from mbsd.drawing.inks import INKS, apart, colours_by_role
 
     inks = {body: INKS[word] for body, word in colours_by_role(m).items()}
@@ -31,7 +33,7 @@ def body_colours(m: Mechanism, parts: Parts | None) -> dict[str, str]:
 
 
 def main_material(body: BodyParts) -> str:
-    """Material of the piece with the largest volume."""
+    """Return the material of the piece with the largest volume."""
     return max(body.pieces.values(), key=lambda piece: piece.mass.volume).material
 
 
@@ -44,7 +46,7 @@ FINENESS = 1e-4
 
 
 def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
-    """The first pose whole, with its names; of the others what is elsewhere."""
+    """Return the first pose whole, with its names; of the others what is elsewhere."""
     from mbsd.drawing.strokes import moved, strokes_of
 
     times = np.linspace(solution.t[0], solution.t[-1], POSES + 1)[:-1]
@@ -68,7 +70,7 @@ def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
 
 
 def moving_of(solution: Solution, drawn: Drawn | None = None) -> Moving:
-    """The whole skeleton for any moment; ``drawn``, if it is drawn already."""
+    """Return the whole skeleton for any moment; ``drawn``, if it is drawn already."""
     from mbsd.drawing.view.carried import moving
 
     shown = moving(solution) if drawn is None else drawn

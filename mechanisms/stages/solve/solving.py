@@ -63,7 +63,7 @@ def simulated_closely(m: Mechanism, duration: float, steps: int) -> Solution:
 
 
 def refined_sweep(solution: Solution) -> Solution:
-    """The same sweep, with both rows of what jumps and at more times where the motion needs them."""
+    """Return the same sweep, with both rows of what jumps and at more times where the motion needs them."""
     both = solution.mechanism.sweep(times=solution.t, event_rows=True)
     times = np.unique(both.t)
     closer = closer_times(solution.mechanism, times)
@@ -78,7 +78,7 @@ def swept_closely(m: Mechanism, times: np.ndarray) -> Solution:
 
 
 def closer_times(m: Mechanism, times: np.ndarray) -> np.ndarray:
-    """Times (s) with more of them where the motion of a sweep needs it: where a link flies past a dead point."""
+    """Return times (s) with more of them where the motion of a sweep needs it: where a link flies past a dead point."""
     for _ in range(2 * ROUNDS):
         middles = (times[:-1] + times[1:]) / 2
         finer = m.sweep(times=np.sort(np.concatenate([times, middles])), event_rows=True)
@@ -94,7 +94,8 @@ def closer_times(m: Mechanism, times: np.ndarray) -> np.ndarray:
 
 
 def _inner(times: np.ndarray, count: int, coarse: np.ndarray, far: np.ndarray) -> np.ndarray:
-    """Times (s) that divide the steps after rows ``coarse`` of ``times``; of too many, those that are ``far`` most.
+    """Return times (s) that divide the steps after rows ``coarse`` of ``times``; of too many, those that are ``far``
+    most.
 
     ``count``: how many times there are already.
     """
@@ -105,26 +106,27 @@ def _inner(times: np.ndarray, count: int, coarse: np.ndarray, far: np.ndarray) -
 
 
 def coarse_steps(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
-    """Rows after which the quintic leaves the motion or cannot be trusted, and how far, 1 being what may be."""
+    """Return rows after which the quintic leaves the motion or cannot be trusted, and how far, 1 being what may be."""
     steps = _steps(solution)
     far = _far(solution, steps, steps + 1, solution.at((solution.t[steps] + solution.t[steps + 1]) / 2).q)
     return steps[far > 1.0], far[far > 1.0]
 
 
 def doubted_steps(solution: Solution) -> np.ndarray:
-    """Rows after which the proof of clearance doubts the motion, as far as the rows themselves show."""
+    """Return rows after which the proof of clearance doubts the motion, as far as the rows themselves show."""
     steps = _steps(solution)
     return steps[_doubt(solution, steps, steps + 1) > 1.0]
 
 
 def _steps(solution: Solution) -> np.ndarray:
-    """(n,) rows at which a step begins."""
+    """Return (n,) rows at which a step begins."""
     t = solution.t
     return np.flatnonzero(np.diff(t) > 1e-9 * (t[-1] - t[0]))
 
 
 def _far(solution: Solution, first: np.ndarray, last: np.ndarray, middle: np.ndarray) -> np.ndarray:
-    """(n,) how far the quintic between two rows is from the motion, ``middle`` (n, bodies, 3) half way, or doubted.
+    """Return (n,) how far the quintic between two rows is from the motion, ``middle`` (n, bodies, 3) half way, or
+    doubted.
 
     In parts of what may be.
     """
@@ -136,7 +138,7 @@ def _far(solution: Solution, first: np.ndarray, last: np.ndarray, middle: np.nda
 
 
 def _doubt(solution: Solution, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """(n,) how far the quintic between two rows is from the cubic, in parts of what the proof may doubt."""
+    """Return (n,) how far the quintic between two rows is from the cubic, in parts of what the proof may doubt."""
     h, size = (solution.t[last] - solution.t[first])[:, None, None], solution.packed.size
     rise = 0.3 * (solution.q[last] - solution.q[first])
     v0, v1 = h * solution.v[first], h * solution.v[last]
@@ -161,7 +163,7 @@ FEWEST, MOST, RATE = 360, 7200, 120.0
 
 
 def build(name: str, module: Any, p: Any) -> Mechanism:
-    """The model of ``build(p)`` in ``module``; that of a variant has the variant's name.
+    """Return the model of ``build(p)`` in ``module``; that of a variant has the variant's name.
 
     Raises UserError unless it is a Mechanism called as its folder.
     """
@@ -183,7 +185,7 @@ def build(name: str, module: Any, p: Any) -> Mechanism:
 
 
 def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
-    """The motion of ``m`` as mechanism.py asks for it. Raises UserError; warnings of the solver become lines."""
+    """Return the motion of ``m`` as mechanism.py asks for it. Raises UserError; warnings of the solver become lines."""
     from mbsd import MechanismError
     from mbsd.results.solution import Solution
 
@@ -208,7 +210,7 @@ def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
 
 
 def _natural(name: str, module: Any, m: Mechanism) -> Solution:
-    """The sweep or simulation that the model asks for."""
+    """Return the sweep or simulation that the model asks for."""
     duration = _positive(name, module, "DURATION", "a number of seconds, as in DURATION = 2.0")
     steps = _positive(name, module, "STEPS", "a whole number of steps, as in STEPS = 600")
     if steps is not None and steps != int(steps):
@@ -233,7 +235,7 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
 
 
 def _steps_of(m: Mechanism, duration: float | None) -> int:
-    """Steps of a sweep: so many for each turn of its drivers, of the whole period where no duration is given."""
+    """Return steps of a sweep: so many for each turn of its drivers, of the whole period where no duration is given."""
     from mbsd.kinematics.period import common_period
 
     whole, common = duration or m.period(), common_period(m.drivers.values())
@@ -243,7 +245,9 @@ def _steps_of(m: Mechanism, duration: float | None) -> int:
 
 
 def _positive(name: str, module: Any, constant: str, form: str) -> float | None:
-    """A constant beside build(), or None where there is none. Raises UserError unless it is a positive number."""
+    """Return a constant beside build(), or None where there is none. Raises UserError unless it is a positive
+    number.
+    """
     value = loading.constant(name, module, constant)
     if value is None:
         return None

@@ -83,7 +83,9 @@ def _is_fresh(out: Out, parts: contract.Parts | None) -> bool:
 
 
 def motion_key(parts: contract.Parts | None, inputs: Inputs) -> str:
-    """Hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
+    """Return the hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it
+    reads.
+    """
     masses = parts and {body: (solids.mass, solids.z, main_material(solids)) for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
     return str(key_of(*sources, masses, versions(*PACKAGES), inputs.digest()))

@@ -45,7 +45,9 @@ class Arrow:
 
 
 def sizes(spec: ArrowSpec, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Factor of all thicknesses, and length of the shaft, for arrows of ``length`` (n,) (m); the cone is the rest."""
+    """Return the factor of all thicknesses, and length of the shaft, for arrows of ``length`` (n,) (m); the cone is the
+    rest.
+    """
     factor = np.minimum(1.0, length / (STOUT * spec.point))
     return factor, length - factor * spec.point
 
@@ -75,7 +77,7 @@ def channels(
 
 
 def build_arrow(scene: Any, spec: ArrowSpec) -> Arrow:
-    """The objects of one arrow, in ``scene``."""
+    """Return the objects of one arrow, in ``scene``."""
     import bpy
 
     root = bpy.data.objects.new(f"arrow {spec.name}", None)
@@ -99,7 +101,7 @@ def build_arrow(scene: Any, spec: ArrowSpec) -> Arrow:
 
 
 def _tip(name: str, spec: ArrowSpec) -> Any:
-    """The head from its neck (x = 0) to its tip (x = 1), whose half width is 1 in y and z."""
+    """Return the head from its neck (x = 0) to its tip (x = 1), whose half width is 1 in y and z."""
     if spec.tip == "solid":
         return _turned(name, [(0.0, 1.0), (1.0, 1e-3)])
     if spec.tip == "solid double":
@@ -113,7 +115,7 @@ def _tip(name: str, spec: ArrowSpec) -> Any:
 
 
 def _flat(name: str, outlines: Sequence[Sequence[tuple[float, float]]], half: float) -> Any:
-    """Upright prisms over outlines in the plane of the motion, from -half to half."""
+    """Return upright prisms over outlines in the plane of the motion, from -half to half."""
     import bpy
 
     corners: list[tuple[float, float, float]] = []
@@ -129,7 +131,7 @@ def _flat(name: str, outlines: Sequence[Sequence[tuple[float, float]]], half: fl
 
 
 def _turned(name: str, profile: Sequence[tuple[float, float]]) -> Any:
-    """A body of revolution about x, closed at both ends, from places along x and the radii there."""
+    """Return a body of revolution about x, closed at both ends, from places along x and the radii there."""
     import bpy
 
     turn = [math.tau * k / SIDES for k in range(SIDES)]
@@ -149,7 +151,7 @@ def _turned(name: str, profile: Sequence[tuple[float, float]]) -> Any:
 
 
 def paint(name: str, colour: Colour) -> Any:
-    """Its own light, darker towards the rim, so that it reads as round in any studio."""
+    """Return its own light, darker towards the rim, so that it reads as round in any studio."""
     import bpy
 
     made = bpy.data.materials.new(f"arrow {name}")
@@ -164,7 +166,7 @@ def paint(name: str, colour: Colour) -> Any:
 
 
 def _linear(c: float) -> float:
-    """Linear value of a colour as the picture has it (sRGB, IEC 61966-2-1)."""
+    """Return linear value of a colour as the picture has it (sRGB, IEC 61966-2-1)."""
     return c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
 
 
@@ -182,7 +184,7 @@ FRONT = -math.pi / 2
 
 
 def build_arc(scene: Any, spec: ArcSpec) -> Any:
-    """The mesh object, whose vertices :func:`place_arc` moves."""
+    """Return the mesh object, whose vertices :func:`place_arc` moves."""
     import bpy
 
     mesh = bpy.data.meshes.new(f"arc {spec.name}")
@@ -199,7 +201,7 @@ def build_arc(scene: Any, spec: ArcSpec) -> Any:
 
 
 def arc_faces() -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
-    """Numbers of the vertices of each face: round the tube and its cone, and at the two ends."""
+    """Return numbers of the vertices of each face: round the tube and its cone, and at the two ends."""
     around: list[tuple[int, ...]] = []
     for ring in range(RINGS + 1):
         for side in range(ARC_SIDES):
@@ -210,7 +212,8 @@ def arc_faces() -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
 
 
 def arc_vertices(spec: ArcSpec, centre: Point, sweep: float) -> np.ndarray:
-    """Vertices ((RINGS + 2) * SIDES, 3), float32, of an arc about ``centre`` (m) that reaches ``sweep`` (rad) round it.
+    """Return vertices ((RINGS + 2) * SIDES, 3), float32, of an arc about ``centre`` (m) that reaches ``sweep`` (rad)
+    round it.
 
     Its middle is at FRONT; arcs shorter than STOUT cones shrink as a whole.
     """

@@ -56,14 +56,14 @@ def build_studio(scene: Any, studio: StudioSpec) -> None:
 
 
 def to_world(up: Point) -> Any:
-    """Turns the studio's axes into those of the world (4 x 4)."""
+    """Return the matrix that turns the studio's axes into those of the world (4 x 4)."""
     from mathutils import Matrix
 
     return Matrix(studio_axes(up).T.tolist()).to_4x4()
 
 
 def _workshop(scene: Any, studio: StudioSpec, light: Light) -> list[Any]:
-    """The things of a bench, where the machine does not reach: a wall with tools and a vice."""
+    """Return the things of a bench, where the machine does not reach: a wall with tools and a vice."""
     from mathutils import Matrix, Vector
 
     look, radius = studio.look, studio.radius
@@ -132,7 +132,7 @@ class BuiltScene:
 
 
 def build_scene(job: Job) -> BuiltScene:
-    """An empty Blender becomes the studio with the mechanism in it, with the motion on its timeline."""
+    """Turn an empty Blender into the studio with the mechanism in it, with the motion on its timeline."""
     import bpy
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -172,7 +172,7 @@ def build_scene(job: Job) -> BuiltScene:
 
 
 def _front(job: Job, camera: Any) -> Any:
-    """A scene with the arrows alone, seen by the same camera without its lens blur: nothing hides them."""
+    """Return a scene with the arrows alone, seen by the same camera without its lens blur: nothing hides them."""
     import bpy
 
     front = bpy.data.scenes.new("arrows")
@@ -219,7 +219,9 @@ def _bake(thing: Any, shapes: list[np.ndarray]) -> None:
 
 
 def _camera(scene: Any, job: Job) -> Any:
-    """The camera. What is not keyed follows from the scene alone: a picture is the same whatever its job renders."""
+    """Set the camera. What is not keyed follows from the scene alone: a picture is the same whatever its job
+    renders.
+    """
     import bpy
 
     pose, radius = job.states[0].camera, job.scene.studio.radius
@@ -236,7 +238,7 @@ def _camera(scene: Any, job: Job) -> Any:
 
 
 def _stop(pose: Any) -> float:
-    """The f-stop of a camera that stands among others that have one."""
+    """Return the f-stop of a camera that stands among others that have one."""
     return max(pose.fstop, 0.01) if pose.fstop > 0 else PINHOLE
 
 
@@ -279,7 +281,7 @@ def _lift(job: Job, solids: dict[str, Any]) -> None:
 
 
 def _facing(states: list[State]) -> list[np.ndarray]:
-    """Three angles (T,) of the camera; what faces it has the same."""
+    """Return three angles (T,) of the camera; what faces it has the same."""
     tilt = np.array([math.pi / 2 - state.camera.elevation for state in states])
     turn = np.array([state.camera.azimuth for state in states])
     up = states[0].camera.up

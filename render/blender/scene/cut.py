@@ -53,7 +53,7 @@ def cut_open(mesh: Any, planes: Sequence[Plane], sharp: float) -> None:
 
 
 def _cap(solid: Any, planes: Sequence[Plane], k: int) -> list[list[Any]]:
-    """Corners of the triangles that close the k-th plane, as far as they are beyond all others."""
+    """Return corners of the triangles that close the k-th plane, as far as they are beyond all others."""
     import bmesh
 
     cap, normal = solid.copy(), planes[k][:3]

@@ -24,7 +24,7 @@ class Graph:
         return self
 
     def add(self, kind: str, settings: dict[str, Any] | None = None, **inputs: Any) -> Any:
-        """A node of type ``ShaderNode<kind>``; inputs by name, with underscores for spaces."""
+        """Return a node of type ``ShaderNode<kind>``; inputs by name, with underscores for spaces."""
         node = self.tree.nodes.new(f"ShaderNode{kind}")
         for name, value in (settings or {}).items():
             setattr(node, name, value)
@@ -41,7 +41,7 @@ class Graph:
             socket.default_value = (*value, 1.0) if isinstance(value, tuple) and socket.type == "RGBA" else value
 
     def math(self, operation: str, *values: Any) -> Any:
-        """The result of a Math node."""
+        """Return the result of a Math node."""
         node = self.tree.nodes.new("ShaderNodeMath")
         node.operation = operation
         for index, value in enumerate(values):
@@ -49,21 +49,21 @@ class Graph:
         return node.outputs[0]
 
     def vector(self, operation: str, *values: Any, **inputs: Any) -> Any:
-        """The result of a Vector Math node that is a vector."""
+        """Return the result of a Vector Math node that is a vector."""
         node = self.add("VectorMath", {"operation": operation}, **inputs)
         for index, value in enumerate(values):
             self.set(node, index, value)
         return node.outputs["Vector"]
 
     def mixed(self, ray: str, others: Any, these: Any) -> Any:
-        """The shader ``these`` for rays of one sort, e.g. "Is Camera Ray", and ``others`` for all else."""
+        """Return the shader ``these`` for rays of one sort, e.g. "Is Camera Ray", and ``others`` for all else."""
         mix = self.add("MixShader")
         for index, value in enumerate((self.add("LightPath").outputs[ray], others, these)):
             self.set(mix, index, value)
         return mix.outputs[0]
 
     def ramp(self, factor: Any, stops: list[tuple[float, tuple[float, float, float]]]) -> Any:
-        """A colour ramp, smooth between its stops."""
+        """Return a colour ramp, smooth between its stops."""
         node = self.tree.nodes.new("ShaderNodeValToRGB")
         node.color_ramp.interpolation = "EASE"
         elements = node.color_ramp.elements
@@ -95,7 +95,7 @@ REFERENCE = 0.12
 
 
 def material(surface: SurfaceSpec, name: str, radius: float = REFERENCE) -> Any:
-    """The Blender material of a surface in a picture of a machine of this ``radius`` (m)."""
+    """Return the Blender material of a surface in a picture of a machine of this ``radius`` (m)."""
     made, graph = new_material(name)
     shader = FINISHES[surface.finish](graph, surface, max(1.0, radius / REFERENCE))
     output = graph.add("OutputMaterial", Surface=shader)
@@ -104,7 +104,7 @@ def material(surface: SurfaceSpec, name: str, radius: float = REFERENCE) -> Any:
 
 
 def flat(colour: tuple[float, float, float], name: str) -> Any:
-    """A material that is this colour in any light."""
+    """Return a material that is this colour in any light."""
     made, graph = new_material(name)
     graph.add("OutputMaterial", Surface=graph.add("Emission", Color=colour, Strength=1.0).outputs[0])
     made.cycles.emission_sampling = "NONE"
@@ -112,7 +112,7 @@ def flat(colour: tuple[float, float, float], name: str) -> Any:
 
 
 def hatched(surface: SurfaceSpec, name: str, radius: float, hatch: Hatch, fixed: bool = False) -> Any:
-    """A cut face with stripes in light and dark of the surface's colour.
+    """Return a cut face with stripes in light and dark of the surface's colour.
 
     Stripes are of the body's frame; of a ``fixed`` plane they lie as the world does and go along with the body.
     """
@@ -142,7 +142,7 @@ def ink(light: bool) -> Any:
 
 
 def new_material(name: str) -> tuple[Any, Graph]:
-    """A material of Blender, and its empty graph."""
+    """Return a material of Blender, and its empty graph."""
     import bpy
 
     made = bpy.data.materials.new(name)
@@ -155,7 +155,7 @@ def _principled(graph: Graph, **inputs: Any) -> Any:
 
 
 def _place(graph: Graph, scale: float | tuple[float, float, float], grain: float) -> Any:
-    """Where a point is in its body, times ``scale`` (1/m)."""
+    """Return where a point is in its body, times ``scale`` (1/m)."""
     scales = scale if isinstance(scale, tuple) else (scale,) * 3
     place = graph.add("TexCoord").outputs["Object"]
     return graph.add("Mapping", Vector=place, Scale=tuple(s / grain for s in scales)).outputs[0]
@@ -166,12 +166,12 @@ def _noise(graph: Graph, place: Any, detail: float = 2.0, roughness: float = 0.5
 
 
 def _swing(graph: Graph, value: Any, middle: float, swing: float) -> Any:
-    """A noise of 0..1 as ``middle`` plus and minus half a ``swing``."""
+    """Return a noise of 0..1 as ``middle`` plus and minus half a ``swing``."""
     return graph.math("ADD", middle - swing / 2, graph.math("MULTIPLY", value, swing))
 
 
 def _cloudy(graph: Graph, roughness: float, swing: float, scale: float, grain: float) -> Any:
-    """Roughness with a slow, faint unevenness: what keeps a large face from looking computed."""
+    """Return the roughness with a slow, faint unevenness: what keeps a large face from looking computed."""
     return _swing(graph, _noise(graph, _place(graph, scale, grain)), roughness, swing)
 
 
@@ -190,7 +190,7 @@ def _toned(graph: Graph, colour: Colour, tone: Any) -> Any:
 
 
 def _worn(graph: Graph, most: float, grain: float) -> Any:
-    """How much of a chamfer is bare, unevenly along it."""
+    """Return how much of a chamfer is bare, unevenly along it."""
     edge = graph.add("Attribute", {"attribute_name": EDGE}).outputs["Fac"]
     patches = _noise(graph, _place(graph, 90.0, grain))
     return graph.math("MULTIPLY", edge, _swing(graph, patches, most, 0.5 * most))
@@ -247,7 +247,7 @@ def _plastic(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _printed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Layers along z, each a round bead: light catches their crowns, and their tone varies a little."""
+    """Return layers along z, each a round bead: light catches their crowns, and their tone varies a little."""
     height = graph.add("SeparateXYZ", Vector=_place(graph, 1.0, 1.0)).outputs["Z"]
     layer = graph.math("DIVIDE", height, LAYER * grain)
     crown = graph.math("ABSOLUTE", graph.math("SINE", graph.math("MULTIPLY", layer, math.pi)))
@@ -301,7 +301,7 @@ def _wood(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _glass(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """A pane: it tints what is behind and mirrors at a flat angle; light passes straight through."""
+    """Return a pane: it tints what is behind and mirrors at a flat angle; light passes straight through."""
     mirror = graph.add("BsdfGlossy", Color=(1.0, 1.0, 1.0), Roughness=0.06).outputs[0]
     clear = graph.add("BsdfTransparent", Color=surface.colour).outputs[0]
     mix = graph.add("MixShader")
@@ -350,7 +350,7 @@ def number(things: list[Any], inked: list[Any], radius: float) -> None:
 
 
 def _material(radius: float, strength: str | None) -> Any:
-    """Material of solids; with a ``strength``, of inked things: the attribute of that name, else 1."""
+    """Return the material of solids; with a ``strength``, of inked things: the attribute of that name, else 1."""
     import bpy
 
     made = bpy.data.materials.new("coded")

@@ -81,7 +81,7 @@ def _normals(mesh: Any) -> Array:
 
 
 def build_label(scene: Any, label: LabelSpec) -> Any:
-    """The text object; its place and rotation are animated."""
+    """Return the text object; its place and rotation are animated."""
     import bpy
 
     curve = bpy.data.curves.new(f"label {label.text}", "FONT")

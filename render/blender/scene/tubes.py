@@ -19,7 +19,7 @@ SIDES = 16
 
 
 def build_tube(scene: Any, spec: TubeSpec, radius: float) -> Any:
-    """The tube, whose vertices :func:`place_tube` moves; its ends are flat. ``radius`` is the motion's (m)."""
+    """Return the tube, whose vertices :func:`place_tube` moves; its ends are flat. ``radius`` is the motion's (m)."""
     import bpy
 
     mesh = bpy.data.meshes.new(spec.name)
@@ -39,7 +39,9 @@ def build_tube(scene: Any, spec: TubeSpec, radius: float) -> Any:
 
 
 def tube_vertices(path: list[Point], radius: float) -> np.ndarray:
-    """Vertices (points * SIDES, 3), float32, of the tube along ``path``; rings turn with the path and no more."""
+    """Return vertices (points * SIDES, 3), float32, of the tube along ``path``; rings turn with the path and no
+    more.
+    """
     line = np.asarray(path)
     along = np.gradient(line, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -72,7 +74,7 @@ CAP = 4
 
 
 def build_trail(scene: Any, trail: TrailSpec) -> Any:
-    """The tube as a mesh object whose vertices :func:`place_trail` moves."""
+    """Return the tube as a mesh object whose vertices :func:`place_trail` moves."""
     import bpy
 
     mesh = bpy.data.meshes.new(f"trail {trail.name}")
@@ -97,7 +99,7 @@ def build_trail(scene: Any, trail: TrailSpec) -> Any:
 
 
 def trail_vertices(path: list[Point], radius: float) -> np.ndarray:
-    """Vertices ((CAP + rings) * SIDES, 3), float32, of the tube along ``path``, from the point backwards."""
+    """Return vertices ((CAP + rings) * SIDES, 3), float32, of the tube along ``path``, from the point backwards."""
     line = np.asarray(path)
     along = np.gradient(line[:, :2], axis=0)
     length = np.linalg.norm(along, axis=1, keepdims=True)

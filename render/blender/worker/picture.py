@@ -78,7 +78,7 @@ LIGHT = np.array([-0.45, 0.62, 0.64])
 
 
 def drawn(codes: Array, drawing: Drawing, width: int, height: int) -> Array:
-    """The picture (height, width, 3) of 0..1 from codes (k height, k width, 3) for a whole k."""
+    """Return the picture (height, width, 3) of 0..1 from codes (k height, k width, 3) for a whole k."""
     times = codes.shape[1] // width
     pixel = times * width / 1280
     number, normal, away, ink = _decoded(codes)
@@ -94,7 +94,7 @@ def drawn(codes: Array, drawing: Drawing, width: int, height: int) -> Array:
 
 
 def read_codes(path: Path, width: int, height: int) -> Array:
-    """Codes (height, width, 3) of a picture in floats, the upper row first."""
+    """Return codes (height, width, 3) of a picture in floats, the upper row first."""
     import bpy
 
     image: Any = bpy.data.images.load(str(path))
@@ -105,7 +105,7 @@ def read_codes(path: Path, width: int, height: int) -> Array:
 
 
 def _decoded(codes: Array) -> tuple[Array, Array, Array, Array]:
-    """Number of the solid (0 is paper), its normal, its distance, and how strongly a pixel is inked."""
+    """Return the number of the solid (0 is paper), its normal, its distance, and how strongly a pixel is inked."""
     number = np.floor(codes[..., 0]).astype(np.int32)
     inked = number >= INKED
     x = 4 * (codes[..., 0] - number) - 1
@@ -117,7 +117,9 @@ def _decoded(codes: Array) -> tuple[Array, Array, Array, Array]:
 
 
 def _lines(number: Array, normal: Array, away: Array, step: float) -> tuple[Array, Array]:
-    """Where outlines and edges run: pixels whose right or lower neighbour is of another solid, or of another face."""
+    """Return where outlines and edges run: pixels whose right or lower neighbour is of another solid, or of another
+    face.
+    """
     outline, edge = np.zeros(number.shape, bool), np.zeros(number.shape, bool)
     for axis in (0, 1):
         here = (slice(None, -1), slice(None)) if axis == 0 else (slice(None), slice(None, -1))
@@ -134,7 +136,7 @@ def _lines(number: Array, normal: Array, away: Array, step: float) -> tuple[Arra
 
 
 def _thick(line: Array, width: float) -> Array:
-    """A line one pixel wide made ``width`` wide, with soft sides."""
+    """Return a line one pixel wide made ``width`` wide, with soft sides."""
     reach = int(np.ceil(width / 2))
     out = np.zeros(line.shape, np.float32)
     padded = np.pad(line.astype(np.float32), reach)
@@ -149,7 +151,7 @@ def _thick(line: Array, width: float) -> Array:
 
 
 def _smaller(values: Array, times: int) -> Array:
-    """Means over squares of ``times`` pixels."""
+    """Return means over squares of ``times`` pixels."""
     rows, columns = (n // times for n in values.shape)
     return values.reshape(rows, times, columns, times).mean(axis=(1, 3))
 
@@ -223,7 +225,7 @@ def signs_of_life(tell: Callable[[str], None]) -> Iterator[None]:
 
 
 def save_picture(scene: Any, job: Job, picture: Picture, over: Path | None) -> Path:
-    """The rendered picture as a checked PNG under the name that its key and its bytes give; returns its path.
+    """Return the rendered picture as a checked PNG under the name that its key and its bytes give; returns its path.
 
     ``over`` is a picture with an alpha that is laid over it.
     """

@@ -95,7 +95,7 @@ def drawing_settings(scene: Any, job: Job) -> None:
 
 
 def fineness(job: Job) -> int:
-    """Codes along the side of a drawing's pixel."""
+    """Return codes along the side of a drawing's pixel."""
     return 2 if job.width <= LARGE else 1
 
 

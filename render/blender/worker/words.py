@@ -44,7 +44,9 @@ def lay_words(page: Any, writing: Writing, number: str) -> None:
 
 @lru_cache(maxsize=4)
 def _written(wide: int, high: int, writing: bytes, number: str) -> tuple[Any, Any, Any]:
-    """The lines: the box of the picture that they take, their halo (L) and themselves (RGBA); None without lines."""
+    """Return the lines: the box of the picture that they take, their halo (L) and themselves (RGBA); None without
+    lines.
+    """
     from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
     spec, unit = msgspec.json.decode(writing, type=Writing), min(wide, high)
@@ -72,7 +74,7 @@ def _written(wide: int, high: int, writing: bytes, number: str) -> tuple[Any, An
 
 @lru_cache(maxsize=2)
 def _card(wide: int, high: int, writing: bytes) -> tuple[tuple[int, int], Any] | None:
-    """The legend on its card (RGBA) and its place in the picture; None where there is none."""
+    """Return the legend on its card (RGBA) and its place in the picture; None where there is none."""
     from PIL import Image, ImageDraw
 
     spec, unit = msgspec.json.decode(writing, type=Writing), min(wide, high)
@@ -87,7 +89,9 @@ def _card(wide: int, high: int, writing: bytes) -> tuple[tuple[int, int], Any] |
 
 
 def _averaged(page: Any, size: tuple[int, int]) -> Any:
-    """A page (RGBA), :data:`FINE` times smaller: averaged with alpha premultiplied, else letters have dark rims."""
+    """Return a page (RGBA), :data:`FINE` times smaller: averaged with alpha premultiplied, else letters have dark
+    rims.
+    """
     from PIL import Image
 
     wide, high = size
@@ -179,7 +183,9 @@ def lay(path: Path, over: Path | None, writing: Writing, number: str) -> None:
 
 
 def _with_arrows(picture: np.ndarray, arrows: np.ndarray) -> np.ndarray:
-    """The picture (h, w, 3) with a thin dark halo round the arrows (h, w, 4), their glow, and themselves on top."""
+    """Return the picture (h, w, 3) with a thin dark halo round the arrows (h, w, 4), their glow, and themselves on
+    top.
+    """
     colour, alpha = arrows[..., :3], arrows[..., 3:]
     wide = picture.shape[1]
     halo = np.clip(HALO_EDGE * _blurred(alpha, HALO_WIDTH * wide), 0, 1)

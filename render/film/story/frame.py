@@ -101,7 +101,7 @@ class Shot:
 
 
 def shown_in(s: float, start: float, end: float, fade: float = 0.35) -> float:
-    """How far something is there at second ``s`` that comes at ``start`` and goes at ``end``, 0 .. 1."""
+    """Return how far something is there at second ``s`` that comes at ``start`` and goes at ``end``, 0 .. 1."""
     part = min((s - start) / fade, (end - s) / fade, 1.0)
     u = max(part, 0.0)
     return u * u * (3 - 2 * u)
@@ -127,17 +127,17 @@ LINES = 2
 
 
 def below(aspect: float, strip: bool) -> float:
-    """The part of the picture's height that a camera leaves empty for caption and strip."""
+    """Return the part of the picture's height that a camera leaves empty for caption and strip."""
     return (CAPTION + (STRIP if strip else 0.0)) / sides(aspect)[1]
 
 
 def beside(aspect: float) -> float:
-    """The part of the picture's width that a camera leaves empty at the right for a strip that stands there."""
+    """Return the part of the picture's width that a camera leaves empty at the right for a strip that stands there."""
     return SIDE / sides(aspect)[0]
 
 
 def above(aspect: float) -> float:
-    """The same of the rate of time at the top."""
+    """Return the same of the rate of time at the top."""
     return 0.05 / sides(aspect)[1]
 
 

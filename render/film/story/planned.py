@@ -36,9 +36,9 @@ def planned(
     film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset, seconds: float = 0.0,
     cut: Film | None = None,
 ) -> Story:  # fmt: skip
-    """The story of a film: ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut open,
-    None of a shot without a section; the first of ``reasons`` is
-    what time stops for, unless the shot asks for another. With ``seconds`` it is a loop of that length.
+    """Return the story of a film: ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut
+    open, None of a shot without a section; the first of ``reasons`` is what time stops for, unless the shot asks for
+    another. With ``seconds`` it is a loop of that length.
 
     Raises UserError with place and remedy for wishes of the shot that cannot be.
     """
@@ -108,7 +108,7 @@ SHOTS: dict[str, Callable[[Scenery], Shot | None]] = {
 
 
 def _asked(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list[Reason]:
-    """The reasons, that of the shot's ``event`` first. Raises UserError where nothing like it ever happens."""
+    """Return the reasons, that of the shot's ``event`` first. Raises UserError where nothing like it ever happens."""
     if event is None:
         return list(reasons)
     for reason_ in reasons:

@@ -37,7 +37,7 @@ class Ramp:
         return sum(seconds for seconds, _, _ in self.segments)
 
     def at(self, s: float) -> float:
-        """Time of the motion (s) at film second ``s``; held at both ends."""
+        """Return the time of the motion (s) at film second ``s``; held at both ends."""
         time = self.start
         for seconds, low, high in self.segments:
             u = min(max(s / seconds, 0.0), 1.0) if seconds > 0 else 1.0
@@ -48,7 +48,7 @@ class Ramp:
         return time
 
     def rate(self, s: float) -> float:
-        """Seconds of the motion in a second of film, at film second ``s``."""
+        """Return seconds of the motion in a second of film, at film second ``s``."""
         for seconds, low, high in self.segments:
             if s < seconds:
                 return low + (high - low) * eased(s / seconds)
@@ -57,7 +57,7 @@ class Ramp:
 
 
 def into(event: float, earliest: float, rate: float, seconds: float, slowing: float) -> Ramp:
-    """A ramp that goes at ``rate`` for some ``seconds``, slows down and stops at the time of an ``event``.
+    """Return a ramp that goes at ``rate`` for some ``seconds``, slows down and stops at the time of an ``event``.
 
     It begins at ``earliest`` (s) at the earliest; what is left until the event then goes slower.
     """
@@ -83,11 +83,11 @@ class Warp:
         return self.film[-1]
 
     def at(self, s: float) -> float:
-        """Time of the motion (s) at film second ``s``."""
+        """Return the time of the motion (s) at film second ``s``."""
         return float(np.interp(s, self.film, self.motion))
 
     def rate(self, s: float) -> float:
-        """Seconds of the motion in a second of film, at film second ``s``."""
+        """Return seconds of the motion in a second of film, at film second ``s``."""
         h = 0.02 * self.seconds
         low, high = max(s - h, 0.0), min(s + h, self.seconds)
         return (self.at(high) - self.at(low)) / max(high - low, 1e-12)
@@ -99,7 +99,9 @@ ROWS = 400
 
 
 def warped(time: Sequence[float], happens: Array, start: float, end: float, seconds: float) -> Warp:
-    """A warp over ``start`` .. ``end`` (s) of so many ``seconds``; ``happens`` (T,) >= 0 is how much at ``time``."""
+    """Return a warp over ``start`` .. ``end`` (s) of so many ``seconds``; ``happens`` (T,) >= 0 is how much at
+    ``time``.
+    """
     times = np.linspace(start, end, ROWS)
     lively = np.interp(times, np.asarray(time), happens)
     top = float(np.quantile(lively, 0.95)) or 1.0
@@ -118,7 +120,7 @@ EACH = 0.45
 
 
 def lifted(lifts: Sequence[Lift], part: float) -> list[float]:
-    """Heights (m) of all pieces over where they belong, when the machine is apart by a ``part`` 0 .. 1."""
+    """Return heights (m) of all pieces over where they belong, when the machine is apart by a ``part`` 0 .. 1."""
     layers = lifts[-1].order or 1
     delays = [(1 - lift.order / layers) * (1 - EACH) for lift in lifts]
     return [lift.distance * eased((part - delay) / EACH) for lift, delay in zip(lifts, delays, strict=True)]

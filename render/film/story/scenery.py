@@ -51,7 +51,7 @@ class Stand:
 
 
 def stand(subject: Subject, up: Vector, view: View) -> Stand:
-    """The nearest stand from which a camera holds its subject, as films of one shot do."""
+    """Return the nearest stand from which a camera holds its subject, as films of one shot do."""
     few, around, drawn = (in_studio(points, up) for points in (subject.few, subject.around, subject.drawn))
     position, distance = view.stand(held(view, few, around, drawn, few))
     target = position + axes(view.azimuth, view.elevation)[2] * distance
@@ -59,7 +59,7 @@ def stand(subject: Subject, up: Vector, view: View) -> Stand:
 
 
 def between(a: Stand, b: Stand, part: float) -> Stand:
-    """A stand on the path from ``a`` to ``b``, 0 .. 1; distances change by equal factors."""
+    """Return a stand on the path from ``a`` to ``b``, 0 .. 1; distances change by equal factors."""
     if a == b:
         return a
     target = (1 - part) * np.array(a.target) + part * np.array(b.target)
@@ -71,7 +71,7 @@ def between(a: Stand, b: Stand, part: float) -> Stand:
 
 
 def raised(stand: Stand, up: Vector, top: float) -> Stand:
-    """The stand, so far back that the camera is above ``top`` (m) along the normal of the plane."""
+    """Return the stand, so far back that the camera is above ``top`` (m) along the normal of the plane."""
     normal = in_studio(np.array([0.0, 0.0, 1.0]), up)
     back = -float(axes(stand.azimuth, stand.elevation)[2] @ normal)
     height = float(np.array(stand.target) @ normal)
@@ -82,13 +82,13 @@ def raised(stand: Stand, up: Vector, top: float) -> Stand:
 
 
 def at_distance(stand: Stand, distance: float) -> Stand:
-    """The stand at another distance (m) from what it looks at."""
+    """Return the stand at another distance (m) from what it looks at."""
     return Stand(stand.target, stand.azimuth, stand.elevation, distance, stand.lens)
 
 
 def posed(stand: Stand, up: Vector, sharp: Array, blur: float, by: Array | None = None) -> CameraPose:
-    """A camera at a stand, moved ``by`` (3,) m of the world, that blurs the nearest and farthest of points ``sharp``
-    (n, 3) of the world by so many pixels of a picture 1280 wide.
+    """Return a camera at a stand, moved ``by`` (3,) m of the world, that blurs the nearest and farthest of points
+    ``sharp`` (n, 3) of the world by so many pixels of a picture 1280 wide.
     """
     position = stand.position
     depths = (in_studio(sharp, up) - position) @ axes(stand.azimuth, stand.elevation)[2]
@@ -98,7 +98,9 @@ def posed(stand: Stand, up: Vector, sharp: Array, blur: float, by: Array | None 
 
 
 def focused(stand: Stand, up: Vector, blur: float) -> CameraPose:
-    """A camera with a shallow depth: what it looks at is sharp, a fifth of the distance behind it ``blur`` pixels."""
+    """Return a camera with a shallow depth: what it looks at is sharp, a fifth of the distance behind it ``blur``
+    pixels.
+    """
     focus, away = stand.distance, 1.2 * stand.distance
     disc, length = blur * SENSOR / REFERENCE_WIDTH / 1000, stand.lens / 1000
     fstop = length**2 * (away - focus) / (disc * away * (focus - length)) if blur > 0 and focus > length else 0.0
@@ -114,7 +116,7 @@ def _camera(stand: Stand, up: Vector, by: Array | None, focus: float, fstop: flo
 
 
 def turned(stand: Stand, azimuth: float, elevation: float = 0.0, nearer: float = 1.0) -> Stand:
-    """The stand turned about what it looks at by so many degrees, at ``nearer`` times its distance."""
+    """Return the stand turned about what it looks at by so many degrees, at ``nearer`` times its distance."""
     return Stand(
         stand.target,
         stand.azimuth + math.radians(azimuth),
@@ -188,7 +190,7 @@ class Scenery:
         return exploded(self.film.parts, 1.0)
 
     def piece(self, lift: Lift, apart: float = 0.0) -> Array:
-        """Points (n, 3) around a piece at the start of the motion, lifted by a part of its distance (m)."""
+        """Return points (n, 3) around a piece at the start of the motion, lifted by a part of its distance (m)."""
         names = list(self.film.parts.bodies[lift.body].pieces)
         outline = self.film.space.outlines(lift.body)[names.index(lift.piece)]
         x, y, theta = self.film.poses.body(lift.body, self.film.clock.moment(0))
@@ -197,7 +199,8 @@ class Scenery:
         return turned + np.array([x, y, 0.0]) + apart * lift.distance * np.array(lift.axis)
 
     def loop_frame(self, time: float) -> float:
-        """The frame of the loop, which may lie between two, that shows a time of the motion (s), also beyond a period.
+        """Return the frame of the loop, which may lie between two, that shows a time of the motion (s), also beyond a
+        period.
 
         Times that are nearer than a millionth of a frame are one, so that a second turn finds its pictures made.
         """
@@ -213,7 +216,9 @@ class Scenery:
         return float(self.film.space.all[:, 2].max())
 
     def stand(self, azimuth: float = 0.0, elevation: float = 0.0, strip: bool = True, arrows: bool = False) -> Stand:
-        """The stand that holds the machine, turned by so many degrees from that of the shot, with room for words."""
+        """Return the stand that holds the machine, turned by so many degrees from that of the shot, with room for
+        words.
+        """
         asked = azimuth, elevation, strip, arrows
         if asked not in self.kept:
             self.kept[asked] = self._stand(*asked)
@@ -236,7 +241,7 @@ class Scenery:
         return self._held(azimuth, elevation, strip, arrows, strip and self.at_side)
 
     def _held(self, azimuth: float, elevation: float, strip: bool, arrows: bool, side: bool) -> Stand:
-        """The stand with room for a strip under the machine, or at its ``side``."""
+        """Return the stand with room for a strip under the machine, or at its ``side``."""
         film = self.forces if arrows and self.forces is not None else self.film
         at = angles(film.shot.camera, film.parts.mount, film.aspect)
         turned = at[0] + np.radians(azimuth), min(at[1] + np.radians(elevation), np.radians(85))
@@ -247,7 +252,7 @@ class Scenery:
         return raised(stand(film.subject, self.up, view), self.up, self.top)
 
     def camera(self, stand: Stand, at: float) -> CameraPose:
-        """A camera at a stand, which goes along with what is followed."""
+        """Return a camera at a stand, which goes along with what is followed."""
         sharp = self.film.subject.few
         return posed(stand, self.up, sharp, self.film.shot.camera.blur, self.film.way(at))
 
@@ -260,7 +265,7 @@ class Scenery:
         hidden: Hidden = "",
         cut: bool = False,
     ) -> Picture:
-        """The machine at a time of the motion (s), from a stand."""
+        """Return the machine at a time of the motion (s), from a stand."""
         at = self.loop_frame(time)
         forces = forces and self.forces is not None
         return Picture(
@@ -273,11 +278,11 @@ class Scenery:
         )
 
     def moving(self, seconds: float) -> float:
-        """Seconds of a move, as far as the budget of pictures lets it take them."""
+        """Return seconds of a move, as far as the budget of pictures lets it take them."""
         return self.whole(max(seconds * self.scale, 3 * self.step / self.fps))
 
     def whole(self, seconds: float) -> float:
-        """The nearest seconds that are whole steps of pictures, at least one."""
+        """Return the nearest seconds that are whole steps of pictures, at least one."""
         each = self.step / self.fps
         return each * max(1, round(seconds / each))
 

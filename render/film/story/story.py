@@ -40,7 +40,9 @@ class Curve:
 
 
 def curve_of(motion: Motion, name: str) -> Curve | None:
-    """The curve of a joint (its reaction), a driver or force (its effort) or a point (its speed); None of no such."""
+    """Return the curve of a joint (its reaction), a driver or force (its effort) or a point (its speed); None of no
+    such.
+    """
     time = np.asarray(motion.time)
     if name in motion.joints:
         joint = motion.joints[name]
@@ -135,7 +137,7 @@ class Story:
         return self.total / self.fps
 
     def at(self, frame: int) -> Placed:
-        """The shot of a frame."""
+        """Return the shot of a frame."""
         return next(placed for placed in self.placed if frame < placed.end)
 
     def picture(self, frame: int) -> Picture:
@@ -159,7 +161,7 @@ class Story:
         return msgspec.structs.replace(over, now=still.now, rate=still.rate)
 
     def model_time(self, s: float) -> float:
-        """Time of the motion (s) at film second ``s``, 0 <= ``s`` <= ``seconds``.
+        """Return the time of the motion (s) at film second ``s``, 0 <= ``s`` <= ``seconds``.
 
         It is monotone within a shot, jumps at cuts, and goes on beyond a period that begins anew.
         """
@@ -168,8 +170,8 @@ class Story:
         return placed.shot.model(s - placed.first / self.fps)
 
     def time_map(self, start: float, end: float, anew: bool = True) -> TimeMap:
-        """The same for sound, a piece a frame long, of a motion from ``start`` to ``end`` (s) that begins anew, or
-        stands at its end if it does not.
+        """Return the same for sound, a piece a frame long, of a motion from ``start`` to ``end`` (s) that begins anew,
+        or stands at its end if it does not.
         """
         seconds, moments = [0.0], [self.model_time(0.0)]
         for placed in self.placed:
@@ -204,7 +206,9 @@ class Story:
 
 
 def _held(seconds: list[float], moments: list[float], start: float, end: float) -> tuple[list[float], list[float]]:
-    """Moments held within ``start`` .. ``end``, as in the picture; where a shot begins it anew, the film cuts."""
+    """Return moments held within ``start`` .. ``end``, as in the picture; where a shot begins it anew, the film
+    cuts.
+    """
     out_seconds, out_moments = [], []
     for k, (second, moment) in enumerate(zip(seconds, moments, strict=True)):
         moment = min(max(moment, start), end)
@@ -217,7 +221,9 @@ def _held(seconds: list[float], moments: list[float], start: float, end: float) 
 
 
 def _folded(seconds: list[float], moments: list[float], start: float, end: float) -> tuple[list[float], list[float]]:
-    """Moments brought back into ``start`` .. ``end``; where a piece passes the end, the film cuts to the start."""
+    """Return moments brought back into ``start`` .. ``end``; where a piece passes the end, the film cuts to the
+    start.
+    """
     whole = end - start
     out_seconds, out_moments = [], []
     for k, (second, moment) in enumerate(zip(seconds, moments, strict=True)):

@@ -101,7 +101,7 @@ def words_in(language: str, mechanism: str) -> Callable[..., str]:
 
 
 def rate_words(rate: float, say: Callable[..., str]) -> str:
-    """How fast time passes, in two figures: a ramp is readable while it changes."""
+    """Return how fast time passes, in two figures: a ramp is readable while it changes."""
     if rate <= 1e-6:
         return say("stopped")
     if abs(rate - 1) < SAME:
@@ -113,7 +113,7 @@ def rate_words(rate: float, say: Callable[..., str]) -> str:
 
 
 def plain(name: str) -> str:
-    """A name as it is said: ``coupler_pin`` is coupler pin."""
+    """Return a name as it is said: ``coupler_pin`` is coupler pin."""
     return name.replace("_", " ")
 
 
@@ -123,7 +123,7 @@ TIMES = re.compile(r"(\d+):(\d\d):(\d\d)[,.](\d{1,3})\s*-->\s*(\d+):(\d\d):(\d\d
 
 
 def srt(captions: Sequence[Caption]) -> str:
-    """A SubRip file: number, times, words, an empty line."""
+    """Return a SubRip file: number, times, words, an empty line."""
     return "".join(
         f"{number}\n{_clock(caption.start)} --> {_clock(caption.end)}\n{caption.text}\n\n"
         for number, caption in enumerate(captions, 1)
@@ -131,8 +131,8 @@ def srt(captions: Sequence[Caption]) -> str:
 
 
 def captions_of(text: str) -> list[Caption]:
-    """The captions of a SubRip file, also of one that another program has saved. Raises ValueError naming the words
-    that stand where times should.
+    """Return the captions of a SubRip file, also of one that another program has saved. Raises ValueError naming the
+    words that stand where times should.
     """
     captions = []
     for block in re.split(r"\n\s*\n", text.lstrip("\ufeff").replace("\r\n", "\n").strip()):

@@ -74,7 +74,7 @@ class Belt:
         ]
 
     def paths(self, poses: Poses, at: Moment) -> list[list[Point]]:
-        """Path of each tube at that moment."""
+        """Return the path of each tube at that moment."""
         place, every = self.run(poses, at)
         if not self.chain:
             reach = LONG * self.radius * np.linspace(-1.0, 1.0, MARK_POINTS)
@@ -98,7 +98,7 @@ class Belt:
         return 0.85 * self.aside(1)
 
     def aside(self, link: int) -> float:
-        """How far (m) the plates of a link lie from the middle."""
+        """Return how far (m) the plates of a link lie from the middle."""
         return PLATES * self.radius * (OUTER if self.alike or link % 2 == 0 else INNER)
 
     def still(self) -> Placing:
@@ -106,7 +106,7 @@ class Belt:
         return Placing(self, (0.0, 0.0), 0.0)
 
     def run(self, poses: Poses, at: Moment) -> tuple[Placing, Array]:
-        """Where the belt is at a moment, and the lengths (m) along it of its marks or rollers."""
+        """Return where the belt is at a moment, and the lengths (m) along it of its marks or rollers."""
         first, second = (
             placed(poses.body(body, at), marker)
             for body, marker in zip(self.shape.bodies, self.shape.markers, strict=True)
@@ -142,7 +142,9 @@ class Placing:
 
 
 def belts(motion: Motion, held: Mapping[str, Held]) -> Iterator[Belt]:
-    """All belts whose pulleys say where it lies (``held``, by the names of joints), if there is room for a path."""
+    """Yield all belts whose pulleys say where it lies (``held``, by the names of joints), if there is room for a
+    path.
+    """
     time = np.asarray(motion.time)
     for name, joint in motion.joints.items():
         shape, own = joint.shape, held.get(name)
@@ -179,7 +181,7 @@ def _pace(gone: float, apart: float) -> float:
 
 
 def _places(motion: Motion, name: str, marker: tuple[float, float, float], count: int) -> Array:
-    """(T, 2) of a marker (m)."""
+    """Return (T, 2) of a marker (m)."""
     body = motion.bodies.get(name)
     if body is None:
         return np.broadcast_to(np.array(marker[:2]), (count, 2))

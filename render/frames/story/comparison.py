@@ -52,7 +52,7 @@ class Pair:
 
 
 def pair_of(outs: Sequence[Out], preset: Preset, half: Preset) -> Pair:
-    """The stories of two variants, each in pictures of a ``half`` preset. Raises UserError for unfit wishes."""
+    """Return the stories of two variants, each in pictures of a ``half`` preset. Raises UserError for unfit wishes."""
     films = [_film(out, half) for out in outs]
     spans = (_span(films[0]), _span(films[1]))
     whys = [reasons(film.motion) for film in films]
@@ -83,7 +83,7 @@ def _film(out: Out, half: Preset) -> Film:
 
 
 def _first(curves: Sequence[Curve], name: str) -> list[Curve]:
-    """The curves, that of a name first."""
+    """Return the curves, that of a name first."""
     return sorted(curves, key=lambda curve: curve.name != name)
 
 
@@ -97,19 +97,19 @@ def _on_one_scale(sceneries: Sequence[Scenery]) -> None:
 
 
 def _span(film: Film) -> float:
-    """Seconds of the motion in one showing."""
+    """Return seconds of the motion in one showing."""
     return film.clock.end - film.clock.start
 
 
 def _common(films: Sequence[Film], curves: Sequence[Curve]) -> tuple[list[Curve], list[Curve]]:
-    """Curves of both that have the same name and unit."""
+    """Return curves of both that have the same name and unit."""
     pairs = [(curve, curve_of(films[1].motion, curve.name)) for curve in curves]
     kept = [(a, b) for a, b in pairs if b is not None and a.unit == b.unit]
     return [a for a, _ in kept], [b for _, b in kept]
 
 
 def _strip(preset: Preset, films: Sequence[Film], curves: tuple[list[Curve], list[Curve]], span: float) -> Strip | None:
-    """The strip of both over all the time that is shown, each motion beginning anew where it repeats."""
+    """Return the strip of both over all the time that is shown, each motion beginning anew where it repeats."""
     if not curves[0]:
         return None
     start = films[0].clock.start
@@ -181,7 +181,7 @@ def run(name: str, preset: Preset, sound: str = "") -> None:
 
 
 def _silent_film(outs: list[Out], preset: Preset, pair: Pair, film: Path) -> Path:
-    """The film without sound, in the folder of the second's frames; not made again where nothing has changed."""
+    """Return the film without sound, in the folder of the second's frames; not made again where nothing has changed."""
     from render.frames.story.stage import encoded, rendered
 
     part = half(preset)
@@ -204,7 +204,9 @@ def _with_sound(silent: Path, pair: Pair, preset: Preset, film: Path) -> None:
 
 
 def heard_of(pair: Pair, preset: Preset) -> list[Heard]:
-    """Both machines, each on its own clock and where its picture is: over each other they are heard in the middle."""
+    """Return both machines, each on its own clock and where its picture is: over each other they are heard in the
+    middle.
+    """
     from render.sound.sound import Heard
 
     windows = ((-1.0, 0.0), (0.0, 1.0)) if preset.width >= preset.height else ((-1.0, 1.0), (-1.0, 1.0))
@@ -216,13 +218,15 @@ def heard_of(pair: Pair, preset: Preset) -> list[Heard]:
 
 
 def both(name: str) -> tuple[str, str]:
-    """The mechanism and the variant that a name means: its own, or the first. Raises UserError without variants."""
+    """Return the mechanism and the variant that a name means: its own, or the first. Raises UserError without
+    variants.
+    """
     owner, variant = owner_of(name), variant_of(name) or compared(name)[0]
     return mechanism_name(owner), f"{owner}-{variant}"
 
 
 def half(preset: Preset) -> Preset:
-    """The preset of one of two pictures: beside each other, or over each other where the picture is tall."""
+    """Return the preset of one of two pictures: beside each other, or over each other where the picture is tall."""
     wide, high = preset.width, preset.height
     wide, high = (wide // 2, high) if wide >= high else (wide, high // 2)
     return replace(preset, name=f"{preset.name}-half", width=wide, height=high)

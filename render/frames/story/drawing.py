@@ -55,7 +55,7 @@ class Drawing:
         return min(self.wide, self.high)
 
     def frame(self, picture: Any, over: Over) -> Any:
-        """The picture (RGB) with all that lies over it."""
+        """Return the picture (RGB) with all that lies over it."""
         page = self._titled(picture, over) if over.title > 0 or (over.focus < 1 and over.title) else picture.copy()
         layer = self._layer(over)
         if layer is not None:
@@ -85,13 +85,13 @@ class Drawing:
         return _title(3 * self.wide, 3 * self.high, self.name, self.said).reduce(3)
 
     def _layer(self, over: Over) -> Any:
-        """All words, on nothing; None without any."""
+        """Return all words, on nothing; None without any."""
         if self._kept is None or self._kept[0] != msgspec.structs.replace(over, now=0.0):
             self._kept = msgspec.structs.replace(over, now=0.0), self._fine_layer(over)
         return self._kept[1]
 
     def _fine_layer(self, over: Over) -> Any:
-        """Drawn larger, as small letters would stand unevenly, and averaged."""
+        """Return drawn larger, as small letters would stand unevenly, and averaged."""
         times = 3 if self.wide * self.high <= 1e6 else 2 if self.wide * self.high <= 2.5e6 else 1
         fine = Drawing(times * self.wide, times * self.high, self.name, self.said, self.facts, None)
         fine.heads = self.heads
@@ -101,7 +101,7 @@ class Drawing:
         return layer.reduce(times) if layer is not None and times > 1 else layer
 
     def _drawn(self, over: Over) -> Any:
-        """The words at this size."""
+        """Return the words at this size."""
         from PIL import Image, ImageDraw
 
         if not (
@@ -205,13 +205,15 @@ class Drawing:
 
 
 def caption_lines(text: str, wide: int, high: int) -> tuple[float, list[str]]:
-    """Height of letters (pixels) and lines of a caption; raises ValueError where it is too long for the frame."""
+    """Return the height of letters (pixels) and lines of a caption; raises ValueError where it is too long for the
+    frame.
+    """
     unit = min(wide, high)
     return fitted(text, frame.LETTER * unit, wide - 2 * frame.EDGE * unit - 1.4 * frame.LETTER * unit, frame.LINES)
 
 
 def png(page: Any) -> bytes:
-    """A picture as a PNG that is made fast: it lives until ffmpeg has it."""
+    """Return a picture as a PNG that is made fast: it lives until ffmpeg has it."""
     buffer = io.BytesIO()
     page.save(buffer, format="PNG", compress_level=1)
     return buffer.getvalue()
@@ -229,14 +231,14 @@ def _on_arrow(box: tuple[float, float, float, float], note: Note, wide: int, hig
 
 
 def _faded(layer: Any, shown: float) -> Any:
-    """The alpha of a layer, as far as it is shown."""
+    """Return the alpha of a layer, as far as it is shown."""
     alpha = layer.getchannel("A")
     return alpha if shown >= 1 else alpha.point([round(shown * value) for value in range(256)])
 
 
 @lru_cache(maxsize=1)
 def _soft(content: bytes, size: tuple[int, int]) -> Any:
-    """The picture, dark and out of focus."""
+    """Return the picture, dark and out of focus."""
     from PIL import Image, ImageFilter
 
     picture = Image.frombytes("RGB", size, content).filter(ImageFilter.GaussianBlur(SOFT * size[0]))
@@ -245,7 +247,7 @@ def _soft(content: bytes, size: tuple[int, int]) -> Any:
 
 @lru_cache(maxsize=2)
 def _title(wide: int, high: int, name: str, said: tuple[str, ...]) -> Any:
-    """Name, a short line, and as many whole sentences as there is room for."""
+    """Return the name, a short line, and as many whole sentences as there is room for."""
     from PIL import Image, ImageDraw
 
     unit, page = min(wide, high), Image.new("RGBA", (wide, high), (*INK, 0))
@@ -264,7 +266,7 @@ def _title(wide: int, high: int, name: str, said: tuple[str, ...]) -> Any:
 
 
 def _sentences(said: tuple[str, ...], size: float, room: float, most: int) -> tuple[float, list[str]]:
-    """Height of letters and lines of as many sentences as fit into ``most`` lines."""
+    """Return the height of letters and lines of as many sentences as fit into ``most`` lines."""
     for count in range(len(said), 0, -1):
         try:
             return fitted(" ".join(said[:count]), size, room, most)
@@ -274,7 +276,9 @@ def _sentences(said: tuple[str, ...], size: float, room: float, most: int) -> tu
 
 
 def _facts(facts: str, size: float, room: float, most: int) -> tuple[float, list[str]]:
-    """Height of letters and lines, broken between facts where that fits. Raises ValueError where nothing does."""
+    """Return the height of letters and lines, broken between facts where that fits. Raises ValueError where nothing
+    does.
+    """
     whole = facts.replace(" ", JOINED).replace(f"{JOINED}·{JOINED}", "· ")
     try:
         small, lines = fitted(whole, size, room, most)
@@ -285,7 +289,7 @@ def _facts(facts: str, size: float, room: float, most: int) -> tuple[float, list
 
 @lru_cache(maxsize=2)
 def _ending(wide: int, high: int, name: str, facts: str) -> Any:
-    """The name and a line of facts at the lower left, on a shade."""
+    """Return the name and a line of facts at the lower left, on a shade."""
     from PIL import Image, ImageDraw
 
     unit, page = min(wide, high), Image.new("RGBA", (wide, high), (*CARD, 0))

@@ -44,7 +44,9 @@ class Rendered:
     names: list[str]
 
     def pages(self) -> Iterator[Page]:
-        """The picture of each frame, read once while it stands. Raises UserError for one that changed meanwhile."""
+        """Yield the picture of each frame, read once while it stands. Raises UserError for one that changed
+        meanwhile.
+        """
         from PIL import Image
 
         name, picture = "", None
@@ -62,7 +64,7 @@ class Rendered:
 
 
 def rendered(out: Out, preset: Preset, telling: Telling) -> Rendered:
-    """All pictures in a folder of their own, kept by what they show."""
+    """Return all pictures in a folder of their own, kept by what they show."""
     store, started = FrameStore(out.frames(f"{preset.name}-story"), (preset.width, preset.height)), time.perf_counter()
     sets = telling.pictures(preset)
     with store.locked():
@@ -96,7 +98,7 @@ def encoded(pages: Iterable[Page], story: Story, drawing: Drawing, preset: Prese
 
 
 def _composed(pages: Iterable[Page], story: Story, drawing: Drawing) -> Iterator[bytes]:
-    """PNGs of the film; one that is as the one before is not drawn again."""
+    """Yield PNGs of the film; one that is as the one before is not drawn again."""
     kept: tuple[object, bytes] | None = None
     for frame, (name, picture) in enumerate(pages):
         over = story.over(frame)
@@ -145,7 +147,9 @@ def run(name: str, preset: Preset, show: str = "", loop: float = 0.0, sound: str
 
 
 def _silent_film(out: Out, preset: Preset, show: str, loop: float, telling: Telling) -> Path:
-    """The film without sound, in the folder of the frames; not made again where what decides it has not changed."""
+    """Return the film without sound, in the folder of the frames; not made again where what decides it has not
+    changed.
+    """
 
     film = film_of(out, preset.name, show, loop)
     target = out.frames(f"{preset.name}-story") / film.name
@@ -167,7 +171,7 @@ def _with_sound(silent: Path, telling: Telling, preset: Preset, film: Path) -> N
 
 
 def film_of(out: Out, preset: str, show: str = "", loop: float = 0.0) -> Path:
-    """Where the film of a story is."""
+    """Return where the film of a story is."""
     word = KIND if not loop else f"loop{loop:g}s"
     path = named(out.film(preset), show)
     return path.with_stem(f"{path.stem}-{word}")
@@ -192,7 +196,7 @@ def _key(out: Out, preset: Preset, show: str, loop: float) -> str:
 
 
 def word_sources() -> str:
-    """Hash of the sources of what stories say, beside those of pictures."""
+    """Return the hash of the sources of what stories say, beside those of pictures."""
     room = Path(__file__).parents[2]
     return sources_hash(room / "report", room / "magnitudes.py")
 

@@ -28,7 +28,9 @@ SMALLEST = 0.74
 
 
 def readable(colour: str) -> tuple[int, int, int]:
-    """A signal colour (``#rrggbb``) as letters have it on a card: a part lighter, so that red is read on dark."""
+    """Return a signal colour (``#rrggbb``) as letters have it on a card: a part lighter, so that red is read on
+    dark.
+    """
     red, green, blue = (
         round(SIGNAL * int(colour[k : k + 2], 16) + (1 - SIGNAL) * ink) for k, ink in zip((1, 3, 5), INK, strict=True)
     )
@@ -37,12 +39,13 @@ def readable(colour: str) -> tuple[int, int, int]:
 
 @lru_cache(maxsize=64)
 def font(size: float, bold: bool = False) -> Any:
-    """The letters of a size in pixels."""
+    """Return the letters of a size in pixels."""
     return font_of(size, bold)
 
 
 def broken(text: str, letters: float, most: int, bold: bool = False) -> list[str]:
-    """The text in lines of at most so many ``letters`` heights; raises ValueError if they are more than ``most``.
+    """Return the text in lines of at most so many ``letters`` heights; raises ValueError if they are more than
+    ``most``.
 
     Lines are as alike in width as the words let them be.
     """
@@ -70,7 +73,7 @@ def _even(words: Sequence[str], widths: Sequence[float], count: int, space: floa
 
 
 def fitted(text: str, size: float, wide: float, most: int, bold: bool = False) -> tuple[float, list[str]]:
-    """Height of letters (pixels) and lines with which a text is not wider than ``wide`` pixels.
+    """Return the height of letters (pixels) and lines with which a text is not wider than ``wide`` pixels.
 
     Raises ValueError where it is too long for ``most`` lines of the smallest letters.
     """
@@ -161,7 +164,7 @@ class Strip:
         return [(edge + k * (each + gap), top, edge + k * (each + gap) + each, low) for k in range(len(self.shown))]
 
     def drawn(self, time: float) -> Any:
-        """The strip (RGBA) with its playhead at a time of the motion (s)."""
+        """Return the strip (RGBA) with its playhead at a time of the motion (s)."""
         from PIL import Image, ImageDraw
 
         page = self._still.copy()
@@ -184,7 +187,7 @@ class Strip:
         return page
 
     def _height(self, k: int, value: float) -> float:
-        """Where a value is in a panel (pixels)."""
+        """Return where a value is in a panel (pixels)."""
         low, high = self._ranges[k]
         return self.panels[k][3] - (value - low) / (high - low) * (self.panels[k][3] - self.panels[k][1])
 
@@ -201,7 +204,7 @@ class Strip:
         return self._room(k, bare)
 
     def _name_height(self, k: int) -> float:
-        """Where the words over a panel begin (pixels)."""
+        """Return where the words over a panel begin (pixels)."""
         return self.panels[k][1] - 1.3 * frame.SMALL * self.unit
 
     def _words(self, k: int, value: float, bare: bool) -> str:

@@ -58,11 +58,11 @@ class StoryPictures(Pictures):
         return self._scene
 
     def around(self, frame: int) -> tuple[int, int, int]:
-        """Numbers of states: those of neighbours are negative, so that each picture has its own."""
+        """Return numbers of states: those of neighbours are negative, so that each picture has its own."""
         return -2 * frame - 1, frame, -2 * frame - 2
 
     def state(self, frame: int) -> State:
-        """The state of picture ``frame``; negative ones are neighbours of :meth:`around`."""
+        """Return the state of picture ``frame``; negative ones are neighbours of :meth:`around`."""
         if frame not in self._states:
             row, side = (frame, 1) if frame >= 0 else ((-frame - 1) // 2, 0 if frame % 2 else 2)
             self._states[frame] = _state(self.film, self.rows[row][side])
@@ -110,7 +110,7 @@ class Telling:
     cut: Film | None = None
 
     def pictures(self, preset: Preset) -> list[StoryPictures]:
-        """The different pictures of the story, in sets of one scene each."""
+        """Return the different pictures of the story, in sets of one scene each."""
         rows: dict[Around, None] = dict.fromkeys(self.row(frame, preset) for frame in range(self.story.total))
         sets = []
         for forces, cut, film in ((False, False, self.film), (False, True, self.cut), (True, False, self.forces)):
@@ -133,7 +133,7 @@ class Telling:
         return len(self.story.pictures)
 
     def said(self) -> str:
-        """Shots and cost, for people."""
+        """Return shots and cost, for people."""
         loop = self.film.clock.frames
         shots = ", ".join(f"{placed.shot.name} {placed.shot.seconds:.1f} s" for placed in self.story.placed)
         return f"{duration(self.story.seconds)}: {shots}; {self.count} pictures, the loop film has {loop}"
@@ -142,7 +142,7 @@ class Telling:
 def telling_of(
     out: Out, preset: Preset, show: str = "", loop: float = 0.0, shots: tuple[str, ...] | None = None
 ) -> Telling:
-    """The story of a machine, of these ``shots`` alone if they are given.
+    """Return the story of a machine, of these ``shots`` alone if they are given.
 
     Raises UserError for what its shot asks of it and cannot be, with the remedy.
     """
@@ -165,7 +165,7 @@ def telling_of(
 
 
 def shown_plain(shot: Shot) -> Shot:
-    """The whole machine without arrows and without words over it: the story has its own."""
+    """Return the whole machine without arrows and without words over it: the story has its own."""
     return msgspec.structs.replace(shot, show=(), title=None, section=0.0)
 
 
@@ -183,13 +183,15 @@ def _shows(motion: Motion, reason: Reason | None) -> str:
 
 
 def _with_arrows(show: str, film: Film) -> Film | None:
-    """The same film with arrows; None where none is ever seen."""
+    """Return the same film with arrows; None where none is ever seen."""
     made = Film(film.motion, film.parts, shown(film.shot, show), film.folder, film.aspect)
     return made if made.arrows.vectors or made.arcs.torques else None
 
 
 def _cut_open(shot: Shot, film: Film) -> Film | None:
-    """The same film as the shot cuts it open; None where it does not. Raises UserError for one that opens no piece."""
+    """Return the same film as the shot cuts it open; None where it does not. Raises UserError for one that opens no
+    piece.
+    """
     if not shot.section:
         return None
     usual = math.degrees(angles(shot.camera, film.parts.mount, film.aspect)[0])
@@ -212,12 +214,12 @@ def _drawing(out: Out, preset: Preset, film: Film, story: Story, known: list[str
 
 
 def _without_slow(fact: str) -> str:
-    """A fact without the km/h of what is slower than a walk."""
+    """Return a fact without the km/h of what is slower than a walk."""
     return re.sub(r" \(([\d.]+) km/h\)", lambda match: match[0] if float(match[1]) >= WALK else "", fact)
 
 
 def strip_of(film: Film, story: Story, preset: Preset) -> Strip | None:
-    """The strip of a story; None where it has no curves."""
+    """Return the strip of a story; None where it has no curves."""
     if not story.curves:
         return None
     times = sorted({at for at, _ in marks(film.motion)})

@@ -31,7 +31,7 @@ Panel = tuple[str, str, Callable[[Motion], np.ndarray | None]]
 
 
 def figures(name: str, motions: Motions) -> dict[str, Figure]:
-    """All pages by name; those with nothing to show are left out."""
+    """Return all pages by name; those with nothing to show are left out."""
     with house_style():
         pages = {
             "bodies": _page(name, motions, "how the bodies move", _body_panels(motions)),
@@ -45,7 +45,7 @@ def figures(name: str, motions: Motions) -> dict[str, Figure]:
 
 
 def _page(name: str, motions: Motions, title: str, panels: Sequence[Panel]) -> Figure | None:
-    """Panels in a grid; each has the lines of all motions over time."""
+    """Return panels in a grid; each has the lines of all motions over time."""
     values = [[read(motion) for motion in motions.values()] for _, _, read in panels]
     shown = [k for k, lines in enumerate(values) if any(line is not None for line in lines)]
     shown = sorted(sorted(shown, key=lambda k: -_spread(values[k]))[:PANELS])
@@ -78,7 +78,7 @@ def _page(name: str, motions: Motions, title: str, panels: Sequence[Panel]) -> F
 
 
 def _draw(axes: Axes, time: np.ndarray, line: np.ndarray, number: int) -> None:
-    """The first motion wide and pale below the others, so that a line that equals it is seen."""
+    """Draw the first motion wide and pale below the others, so that a line that equals it is seen."""
     first = number == 0
     axes.plot(
         time, line, color=colour(number), linewidth=WIDE if first else 1.5, alpha=0.45 if first else 1.0,
@@ -138,7 +138,7 @@ def _joint_panels(motions: Motions) -> list[Panel]:
 
 
 def _force_panels(motions: Motions) -> list[Panel]:
-    """Their signed size where they have one, else their power."""
+    """Return their signed size where they have one, else their power."""
     out: list[Panel] = []
     for name, force in next(iter(motions.values())).forces.items():
         if force.effort is not None:
@@ -180,7 +180,7 @@ def _of(
 
 
 def _spread(lines: Sequence[np.ndarray | None]) -> float:
-    """How much the motions differ in a panel, as a part of what it shows."""
+    """Return how much the motions differ in a panel, as a part of what it shows."""
     known = [line for line in lines if line is not None]
     largest = max((float(np.abs(line).max()) for line in known), default=0.0)
     if len(known) < len(lines):
@@ -190,7 +190,7 @@ def _spread(lines: Sequence[np.ndarray | None]) -> float:
 
 
 def _paths(name: str, motions: Motions) -> Figure | None:
-    """The ways of all traced points."""
+    """Return the ways of all traced points."""
     if not any(motion.points for motion in motions.values()):
         return None
     figure = page(name, "paths of the traced points", f"{len(motions)} motions; a dot marks the start")
@@ -219,7 +219,7 @@ Series = tuple[np.ndarray, np.ndarray]
 
 
 def spectra_figure(name: str, motions: Mapping[str, Motion], asked: Sequence[str]) -> Figure | None:
-    """A panel for each component of what is asked for; None where no motion has any, or none repeats."""
+    """Return a panel for each component of what is asked for; None where no motion has any, or none repeats."""
     panels = _panels(motions, asked)[:PANELS]
     if not panels:
         return None
@@ -240,7 +240,7 @@ def spectra_figure(name: str, motions: Mapping[str, Motion], asked: Sequence[str
 
 
 def _panels(motions: Mapping[str, Motion], asked: Sequence[str]) -> list[tuple[str, dict[int, Series]]]:
-    """Title, and the orders and amplitudes of each motion by its number."""
+    """Return the title, and the orders and amplitudes of each motion by its number."""
     panels: dict[str, dict[int, Series]] = {}
     for what in asked:
         for number, motion in enumerate(motions.values()):

@@ -21,7 +21,7 @@ MARKED = 12
 
 
 def energy(motion: Motion) -> Figure:
-    """Energies (J) from their start, and the power balance (W), with what impacts take at once (J)."""
+    """Return energies (J) from their start, and the power balance (W), with what impacts take at once (J)."""
     over = horizon(motion)
     floor = energy_floor(motion)
     kinetic = without_noise(np.asarray(motion.energy.kinetic), floor)
@@ -49,7 +49,7 @@ def energy(motion: Motion) -> Figure:
 
 
 def powers(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """(T,) power of all drivers, and the rate of kinetic and potential energy (W), rounding taken for zero.
+    """Return (T,) power of all drivers, and the rate of kinetic and potential energy (W), rounding taken for zero.
 
     Rates of the kinetic energy and of weights follow from velocities and accelerations, so they are right at either
     side of an impact; that of elastic energy is the slope between samples, never across an event.
@@ -102,7 +102,7 @@ def _impacts(motion: Motion, floor: float) -> list[EventMark]:
 
 
 def _slope(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(T,) derivative, piece by piece between samples that share a time."""
+    """Return (T,) derivative, piece by piece between samples that share a time."""
     out = np.zeros(len(time))
     for piece in np.split(np.arange(len(time)), np.flatnonzero(np.diff(time) <= 0) + 1):
         if len(piece) > 1:

@@ -36,7 +36,9 @@ PANELS = 12
 
 
 def reactions(motion: Motion) -> Figure:
-    """Magnitude of every joint's reaction (N), its torque where it carries one (N m), and the drivers' effort."""
+    """Return the magnitude of every joint's reaction (N), its torque where it carries one (N m), and the drivers'
+    effort.
+    """
     over = horizon(motion)
     weak, slack = NOISE * force_scale(motion), NOISE * torque_scale(motion)
     forces = [(n, np.hypot(joint.fx, joint.fy), ink_of(motion, joint.bodies)) for n, joint in motion.joints.items()]
@@ -68,7 +70,9 @@ def reactions(motion: Motion) -> Figure:
 
 
 def forces(motion: Motion) -> Figure:
-    """Signed size of every force (N) and torque (N m), what rigid contacts press with, and the power of forces (W)."""
+    """Return signed size of every force (N) and torque (N m), what rigid contacts press with, and the power of forces
+    (W).
+    """
     over = horizon(motion)
     weak, slack = NOISE * force_scale(motion), NOISE * torque_scale(motion)
     pushing, turning, giving = [], [], []
@@ -101,7 +105,9 @@ def forces(motion: Motion) -> Figure:
 
 
 def hodographs(motion: Motion) -> Figure:
-    """The tip of each joint's reaction vector (N) over the motion, drawn from the origin; the dot is the start."""
+    """Return the tip of each joint's reaction vector (N) over the motion, drawn from the origin; the dot is the
+    start.
+    """
     weak = NOISE * force_scale(motion)
     sizes = {name: float(np.hypot(joint.fx, joint.fy).max()) for name, joint in motion.joints.items()}
     largest = sorted((name for name in sizes if sizes[name] > weak), key=lambda name: -sizes[name]) or list(sizes)
@@ -168,7 +174,7 @@ STILL = 1e-9
 
 
 def frame(motion: Motion) -> Figure:
-    """Force of inertia (N), couples about axes in the plane (N m), and the way of the centre of mass (m)."""
+    """Return the force of inertia (N), couples about axes in the plane (N m), and the way of the centre of mass (m)."""
     over, shaken, vibration = horizon(motion), shaking(motion), motion.vibration
     assert vibration is not None
     assert shaken.mx is not None

@@ -32,7 +32,7 @@ Line = tuple[str, np.ndarray, str]
 
 
 def bodies(motion: Motion) -> Figure:
-    """Angle (degrees), angular velocity (rad/s) and angular acceleration (rad/s^2) of every body."""
+    """Return the angle (degrees), angular velocity (rad/s) and angular acceleration (rad/s^2) of every body."""
     figure = page(motion.mechanism, "angles of the bodies", "angle, angular velocity and angular acceleration")
     kinds = (("theta", "angle", "°"), ("omega", "velocity", "rad/s"), ("alpha", "acceleration", "rad/s²"))
     over = horizon(motion)
@@ -50,20 +50,20 @@ def bodies(motion: Motion) -> Figure:
 
 
 def point(motion: Motion, name: str) -> Figure:
-    """Components and magnitudes of a traced point's motion."""
+    """Return components and magnitudes of a traced point's motion."""
     traced = motion.points[name]
     return _plane_motion(motion, traced, f"traced point {name}", f"fixed to {traced.body}; components and magnitude")
 
 
 def slider(motion: Motion, name: str) -> Figure:
-    """The motion of a body that does not turn."""
+    """Return the motion of a body that does not turn."""
     return _plane_motion(
         motion, motion.bodies[name], f"sliding body {name}", "the origin of its frame; it does not turn"
     )
 
 
 def draw(axes: Axes, over: Horizon, words: str, unit: str, lines: Sequence[Line], *, floor: float = 0.0) -> None:
-    """Lines (in ``unit``) with their labels at the right; of many, the largest get labels and the rest stay faint.
+    """Draw lines (in ``unit``) with their labels at the right; of many, the largest get labels and the rest stay faint.
 
     What is below ``floor`` is rounding and drawn as zero. Lines of one body differ by their dashes.
     """
@@ -108,7 +108,7 @@ def _largest(axes: Axes, over: Horizon, unit: str, values: np.ndarray, floor: fl
 
 
 def _plane_motion(motion: Motion, moving: PointMotion | BodyMotion, title: str, subtitle: str) -> Figure:
-    """Three rows of components, with magnitudes; along an axis alone that component says it all."""
+    """Return three rows of components, with magnitudes; along an axis alone that component says it all."""
     figure = page(motion.mechanism, title, subtitle)
     over = horizon(motion)
     fast = max(float(np.hypot(moving.vx, moving.vy).max()), 0.0)
@@ -139,7 +139,9 @@ Panel = tuple[str, str, np.ndarray, str]
 
 
 def turns(motion: Motion) -> Figure:
-    """Speed of the crank, acceleration of what follows it on ground, reaction at its axis, over its angle."""
+    """Return the speed of the crank, acceleration of what follows it on ground, reaction at its axis, over its
+    angle.
+    """
     crank = crank_of(motion)
     if crank is None:
         raise ValueError(f"{motion.mechanism}: no crank turns in this motion")
@@ -161,7 +163,7 @@ def turns(motion: Motion) -> Figure:
 
 
 def _draw(axes: Axes, angle: np.ndarray, values: np.ndarray, ink: str) -> None:
-    """(T,) over a rising angle (rad), cut where it passes whole turns."""
+    """Draw (T,) over a rising angle (rad), cut where it passes whole turns."""
     start, end = float(angle[0]), float(angle[-1])
     first = max(np.floor(start / TURN), np.floor(end / TURN) - MOST)
     for turn in TURN * np.arange(first, np.ceil(end / TURN)):
@@ -186,7 +188,7 @@ def _piece(
 
 
 def _panels(motion: Motion, crank: Crank) -> list[Panel]:
-    """(T,) each."""
+    """Return (T,) each."""
     body, fastest = motion.bodies[crank.body], speed_scale(motion)
     panels = [("speed", "rad/s", np.asarray(body.omega), body.colour)]
     follower = _follower(motion, crank.body)
@@ -207,7 +209,9 @@ def _panels(motion: Motion, crank: Crank) -> list[Panel]:
 
 
 def _follower(motion: Motion, crank: str) -> str | None:
-    """The last body that a joint holds on ground beside the crank, and that comes back: the output of most machines."""
+    """Return the last body that a joint holds on ground beside the crank, and that comes back: the output of most
+    machines.
+    """
     held = [body for joint in motion.joints.values() if "ground" in joint.bodies for body in joint.bodies]
     others = [body for body in dict.fromkeys(held) if body not in ("ground", crank)]
     swinging = [body for body in others if np.ptp(motion.bodies[body].theta) < TURN]
@@ -234,7 +238,7 @@ WHEELS = 2.0
 
 
 def path(motion: Motion, skeleton: Skeleton) -> Figure:
-    """The skeleton in its poses, the first strong; ways of the joints, curves of the traced points (m)."""
+    """Return the skeleton in its poses, the first strong; ways of the joints, curves of the traced points (m)."""
     figure = page(
         motion.mechanism,
         "path",
@@ -271,7 +275,7 @@ def _span(motion: Motion) -> str:
 
 
 def _corners(stroke: Stroke) -> np.ndarray:
-    """(k, 2) of the line that is drawn (m)."""
+    """Return (k, 2) of the line that is drawn (m)."""
     points = np.reshape(stroke.points, (-1, 2))
     return np.vstack([points, points[:1]]) if stroke.closed else points
 
@@ -307,7 +311,7 @@ def _curves(axes: Axes, motion: Motion, skeleton: Skeleton, labels: Labels) -> N
 
 
 def _ink(role: str, motion: Motion) -> str:
-    """The colour that a role of skeleton.json has on this page; a body's is that of its other plots."""
+    """Return the colour that a role of skeleton.json has on this page; a body's is that of its other plots."""
     body = role.removeprefix("body:")
     if body != role and body in motion.bodies:
         return motion.bodies[body].colour

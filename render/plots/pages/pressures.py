@@ -25,7 +25,7 @@ FEW = 4
 
 
 def gas(motion: Motion) -> Figure:
-    """The indicator diagram of the first chambers, and the pressure in all of them; the last cycle of each."""
+    """Return the indicator diagram of the first chambers, and the pressure in all of them; the last cycle of each."""
     known = [(name, force.gas) for name, force in motion.forces.items() if force.gas is not None]
     inks = apart([acting_on(motion, name) for name, _ in known])
     chambers = [(name, chamber, ink) for (name, chamber), ink in zip(known, inks, strict=True)]
@@ -76,7 +76,7 @@ def _over_crank(axes: Axes, motion: Motion, chambers: list[tuple[str, GasMotion,
 
 
 def _last_cycle(chamber: GasMotion) -> np.ndarray:
-    """Rows of the last whole cycle, or of all where there is none."""
+    """Return rows of the last whole cycle, or of all where there is none."""
     everything = np.arange(len(chamber.pressure))
     if chamber.crank_angle is None or chamber.cycle_angle is None:
         return everything
@@ -104,7 +104,7 @@ LITRES_PER_MINUTE = 1e-3 / 60.0
 
 
 def hydraulics(motion: Motion) -> Figure:
-    """Pressure (bar), flow (l/min) and power (W) over the motion; chamber B is paler."""
+    """Return the pressure (bar), flow (l/min) and power (W) over the motion; chamber B is paler."""
     known = [(name, force.hydraulics) for name, force in motion.forces.items() if force.hydraulics is not None]
     known.sort(key=lambda cylinder: -float(np.max(np.abs(cylinder[1].supply_power))))
     inks = apart([acting_on(motion, name) for name, _ in known[:FEW]])
@@ -127,7 +127,7 @@ def hydraulics(motion: Motion) -> Figure:
 
 
 def _both(shown: list[tuple[str, HydraulicMotion, str]], what: str, unit: float) -> list[Line]:
-    """Lines of chambers A and B of each."""
+    """Return lines of chambers A and B of each."""
     lines: list[Line] = []
     for name, cylinder, ink in shown:
         for chamber, tint in (("a", ink), ("b", f"{ink}88")):

@@ -52,7 +52,7 @@ class Spectrum:
 
 
 def spectrum(motion: Motion, values: np.ndarray) -> Spectrum:
-    """Spectrum of series (T,) or (T, k) over the times of a motion."""
+    """Return the spectrum of series (T,) or (T, k) over the times of a motion."""
     time, crank = np.asarray(motion.time), crank_of(motion)
     if motion.period:
         turns = crank.turns if crank and crank.first == 0 else 1
@@ -87,7 +87,7 @@ def _windowed(time: np.ndarray, values: np.ndarray) -> Spectrum:
 
 
 def _amplitudes(rows: np.ndarray) -> np.ndarray:
-    """(N // 2 + 1, ...) of N equal steps that repeat."""
+    """Return (N // 2 + 1, ...) of N equal steps that repeat."""
     out = np.abs(np.fft.rfft(rows, axis=0)) * (2 / len(rows))
     out[0] /= 2
     if len(rows) % 2 == 0:
@@ -96,7 +96,7 @@ def _amplitudes(rows: np.ndarray) -> np.ndarray:
 
 
 def _equal_steps(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """The rows of a period without its end, resampled where they are not equally far apart."""
+    """Return the rows of a period without its end, resampled where they are not equally far apart."""
     steps = np.diff(time)
     if np.ptp(steps) <= 1e-6 * steps.mean():
         return values[:-1]
@@ -104,7 +104,7 @@ def _equal_steps(time: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def _resampled(x: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Values at ``at``: cubic splines, one between each two events, whose rows share their x."""
+    """Return values at ``at``: cubic splines, one between each two events, whose rows share their x."""
     out = np.empty((len(at), *values.shape[1:]))
     starts = [0, *(np.flatnonzero(np.diff(x) <= 0) + 1), len(x)]
     for low, high in pairwise(starts):
@@ -135,7 +135,7 @@ ROOMY = 12
 
 
 def spectrum_page(motion: Motion, name: str) -> Figure:
-    """Time history and amplitudes of one quantity of :mod:`quantities`."""
+    """Return the time history and amplitudes of one quantity of :mod:`quantities`."""
     what = quantity(motion, name)
     lines = spectrum(motion, what.rows)
     orders = f"; orders of the {lines.order_of}" if lines.harmonic else ""
@@ -215,7 +215,7 @@ def _legend(axes: Axes, inks: list[str], names: list[str]) -> None:
 
 
 def shown_orders(lines: Spectrum) -> int:
-    """The highest row that is shown."""
+    """Return the highest row that is shown."""
     sizes = lines.amplitudes[1:].max(axis=tuple(range(1, lines.amplitudes.ndim)))
     seen = np.flatnonzero(sizes >= SEEN * sizes.max(initial=0.0)) if sizes.max(initial=0.0) > 0 else np.array([])
     last = int(seen[-1]) + 1 if len(seen) else 1

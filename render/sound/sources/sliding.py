@@ -76,7 +76,7 @@ def _joint(setting: Setting, joint: JointMotion) -> Iterator[Rubbing]:
 def _touching(
     setting: Setting, joint: JointMotion | ContactMotion, load: Array, x: Array, y: Array
 ) -> Iterator[Rubbing]:
-    """Slides as far as its surfaces have other speeds where they touch, and rolls as its bodies turn."""
+    """Yield slides as far as its surfaces have other speeds where they touch, and rolls as its bodies turn."""
     speed = setting.slip(joint.bodies, x, y)
     yield Rubbing(FRICTION * load * speed, speed, x, y)
     radius = joint.shape.radius_second if joint.shape else None

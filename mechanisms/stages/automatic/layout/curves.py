@@ -26,8 +26,8 @@ FINE = 240
 
 
 def curve_path(points: Sequence[Sequence[float]], closed: bool) -> np.ndarray:
-    """(n, 2) places (m) of the smooth curve through ``points``, in the axes of its marker: so many that chords stray
-    from the curve by STRAY of its size at most, and no more than MOST in each of its polynomials.
+    """Return (n, 2) places (m) of the smooth curve through ``points``, in the axes of its marker: so many that chords
+    stray from the curve by STRAY of its size at most, and no more than MOST in each of its polynomials.
     """
     from mbsd.model.plane_curves import curve_pieces
 
@@ -46,19 +46,19 @@ def curve_path(points: Sequence[Sequence[float]], closed: bool) -> np.ndarray:
 
 
 def profile_path(profile: Curve, first: float, last: float) -> np.ndarray:
-    """(n, 2) places (m) of a profile y(x) from x = ``first`` to ``last``, its points among them."""
+    """Return (n, 2) places (m) of a profile y(x) from x = ``first`` to ``last``, its points among them."""
     x = np.union1d(np.linspace(first, last, FINE), profile.x[(profile.x > first) & (profile.x < last)])
     return np.stack([x, profile(x)[:, 0]], axis=1)
 
 
 def on_body(path: np.ndarray, marker: Marker, layout: Layout) -> np.ndarray:
-    """Places (n, 2) in the axes of a marker (m) in those of its body (rmm)."""
+    """Return places (n, 2) in the axes of a marker (m) in those of its body (rmm)."""
     c, s = math.cos(marker.angle), math.sin(marker.angle)
     return layout.sizes.of_metres(1.0) * path @ np.array([[c, s], [-s, c]]) + layout.place(marker)
 
 
 def farthest(points: Sequence[Sequence[float]]) -> float:
-    """How far a curve through points reaches from its marker (m), about."""
+    """Return how far a curve through points reaches from its marker (m), about."""
     return max(math.hypot(x, y) for x, y in points)
 
 
@@ -68,7 +68,7 @@ def turns_left(path: np.ndarray) -> bool:
 
 
 def set_back(path: np.ndarray, by: float) -> np.ndarray:
-    """A closed path (n, 2) moved to its right by so much (rmm), without the loops that sharp corners would make.
+    """Return a closed path (n, 2) moved to its right by so much (rmm), without the loops that sharp corners would make.
 
     (0, 2) where nothing is left of what it goes round.
     """
@@ -98,8 +98,8 @@ BESIDE = 3.0
 
 
 def end_ways(points: Sequence[Sequence[float]], marker: Marker) -> np.ndarray:
-    """(2, 2) unit vectors out of the first and out of the last end of the open curve through ``points``, in the axes
-    of the marker's body.
+    """Return (2, 2) unit vectors out of the first and out of the last end of the open curve through ``points``, in the
+    axes of the marker's body.
     """
     from mbsd.model import plane_curves
 
@@ -109,8 +109,8 @@ def end_ways(points: Sequence[Sequence[float]], marker: Marker) -> np.ndarray:
 
 
 def continued(path: np.ndarray, ways: np.ndarray, ahead: float, step: float) -> tuple[np.ndarray, int]:
-    """A path (n, 2) with straight lines ``ahead`` long beyond both ends, at places every ``step``; and how many places
-    lie before it. ``ways``: as of :func:`end_ways`.
+    """Return a path (n, 2) with straight lines ``ahead`` long beyond both ends, at places every ``step``; and how many
+    places lie before it. ``ways``: as of :func:`end_ways`.
     """
     count = int(ahead / step) + 2
     along = step * np.arange(1, count + 1)[:, None]
@@ -118,8 +118,8 @@ def continued(path: np.ndarray, ways: np.ndarray, ahead: float, step: float) -> 
 
 
 def followed(path: np.ndarray, seen: np.ndarray, closed: bool) -> np.ndarray:
-    """(T,) numbers of the places of a path (n, 2) that a point at ``seen`` (T, 2) is nearest to, on the branch that it
-    follows. Round a closed path, whose last place is its first, the numbers go on.
+    """Return (T,) numbers of the places of a path (n, 2) that a point at ``seen`` (T, 2) is nearest to, on the branch
+    that it follows. Round a closed path, whose last place is its first, the numbers go on.
 
     Where a path crosses itself the nearest place may be one of the other branch.
     """
@@ -134,7 +134,7 @@ def followed(path: np.ndarray, seen: np.ndarray, closed: bool) -> np.ndarray:
 
 
 def evenly(path: np.ndarray, count: int) -> np.ndarray:
-    """(count, 2) places on the spline through a path, with nearly the same way from each to the next.
+    """Return (count, 2) places on the spline through a path, with nearly the same way from each to the next.
 
     Chords would take from the pin's clearance where the curve bends.
     """

@@ -61,7 +61,9 @@ class Reach:
         return {None: ((None if self.base else self.low, None if self.top else self.high),)}
 
     def span(self, levels: Levels) -> tuple[int, int] | None:
-        """Lowest and highest half layer, as far as layers are decided: more decided ones only make it longer."""
+        """Return the lowest and highest half layer, as far as layers are decided: more decided ones only make it
+        longer.
+        """
         return _span(self, levels)
 
 
@@ -129,7 +131,7 @@ class Item:
 
 
 def choice_of(reach: AnyReach) -> str | None:
-    """The choice that an item's heights depend on, if there is one."""
+    """Return the choice that an item's heights depend on, if there is one."""
     return next(iter(reach.ends))
 
 
@@ -176,15 +178,15 @@ class Heights:
         return self.bottoms[-1] + self.thickness + ROOF
 
     def bottom(self, body: str) -> float:
-        """Underside of a body's plate."""
+        """Return the underside of a body's plate."""
         return self.bottoms[self.levels[body]]
 
     def top(self, body: str) -> float:
-        """Upper face of a body's plate."""
+        """Return the upper face of a body's plate."""
         return self.bottom(body) + self.thickness
 
     def gap_above(self, body: str) -> float:
-        """Height free above a body's plate, below the next layer; infinite above the highest."""
+        """Return the height free above a body's plate, below the next layer; infinite above the highest."""
         level = self.levels[body]
         return self.bottoms[level + 1] - self.top(body) if level + 1 < len(self.bottoms) else float("inf")
 

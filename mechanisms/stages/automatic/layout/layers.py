@@ -44,7 +44,7 @@ class Clauses:
         self._model: set[int] = set()
 
     def new(self) -> int:
-        """A literal."""
+        """Return a new literal."""
         self.last += 1
         return self.last
 
@@ -59,7 +59,7 @@ class Clauses:
         return self.steps[self.heads[body]][level - 1] if level < self.count else -TRUE
 
     def above(self, low: str | None, high: str | None, by: int) -> int:
-        """A literal that implies that ``high`` is ``by`` layers above ``low``; None is a body on layer 0."""
+        """Return a literal that implies that ``high`` is ``by`` layers above ``low``; None is a body on layer 0."""
         if low is None or high is None:
             if low is high:
                 return TRUE if by <= 0 else -TRUE
@@ -107,7 +107,7 @@ class Clauses:
                         self.add(*given, self.above(a, b, by))
 
     def _ends(self, reach: AnyReach) -> list[tuple[list[int], Ends]]:
-        """Ends of an item, each with literals of which one is true where the choice is another."""
+        """Return ends of an item, each with literals of which one is true where the choice is another."""
         ((choice, ends),) = reach.ends.items()
         if choice is None:
             # without bodies an item with a base is on the base
@@ -120,7 +120,7 @@ class Clauses:
         return tuple(body for body in reach.bodies if body in self.heads)
 
     def crossings(self, items: Sequence[Item]) -> list[int]:
-        """Literals that are true for every step from a layer to the next that a pin goes through."""
+        """Return literals that are true for every step from a layer to the next that a pin goes through."""
         literals: list[int] = []
         for item in items:
             ((choice, ends),) = item.reach.ends.items()
@@ -149,7 +149,7 @@ class Clauses:
         return literals
 
     def count_of(self, literals: Sequence[int], most: int) -> list[int]:
-        """Literals r[k] that are true if more than k of ``literals`` are, k up to ``most``."""
+        """Return literals r[k] that are true if more than k of ``literals`` are, k up to ``most``."""
         if not literals:
             return []
         total = ITotalizer(lits=list(literals), ubound=most, top_id=self.last)
@@ -275,7 +275,9 @@ class Problem:
         return 1 + step * (len(set(self.heads.values())) - 1) + fixed
 
     def clauses(self, count: int, keys: Sequence[Hashable] = ()) -> Clauses:
-        """All rules with ``count`` layers; ``keys`` gives each conflict one, and only those assumed by it count."""
+        """Return all rules with ``count`` layers; ``keys`` gives each conflict one, and only those assumed by it
+        count.
+        """
         made = Clauses(self.heads, choices_of(self.items), count)
         for body, level in self.fixed.items():
             made.add(made.at_least(body, level))
@@ -294,7 +296,7 @@ class Problem:
         return [item.reach for item in self.items if isinstance(item.reach, PivotReach)]
 
     def bridged(self, clauses: Clauses, driven: bool = False) -> list[int]:
-        """Literals that are true for pivots (for driven ones) on bridges."""
+        """Return literals that are true for pivots (for driven ones) on bridges."""
         pivots = [pivot for pivot in self._pivots if pivot.driven or not driven]
         return [clauses.choices[name] for name in dict.fromkeys(pivot.choice for pivot in pivots)]
 
@@ -320,7 +322,8 @@ class Problem:
 
 
 def find_layers(problem: Problem, purse: Purse | None = None) -> dict[str, int] | None:
-    """The layer of each body, from 0 up, and the choices; None where there is no order, with any number of layers.
+    """Return the layer of each body, from 0 up, and the choices; None where there is no order, with any number of
+    layers.
 
     Raises Undecided where the purse, a new one if none is given, is empty before that is known.
     """
@@ -349,7 +352,7 @@ def _is_impossible(problem: Problem) -> bool:
 
 
 def _fewest_bridges(problem: Problem, purse: Purse) -> int | None:
-    """How many pivots must hang from bridges; None if there is no order."""
+    """Return how many pivots must hang from bridges; None if there is no order."""
     clauses = problem.clauses(problem.most)
     literals = problem.bridged(clauses)
     if not purse.solved(clauses):
@@ -363,7 +366,7 @@ def _fewest_bridges(problem: Problem, purse: Purse) -> int | None:
 
 
 def _within(problem: Problem, count: int, bridges: int, budget: int | Purse) -> dict[str, int] | None:
-    """The best order with ``count`` layers and as many bridges; None if there is none, or none found."""
+    """Return the best order with ``count`` layers and as many bridges; None if there is none, or none found."""
     clauses = problem.clauses(count)
     literals = problem.bridged(clauses)
     if bridges < len(literals):
@@ -415,12 +418,13 @@ def _settle(clauses: Clauses, literals: Sequence[int]) -> None:
 
 
 def _highest_first(steps: Mapping[str, Sequence[int]]) -> list[int]:
-    """The highest step of each body first."""
+    """Return literals of steps, the highest step of each body first."""
     return [step for own in steps.values() for step in reversed(own)]
 
 
 def blocking[Key: Hashable](problem: Problem, keys: Sequence[Key], purse: Purse | None = None) -> list[Key]:
-    """Keys of conflicts that leave no order; without any one of them there would be one. ``keys``: one per conflict.
+    """Return keys of conflicts that leave no order; without any one of them there would be one. ``keys``: one per
+    conflict.
 
     Raises Undecided as :func:`find_layers`.
     """

@@ -38,7 +38,7 @@ class Feature(Protocol):
     """One joint, or several that are one thing such as links on a common pin."""
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Where outlines of bodies must reach."""
+        """Return where outlines of bodies must reach."""
         ...
 
     def items(self, layout: Layout) -> Iterable[Item]:
@@ -46,7 +46,7 @@ class Feature(Protocol):
         ...
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """How high gaps must be, once the layers are known."""
+        """Return how high gaps must be, once the layers are known."""
         ...
 
 
@@ -115,11 +115,11 @@ class Layout:
     """Gaps by what they follow from, for layouts that differ in some features alone and share these."""
 
     def place(self, marker: Marker) -> tuple[float, float]:
-        """A marker in its body's frame (rmm)."""
+        """Return a marker in its body's frame (rmm)."""
         return self.sizes.of_metres(marker.x), self.sizes.of_metres(marker.y)
 
     def seen(self, body: str, place: tuple[float, float], other: str) -> np.ndarray:
-        """(T, 2): a place of ``body`` in the frame of another body over the motion (rmm)."""
+        """Return (T, 2) a place of ``body`` in the frame of another body over the motion (rmm)."""
         pose, frame = self.poses[body], self.poses[other]
         c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
         x = pose[:, 0] + c * place[0] - s * place[1] - frame[:, 0]
@@ -144,7 +144,7 @@ class Layout:
         return {body: [a for a in places if not self._on_wheel(a)] for body, places in by_body.items()}
 
     def wheel_at(self, x: float, y: float) -> Carrier | None:
-        """The wheel of ground about a place on it (rmm): what turns there stands on that wheel."""
+        """Return the wheel of ground about a place on it (rmm): what turns there stands on that wheel."""
         here = [wheel for wheel in self.wheels.get("ground", []) if math.hypot(wheel.x - x, wheel.y - y) < 0.02]
         return next((wheel for wheel in here if not wheel.ring), None)
 
@@ -176,7 +176,7 @@ class Layout:
         return [*self.bodies, *self.rods, *self.webs]
 
     def outline(self, body: str) -> Rounded:
-        """The shape that holds a body's plate."""
+        """Return the shape that holds a body's plate."""
         anchors = self.anchors[body]
         radius = max(anchor.radius for anchor in anchors)
         return around([(anchor.x, anchor.y) for anchor in anchors], radius)
@@ -209,13 +209,17 @@ class Layout:
         return Problem(self.layered, self.items, self.conflicts, fixed or {}, together, hanging, between)
 
     def with_flush_pivots(self) -> Layout:
-        """The same with other pivots, and as they meet the same in the plane, with all that was found of that."""
+        """Return the same with other pivots, and as they meet the same in the plane, with all that was found of
+        that.
+        """
         flushed = replace(self, flush=True, features=list(self.features))
         flushed.__dict__["conflicts"] = self.conflicts
         return flushed
 
     def with_far_posts(self) -> Layout:
-        """The same with posts of slotted plates out of the way of what carries their pins, and with flush pivots."""
+        """Return the same with posts of slotted plates out of the way of what carries their pins, and with flush
+        pivots.
+        """
         return replace(self, flush=True, far_posts=True, features=list(self.features))
 
     def is_held(self, pin: object) -> bool:
@@ -223,7 +227,7 @@ class Layout:
         return any(getattr(feature, "pin", None) is pin for feature in self.features)
 
     def gap(self, first: Item, second: Item) -> tuple[float, float]:
-        """Least gap in the plane (rmm), and its time (s)."""
+        """Return the least gap in the plane (rmm), and its time (s)."""
         key = first.body, first.shape.content, second.body, second.shape.content
         if key not in self.known_gaps:
             poses = self.poses[first.body], self.poses[second.body]
@@ -268,7 +272,7 @@ class Layout:
         return any(spans_meet(self.items[k].reach.span(levels), looked) for k in others)
 
     def room_below(self, x: float, y: float, levels: Levels) -> float:
-        """Distance (rmm) from a place on ground to what moves above the base, under the lowest layer."""
+        """Return the distance (rmm) from a place on ground to what moves above the base, under the lowest layer."""
         here, every = np.full((len(self.times), 1, 2), (x, y)), np.arange(len(self.times))
         moving = (i for i in self.items if i.body != "ground" and not i.only and i.what != i.body)
         low = (i for i in moving if spans_meet(i.reach.span(levels), (BASE, BASE)))
@@ -276,7 +280,7 @@ class Layout:
         return min((float(gap.min()) for gap in gaps), default=math.inf)
 
     def room_on_base(self, x: float, y: float) -> float:
-        """Half of the distance (rmm) from a place on ground to the next place where something stands there."""
+        """Return half of the distance (rmm) from a place on ground to the next place where something stands there."""
         places = [a for feature in self.features for a in feature.anchors(self) if a.body == "ground"]
         away = [math.hypot(a.x - x, a.y - y) for a in places]
         half = min((d for d in away if d > 0.01), default=math.inf) / 2

@@ -21,7 +21,7 @@ TURN, MOST = 0.05, 60
 
 
 def poses_of(solution: Solution, to_length: float) -> dict[str, np.ndarray]:
-    """(T, 3) x, y (m times ``to_length``) and theta (rad) of every body's frame, ground included.
+    """Return (T, 3) x, y (m times ``to_length``) and theta (rad) of every body's frame, ground included.
 
     Between outputs they follow the cubic through places and velocities, except where a jump makes two times equal.
     """
@@ -42,13 +42,13 @@ def poses_of(solution: Solution, to_length: float) -> dict[str, np.ndarray]:
 
 
 def times_of(solution: Solution) -> np.ndarray:
-    """(T,) the times (s) of :func:`poses_of`."""
+    """Return (T,) the times (s) of :func:`poses_of`."""
     t = solution.t
     return _between(t, t[:, None], np.ones((len(t), 1)), _parts(solution))[:, 0]
 
 
 def _parts(solution: Solution) -> np.ndarray:
-    """(n,) how many poses of each step are looked at: more where a body turns far in it."""
+    """Return (n,) how many poses of each step are looked at: more where a body turns far in it."""
     counts = np.full(len(solution.t) - 1, max(1, round(POSES / max(len(solution.t), 1))))
     for name in solution.mechanism.bodies:
         if name != "ground":
@@ -79,7 +79,7 @@ type Limits = tuple[float | None, float | None]
 
 
 def turning(joint: Joint, m: Mechanism) -> Limits:
-    """Limits of a revolute joint (rad), as the angle of its second body against its first."""
+    """Return limits of a revolute joint (rad), as the angle of its second body against its first."""
     own, ends = joint.j.angle - joint.i.angle, []
     lower, upper = joint.params.get("limits") or (None, None)
     ends += [(lower - own, False)] if lower is not None else []
@@ -93,7 +93,7 @@ def turning(joint: Joint, m: Mechanism) -> Limits:
 
 
 def sliding(joint: Joint, m: Mechanism) -> Limits:
-    """Limits of a prismatic joint or a pin in a slot (m), along the x axis of its first marker."""
+    """Return limits of a prismatic joint or a pin in a slot (m), along the x axis of its first marker."""
     lower, upper = joint.params.get("limits") or (None, None)
     ends = [(end, is_upper) for end, is_upper in ((lower, False), (upper, True)) if end is not None]
     for stop in m.contacts.values():

@@ -172,7 +172,7 @@ class Plan:
         kept += [replace(s, name=self.named(s.name)) for s in solids]
 
     def make(self, body: str, name: str, shape: cq.Workplane, material: str, through_holes: int, buy: str = "") -> str:
-        """One solid; the name that it gets."""
+        """Add one solid; return the name that it gets."""
         self.add(body, Solid(name, shape, material, through_holes, buy=buy))
         return self.solids[body][-1].name
 
@@ -187,7 +187,9 @@ class Plan:
             self.main[body] = self.named(body)
 
     def named(self, wish: str) -> str:
-        """A name that no other solid has, of letters, digits and _; some disks take upper and lower case for one."""
+        """Return a name that no other solid has, of letters, digits and _; some disks take upper and lower case for
+        one.
+        """
         name = re.sub(r"\W", "_", wish, flags=re.ASCII)
         if not name[:1].isalpha():
             name = f"part_{name}"

@@ -87,7 +87,7 @@ class Lengths:
 
 
 def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) -> Lengths:
-    """Lengths of a mechanism and its motion, without bodies that are ``left_out``."""
+    """Return lengths of a mechanism and its motion, without bodies that are ``left_out``."""
     places: dict[str, list[tuple[float, float]]] = {}
     pinned: dict[str, list[tuple[float, float]]] = {}
     pins: dict[str, list[str]] = {}
@@ -141,7 +141,7 @@ def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ())
 
 
 def stretching(m: Mechanism, left_out: Collection[str] = ()) -> list[Force | Joint]:
-    """Forces, ropes and drivers between two points that have parts at both ends."""
+    """Return forces, ropes and drivers between two points that have parts at both ends."""
     elements: list[Force | Joint] = [force for force in m.forces.values() if force.kind.name in STRETCHING]
     elements += [contact for contact in m.contacts.values() if contact.kind.name == ROPE]
     elements += [driver for driver in m.drivers.values() if driver.kind.name == LINEAR]
@@ -162,7 +162,7 @@ def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:
 
 
 def distance(joint: Joint, solution: Solution) -> float:
-    """Distance between a joint's two markers at the start (m)."""
+    """Return the distance between a joint's two markers at the start (m)."""
     first, second = (_swept(solution, k.body.name, np.array([[k.x, k.y]]))[0] for k in (joint.i, joint.j))
     return float(np.hypot(*(second - first)))
 
@@ -257,7 +257,7 @@ class Sizes:
     """Millimetres of the finished piece for a millimetre here: 0.05 for a model at 1:20."""
 
     def of_metres(self, length: float) -> float:
-        """A length of the model (m) in rmm."""
+        """Return a length of the model (m) in rmm."""
         return mm(length) / self.scale
 
     @property
@@ -325,7 +325,8 @@ def thin_pins(lengths: Lengths, pin: float) -> str:
 
 
 def of_pin(diameter: float, fit: Fit | None = None, ratio: float = 1.0) -> Sizes:
-    """Sizes that go with pins of this diameter (mm), with washers and circlips that one can buy where there are any.
+    """Return sizes that go with pins of this diameter (mm), with washers and circlips that one can buy where there are
+    any.
 
     ``fit`` in mm; by default what a workshop can make, small or large. Both are those of the finished piece, in the
     ``ratio`` to the machine.
@@ -353,7 +354,7 @@ def _bought(pivot: Pivot, diameter: float, scale: float) -> Pivot:
 
 
 def standard(wish: float) -> float:
-    """The standard diameter (mm) next below ``wish``; the smallest one if there is none below."""
+    """Return the standard diameter (mm) next below ``wish``; the smallest one if there is none below."""
     if wish >= STANDARD[-1] + 50:
         return 50.0 * (wish // 50)
     return max((d for d in STANDARD if d <= wish * (1 + 1e-9)), default=STANDARD[0])
@@ -381,7 +382,7 @@ RUNNING, PRESS, AXIAL = 0.3, 0.1, 0.3
 def printed_sizes(
     name: str, lengths: Lengths, scale: Scale, thinnest: float, pin: float | None = None, fit: Fit | None = None
 ) -> list[Sizes]:
-    """The most wanted first, then with thinner pins, the last ``thinnest`` times as thick at least.
+    """Return the most wanted first, then with thinner pins, the last ``thinnest`` times as thick at least.
 
     ``pin`` (mm of the machine) is what its author wishes there, ``fit`` (mm of the piece) what the printer does. Raises
     UserError naming the shortest link and the smallest scale that would do, if no pin fits it.
@@ -397,7 +398,7 @@ def printed_sizes(
 
 
 def printed_fit(pin: float) -> Fit:
-    """Clearances that printed parts with pins of this diameter need (mm)."""
+    """Return clearances that printed parts with pins of this diameter need (mm)."""
     size = pin / PIN
     return Fit(
         min(max(0.2 * size, RUNNING), 0.6), max(Fit.press * size, PRESS), max(0.4 * size, AXIAL), Fit.seat * size

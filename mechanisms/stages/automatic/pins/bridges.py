@@ -58,7 +58,9 @@ class Swept:
         self._most = np.maximum.reduceat(self._discs[:, 2], self._starts)
 
     def outermost(self, at: np.ndarray, way: np.ndarray) -> np.ndarray:
-        """(m, 3): some of the discs, with the one among them that a ray from ``at`` along ``way`` leaves last."""
+        """Return (m, 3): some of the discs, with the one among them that a ray from ``at`` along ``way`` leaves
+        last.
+        """
         if self._is_few:
             return self._discs
         seen, half = self._centres - at, CELL / np.sqrt(2.0) + LOOSE
@@ -109,20 +111,20 @@ class Bridge:
         return Rounded(np.array(self.ends), BEAM / 2)
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Its posts."""
+        """Return its posts."""
         return [Anchor("ground", x, y, POST / 2) for x, y in self.ends]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """None: its place is chosen where nothing is in its way."""
+        """Return an empty list: its place is chosen where nothing is in its way."""
         return []
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Nothing."""
+        """Return an empty list."""
         return []
 
 
 def may_hang(layout: Layout) -> frozenset[str]:
-    """Choices of the pivots that may hang: those on whose pin no spring ends."""
+    """Return choices of the pivots that may hang: those on whose pin no spring ends."""
     pivots = [pin for pin in layout.features if isinstance(pin, Pin) and pin.on_ground]
     held = [stud.pin for stud in layout.features if isinstance(stud, Stud)]
     return frozenset(pin.choice for pin in pivots if pin not in held)
@@ -149,14 +151,18 @@ def bridges_over(layout: Layout, levels: Mapping[str, int]) -> list[Feature]:
 
 
 def _cost(bridge: Bridge) -> float:
-    """Length for each pivot; a hundredth more, the less it lies level, so that of equal ones the level one is taken."""
+    """Return the length for each pivot; a hundredth more, the less it lies level, so that of equal ones the level one
+    is taken.
+    """
     (x0, y0), (x1, y1) = bridge.ends
     length = math.hypot(x1 - x0, y1 - y0)
     return round(length / len(bridge.pins) * (1.0 + 0.01 * abs(y1 - y0) / length), 6)
 
 
 def _points(layout: Layout, hanging: Sequence[Pin]) -> tuple[np.ndarray, np.ndarray]:
-    """(n, 3) each: places that moving items come to, and those of ground, with the gap (rmm) from a post's middle."""
+    """Return (n, 3) each: places that moving items come to, and those of ground, with the gap (rmm) from a post's
+    middle.
+    """
     moving, still = [np.zeros((0, 3))], [np.zeros((0, 3))]
     for item in layout.items:
         if any(item.source is pin for pin in hanging):
@@ -171,7 +177,7 @@ def _points(layout: Layout, hanging: Sequence[Pin]) -> tuple[np.ndarray, np.ndar
 
 
 def _sides(core: np.ndarray) -> np.ndarray:
-    """(..., m, 2): points on the sides of polygons (..., n, 2), STEP or less from each other."""
+    """Return (..., m, 2): points on the sides of polygons (..., n, 2), STEP or less from each other."""
     way = np.roll(core, -1, axis=-2) - core
     count = max(1, math.ceil(float(np.linalg.norm(way, axis=-1).max()) / STEP))
     share = (np.arange(count) / count)[:, None]
@@ -179,7 +185,7 @@ def _sides(core: np.ndarray) -> np.ndarray:
 
 
 def _candidates(waiting: Sequence[Pin], moving: Swept, still: np.ndarray) -> list[Bridge]:
-    """Beams over the first of the pivots in all directions, and over it and another one."""
+    """Return beams over the first of the pivots in all directions, and over it and another one."""
     first, *others = waiting
     at = np.array(first.places["ground"])
     beams = []
@@ -194,7 +200,7 @@ def _candidates(waiting: Sequence[Pin], moving: Swept, still: np.ndarray) -> lis
 
 
 def _post(at: np.ndarray, way: np.ndarray, moving: Swept, still: np.ndarray) -> tuple[float, float]:
-    """The first place from ``at`` on in a direction that is past all that moves and clear of what stands."""
+    """Return the first place from ``at`` on in a direction that is past all that moves and clear of what stands."""
     outer = moving.outermost(at, way)
     along, aside = _along(outer, at, way)
     inside = np.abs(aside) < outer[:, 2]
@@ -209,7 +215,7 @@ def _post(at: np.ndarray, way: np.ndarray, moving: Swept, still: np.ndarray) -> 
 
 
 def _along(points: np.ndarray, at: np.ndarray, way: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distances along and across a ray."""
+    """Return distances along and across a ray."""
     seen = points[:, :2] - at
     return seen @ way, seen @ np.array([-way[1], way[0]])
 

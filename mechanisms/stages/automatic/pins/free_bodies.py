@@ -72,11 +72,11 @@ class RimMark:
         return self.raised and math.dist(self.at, (self.x, self.y)) > TIP
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """The pin, within the rim."""
+        """Return the pin, within the rim."""
         return [Anchor(self.body, *self.at, self.radius + WALL)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The pointer, over the face of its wheel."""
+        """Yield the pointer, over the face of its wheel."""
         if self.points:
             shape = Rounded(np.array([self.at, (self.x, self.y)]), self.radius + BASE)
             own = frozenset(
@@ -90,14 +90,14 @@ class RimMark:
             )  # fmt: skip
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for the pointer."""
+        """Yield the room for the pointer."""
         level = levels[self.body]
         if self.points and layout.is_covered(self, 2 * (level + 1), levels, 1):
             fit = layout.sizes.pivot.fit
             yield Need(level, HEIGHT + 2 * fit.axial)
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """A pin flush with the face, or a pointer with its shank."""
+        """Build a pin flush with the face, or a pointer with its shank."""
         fit, top, (x, y) = plan.layout.sizes.pivot.fit, heights.top(self.body), self.at
         plan.eye(self.body, x, y, Eye(self.radius + WALL, 2 * self.radius + fit.press))
         if not self.points:
@@ -120,7 +120,9 @@ class RimMark:
 
 
 def face_at(body: str, x: float, y: float, layout: Layout) -> Face | None:
-    """The face of the wheel on whose rim, or beyond whose working surface, an eye at a place of a body would be."""
+    """Return the face of the wheel on whose rim, or beyond whose working surface, an eye at a place of a body would
+    be.
+    """
     eye = layout.sizes.stylus_eye
     for feature in layout.features:
         face_of = getattr(feature, "face_of", None)
@@ -183,28 +185,28 @@ class FreeBody:
     is_ball: bool
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """A disc is where its body's plate is."""
+        """Return an empty list: a disc is where its body's plate is."""
         return [] if self.is_ball else [Anchor(self.body, self.x, self.y, self.radius)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """A ball in its layer, and in the gaps beside that if it is thicker."""
+        """Yield a ball in its layer, and in the gaps beside that if it is thicker."""
         if self.is_ball:
             thick = int(self.over(layout) > 0)
             shape = disc(self.x, self.y, self.radius)
             yield Item(f"the ball {self.body}", self.body, shape, Reach((self.body,), -thick, thick), source=self)
 
     def over(self, layout: Layout) -> float:
-        """How far a ball reaches beyond its layer (rmm)."""
+        """Return how far a ball reaches beyond its layer (rmm)."""
         return self.radius - layout.sizes.thickness / 2 if self.is_ball else 0.0
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for a ball above and below its layer."""
+        """Yield the room for a ball above and below its layer."""
         if self.over(layout) > 0:
             for gap in (levels[self.body] - 1, levels[self.body]):
                 yield Need(gap, self.over(layout) + layout.sizes.pivot.fit.axial)
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """The whole body, or the plate round its centre of mass."""
+        """Build the whole body, or the plate round its centre of mass."""
         if self.is_ball:
             shape = ball(self.radius).translate((self.x, self.y, heights.thickness / 2))
         else:
@@ -213,7 +215,7 @@ class FreeBody:
 
 
 def free_bodies(layout: Layout) -> list[Feature]:
-    """One for each body without a joint or a shape of its own."""
+    """Return one for each body without a joint or a shape of its own."""
     m = layout.m
     held = [*m.joints.values(), *(force for force in m.forces.values() if force.kind.journal is not None)]
     shaped = {body for joint in held for body in joint.bodies}
@@ -275,22 +277,22 @@ class Stylus:
     tall: bool
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """A small eye."""
+        """Return a small eye."""
         return [Anchor(self.body, self.x, self.y, layout.sizes.stylus_eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """All above it, if it is tall."""
+        """Return all above it, if it is tall."""
         if not self.tall:
             return []
         shape = disc(self.x, self.y, layout.sizes.stylus_eye - 1.0)
         return [Item(f"the stylus of {self.name}", self.body, shape, Reach((self.body,), 1, top=True), source=self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Nothing."""
+        """Return an empty list."""
         return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """The stylus in an eye."""
+        """Build the stylus in an eye."""
         press = plan.layout.sizes.pivot.fit.press
         seat, top = plan.layout.sizes.pivot.fit.seat, heights.top(self.body)
         if not self.tall:
@@ -316,22 +318,22 @@ class Weight:
     y: float
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """An eye as large as a joint's."""
+        """Return an eye as large as a joint's."""
         return [Anchor(self.body, self.x, self.y, layout.sizes.eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The weight's head above the plate."""
+        """Return the weight's head above the plate."""
         shape = disc(self.x, self.y, layout.sizes.eye)
         return [Item(f"the weight of {self.body}", self.body, shape, Reach((self.body,), 1, 1), source=self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for its head."""
+        """Yield the room for its head."""
         level = levels[self.body]
         if layout.is_covered(self, 2 * (level + 1), levels, 1):
             yield Need(level, WEIGHT + layout.sizes.pivot.fit.seat + layout.sizes.pivot.fit.axial)
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """A plug with a wide head."""
+        """Build a plug with a wide head."""
         sizes = plan.layout.sizes
         fit = sizes.pivot.fit
         plan.eye(self.body, self.x, self.y, Eye(sizes.eye, sizes.pivot.held))
@@ -343,8 +345,8 @@ class Weight:
 
 
 def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
-    """One for every traced point of a moving body, except where a joint's eye or a weight is, and on balls. Points on
-    rims get marks there (rim_marks.py), with ``pointers`` where these are wanted.
+    """Return one for every traced point of a moving body, except where a joint's eye or a weight is, and on balls.
+    Points on rims get marks there (rim_marks.py), with ``pointers`` where these are wanted.
     """
     features: list[Feature] = []
     balls = {feature.body for feature in layout.features if isinstance(feature, FreeBody) and feature.is_ball}

@@ -45,7 +45,7 @@ def add_poses(layout: Layout) -> None:
 
 
 def ends(joint: Joint, layout: Layout) -> list[tuple[tuple[float, float], str, tuple[float, float]]]:
-    """The place of either eye on the rod, the body that it is pinned to, and the place there (rmm)."""
+    """Return the place of either eye on the rod, the body that it is pinned to, and the place there (rmm)."""
     length = layout.sizes.of_metres(joint.params["length"])
     return [((x, 0.0), marker.body.name, layout.place(marker)) for x, marker in ((0.0, joint.i), (length, joint.j))]
 
@@ -138,11 +138,11 @@ class Pin:
         return self.on_ground and any(d.kind.angular and set(d.bodies) <= set(self.places) for d in drivers)
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """An eye on every body."""
+        """Return an eye on every body."""
         return [Anchor(body, x, y, layout.sizes.eye) for body, (x, y) in self.places.items()]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """All heights that pin and pedestal take."""
+        """Return all heights that pin and pedestal take."""
         x, y = self.places[self.home]
         shape, on_it = disc(x, y, layout.sizes.hardware), frozenset(self.places)
         if self.on_ground:
@@ -152,7 +152,7 @@ class Pin:
         return [Item(self.what, self.home, shape, ends, on_it, self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""
+        """Yield the room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""
         sizes, pivot = layout.sizes, layout.sizes.pivot
         running = pivot.fit.axial + pivot.flange_room
         stack = sorted(levels[body] for body in self.movers)
@@ -180,14 +180,14 @@ class Pin:
 
 @kind("revolute")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Joints by their pins: those with a common place on a body are one."""
+    """Return joints by their pins: those with a common place on a body are one."""
     named = [(joint.name, {k.body.name: layout.place(k) for k in (joint.i, joint.j)}) for joint in joints]
     return _pins(m, [*named, *_rod_ends(layout)])
 
 
 @kind(ROD)
 def gather_rods(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Their pins are those of the revolute joints, unless there is none of these."""
+    """Gather rods as features; their pins are those of the revolute joints, unless there are none."""
     revolute = [j for j in m.joints.values() if j.kind.pair == "pin" and not layout.apart.intersection(j.bodies)]
     return [] if revolute else _pins(m, _rod_ends(layout))
 
@@ -202,7 +202,7 @@ def _rod_ends(layout: Layout) -> list[tuple[str, dict[str, tuple[float, float]]]
 
 
 def _pins(m: Mechanism, named: list[tuple[str, dict[str, tuple[float, float]]]]) -> list[Feature]:
-    """Pins of named joints with a place on two bodies each: those with a common place are one pin."""
+    """Return pins of named joints with a place on two bodies each: those with a common place are one pin."""
     ends = [at for _, at in named]
     group = list(range(len(named)))
     for j in range(len(named)):
@@ -233,7 +233,7 @@ THINNEST = 0.4
 
 @force_kind("clearance_joint")
 def gather_with_play(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
-    """A pin each. Raises UserError where play leaves no bushing, or where another pin has the place."""
+    """Return a pin each. Raises UserError where play leaves no bushing, or where another pin has the place."""
     pins: list[Feature] = []
     for force in forces:
         places = {marker.body.name: layout.place(marker) for marker in (force.i, force.j)}
@@ -279,8 +279,8 @@ def _refuse_shared(m: Mechanism, force: Force, places: dict[str, tuple[float, fl
 
 
 def webbed(layout: Layout, bodies: Collection[str]) -> Iterable[Layout]:
-    """Layouts in which one of ``bodies`` has a further web: each of its pins once as the one that joins both, and the
-    others shared out in every way.
+    """Yield layouts in which one of ``bodies`` has a further web: each of its pins once as the one that joins both, and
+    the others shared out in every way.
     """
     for body in (body for body in bodies if body in layout.bodies):
         pins = [pin for pin in layout.features if isinstance(pin, Pin) and body in pin.places]

@@ -71,15 +71,15 @@ class Stretching:
         return f"the spring {self.force}", f"the ends of spring {self.force}"
 
     def z(self, heights: Heights) -> float:
-        """Height (rmm) of its axis: the middle of its layer."""
+        """Return the height (rmm) of its axis: the middle of its layer."""
         return heights.bottom(self.layer) + heights.thickness / 2
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """None: the studs have them."""
+        """Return an empty list: the studs have them."""
         return []
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Its barrel in its layer and both gaps beside it, and its whole length in its layer."""
+        """Yield its barrel in its layer and both gaps beside it, and its whole length in its layer."""
         barrel, ends = self.names
         held = self._studs(layout)
         own = {stud.what for stud in held} | {stud.pin.what for stud in held if stud.pin}
@@ -102,7 +102,7 @@ class Stretching:
         return [f for f in layout.features if isinstance(f, Stud) and any(spring is self for spring, _ in f.ends)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for its barrel, beside that of another and above a pin that its end stands on."""
+        """Yield the room for its barrel, beside that of another and above a pin that its end stands on."""
         sizes, level, over = layout.sizes, levels[self.layer], self.over(layout)
         others = [f for f in layout.features if isinstance(f, Stretching) and f is not self]
         pins = [max(levels[body] for body in stud.pin.movers) for stud in self._studs(layout) if stud.pin]
@@ -113,7 +113,7 @@ class Stretching:
                 yield Need(gap, over + sizes.pivot.fit.axial + extra)
 
     def over(self, layout: Layout) -> float:
-        """How far it reaches beyond its layer, up and down (rmm)."""
+        """Return how far it reaches beyond its layer, up and down (rmm)."""
         return self.outer - layout.sizes.thickness / 2
 
     def build(self, plan: Plan, heights: Heights) -> None:
@@ -125,7 +125,7 @@ def _core(spring: Stretching) -> str:
 
 
 def _corners(ends: np.ndarray, corner: np.ndarray) -> np.ndarray:
-    """(T, 3, 2) triangles, counter-clockwise, of two ends (T, 2, 2) and a corner (T, 1, 2)."""
+    """Return (T, 3, 2) triangles, counter-clockwise, of two ends (T, 2, 2) and a corner (T, 1, 2)."""
     way, off = ends[:, 1] - ends[:, 0], corner[:, 0] - ends[:, 0]
     left = way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0] >= 0
     return np.concatenate([np.where(left[:, None, None], ends, ends[:, ::-1]), corner], axis=1)
@@ -158,13 +158,13 @@ class Stud:
         return tuple(dict.fromkeys(spring.layer for spring, _ in self.ends))
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """An eye in the plate, or the foot of a post."""
+        """Return an eye in the plate, or the foot of a post."""
         if self.pin is not None:
             return []
         return [Anchor(self.body, self.x, self.y, FOOT if self.body == "ground" else EYE)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """All between its body, or its pin, and what it holds; and that this lies over it."""
+        """Yield all between its body, or its pin, and what it holds; and that this lies over it."""
         held = frozenset(spring.names[1] for spring, _ in self.ends)
         if self.pin is not None:
             under = Reach(self.pin.movers, high=1, base=True)
@@ -180,7 +180,9 @@ class Stud:
             yield Item(f"{self.what} from below", self.body, disc(self.x, self.y, EYE), under, spares, self, only=held)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for its collar between its plate and a ball in the next layer; springs and pins ask for the rest."""
+        """Yield the room for its collar between its plate and a ball in the next layer; springs and pins ask for the
+        rest.
+        """
         if self.pin is not None or self.body == "ground":
             return
         fit, ball = layout.sizes.pivot.fit, math.sqrt(BALL**2 - (SHANK / 2) ** 2)
@@ -213,8 +215,8 @@ LEAST = 4.0
 
 
 def _sags(path: np.ndarray, length: float, down: tuple[float, float]) -> np.ndarray:
-    """(T, 2) twice the sag of a rope of this length (rmm) along ``down``, or more: its parabola is longer than the two
-    straight lines to its vertex, which are as long as the rope here.
+    """Return (T, 2) twice the sag of a rope of this length (rmm) along ``down``, or more: its parabola is longer than
+    the two straight lines to its vertex, which are as long as the rope here.
     """
     strength = float(np.hypot(*down))
     if strength == 0:
@@ -230,7 +232,7 @@ def _sags(path: np.ndarray, length: float, down: tuple[float, float]) -> np.ndar
 
 
 def _stretching(force: Force | Joint, layout: Layout) -> Stretching | None:
-    """None where it acts along no line, or its ends are on one place at some time, or nearly so."""
+    """Return None where it acts along no line, or its ends are on one place at some time, or nearly so."""
     if force.name in layout.springs.left_out:
         return None
     ends = [(marker.body.name, *layout.place(marker)) for marker in (force.i, force.j)]
@@ -251,7 +253,7 @@ def _stretching(force: Force | Joint, layout: Layout) -> Stretching | None:
 
 
 def _aside(force: Force | Joint, path: np.ndarray, layout: Layout) -> float:
-    """How far its second point leaves the x axis of its first marker at most (rmm)."""
+    """Return how far its second point leaves the x axis of its first marker at most (rmm)."""
     angle = layout.poses[force.i.body.name][:, 2] + force.i.angle
     away = path[:, 1] - path[:, 0]
     return float(np.abs(away[:, 1] * np.cos(angle) - away[:, 0] * np.sin(angle)).max())
@@ -280,12 +282,12 @@ def gather(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
 @contact_kind(ROPE)
 @driver_kind(LINEAR)
 def gather_others(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Ropes and linear drivers, in the same way."""
+    """Gather ropes and linear drivers, in the same way."""
     return _all_at(joints[0], m, layout)
 
 
 def _all_at(first: Force | Joint, m: Mechanism, layout: Layout) -> list[Feature]:
-    """Studs first, then what they hold; nothing at another than the first."""
+    """Return studs first, then what they hold; an empty list except at the first kind."""
     between = stretching(m, layout.apart)
     if first is not between[0]:
         return []
@@ -298,7 +300,7 @@ def _all_at(first: Force | Joint, m: Mechanism, layout: Layout) -> list[Feature]
 
 
 def _studs(springs: Sequence[Stretching], layout: Layout) -> list[Feature]:
-    """Ends that share a place of a body, or a pin, share a stud."""
+    """Gather studs: ends that share a place of a body, or a pin, share one."""
     pins = [feature for feature in layout.features if isinstance(feature, Pin)]
     places: list[tuple[str, float, float, Pin | None, list[tuple[Stretching, int]]]] = []
     for spring in springs:
@@ -368,7 +370,7 @@ def stud_on_pin(stud: Stud, pin: Pin, plan: Plan, heights: Heights) -> None:
 
 
 def _lines(stud: Stud, heights: Heights) -> list[float]:
-    """Heights of its balls, from below."""
+    """Return heights of its balls, from below."""
     return sorted({spring.z(heights) for spring, _ in stud.ends})
 
 

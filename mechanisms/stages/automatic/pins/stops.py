@@ -63,12 +63,12 @@ class Stop:
         return f"the stop {self.name}", f"the stop pin of {self.second} at {self.name}"
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Plates round them, and what posts need on the base."""
+        """Return plates round them, and what posts need on the base."""
         radius = RADIUS + 1.0 if self.first == "ground" else EYE
         return [Anchor(self.second, *self.nose, EYE), *(Anchor(self.first, *at, radius) for _, at in self.ends)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """All between the two plates, or from the base to the plate."""
+        """Yield all between the two plates, or from the base to the plate."""
         still, moving = self.whats
         if self.first == "ground":
             post, nose = Reach((self.second,), -1, -1, base=True), Reach((self.second,), -1, -1)
@@ -82,7 +82,7 @@ class Stop:
         yield Item(moving, self.second, shape, nose, source=self, meshes=frozenset((still,)))
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room in which they meet."""
+        """Yield the room in which they meet."""
         axial = layout.sizes.pivot.fit.axial
         if self.first == "ground":
             level = levels[self.second]
@@ -91,7 +91,7 @@ class Stop:
             yield Need(min(levels[self.first], levels[self.second]), MEET)
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """Pins pressed into the plates, or standing on the base."""
+        """Build pins pressed into the plates, or standing on the base."""
         fit = plan.layout.sizes.pivot.fit
         low, high = heights.bottom(self.second), heights.top(self.second)
         if self.first == "ground":
@@ -116,7 +116,7 @@ class Stop:
 
 
 def stops(m: Mechanism, features: list[Feature], layout: Layout) -> list[Feature]:
-    """Stops of all revolute joints with limits or stops; ``features`` are those of the joints."""
+    """Return stops of all revolute joints with limits or stops; ``features`` are those of the joints."""
     taken = [anchor for feature in features for anchor in feature.anchors(layout)]
     stop_pins: list[Feature] = []
     for joint in m.joints.values():
@@ -159,8 +159,8 @@ def _given(ends: motion.Limits) -> list[float]:
 
 
 def _way(taken: list[Anchor], axis: Place, layout: Layout) -> float:
-    """Where the second body has its stop pin (rad): towards a far joint, where its plate is anyway, else where it is
-    farthest from all that is on the body.
+    """Return where the second body has its stop pin (rad): towards a far joint, where its plate is anyway, else where
+    it is farthest from all that is on the body.
     """
     others = np.array([[a.x - axis[0], a.y - axis[1]] for a in taken if math.dist((a.x, a.y), axis) > 0.1])
     if not len(others):

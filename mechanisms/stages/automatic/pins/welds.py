@@ -58,13 +58,13 @@ class Weld:
         return tuple(body for body, *_ in self.ends if body != "ground")
 
     def bolts(self, body: str) -> list[tuple[float, float]]:
-        """Places of both bolts in the frame of one of the bodies."""
+        """Return places of both bolts in the frame of one of the bodies."""
         _, x, y, angle = next(end for end in self.ends if end[0] == body)
         way = APART * math.cos(angle), APART * math.sin(angle)
         return [(x - way[0], y - way[1]), (x + way[0], y + way[1])]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Both bolts on every body."""
+        """Return both bolts on every body."""
         return [Anchor(body, x, y, ROUND) for body, *_ in self.ends for x, y in self.bolts(body)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
@@ -77,7 +77,7 @@ class Weld:
         yield Item(what, home, shape, reach, bodies, self, stands=what if home == "ground" else "")
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for the heads under what passes over them."""
+        """Yield the room for the heads under what passes over them."""
         fit, top = layout.sizes.pivot.fit, max(levels[body] for body in self.movers)
         if layout.is_covered(self, 2 * (top + 1), levels, 1):
             yield Need(top, HEAD.height + fit.seat + fit.axial)
@@ -113,7 +113,7 @@ class Weld:
 
 @kind("weld")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint; bolts and plates of two welded bodies touch."""
+    """Return one feature for each joint; bolts and plates of two welded bodies touch."""
     welds: list[Feature] = []
     for joint in joints:
         first, second = ((k.body.name, *layout.place(k), k.angle) for k in (joint.i, joint.j))
@@ -123,7 +123,8 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 
 def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature]:
-    """The features, with the bolts of each weld at the nearest place where nothing of its bodies is in their way.
+    """Return the features, with the bolts of each weld at the nearest place where nothing of its bodies is in their
+    way.
 
     Raises UserError for a weld without such a place.
     """
@@ -144,7 +145,7 @@ def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature
 
 
 def _moved(weld: Weld) -> Iterable[Weld]:
-    """The weld itself, across, and then farther and farther away in all directions."""
+    """Yield the weld itself, across, and then farther and farther away in all directions."""
     for way in (0.0, *np.arange(STEP, FARTHEST, STEP)):
         count = 1 if way == 0.0 else 8
         for side in 2 * np.pi * np.arange(count) / count:
@@ -157,7 +158,7 @@ def _moved(weld: Weld) -> Iterable[Weld]:
 
 
 def _taken(body: str, features: Sequence[Feature], layout: Layout) -> list[Anchor]:
-    """Places of a body with something on them; what is welded to it is another body's."""
+    """Return places of a body with something on them; what is welded to it is another body's."""
     return [anchor for feature in features for anchor in feature.anchors(layout) if anchor.body == body]
 
 

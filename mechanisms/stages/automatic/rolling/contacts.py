@@ -74,7 +74,7 @@ class Line:
 
 
 def roads(lines: Sequence[Line]) -> list[Road]:
-    """A wall for each line."""
+    """Return a wall for each line."""
     walls = []
     for line in lines:
         low, high = min(low for low, _ in line.travel), max(high for _, high in line.travel)
@@ -97,7 +97,7 @@ def roads(lines: Sequence[Line]) -> list[Road]:
 
 
 def _mitre(line: Line, other: Line) -> np.ndarray:
-    """(2,) from where two walls meet to where their outer faces meet; square where that would be far."""
+    """Return (2,) from where two walls meet to where their outer faces meet; square where that would be far."""
     cosine = float(line.free @ other.free)
     if math.pi - math.acos(max(-1.0, min(1.0, cosine))) < SHARPEST:
         return -THICK * line.free
@@ -122,14 +122,14 @@ YIELDS = 0.3
 
 @contact_kind("rigid_contact")
 def rigid_lines(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
-    """Walls, and what touches them."""
+    """Return walls, and what touches them."""
     return _on_lines(m, touches, layout)
 
 
 @force_kind("contact")
 @force_kind("tyre")
 def yielding(m: Mechanism, touches: list[Force], layout: Layout) -> list[Feature]:
-    """Walls and roads, and what presses on them."""
+    """Return walls and roads, and what presses on them."""
     features = _on_lines(m, [touch for touch in touches if "profile" not in touch.laws], layout)
     for touch in touches:
         profile = touch.laws.get("profile")
@@ -140,7 +140,7 @@ def yielding(m: Mechanism, touches: list[Force], layout: Layout) -> list[Feature
 
 @contact_kind("rigid_terrain")
 def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
-    """Roads and what touches them; a closed curve of a moving body is a cam that pushes a roller."""
+    """Return roads and what touches them; a closed curve of a moving body is a cam that pushes a roller."""
     features: list[Feature] = []
     for touch in touches:
         closed = touch.params["closed"]
@@ -154,7 +154,7 @@ def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature
 
 @contact_kind("rigid_discs")
 def discs(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
-    """Two balls or discs of moving bodies, on one layer; rings round discs, and discs on ground, are tracks."""
+    """Return two balls or discs of moving bodies, on one layer; rings round discs, and discs on ground, are tracks."""
     features: list[Feature] = []
     for touch in touches:
         if touch.params["inside"] or "ground" in touch.bodies:
@@ -195,7 +195,7 @@ def _on_lines(m: Mechanism, touches: Sequence[Touch], layout: Layout) -> list[Fe
 
 
 def _on_profile(m: Mechanism, touch: Force, profile: Curve, layout: Layout) -> list[Feature]:
-    """A road as long as the profile's points, and as the way of what runs on it."""
+    """Return a road as long as the profile's points, and as the way of what runs on it."""
     start = np.array(layout.place(touch.i))
     way = np.array([math.cos(touch.i.angle), math.sin(touch.i.angle)])
     run = (_places(touch, layout) - start) @ way / layout.sizes.of_metres(1.0)
@@ -205,7 +205,7 @@ def _on_profile(m: Mechanism, touch: Force, profile: Curve, layout: Layout) -> l
 
 
 def _in_ring(m: Mechanism, touch: Joint, layout: Layout) -> list[Feature]:
-    """A disc inside a ring, or one that touches a disc of ground."""
+    """Return a disc inside a ring, or one that touches a disc of ground."""
     inside, (ring, disc) = touch.params["inside"], ("radius_i", "radius_j")
     i, j = touch.i, touch.j
     if not inside and j.body.name == "ground":
@@ -225,8 +225,8 @@ def _in_ring(m: Mechanism, touch: Joint, layout: Layout) -> list[Feature]:
 def _on_road(
     m: Mechanism, touch: Touch, path: np.ndarray | None, layout: Layout, closed: bool = False
 ) -> list[Feature]:
-    """A road on ground, or a track of another body or along a closed curve; without a ``path`` (n, 2) (rmm, the frame
-    of its body) it is along the contact's open curve.
+    """Return a road on ground, or a track of another body or along a closed curve; without a ``path`` (n, 2) (rmm, the
+    frame of its body) it is along the contact's open curve.
     """
     places, radius = _places(touch, layout), layout.sizes.of_metres(touch.params["radius"])
     if path is None:
@@ -266,7 +266,7 @@ def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Roun
 
 
 def _look(m: Mechanism, body: str, turned: bool) -> Look:
-    """Look of what touches without being a tyre."""
+    """Return the look of what touches without being a tyre."""
     if _is_held(m, body) or _feet(m, body) > 1:
         return "disc"
     return "wheel" if turned else "ball"
@@ -283,7 +283,7 @@ def _feet(m: Mechanism, body: str) -> int:
 
 
 def _set_back(touch: Touch, layout: Layout) -> float:
-    """How far the surface lies behind that of the model (rmm), because what touches is larger than there."""
+    """Return how far the surface lies behind that of the model (rmm), because what touches is larger than there."""
     return max(0.0, NOSE - layout.sizes.of_metres(touch.params["radius"]))
 
 
@@ -296,14 +296,14 @@ def _is_on_ground(touch: Touch) -> bool:
 
 
 def _normals(path: np.ndarray) -> np.ndarray:
-    """(n, 2) unit vectors to the left of a path."""
+    """Return (n, 2) unit vectors to the left of a path."""
     way = np.gradient(path, axis=0)
     return np.stack([-way[:, 1], way[:, 0]], axis=1) / np.hypot(*way.T)[:, None]
 
 
 @extent("rigid_discs")
 def extent_of_discs(touch: Joint, solution: Solution) -> Extent:
-    """Both discs."""
+    """Return both discs."""
     radii = ((touch.i, touch.params["radius_i"]), (touch.j, touch.params["radius_j"]))
     return Extent(radii, tuple((radius, DISC) for _, radius in radii if radius > 0))  # a ring is larger than its disc
 
@@ -336,7 +336,7 @@ LEAST = 17.0
 
 @kind("rolling_disc")
 def on_lines(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """A wheel and a road for each joint."""
+    """Return a wheel and a road for each joint."""
     features: list[Feature] = []
     for joint in joints:
         _refuse(m, joint)
@@ -351,7 +351,7 @@ def on_lines(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]
 
 @kind("rolling_on_curve")
 def on_curves(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """A wheel and a road for each joint."""
+    """Return a wheel and a road for each joint."""
     features: list[Feature] = []
     for joint in joints:
         _refuse(m, joint)
@@ -362,7 +362,7 @@ def on_curves(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature
 
 
 def _rolling(joint: Joint, path: np.ndarray | None, closed: bool, layout: Layout) -> list[Feature]:
-    """Wheel and road; without a ``path`` the road is along the joint's open curve."""
+    """Return the wheel and road; without a ``path`` the road is along the joint's open curve."""
     radius = layout.sizes.of_metres(joint.params["radius"])
     wheel, new = round_at(layout, joint.name, joint.j.body.name, layout.place(joint.j), radius, "wheel")
     body, features = joint.i.body.name, [wheel] if new else []
@@ -385,7 +385,7 @@ def _refuse(m: Mechanism, joint: Joint) -> None:
 @extent("rolling_disc")
 @extent("rolling_on_curve")
 def extent_of_rolling(joint: Joint, solution: Solution) -> Extent:
-    """The wheel, and a closed curve."""
+    """Return the wheel, and a closed curve."""
     radius = joint.params["radius"]
     round_it = ((joint.i, farthest(joint.params["points"])),) if joint.params.get("closed") else ()
     return Extent(((joint.j, radius), *round_it), ((radius, LEAST),))

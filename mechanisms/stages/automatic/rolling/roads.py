@@ -59,7 +59,7 @@ class Band:
 
 
 def straight_back(path: np.ndarray, thick: float = THICK) -> np.ndarray:
-    """(2, 2) corners of a straight lower side, behind the last place of a surface and behind the first."""
+    """Return (2, 2) corners of a straight lower side, behind the last place of a surface and behind the first."""
     under = behind(path[-1] - path[0])
     lowest = float((path @ under).max()) + thick
     return np.array([path[k] + (lowest - path[k] @ under) * under for k in (-1, 0)])
@@ -106,12 +106,12 @@ def band(path: np.ndarray, thick: float = THICK) -> Band | None:
 
 
 def polygon(corners: np.ndarray) -> cq.Wire:
-    """A closed one, at z = 0."""
+    """Return a closed one, at z = 0."""
     return cq.Wire.makePolygon([cq.Vector(float(x), float(y), 0.0) for x, y in corners], close=True)
 
 
 def _mitres(path: np.ndarray) -> np.ndarray:
-    """(n, 2) from a polyline's places to those at a unit distance on its left, at corners as far as LONGEST."""
+    """Return (n, 2) from a polyline's places to those at a unit distance on its left, at corners as far as LONGEST."""
     way = np.diff(path, axis=0)
     way /= np.hypot(*way.T)[:, None]
     left = np.column_stack([-way[:, 1], way[:, 0]])
@@ -121,7 +121,7 @@ def _mitres(path: np.ndarray) -> np.ndarray:
 
 
 def behind(way: np.ndarray) -> np.ndarray:
-    """(2,) the unit vector to the right of a way."""
+    """Return (2,) the unit vector to the right of a way."""
     return np.array([way[1], -way[0]]) / np.hypot(*way)
 
 
@@ -154,11 +154,11 @@ class Road:
         return bool(np.abs((self.feet - self.path[[-1, 0]]) @ way).max() < 1e-9 * float(way @ way))
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Nothing."""
+        """Return an empty list."""
         return []
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The wall up to the height of what it carries."""
+        """Yield the wall up to the height of what it carries."""
         bodies = tuple(dict.fromkeys(part.body for part in self.rounds))
         high = max(int(part.look == "ball") for part in self.rounds)
         reach, spares = Reach(bodies, high=high, base=True), frozenset(bodies)
@@ -167,7 +167,7 @@ class Road:
             yield Item(f"the road of {self.name}", "ground", piece, reach, spares, self, stands="road")
 
     def pieces(self) -> Iterable[np.ndarray]:
-        """(n, 2) corners of convex pieces."""
+        """Yield (n, 2) corners of convex pieces."""
         if self.band is not None:
             yield from self.band.pieces
             return
@@ -179,11 +179,11 @@ class Road:
             yield np.array([a, b, *behind])
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Nothing."""
+        """Return an empty list."""
         return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """The wall; the base plate goes on beside it, under what it carries."""
+        """Build the wall; the base plate goes on beside it, under what it carries."""
         seat = plan.layout.sizes.pivot.fit.seat
         top = max(part.top(heights) for part in self.rounds)
         holes = 0 if self.band is None else len(self.band.holes)
@@ -209,8 +209,8 @@ class Road:
         return bool(down) and any(part.look == "wheel" for part in self.rounds)
 
     def reaching(self, places: Sequence[tuple[float, float]], pull: np.ndarray) -> Road:
-        """The road with as much of its straight continuations as lies over or under ``places`` (rmm), ``pull`` (2,)
-        pointing down.
+        """Return the road with as much of its straight continuations as lies over or under ``places`` (rmm), ``pull``
+        (2,) pointing down.
         """
         if not self.is_square or not len(places):
             return self
@@ -224,20 +224,22 @@ class Road:
         return along(self.name, self.rounds, np.vstack([ends[0], self.path, ends[1]]))
 
     def _wall(self, low: float, high: float) -> cq.Workplane:
-        """Wall of flat facets as long as its bends allow: a spline's many short ones make the clearance proof slow."""
+        """Return the wall of flat facets as long as its bends allow: a spline's many short ones make the clearance
+        proof slow.
+        """
         if self.band is not None:
             return self.band.wall(low, high)
         return extruded(polygon(np.vstack([simplified(self.path, CHORD), self.feet])), high - low, low)
 
 
 def along(name: str, rounds: Sequence[Round], path: np.ndarray, thick: float = THICK) -> Road:
-    """A road with its surface on ``path`` and a straight lower side."""
+    """Return a road with its surface on ``path`` and a straight lower side."""
     return Road(name, rounds, path, straight_back(path, thick))
 
 
 def backed(name: str, part: Round, path: np.ndarray, centres: np.ndarray, radius: float) -> Road | None:
-    """A road that a disc about ``centres`` (T, 2) runs on without meeting its other sides: with a straight lower side
-    if it can have one, else a band; None if neither can be.
+    """Return a road that a disc about ``centres`` (T, 2) runs on without meeting its other sides: with a straight lower
+    side if it can have one, else a band; None if neither can be.
     """
     road = along(name, [part], path)
     if is_free(path, road.feet, centres, radius):
@@ -247,7 +249,7 @@ def backed(name: str, part: Round, path: np.ndarray, centres: np.ndarray, radius
 
 
 def banded(name: str, rounds: Sequence[Round], path: np.ndarray) -> Road | None:
-    """A road of even thickness; None where that is in several parts."""
+    """Return a road of even thickness; None where that is in several parts."""
     backing = band(path)
     return None if backing is None else Road(name, rounds, path, backing.back[[-1, 0]], backing)
 
@@ -270,7 +272,7 @@ SAME = 0.03
 
 
 def with_shared_roads(features: Sequence[Feature]) -> list[Feature]:
-    """The features, the roads of one surface merged into the first of them."""
+    """Return the features, the roads of one surface merged into the first of them."""
     shared: list[Feature] = []
     for feature in features:
         for k, other in enumerate(shared):
@@ -284,7 +286,7 @@ def with_shared_roads(features: Sequence[Feature]) -> list[Feature]:
 
 
 def _both(first: Road, second: Road) -> Road | None:
-    """Two roads on one surface as one; None where they are not on one."""
+    """Return two roads on one surface as one; None where they are not on one."""
     if not all(road.is_square or road.band for road in (first, second)):
         return None
     rounds = tuple(dict.fromkeys([*first.rounds, *second.rounds]))
@@ -298,7 +300,9 @@ def _both(first: Road, second: Road) -> Road | None:
 
 
 def _common(first: np.ndarray, second: np.ndarray) -> np.ndarray | None:
-    """(n, 2) one path along both; None where they part, or where there is a gap between two that are not straight."""
+    """Return (n, 2) one path along both; None where they part, or where there is a gap between two that are not
+    straight.
+    """
     way = (first[-1] - first[0]) / np.hypot(*(first[-1] - first[0]))
     at, other = (first @ way, second @ way)
     if (np.diff(at) <= 0).any() or (np.diff(other) <= 0).any():

@@ -73,7 +73,7 @@ class Round:
         return self.radius - self.short
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """The middle, within what touches."""
+        """Return the middle, within what touches."""
         return [Anchor(self.body, *self.at, min(self.hub(layout), self.made))]
 
     def face_of(self, body: str, layout: Layout) -> Face | None:
@@ -83,12 +83,12 @@ class Round:
         return Face(*self.at, self.rim(layout) - 0.5 if self.look == "wheel" else self.made - 0.5)
 
     def tyre(self, layout: Layout) -> float:
-        """How thick the tyre of a wheel is (rmm): thicker where it is pressed in, as far as that is possible."""
+        """Return how thick the tyre of a wheel is (rmm): thicker where it is pressed in, as far as that is possible."""
         running = layout.sizes.pivot.fit.running
         return max(min(TYRE * self.made, 5.0), min(self.pressed + running, self.made - self.hub(layout) - RIM))
 
     def rim(self, layout: Layout) -> float:
-        """The radius of a wheel within its tyre (rmm)."""
+        """Return the radius of a wheel within its tyre (rmm)."""
         return self.made - self.tyre(layout) - layout.sizes.pivot.fit.seat
 
     def hub(self, layout: Layout) -> float:
@@ -98,21 +98,21 @@ class Round:
         return min(layout.sizes.eye, WITHIN * self.made)
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The circle at the height of its body; a ball is higher than that."""
+        """Yield the circle at the height of its body; a ball is higher than that."""
         reach = Reach((self.body,), -1, 1) if self.look == "ball" else Reach((self.body,))
         yield Item(
             f"the {self.look} of {self.name}", self.body, disc(*self.at, self.made), reach, frozenset(self.meets), self
         )
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """A ball needs room below and above the layer."""
+        """Yield the room of a ball below and above the layer."""
         if self.look == "ball":
             level, beyond = levels[self.body], self.made - layout.sizes.thickness / 2 + layout.sizes.pivot.fit.axial
             yield Need(level - 1, beyond)
             yield Need(level, beyond)
 
     def top(self, heights: Heights) -> float:
-        """How high what it touches must reach (rmm)."""
+        """Return how high what it touches must reach (rmm)."""
         if self.look == "ball":
             return max(heights.top(self.body), heights.bottom(self.body) + heights.thickness / 2 + OVER * self.made)
         return heights.top(self.body)
@@ -121,7 +121,7 @@ class Round:
 def round_at(
     layout: Layout, name: str, body: str, at: tuple[float, float], radius: float, look: Look, pressed: float = 0.0
 ) -> tuple[Round, bool]:
-    """The round part at a place of a body, and whether it is a new one; ``radius`` and ``pressed`` in rmm.
+    """Return the round part at a place of a body, and whether it is a new one; ``radius`` and ``pressed`` in rmm.
 
     Where there is one already, it becomes as small as all that it touches ask for, and a wheel if one of them does.
     """

@@ -89,7 +89,7 @@ class Track:
         return f"the track of {self.name}"
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """The plate below it."""
+        """Return the plate below it."""
         if self.body == "ground":
             return []
         if self.band is not None:
@@ -101,8 +101,8 @@ class Track:
         return [Anchor(self.body, float(x), float(y), THICK) for x, y in _few(convex_hull(self.path))]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Convex pieces, from the base or the plate to the height of what it carries; and a rule: that is in another
-        layer than the plate, even where they never meet.
+        """Yield the convex pieces, from the base or the plate to the height of what it carries; and a rule: that is in
+        another layer than the plate, even where they never meet.
         """
         other, ball = self.carried.body, int(self.carried.look == "ball")
         if self.body == "ground":
@@ -117,7 +117,7 @@ class Track:
             yield Item(rule, self.body, disc(0.0, 0.0, EVERYWHERE), Reach((self.body,)), source=self, only=only)
 
     def pieces(self) -> Iterable[Rounded]:
-        """Convex ones that cover it."""
+        """Yield the convex ones that cover it."""
         if self.feet is not None:
             for corners in Road(self.name, [self.carried], self.path, self.feet, self.band).pieces():
                 yield around([(float(x), float(y)) for x, y in corners], 0.2)
@@ -130,11 +130,11 @@ class Track:
                 yield Rounded(np.array([a, b]), THICK / 2 + 0.2)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Nothing."""
+        """Return an empty list."""
         return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """The wall."""
+        """Build the wall."""
         seat, other = plan.layout.sizes.pivot.fit.seat, self.carried.body
         if self.body == "ground":
             low, high = seat, self.carried.top(heights)
@@ -152,7 +152,9 @@ class Track:
         plan.pressed_into(self.body, name, [self.carried])
 
     def _pins(self, layout: Layout) -> list[tuple[float, float]]:
-        """Places of pins that go through what lies within the curve. Raises UserError where one breaks its edge."""
+        """Return places of pins that go through what lies within the curve. Raises UserError where one breaks its
+        edge.
+        """
         pins = [pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places]
         pins = [pin for pin in pins if _holds(self.path, pin.places[self.body])]
         for pin in pins:
@@ -193,14 +195,14 @@ def track(name: str, body: str, carried: Round, path: np.ndarray, closed: bool, 
 
 
 def circle(at: tuple[float, float], radius: float, inside: bool) -> np.ndarray:
-    """(n, 2) places of a circle with what it carries on its left."""
+    """Return (n, 2) places of a circle with what it carries on its left."""
     count = max(64, int(np.ceil(2 * np.pi * np.sqrt(radius / (8 * CHORD)))) * 4)
     angle = np.linspace(0.0, 2 * np.pi if inside else -2 * np.pi, count, endpoint=False)
     return np.array(at) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 def closed_normals(path: np.ndarray) -> np.ndarray:
-    """(n, 2) unit vectors to the left of a closed path."""
+    """Return (n, 2) unit vectors to the left of a closed path."""
     way = np.roll(path, -1, axis=0) - np.roll(path, 1, axis=0)
     if np.allclose(path[0], path[-1]):
         way[[0, -1]] = path[1] - path[-2]
@@ -208,7 +210,7 @@ def closed_normals(path: np.ndarray) -> np.ndarray:
 
 
 def _hole(layout: Layout) -> float:
-    """Radius of a hole that all that turns about a pin goes through."""
+    """Return the radius of a hole that all that turns about a pin goes through."""
     return layout.sizes.hardware + layout.sizes.room / 2
 
 
@@ -220,7 +222,7 @@ def _holds(path: np.ndarray, place: tuple[float, float]) -> bool:
 
 
 def _few(border: np.ndarray) -> np.ndarray:
-    """Some of many places round a border."""
+    """Return some of many places round a border."""
     return border[:: max(1, len(border) // 16)]
 
 
@@ -252,7 +254,7 @@ LEAST = 1e-6
 
 
 def rolled_road(joint: Joint, part: Round, layout: Layout) -> Road:
-    """The road of a disc that rolls on an open curve. Raises UserError where each would be in the disc's way."""
+    """Return the road of a disc that rolls on an open curve. Raises UserError where each would be in the disc's way."""
     path = on_body(curve_path(joint.params["points"], False), joint.i, layout)
     centres = layout.seen(joint.j.body.name, layout.place(joint.j), joint.i.body.name)
     radius, few = layout.sizes.of_metres(joint.params["radius"]), centres[:: max(1, len(centres) // MOST)]
@@ -268,8 +270,8 @@ def rolled_road(joint: Joint, part: Round, layout: Layout) -> Road:
 
 
 def touched_path(touch: Joint | Force, places: np.ndarray, radius: float, layout: Layout) -> np.ndarray:
-    """(n, 2) the open curve of a contact in the frame of its body (rmm), with as much of its straight continuations as
-    a disc about ``places`` (T, 2) touches.
+    """Return (n, 2) the open curve of a contact in the frame of its body (rmm), with as much of its straight
+    continuations as a disc about ``places`` (T, 2) touches.
     """
     points, ends = touch.params["points"], []
     path, ways = on_body(curve_path(points, False), touch.i, layout), end_ways(points, touch.i)
@@ -282,7 +284,7 @@ def touched_path(touch: Joint | Force, places: np.ndarray, radius: float, layout
 
 
 def touched_road(touch: Joint | Force, part: Round, path: np.ndarray, places: np.ndarray, layout: Layout) -> Road:
-    """The road of a contact along a path (n, 2) (rmm) that a round part about ``places`` (T, 2) touches. Raises
+    """Return the road of a contact along a path (n, 2) (rmm) that a round part about ``places`` (T, 2) touches. Raises
     UserError where nothing has room behind the surface.
     """
     few = places[:: max(1, len(places) // MOST)]
@@ -313,7 +315,7 @@ def _run(path: np.ndarray, ways: np.ndarray, centres: np.ndarray, radius: float)
 
 
 def _surfaces(path: np.ndarray, ways: np.ndarray, run: tuple[float, float], radius: float) -> Iterable[np.ndarray]:
-    """The whole curve with what is rolled on beyond its ends, then what is rolled on alone."""
+    """Yield the whole curve with what is rolled on beyond its ends, then what is rolled on alone."""
     length = float(np.hypot(*np.diff(path, axis=0).T).sum())
     low, high = run
     for part in BEYOND:
@@ -329,7 +331,7 @@ def _surfaces(path: np.ndarray, ways: np.ndarray, run: tuple[float, float], radi
 
 
 def _with_ends(path: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """A path that goes on to two other ends."""
+    """Return a path that goes on to two other ends."""
     first, last = (ends[[k]] if np.hypot(*(ends[k] - path[k])) > LEAST else ends[:0] for k in (0, -1))
     return np.vstack([first, path, last])
 

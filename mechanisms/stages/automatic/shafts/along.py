@@ -80,7 +80,7 @@ class Along:
     """Shafts with a flywheel."""
 
     def with_pins_that_pass(self) -> Along:
-        """The same plan with the thickest pins with which nothing meets; itself if there are none."""
+        """Return the same plan with the thickest pins with which nothing meets; itself if there are none."""
         for k, _ in enumerate(self.wishes):
             plan = self if k == 0 else replace(self, wishes=self.wishes[k:])
             try:
@@ -106,7 +106,7 @@ class Along:
         return poses_of(self.solution, mm(1.0))
 
     def _places(self, free: Sequence[str]) -> dict[str, float]:
-        """Places of links that the model gives none, beside all that it gives a place."""
+        """Return places of links that the model gives none, beside all that it gives a place."""
         given = replace(self, left_out=self.left_out.union(free))
         if not given.machine.links:
             raise UserError(
@@ -220,7 +220,7 @@ class Along:
         return fins(self.cylinders)
 
     def flywheel(self, plan: ShaftPlan) -> float:
-        """Radius of a shaft's flywheel; 0 for none."""
+        """Return the radius of a shaft's flywheel; 0 for none."""
         return FLYWHEEL * plan.webs_sweep if plan.shaft.body in self.flywheels else 0.0
 
     @cached_property
@@ -280,7 +280,7 @@ class Along:
         return Takes(f"the flywheel of '{body}'", body, shape, plan.bottom(radius), plan.ends[0])
 
     def span(self, body: str) -> tuple[float, float]:
-        """Lowest and highest z of a body's main piece."""
+        """Return the lowest and highest z of a body's main piece."""
         if body in self.machine.links:
             z, half = self.machine.links[body].z, self.thickness[body] / 2
             return z - half, z + half

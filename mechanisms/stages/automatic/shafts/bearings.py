@@ -46,7 +46,9 @@ class Axle:
 
 
 def axles(machine: Machine) -> list[Axle]:
-    """Pins between links, and between links and ground. Raises UserError for two links of one axis in one plane."""
+    """Return pins between links, and between links and ground. Raises UserError for two links of one axis in one
+    plane.
+    """
     groups: list[tuple[str, dict[str, tuple[float, float]]]] = []
     for body, link in machine.links.items():
         for eye in link.eyes:
@@ -86,7 +88,7 @@ def _share(a: Mapping[str, tuple[float, float]], b: Mapping[str, tuple[float, fl
 
 
 def axle_takes(own: Axle, machine: Machine, thickness: Mapping[str, float], sizes: Sizes, low: float) -> list[Takes]:
-    """Its pin with head, spacers and column; ``low`` is the top of the base plate."""
+    """Return its pin with head, spacers and column; ``low`` is the top of the base plate."""
     unit, on = sizes.scale, frozenset(own.places)
     first, last = machine.links[own.stack[0]], machine.links[own.stack[-1]]
     top = last.z + thickness[last.body] / 2 + _head(sizes) + 0.5 * unit
@@ -100,7 +102,7 @@ def _head(sizes: Sizes) -> float:
 
 
 def bore_of(own: Axle, body: str, sizes: Sizes) -> float:
-    """Diameter of the hole in a link on an axle."""
+    """Return the diameter of the hole in a link on an axle."""
     pivot = sizes.pivot
     return (pivot.held if body == own.holder else pivot.pin + pivot.fit.running) * sizes.scale
 
@@ -165,7 +167,7 @@ def free_places(
 
 
 def _layers(given: Sequence[float], pitch: float, count: int) -> list[float]:
-    """Heights of all layers, rising."""
+    """Return heights of all layers, rising."""
     planes = [z for k, z in enumerate(given) if k == 0 or z - given[k - 1] > SAME] or [0.0]
     layers = [planes[0] - pitch * k for k in range(count, 0, -1)]
     for low, high in pairwise([*planes, planes[-1] + (count + 1) * pitch]):
@@ -233,7 +235,7 @@ class Bearers:
         return HUB * self.plan.journal
 
     def takes(self, low: float) -> list[Takes]:
-        """Pillars from ``low`` up, and bearings."""
+        """Return pillars from ``low`` up, and bearings."""
         x, y = self.plan.shaft.at
         body, top = frozenset({self.plan.shaft.body}), self.top
         spaces = [Takes("a pillar", "ground", disc(*place, self.radius), low, top) for place in self.places]
@@ -301,7 +303,7 @@ def _at(plan: ShaftPlan, away: float, turn: float) -> tuple[float, float]:
 
 
 def _arm(plan: ShaftPlan, place: tuple[float, float], radius: float, tapered: bool) -> Rounded:
-    """Arm of a bearing, from the axis to a pillar."""
+    """Return the arm of a bearing, from the axis to a pillar."""
     wide, end = 0.8 * HUB * plan.journal, BOSS * radius
     if tapered and wide > end:
         (x, y), turns = plan.shaft.at, [k * math.pi / 8 for k in range(16)]
@@ -316,7 +318,7 @@ def _beside(plan: ShaftPlan, journal: Journal, taken: Sequence[Takes]) -> list[T
 
 
 def heights_of(plan: ShaftPlan, journal: Journal) -> tuple[float, float]:
-    """Lower and upper face of a bearing, in the middle of its journal."""
+    """Return the lower and upper face of a bearing, in the middle of its journal."""
     half = min((journal.high - journal.low) / 2 - plan.gap, LONGEST * plan.journal / 2)
     middle = (journal.low + journal.high) / 2
     return middle - half, middle + half
@@ -331,7 +333,7 @@ def _is_free(machine: Machine, shape: Rounded, taken: Sequence[Takes]) -> bool:
 
 
 def _spread(machine: Machine, plan: ShaftPlan, free: list[float]) -> list[float]:
-    """First the direction that is farthest from all bores, then always the farthest from those chosen."""
+    """Return directions: first the one that is farthest from all bores, then always the farthest from those chosen."""
     bores = [math.atan2(piston.along[1], piston.along[0]) for piston in machine.pistons.values()]
     chosen: list[float] = []
     while free and len(chosen) < MOST:

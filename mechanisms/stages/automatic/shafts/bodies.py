@@ -52,7 +52,7 @@ class Shaft:
     """In the order of their planes."""
 
     def radius(self, throw: Throw) -> float:
-        """How far a throw is from the axis."""
+        """Return how far a throw is from the axis."""
         return math.hypot(throw.x - self.axis[0], throw.y - self.axis[1])
 
 
@@ -171,7 +171,7 @@ class Machine:
     left_out: frozenset[str] = frozenset()
 
     def path(self, body: str, x: float, y: float) -> np.ndarray:
-        """(T, 2): a place of a body on ground over the motion."""
+        """Return (T, 2) a place of a body on ground over the motion."""
         pose = self.poses[body]
         c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
         return np.stack([pose[:, 0] + c * x - s * y, pose[:, 1] + s * x + c * y], axis=1)
@@ -193,23 +193,23 @@ def has_places(m: Mechanism) -> bool:
 
 
 def marker_on(joint: Joint, body: str) -> Marker:
-    """The end of a joint on one of its bodies."""
+    """Return the end of a joint on one of its bodies."""
     return joint.i if joint.i.body.name == body else joint.j
 
 
 def other_on(joint: Joint, body: str) -> Marker:
-    """The end of a joint that is not on this body."""
+    """Return the end of a joint that is not on this body."""
     return joint.j if joint.i.body.name == body else joint.i
 
 
 def place(marker: Marker) -> tuple[float, float]:
-    """A marker in its body's frame (mm)."""
+    """Return a marker in its body's frame (mm)."""
     return mm(marker.x), mm(marker.y)
 
 
 def plane(joint: Joint, body: str) -> float | None:
-    """The plane (mm) in which a joint acts on ``body``: the marker's own, else the body's, else that of the other
-    body; None if none is given, as of a joint with ground.
+    """Return the plane (mm) in which a joint acts on ``body``: the marker's own, else the body's, else that of the
+    other body; None if none is given, as of a joint with ground.
     """
     own, other = marker_on(joint, body), other_on(joint, body)
     z = own.plane
@@ -219,7 +219,7 @@ def plane(joint: Joint, body: str) -> float | None:
 
 
 def planes(m: Mechanism, body: str) -> list[float]:
-    """All different planes (mm) in which joints with moving bodies act on a body, in rising order."""
+    """Return all different planes (mm) in which joints with moving bodies act on a body, in rising order."""
     heights: list[float] = []
     for joint in m.joints.values():
         if body in joint.bodies and "ground" not in joint.bodies:
@@ -284,7 +284,7 @@ MIDDLE = 0.62
 
 
 def carrier(machine: Machine, link: Link) -> Link | None:
-    """The rod on a crank pin from which a rod of a piston hangs in the same plane; None of other links."""
+    """Return the rod on a crank pin from which a rod of a piston hangs in the same plane; None for other links."""
     if _crank_eye(machine, link) is not None or not _drives(machine, link):
         return None
     for eye in link.eyes:
@@ -314,19 +314,19 @@ def carries(machine: Machine, a: Link, b: Link) -> bool:
 
 
 def throw_of(machine: Machine, link: Link) -> tuple[Shaft, Throw] | None:
-    """The crank pin that a link turns on, or its carrier."""
+    """Return the crank pin that a link turns on, or its carrier."""
     body = (carrier(machine, link) or link).body
     every = [(shaft, throw) for shaft in machine.shafts.values() for throw in shaft.throws]
     return next((pair for pair in every if pair[1].link == body), None)
 
 
 def rod_foot(machine: Machine, link: Link) -> LinkEye | None:
-    """The eye of a rod that is away from its piston: on the crank pin, or on its carrier."""
+    """Return the eye of a rod that is away from its piston: on the crank pin, or on its carrier."""
     return _crank_eye(machine, link) or next(iter(knuckle_eyes(machine, link)), None)
 
 
 def ring_reach(machine: Machine, link: Link, bore: float) -> float:
-    """How far the flanges of a rod's carrier, or its own, reach from the crank pin; 0 without flanges."""
+    """Return how far the flanges of a rod's carrier, or its own, reach from the crank pin; 0 without flanges."""
     own = carrier(machine, link) or link
     main = _crank_eye(machine, own)
     if main is None:
@@ -360,17 +360,17 @@ def refuse_near(machine: Machine, link: Link, bore: float) -> None:
 
 
 def middle(height: float, gap: float) -> float:
-    """Thickness between the flanges of a carrier of that height."""
+    """Return the thickness between the flanges of a carrier of that height."""
     return MIDDLE * (height - 2 * gap)
 
 
 def flange(height: float, gap: float) -> float:
-    """Thickness of each flange."""
+    """Return the thickness of each flange."""
     return (height - 2 * gap - middle(height, gap)) / 2
 
 
 def height_for(thickness: float, gap: float) -> float:
-    """Height of a carrier, for rods of that thickness."""
+    """Return the height of a carrier, for rods of that thickness."""
     return thickness / MIDDLE + 2 * gap
 
 

@@ -63,12 +63,14 @@ class PistonSize(NamedTuple):
 
     @classmethod
     def of(cls, own: Cylinder) -> PistonSize:
-        """Size for a cylinder, rounded: what follows from the motion differs from bore to bore in its last bits."""
+        """Return the size for a cylinder, rounded: what follows from the motion differs from bore to bore in its last
+        bits.
+        """
         return cls(*(rounded(size) for size in (own.bore, own.running, own.crown, own.skirt, own.piston.aside)))
 
 
 def rounded(size: float) -> float:
-    """A length to a millionth of a micrometre."""
+    """Return a length to a millionth of a micrometre."""
     return round(size, 9) + 0.0  # -0 becomes 0
 
 
@@ -95,7 +97,7 @@ def piston_shape(own: PistonSize, thickness: float, gap: float) -> cq.Workplane:
 
 
 def ring_shapes(own: PistonSize) -> list[cq.Workplane]:
-    """The rings, where they are on the piston."""
+    """Return the rings, where they are on the piston."""
     b, r = own.bore, own.bore / 2 - own.running
     outer, inner, half = own.bore / 2 - RING_GAP * own.running, r - DEEP * b, RING * b / 2
     middles = [own.crown - below * b for below in RINGS]
@@ -105,7 +107,7 @@ def ring_shapes(own: PistonSize) -> list[cq.Workplane]:
 
 
 def wrist_pin_shape(own: PistonSize) -> cq.Workplane:
-    """A tube along z through the piston."""
+    """Return a tube along z through the piston."""
     b, r = own.bore, own.bore / 2 - own.running
     wide = WRIST_PIN * b
     reach = abs(own.aside) + wide
@@ -124,7 +126,7 @@ class LinerSize(NamedTuple):
 
     @classmethod
     def of(cls, own: Cylinder) -> LinerSize:
-        """Size for a cylinder, rounded like that of its piston."""
+        """Return the size for a cylinder, rounded like that of its piston."""
         return cls(*(rounded(size) for size in (own.bore, own.outer, own.low, own.top)))
 
 
@@ -155,8 +157,8 @@ def liner_shape(own: LinerSize, fin: float, window: float) -> cq.Workplane:
 
 
 def head_shape(own: Cylinder, radius: float, valves: Sequence[ValvePlan] = ()) -> cq.Workplane:
-    """A round head with fins on the liner's upper end, and a plug in its middle; with valves their ports and guides in
-    its place.
+    """Return a round head with fins on the liner's upper end, and a plug in its middle; with valves their ports and
+    guides in its place.
     """
     b, low = own.bore, own.top + SEAT
     high, plug = low + HEAD * b, 0.08 * b
@@ -194,7 +196,7 @@ def bank_solids(
     low: float,
     valves: Sequence[ValvePlan] = (),
 ) -> list[Solid]:
-    """Liners, heads with the seats of valve springs, and the deck from the base plate (z = ``low``) up."""
+    """Return liners, heads with the seats of valve springs, and the deck from the base plate (z = ``low``) up."""
     solids = []
     for own in bank:
         name = own.piston.body
@@ -244,7 +246,7 @@ def _turned(own: Cylinder, shape: cq.Workplane) -> cq.Workplane:
 
 
 def _window(own: Cylinder, bank: Sequence[Cylinder], others: Sequence[Sequence[Cylinder]]) -> float:
-    """Direction about the bore's middle, from left of it towards z (rad), to which its liner is open."""
+    """Return the direction about the bore's middle, from left of it towards z (rad), to which its liner is open."""
     if len(bank) == 1:
         return math.pi / 2
     every = [other[0].piston.along for other in others]

@@ -155,13 +155,13 @@ def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylind
 
 
 def _between(machine: Machine, own: Cylinder, other: Cylinder, along: np.ndarray) -> np.ndarray:
-    """(T,): distance of the wrist pins of two pistons along their cylinder."""
+    """Return (T,): distance of the wrist pins of two pistons along their cylinder."""
     ends = [machine.path(cylinder.piston.body, *cylinder.piston.wrist) @ along for cylinder in (own, other)]
     return ends[1] - ends[0]
 
 
 def _stroke(machine: Machine, piston: Piston) -> tuple[float, float, np.ndarray]:
-    """Least and largest s of the wrist pin, and where s is 0."""
+    """Return the least and largest s of the wrist pin, and where s is 0."""
     shaft = _shaft(machine, piston)
     along, line = np.array(piston.along), np.array(piston.line)
     foot = line if shaft is None else line + ((np.array(shaft.at) - line) @ along) * along
@@ -185,7 +185,9 @@ def _wish(machine: Machine, piston: Piston) -> float:
 
 
 def _neighbours(machine: Machine, piston: Piston) -> dict[str, float]:
-    """Pistons whose bores have the same line in the plane, or one beside it, and how far away along z they are."""
+    """Return pistons whose bores have the same line in the plane, or one beside it, and how far away along z they
+    are.
+    """
     distances = {}
     for name, other in machine.pistons.items():
         cross = piston.along[0] * other.along[1] - piston.along[1] * other.along[0]
@@ -212,7 +214,7 @@ def _refuse_near(machine: Machine, bores: Mapping[str, float]) -> None:
 
 
 def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, float]) -> Cylinder | str:
-    """The cylinder with this bore, or why it does not fit."""
+    """Return the cylinder with this bore, or why it does not fit."""
     lowest, highest, foot = _stroke(machine, piston)
     shaft = _shaft(machine, piston)
     room = ROOM * bore
@@ -247,7 +249,9 @@ def rod_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
 
 
 def shank_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
-    """Shapes of a carrier or of a rod on one: shank, small end, and eye on the knuckle pin or hub on the crank."""
+    """Return shapes of a carrier or of a rod on one: shank, small end, and eye on the knuckle pin or hub on the
+    crank.
+    """
     main = rod_foot(machine, link)
     ends = [eye for eye in link.eyes if eye.on in machine.pistons or eye is main]
     shank = around([(eye.x, eye.y) for eye in ends], (SHANK + ROOM / 2) * bore)
@@ -295,7 +299,7 @@ def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bo
 
 
 def _beside(machine: Machine, piston: Piston, bore: float) -> float:
-    """How far from the shaft liners of other banks leave room for this one."""
+    """Return how far from the shaft liners of other banks leave room for this one."""
     low = 0.0
     for other in machine.pistons.values():
         if other is piston or abs(other.z - piston.z) > (1 + 2 * WALL + ROOM) * bore:

@@ -45,14 +45,14 @@ WIDTHS = (4.0, 5.1, 4.4, 6.2)
 
 
 def plate_shape(own: Link, eyes: list[tuple[float, float, Eye]], thickness: float, unit: float) -> cq.Workplane:
-    """The plate from z = 0 up; ``unit`` millimetres are one rmm."""
+    """Return the plate from z = 0 up; ``unit`` millimetres are one rmm."""
     scaled = [(x / unit, y / unit, Eye(eye.radius / unit, eye.bore / unit)) for x, y, eye in eyes]
     shape, _ = body_shape(scaled, thickness / unit)
     return shape.newObject([shape.val().scale(unit)])
 
 
 def rod_shape(eyes: list[tuple[float, float, Eye]], thickness: float, bore: float) -> cq.Workplane:
-    """A connecting rod from z = 0 up, its big end first in ``eyes``."""
+    """Return a connecting rod from z = 0 up, its big end first in ``eyes``."""
     unit = bore / 100
     (x0, y0, big), (x1, y1, small) = eyes
     length, turn = math.hypot(x1 - x0, y1 - y0) / unit, math.atan2(y1 - y0, x1 - x0)
@@ -77,7 +77,7 @@ type Piece = tuple[cq.Workplane, int]
 def rod_pieces(
     eyes: tuple[tuple[float, float, Eye], ...], thickness: float, bore: float, cuts: tuple[Cut, ...]
 ) -> list[Piece]:
-    """A connecting rod and its caps, once for all rods of an engine that are alike; from z = 0 up."""
+    """Return a connecting rod and its caps, once for all rods of an engine that are alike; from z = 0 up."""
     return cut_up(rod_shape([*eyes], thickness, bore), cuts)
 
 
@@ -109,7 +109,7 @@ def split(
 
 
 def splits_at(own: Link, x: float, y: float) -> float | None:
-    """Direction (rad) in which all other eyes lie ahead of a place; None if some do not."""
+    """Return the direction (rad) in which all other eyes lie ahead of a place; None if some do not."""
     others = [(eye.x - x, eye.y - y) for eye in own.eyes if math.hypot(eye.x - x, eye.y - y) > 1e-6]
     if not others:
         return None
@@ -161,7 +161,7 @@ def carrier_shape(
 
 
 def knuckle_pin(at: Point, height: float, bore: float) -> cq.Workplane:
-    """A tube through both flanges, from z = 0 up."""
+    """Return a tube through both flanges, from z = 0 up."""
     radius = KNUCKLE_PIN * bore
     return extruded(outline.circle(*at, radius), height - 2 * END, END, [outline.circle(*at, HOLLOW * radius)])
 
@@ -203,7 +203,7 @@ FOOT_HEIGHT = 5.0
 
 
 def axle_solids(own: Axle, machine: Machine, thickness: Mapping[str, float], sizes: Sizes, low: float) -> list[Solid]:
-    """The pin with its head, spacers between the links, and on ground the column that carries them."""
+    """Return the pin with its head, spacers between the links, and on ground the column that carries them."""
     unit, pivot = sizes.scale, sizes.pivot
     x, y = own.places[own.holder]
     faces = [(machine.links[b].z - thickness[b] / 2, machine.links[b].z + thickness[b] / 2) for b in own.stack]
@@ -247,7 +247,7 @@ ARM = 0.62
 
 
 def bearer_solids(own: Bearers, low: float, number: str) -> list[Solid]:
-    """Pillars from ``low`` up, and bearings, those between throws of two halves."""
+    """Return pillars from ``low`` up, and bearings, those between throws of two halves."""
     solids = []
     for k, place in enumerate(own.places, start=1):
         shape = extruded(outline.circle(*place, own.radius), own.top - low, low)
@@ -266,7 +266,9 @@ def bearer_solids(own: Bearers, low: float, number: str) -> list[Solid]:
 
 
 def _across(own: Bearers) -> float:
-    """Direction (rad) square to a line through the axis that stays clear of the arms, with some on either side."""
+    """Return the direction (rad) square to a line through the axis that stays clear of the arms, with some on either
+    side.
+    """
     x, y = own.plan.shaft.at
     arms = [math.atan2(v - y, u - x) for u, v in own.places]
     best, clear = 0.0, -1.0

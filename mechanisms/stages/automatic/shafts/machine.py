@@ -173,7 +173,9 @@ def valve(machine: Machine, body: str, joint: Joint, cam: Joint) -> Valve:
 
 
 def _driven_from(machine: Machine, link: str | None, line: np.ndarray) -> np.ndarray:
-    """Where the shaft is whose link moves a piston, also by a rod in the plane of another; else the guide's marker."""
+    """Return where the shaft is whose link moves a piston, also by a rod in the plane of another; else the guide's
+    marker.
+    """
     if link in machine.links:
         own = machine.links[link]
         others = [machine.links[eye.on] for eye in own.eyes if eye.on in machine.links]
@@ -185,7 +187,7 @@ def _driven_from(machine: Machine, link: str | None, line: np.ndarray) -> np.nda
 
 
 def _area(m: Mechanism, body: str) -> float | None:
-    """Area of the bore (mm^2), from a force of gas on the piston."""
+    """Return the area of the bore (mm^2), from a force of gas on the piston."""
     for force in m.forces.values():
         if body in force.bodies and "ground" in force.bodies:
             area = force.params.get("area")
@@ -254,7 +256,7 @@ def machine(
 
 
 def _cams(m: Mechanism, joints: Collection[Joint], sliding: Collection[str]) -> dict[str, Joint]:
-    """Joints with cams by the body that is pushed. Raises UserError where that does not slide on ground."""
+    """Return joints with cams by the body that is pushed. Raises UserError where that does not slide on ground."""
     cams = {}
     for joint in joints:
         if joint.kind.name != CAM:
@@ -271,7 +273,7 @@ def _cams(m: Mechanism, joints: Collection[Joint], sliding: Collection[str]) -> 
 
 
 def _wheeled(joints: Collection[Joint]) -> set[str]:
-    """Bodies with wheels and cams."""
+    """Return bodies with wheels and cams."""
     wheeled = {body for joint in joints if joint.kind.name in WHEELS for body in joint.bodies}
     return wheeled | {joint.i.body.name for joint in joints if joint.kind.name == CAM}
 
@@ -281,7 +283,7 @@ def _pins_of(body: str, joints: Collection[Joint]) -> list[Joint]:
 
 
 def _pistons(sliding: Collection[str], joints: Collection[Joint]) -> set[str]:
-    """Bodies that slide on ground with one pin at most; what has more is a ram, and gives links no plane."""
+    """Return bodies that slide on ground with one pin at most; what has more is a ram, and gives links no plane."""
     return {body for body in sliding if len(_pins_of(body, joints)) < 2}
 
 
@@ -317,7 +319,7 @@ def _shaft(m: Mechanism, body: str, main: Joint, pins: list[Joint]) -> Shaft:
 
 
 def free_links(m: Mechanism, left_out: Collection[str]) -> list[str]:
-    """Links whose plane neither the model nor what they are pinned to gives."""
+    """Return links whose plane neither the model nor what they are pinned to gives."""
     joints = [joint for joint in m.joints.values() if not set(left_out).intersection(joint.bodies)]
     sliding = {body for joint in joints for body in joint.bodies if _slides(joint, body)}
     free = []
@@ -334,7 +336,7 @@ def free_links(m: Mechanism, left_out: Collection[str]) -> list[str]:
 
 
 def _known_planes(body: str, pins: list[Joint], sliding: Collection[str]) -> list[float]:
-    """Planes (mm) that markers give, and the places of pistons."""
+    """Return planes (mm) that markers give, and the places of pistons."""
     places: list[float] = []
     for joint in pins:
         own, other = marker_on(joint, body), other_on(joint, body)
@@ -382,7 +384,7 @@ def _link(
 
 
 def _reached(m: Mechanism, body: str) -> list[Point]:
-    """Places that a link reaches without a joint there: both ends of a bar, and traced points."""
+    """Return places that a link reaches without a joint there: both ends of a bar, and traced points."""
     length = m.bodies[body].length
     ends = [] if length is None else [(0.0, 0.0), (mm(length), 0.0)]
     return [*ends, *(place(marker) for marker in m.traces.values() if marker.body.name == body)]

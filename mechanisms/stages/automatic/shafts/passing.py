@@ -46,7 +46,7 @@ class Takes:
 
 
 def links_take(measures: Measures, thickness: Mapping[str, float]) -> list[Takes]:
-    """The links."""
+    """Return the links."""
     spaces = []
     for name, link in measures.machine.links.items():
         half, on = thickness[name] / 2, frozenset(eye.on for eye in link.eyes)
@@ -69,7 +69,7 @@ def links_take(measures: Measures, thickness: Mapping[str, float]) -> list[Takes
 def _carrier_takes(
     measures: Measures, link: Link, thickness: Mapping[str, float], bore: float, pistons: frozenset[str]
 ) -> list[Takes]:
-    """Its flanges, and between them the shank."""
+    """Return its flanges, and between them the shank."""
     half, between = thickness[link.body] / 2, measures.shank(link, thickness) / 2
     thick = flange(2 * half, measures.axial)
     round_pins = flange_shape(measures.machine, link, bore)
@@ -83,7 +83,7 @@ def _carrier_takes(
 
 
 def shaft_takes(plan: ShaftPlan) -> list[Takes]:
-    """Webs, crank pins and journals of a shaft."""
+    """Return webs, crank pins and journals of a shaft."""
     (x, y), body, spaces = plan.shaft.axis, plan.shaft.body, []
     for web in plan.webs:
         places = [(x, y), *((x + u, y + v) for u, v in web.pins)]
@@ -105,12 +105,12 @@ def shaft_takes(plan: ShaftPlan) -> list[Takes]:
 
 
 def weights(plan: ShaftPlan) -> list[Takes]:
-    """The counterweights of a shaft."""
+    """Return the counterweights of a shaft."""
     return [space for space in shaft_takes(plan) if space.what.startswith("the counterweight")]
 
 
 def cylinder_takes(own: Cylinder, fin: float) -> list[Takes]:
-    """A piston, and its liner on ground."""
+    """Return a piston, and its liner on ground."""
     piston = own.piston
     link = [piston.link] if piston.link else []
     spares = frozenset(["ground", *link])
@@ -129,7 +129,7 @@ def cylinder_takes(own: Cylinder, fin: float) -> list[Takes]:
 
 
 def box(at: tuple[float, float], along: tuple[float, float], low: float, high: float, half: float) -> Rounded:
-    """A rectangle about a line through ``at``, from ``low`` to ``high`` along it and ``half`` to either side."""
+    """Return a rectangle about a line through ``at``, from ``low`` to ``high`` along it and ``half`` to either side."""
     u, place = np.array(along), np.array(at)
     left = np.array([-u[1], u[0]])
     corners = [place + s * u + q * left for s in (low, high) for q in (-half, half)]
@@ -137,7 +137,7 @@ def box(at: tuple[float, float], along: tuple[float, float], low: float, high: f
 
 
 def meeting(machine: Machine, first: Takes, second: Takes) -> int | None:
-    """The pose at which two things meet; None if they do not."""
+    """Return the pose at which two things meet; None if they do not."""
     if not _may_meet(first, second):
         return None
     poses = machine.poses[first.body], machine.poses[second.body]
@@ -201,7 +201,7 @@ def fins(all_of: Mapping[str, Cylinder]) -> dict[str, float]:
 
 
 def banks(all_of: Mapping[str, Cylinder]) -> list[list[Cylinder]]:
-    """Cylinders on the same line of the plane, in the order of their places along z."""
+    """Return cylinders on the same line of the plane, in the order of their places along z."""
     rows: list[list[Cylinder]] = []
     for own in all_of.values():
         for bank in rows:
@@ -217,14 +217,14 @@ def banks(all_of: Mapping[str, Cylinder]) -> list[list[Cylinder]]:
 
 
 def deck_corners(bank: Sequence[Cylinder]) -> list[tuple[float, float]]:
-    """Corners of its foot on the base plate."""
+    """Return corners of its foot on the base plate."""
     first, wide, low, high = bank[0], deck_half(bank), deck_range(bank)[0], deck_range(bank)[1]
     (x, y), (u, v) = first.origin, first.piston.along
     return [(x + s * u - q * v, y + s * v + q * u) for s in (low, high) for q in (-wide, wide)]
 
 
 def deck_takes(bank: Sequence[Cylinder], low: float) -> Takes:
-    """The room of a deck, from the base plate (z = ``low``) up."""
+    """Return the room of a deck, from the base plate (z = ``low``) up."""
     first, (below, above), last = bank[0], deck_range(bank), bank[-1]
     inside = [own.piston.body for own in bank] + [own.piston.link for own in bank if own.piston.link]
     inside += [own.against[0] for own in bank if own.against is not None]
@@ -234,12 +234,12 @@ def deck_takes(bank: Sequence[Cylinder], low: float) -> Takes:
 
 
 def deck_top(last: Cylinder) -> float:
-    """Upper end (z) of the deck whose last cylinder this is."""
+    """Return the upper end (z) of the deck whose last cylinder this is."""
     return last.piston.z + last.outer + BESIDE * last.bore
 
 
 def deck_half(bank: Sequence[Cylinder]) -> float:
-    """Half of the width of a deck."""
+    """Return half of the width of a deck."""
     return max(own.outer + BESIDE * own.bore for own in bank)
 
 

@@ -106,7 +106,7 @@ class RamPlan:
         return [(x + s * u - q * v, y + s * v + q * u) for s in self.deck for q in wide]
 
     def takes(self, low: float) -> list[Takes]:
-        """Beam and clevises, and on ground columns and deck; ``low`` is the top of the base plate."""
+        """Return the beam and clevises, and on ground columns and deck; ``low`` is the top of the base plate."""
         own, body = self.ram, self.ram.body
         links = frozenset(pin.link for pin in own.pins)
         u = math.cos(own.turn), math.sin(own.turn)
@@ -128,7 +128,7 @@ class RamPlan:
         return box((x - self.middle * v, y + self.middle * u), self.ram.along, low, high, half)
 
     def at(self, s: float, q: float) -> tuple[float, float]:
-        """A place in the frame of the body."""
+        """Return a place in the frame of the body."""
         c, d = math.cos(self.ram.turn), math.sin(self.ram.turn)
         return self.ram.origin[0] + s * c - q * d, self.ram.origin[1] + s * d + q * c
 
@@ -162,7 +162,7 @@ SEAT = 0.02
 
 
 def ram_solids(own: RamPlan, pin: float, material: str) -> list[Solid]:
-    """The ram, its main piece first, and its pins of radius ``pin``."""
+    """Return the ram, its main piece first, and its pins of radius ``pin``."""
     first, last = own.span
     shape = _box(own.low, own.high, own.middle, own.half, first, last)
     for clevis, room, bottom, top in own.clevises:
@@ -182,7 +182,7 @@ def ram_solids(own: RamPlan, pin: float, material: str) -> list[Solid]:
 
 
 def guide_solids(own: RamPlan, low: float) -> list[Solid]:
-    """Columns and deck, from the base plate (z = ``low``) up."""
+    """Return columns and deck, from the base plate (z = ``low``) up."""
     begin, (below, above) = own.begin, own.deck
     wide = own.half + HUB * own.unit
     deck = _box(below, above, own.middle, wide, low, own.span[1])
@@ -196,7 +196,7 @@ def guide_solids(own: RamPlan, low: float) -> list[Solid]:
 
 
 def _merged(own: RamPlan) -> list[tuple[float, float, float, float]]:
-    """Place and ends of the pins: one through clevises of one place whose cheeks touch."""
+    """Return the place and ends of the pins: one through clevises of one place whose cheeks touch."""
     merged: list[tuple[float, float, float, float]] = []
     for clevis, _, bottom, top in own.clevises:
         for k, (s, q, low, high) in enumerate(merged):

@@ -60,22 +60,22 @@ class Measures:
         return self.sizes.scale
 
     def of_rod(self, link: Link) -> float | None:
-        """The bore whose piston a link drives; None of other links."""
+        """Return the bore whose piston a link drives; None for other links."""
         bores = [self.cylinders[eye.on].bore for eye in link.eyes if eye.on in self.cylinders]
         return min(bores, default=None)
 
     def of_shaft(self, shaft: Shaft) -> float:
-        """The bore that a shaft's proportions follow; of a shaft without pistons what goes with its pins."""
+        """Return the bore that a shaft's proportions follow; of a shaft without pistons what goes with its pins."""
         links = [self.machine.links[throw.link] for throw in shaft.throws if throw.link in self.machine.links]
         bores = [bore for link in links if (bore := self.of_rod(link)) is not None]
         return min(bores, default=self.sizes.pin / (2 * CRANK_PIN) * 1.1)
 
     def crank_pin(self, shaft: Shaft) -> float:
-        """Radius of a shaft's crank pins."""
+        """Return the radius of a shaft's crank pins."""
         return CRANK_PIN * self.of_shaft(shaft)
 
     def eye(self, link: Link, eye: LinkEye) -> float:
-        """Outer radius of an eye."""
+        """Return the outer radius of an eye."""
         bore = self.of_rod(link)
         if not eye.on:
             return FREE * self.sizes.eye * self.unit
@@ -88,14 +88,14 @@ class Measures:
         return self.sizes.eye * self.unit
 
     def wished(self, link: Link) -> float:
-        """Thickness of a link where there is room; of one that carries rods, with its flanges."""
+        """Return the thickness of a link where there is room; of one that carries rods, with its flanges."""
         bore = self.of_rod(link)
         if bore is not None and is_carrier(self.machine, link):
             return height_for(ROD * bore, self.axial)
         return ROD * bore if bore is not None else self.sizes.thickness * self.unit
 
     def shank(self, link: Link, thickness: Mapping[str, float]) -> float:
-        """Thickness of a link away from its flanges."""
+        """Return the thickness of a link away from its flanges."""
         own = thickness[link.body]
         return middle(own, self.axial) if is_carrier(self.machine, link) else own
 
@@ -104,7 +104,7 @@ class Measures:
         return around([(eye.x, eye.y) for eye in link.eyes] or [(0.0, 0.0)], self.radius(link))
 
     def radius(self, link: Link) -> float:
-        """Radius of its largest eye."""
+        """Return the radius of its largest eye."""
         return max((self.eye(link, eye) for eye in link.eyes), default=self.sizes.eye * self.unit)
 
     @property
@@ -152,7 +152,7 @@ def thicknesses(measures: Measures) -> dict[str, float]:
 
 
 def _near(measures: Measures, thickness: Mapping[str, float]) -> Sequence[tuple[str, str]]:
-    """Pairs that are near along z and meet in the plane, or share a pin."""
+    """Return pairs that are near along z and meet in the plane, or share a pin."""
     machine, pairs = measures.machine, []
     for a, b in combinations(machine.links.values(), 2):
         if carries(machine, a, b):
@@ -177,7 +177,9 @@ def _shares_pin(a: Link, b: Link) -> bool:
 
 
 def _web_between(measures: Measures, a: Link, b: Link) -> float | None:
-    """The bore that goes with a shaft on which two links follow each other, on crank pins at different places."""
+    """Return the bore that goes with a shaft on which two links follow each other, on crank pins at different
+    places.
+    """
     for shaft in measures.machine.shafts.values():
         links = [throw.link for throw in shaft.throws]
         if a.body in links and b.body in links and abs(links.index(a.body) - links.index(b.body)) == 1:
@@ -302,7 +304,7 @@ class ShaftPlan:
         return any(web.low == before.high and web.high == after.low for web in self.webs)
 
     def beside(self, pin: Pin) -> list[Web]:
-        """The webs at both ends of a crank pin."""
+        """Return the webs at both ends of a crank pin."""
         return [web for web in self.webs if web.high == pin.low or web.low == pin.high]
 
     @property
@@ -339,13 +341,13 @@ class ShaftPlan:
         return bool(self.pins) and not any(part.high < self.ends[0] for part in self.mounted)
 
     def bottom(self, flywheel: float) -> float:
-        """Lowest z of the shaft; ``flywheel`` is the radius of its flywheel, 0 for none."""
+        """Return the lowest z of the shaft; ``flywheel`` is the radius of its flywheel, 0 for none."""
         beyond = [part.low - PROUD * self.unit for part in self.mounted if part.high < self.ends[0]]
         end = (2.2 if flywheel else 1.0) * FLANGE if self.pins else PROUD
         return min([self.ends[0] - end * self.unit, *beyond])
 
     def through(self, part: Mounted) -> float:
-        """Radius of the shaft where a wheel or a cam sits."""
+        """Return the radius of the shaft where a wheel or a cam sits."""
         inside = self.ends[0] < part.z < self.ends[1]
         return self.journal if inside or not self.pins else THIN * self.journal
 
@@ -357,8 +359,8 @@ def shaft_plan(
     cylinders: Mapping[str, Cylinder],
     mounted: Sequence[Mounted] = (),
 ) -> ShaftPlan:
-    """Plan a shaft. Raises UserError naming two links that are too near along z for a web between them, and wheels that
-    have no room on it.
+    """Plan a shaft. Raises UserError naming two links that are too near along z for a web between them, and
+    wheels that have no room on it.
     """
     on_it = tuple(sorted(mounted, key=lambda part: part.z))
     if not shaft.throws:
@@ -400,7 +402,9 @@ def _refuse_mounted(name: str, plan: ShaftPlan) -> None:
 
 
 def _plain(shaft: Shaft, measures: Measures, mounted: Sequence[Mounted], unit: float) -> ShaftPlan:
-    """A shaft without throws: a rod with bearings between what sits on it; wheels at its ends are beyond the last."""
+    """Return a shaft without throws: a rod with bearings between what sits on it; wheels at its ends are beyond the
+    last.
+    """
     room = min(part.inner for part in mounted)
     pin = min(CRANK_PIN * unit, PLAIN * room / JOURNAL)
     journal, gap = JOURNAL * pin, measures.axial
@@ -439,7 +443,9 @@ def _plain(shaft: Shaft, measures: Measures, mounted: Sequence[Mounted], unit: f
 
 
 def _pins(shaft: Shaft, thickness: Mapping[str, float], gap: float, most: float) -> list[Pin]:
-    """Links at one place that follow each other along z share a pin, where less than ``most`` is between them."""
+    """Return groups of links that share a pin: at one place, they follow each other along z, where less than ``most``
+    is between them.
+    """
     groups: list[list[Throw]] = []
     for throw in shaft.throws:
         last = groups[-1][-1] if groups else None
@@ -458,7 +464,7 @@ def _pins(shaft: Shaft, thickness: Mapping[str, float], gap: float, most: float)
 
 
 def _between(measures: Measures, shaft: Shaft, pins: list[Pin], unit: float) -> tuple[list[Web], list[Journal]]:
-    """Webs and journals between the crank pins; the first and the last web stand for those at the ends."""
+    """Return webs and journals between the crank pins; the first and the last web stand for those at the ends."""
     spaces = [after.low - before.high for before, after in pairwise(pins)]
     thick = min([WEB * unit, *(SHARE * space for space in spaces if space >= _both(unit))])
     end = Web(0.0, thick, (), True)
@@ -483,5 +489,5 @@ def _between(measures: Measures, shaft: Shaft, pins: list[Pin], unit: float) -> 
 
 
 def _both(unit: float) -> float:
-    """The least space for two webs and a journal."""
+    """Return the least space for two webs and a journal."""
     return (2 * LEAST_WEB + LEAST_BEARING) * unit / (1 - 0.2)

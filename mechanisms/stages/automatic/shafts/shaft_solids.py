@@ -34,8 +34,8 @@ INTO = 0.3
 
 
 def shaft_solid(plan: ShaftPlan, webs: Sequence[cq.Workplane], flywheel: float = 0.0) -> cq.Workplane:
-    """The shaft in its body's frame with these webs; ``flywheel`` is the radius of a disc at its lower end, 0 for
-    none.
+    """Return the shaft in its body's frame with these webs; ``flywheel`` is the radius of a disc at its lower end, 0
+    for none.
     """
     if not plan.pins:
         return _plain(plan)
@@ -57,7 +57,7 @@ def shaft_solid(plan: ShaftPlan, webs: Sequence[cq.Workplane], flywheel: float =
 
 
 def _plain(plan: ShaftPlan) -> cq.Workplane:
-    """A rod through all that sits on it."""
+    """Return a rod through all that sits on it."""
     low, high, r, c = plan.bottom(0.0), plan.top, plan.journal, 0.03 * plan.unit
     x, y = plan.shaft.axis
     shape = turned([(0, low), (r - c, low), (r, low + c), (r, high - c), (r - c, high), (0, high)])
@@ -69,7 +69,7 @@ def _rod(radius: float, low: float, high: float, at: tuple[float, float] = (0.0,
 
 
 def _upper_end(plan: ShaftPlan, into: float) -> cq.Workplane:
-    """The last journal, and a thinner snout beyond it."""
+    """Return the last journal, and a thinner snout beyond it."""
     low, high, top = plan.journals[-1].low - into, plan.journals[-1].high, plan.top
     r, thin, c = plan.journal, THIN * plan.journal, 0.03 * plan.unit
     return turned(
@@ -78,7 +78,7 @@ def _upper_end(plan: ShaftPlan, into: float) -> cq.Workplane:
 
 
 def _lower_end(plan: ShaftPlan, into: float, flywheel: float) -> cq.Workplane:
-    """The first journal, and a flange below it, or a flywheel."""
+    """Return the first journal, and a flange below it, or a flywheel."""
     high, low, end = plan.journals[0].high + into, plan.journals[0].low, plan.bottom(flywheel)
     r, wide, c = plan.journal, flywheel or 1.4 * plan.journal, 0.03 * plan.unit
     if not plan.has_flange and not flywheel:
@@ -113,7 +113,7 @@ class Weight:
 
 
 def web_solid(plan: ShaftPlan, web: Web, weight: Weight | None = None) -> cq.Workplane:
-    """A web about its shaft's axis."""
+    """Return a web about its shaft's axis."""
     height, edge = web.high - web.low, EDGE * plan.unit
     circles = [(0.0, 0.0, plan.neck), *((x, y, plan.cheek) for x, y in web.pins)]
     shape = _hulls(circles, height, web.low)
@@ -174,7 +174,9 @@ class Load:
 
 
 def loads(machine: Machine, shaft: Shaft, made: Mapping[str, Sequence[Solid]]) -> list[Load]:
-    """One for each link on the shaft; masses are those that the model gives, else those of the solids in ``made``."""
+    """Return one for each link on the shaft; masses are those that the model gives, else those of the solids in
+    ``made``.
+    """
     on_pins = []
     for throw in shaft.throws:
         link = machine.links.get(throw.link)
@@ -186,7 +188,7 @@ def loads(machine: Machine, shaft: Shaft, made: Mapping[str, Sequence[Solid]]) -
 
 
 def _on_pin(machine: Machine, link: Link, on: LinkEye, made: Mapping[str, Sequence[Solid]]) -> float:
-    """Mass on a pin (kg): of a link, of the piston that it drives, and of rods on it that drive others."""
+    """Return the mass on a pin (kg): of a link, of the piston that it drives, and of rods on it that drive others."""
     mass, com = _mass(machine, link.body, made)
     others = [eye for eye in link.eyes if eye is not on and math.hypot(eye.x - on.x, eye.y - on.y) > 0]
     far = next((eye for eye in others if eye.on in machine.pistons), None) or max(
@@ -207,7 +209,7 @@ def _on_pin(machine: Machine, link: Link, on: LinkEye, made: Mapping[str, Sequen
 
 
 def _mass(machine: Machine, body: str, made: Mapping[str, Sequence[Solid]]) -> tuple[float, tuple[float, float]]:
-    """Mass (kg) and centre of mass (mm) of a body."""
+    """Return the mass (kg) and centre of mass (mm) of a body."""
     given = machine.m.bodies[body]
     if given.mass_given:
         return given.mass, (mm(given.com[0]), mm(given.com[1]))
@@ -239,7 +241,7 @@ STEPS, ENOUGH = 4, 2e-4
 
 
 def balanced_webs(plan: ShaftPlan, loads: Sequence[Load], density: float) -> list[cq.Workplane]:
-    """All webs of a shaft of that density (kg/m^3), with counterweights where there is room for them."""
+    """Return all webs of a shaft of that density (kg/m^3), with counterweights where there is room for them."""
     webs = [web_solid(plan, web) for web in plan.webs]
     if not plan.has_weights:
         return webs
@@ -265,7 +267,7 @@ def balanced_webs(plan: ShaftPlan, loads: Sequence[Load], density: float) -> lis
 
 
 def _balanced(plan: ShaftPlan, web: Web, bare: cq.Workplane, wanted: np.ndarray, density: float) -> cq.Workplane:
-    """A web whose counterweight has the wanted moment (2,) (kg mm), or the largest one."""
+    """Return a web whose counterweight has the wanted moment (2,) (kg mm), or the largest one."""
     asked, without, made = wanted, _moment(bare, density), bare
     for _ in range(STEPS):
         weight = _weight(plan, asked / (density * cubic_metres(web.high - web.low)))
@@ -280,7 +282,7 @@ def _balanced(plan: ShaftPlan, web: Web, bare: cq.Workplane, wanted: np.ndarray,
 
 
 def _weight(plan: ShaftPlan, wanted: np.ndarray) -> Weight | None:
-    """The counterweight of a first moment of area (2,) (mm^3), as far as there is room."""
+    """Return the counterweight of a first moment of area (2,) (mm^3), as far as there is room."""
     size, far, neck = float(np.linalg.norm(wanted)), plan.counterweight, plan.neck
 
     def area(radius: float, half: float) -> float:
@@ -298,7 +300,7 @@ def _weight(plan: ShaftPlan, wanted: np.ndarray) -> Weight | None:
 
 
 def _solved(rest: Callable[[float], float], low: float, high: float) -> float:
-    """Where a rising function is zero, by bisection."""
+    """Return where a rising function is zero, by bisection."""
     for _ in range(48):
         middle = (low + high) / 2
         low, high = (middle, high) if rest(middle) < 0 else (low, middle)
@@ -306,7 +308,7 @@ def _solved(rest: Callable[[float], float], low: float, high: float) -> float:
 
 
 def _moment(shape: cq.Workplane, density: float) -> np.ndarray:
-    """(2,): mass times place of the centre of mass from the axis (kg mm)."""
+    """Return (2,): mass times place of the centre of mass from the axis (kg mm)."""
     solid = shape.val()
     centre = solid.Center()
     return density * cubic_metres(solid.Volume()) * np.array([centre.x, centre.y])
@@ -320,7 +322,9 @@ BEYOND = 0.01
 
 
 def built_up(shape: cq.Workplane, plan: ShaftPlan, pins: Sequence[Pin]) -> list[cq.Workplane]:
-    """Pieces of a shaft from its lower end up, one more than ``pins``; each of these belongs to the piece below."""
+    """Return pieces of a shaft from its lower end up, one more than ``pins``; each of these belongs to the piece
+    below.
+    """
     import cadquery as cq
 
     pieces = [shape]

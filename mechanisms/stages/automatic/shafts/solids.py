@@ -68,7 +68,7 @@ ROD = "aluminium_gold"
 def solids(
     own: Along, wished: Mapping[str, str], mount: Mount, base_under: Sequence[tuple[float, float]] = ()
 ) -> dict[str, list[Solid]]:
-    """Every piece by body; ``wished`` are materials. The base plate reaches ``base_under`` (mm)."""
+    """Return every piece by body; ``wished`` are materials. The base plate reaches ``base_under`` (mm)."""
     own.refuse()
     named = materials(own.m) | dict(wished)
     made: dict[str, list[Solid]] = {"ground": [*_base(plate_of(own, mount, base_under), mount)]}
@@ -85,7 +85,7 @@ def solids(
 
 
 def _named(made: dict[str, list[Solid]], tolerance: float | None) -> dict[str, list[Solid]]:
-    """Names of letters, digits and _, each once; main pieces are called like their bodies."""
+    """Return names of letters, digits and _, each once; main pieces are called like their bodies."""
     taken: set[str] = set()
 
     def named(wish: str) -> str:
@@ -109,7 +109,9 @@ def _named(made: dict[str, list[Solid]], tolerance: float | None) -> dict[str, l
 
 
 def plate_of(own: Along, mount: Mount, base_under: Sequence[tuple[float, float]] = ()) -> BackPlate:
-    """The base plate, below all that moves and round all that stands on it: a rectangle, or on a stand its hull."""
+    """Return the base plate, below all that moves and round all that stands on it: a rectangle, or on a stand its
+    hull.
+    """
     unit, upright = own.measures.unit, Upright.of(mount)
     places = np.array([upright.seen_place(x, y) for x, y in (*own.feet, *base_under)])
     more = MARGIN * unit
@@ -125,7 +127,7 @@ def plate_of(own: Along, mount: Mount, base_under: Sequence[tuple[float, float]]
 
 
 def _base(own: BackPlate, mount: Mount) -> list[Solid]:
-    """The base plate, and its rubber feet where it is on no stand."""
+    """Return the base plate, and its rubber feet where it is on no stand."""
     unit, upright, (x0, y0, x1, y1) = own.unit, Upright.of(mount), own.corners
     if own.hull:
         rim = hull([(x, y, own.corner) for x, y in own.hull])
@@ -142,7 +144,7 @@ def _base(own: BackPlate, mount: Mount) -> list[Solid]:
 
 
 def _on_ground(own: Along) -> list[Solid]:
-    """Liners with what holds them, and what carries shafts."""
+    """Return liners with what holds them, and what carries shafts."""
     every = banks(own.cylinders)
     start = own.low + SEAT
     pieces = [solid for bank in every for solid in bank_solids(bank, every, own.fins, start, [*own.valves.values()])]
@@ -153,7 +155,7 @@ def _on_ground(own: Along) -> list[Solid]:
 
 
 def _of_body(own: Along, body: str, material: str, is_wished: bool, made: Mapping[str, Sequence[Solid]]) -> list[Solid]:
-    """All pieces of a body that moves, its main one first; ``made`` has what a shaft carries."""
+    """Return all pieces of a body that moves, its main one first; ``made`` has what a shaft carries."""
     if body in own.machine.links:
         return _link(own, own.machine.links[body], material, is_wished)
     if body in own.cylinders:
@@ -207,7 +209,7 @@ def _piston(own: Along, body: str, material: str) -> list[Solid]:
 
 
 def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]:
-    """A rod where it has two eyes and drives a piston, else a plate; split at its crank pin where it can be."""
+    """Return a rod where it has two eyes and drives a piston, else a plate; split at its crank pin where it can be."""
     thickness, bore = own.thickness[link.body], own.measures.of_rod(link)
     eyes, bottom, knuckle_pins = _eyes(own, link), link.z - thickness / 2, list[Solid]()
     cuts, main = _cuts(own, link, eyes), rod_foot(own.machine, link)
@@ -234,7 +236,7 @@ def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]
 
 
 def _cuts(own: Along, link: Link, eyes: Sequence[tuple[float, float, Eye]]) -> tuple[Cut, ...]:
-    """Where a link is split: at crank pins, where all else of it lies on one side."""
+    """Return where a link is split: at crank pins, where all else of it lies on one side."""
     cuts = list[Cut]()
     for k, on in enumerate(link.eyes):
         if on.on not in own.machine.shafts:
@@ -255,7 +257,7 @@ def _eyes(own: Along, link: Link) -> list[tuple[float, float, Eye]]:
 
 
 def _distinct(link: Link) -> list[LinkEye]:
-    """Eyes without repeats at one place."""
+    """Return eyes without repeats at one place."""
     eyes: list[LinkEye] = []
     for eye in link.eyes:
         if all(math.hypot(eye.x - other.x, eye.y - other.y) > 0.01 for other in eyes):
@@ -285,5 +287,5 @@ def _bore(own: Along, link: Link, eye: LinkEye) -> float:
 
 
 def _ram_pin(own: Along) -> float:
-    """Radius of the pins of rams."""
+    """Return the radius of the pins of rams."""
     return own.sizes.pivot.pin * own.measures.unit / 2

@@ -111,7 +111,7 @@ class ValvePlan:
         return Mounted(f"the cam of '{self.valve.body}'", self.valve.z, CAM * self.bore, far, 0.95 * self.base, False)
 
     def takes(self) -> Iterable[Takes]:
-        """Head, stem and tappet, and the cam."""
+        """Yield the head, stem and tappet, and the cam."""
         valve, z, on = self.valve, self.valve.z, frozenset(["ground", self.valve.shaft])
         (x, y), turn = valve.face, valve.turn
         u = (math.cos(turn), math.sin(turn))
@@ -175,7 +175,9 @@ def _cylinder(machine: Machine, valve: Valve, cylinders: Mapping[str, Cylinder])
 
 
 def _cam(machine: Machine, valve: Valve) -> tuple[np.ndarray, tuple[float, float], float]:
-    """Outline and centre in the frame of its shaft, least radius. Raises UserError for what cannot be cut."""
+    """Return the outline and centre in the frame of its shaft, least radius. Raises UserError for what cannot be
+    cut.
+    """
     from mbsd.cams import cam_from
 
     joint = machine.m.joints[valve.cam]
@@ -190,7 +192,7 @@ def _cam(machine: Machine, valve: Valve) -> tuple[np.ndarray, tuple[float, float
 
 
 def _reach(machine: Machine, valve: Valve) -> float:
-    """A cam touches a flat face ds / dphi beside its own axis, phi its angle."""
+    """Return the contact's distance from the cam's axis: ds / dphi, phi its angle."""
     pushed = machine.path(valve.body, *valve.face) @ np.array(valve.along)
     turned = machine.poses[valve.shaft][:, 2]
     steps = np.abs(np.diff(turned))
@@ -199,7 +201,7 @@ def _reach(machine: Machine, valve: Valve) -> float:
 
 
 def _springs(machine: Machine, valve: Valve, own: Cylinder) -> tuple[tuple[str, float, float], ...]:
-    """Springs between the valve and ground on the line of its stem."""
+    """Return springs between the valve and ground on the line of its stem."""
     springs = []
     for force in machine.m.forces.values():
         if force.kind.name == "spring" and set(force.bodies) == {"ground", valve.body}:
@@ -237,7 +239,7 @@ def along_x(shape: cq.Workplane) -> cq.Workplane:
 
 
 def valve_solids(own: ValvePlan) -> list[Solid]:
-    """A valve with its tappet in one piece, and the retainers of its springs, in the frame of its body."""
+    """Return a valve with its tappet in one piece, and the retainers of its springs, in the frame of its body."""
     b, r, stem = own.bore, own.radius, STEM * own.bore
     c = 0.01 * b
     low, face = own.low, own.face
@@ -274,7 +276,7 @@ def port_shape(own: ValvePlan, high: float) -> cq.Workplane:
 
 
 def spring_seats(own: ValvePlan) -> list[tuple[str, cq.Workplane]]:
-    """Washers between a head and the springs of a valve, about x, by the name of the spring."""
+    """Return washers between a head and the springs of a valve, about x, by the name of the spring."""
     low = own.cylinder.top + HEAD * own.bore + 2 * SEAT
     inner, outer = STEM * own.bore + own.running, RETAINER * own.bore
     return [
@@ -285,6 +287,6 @@ def spring_seats(own: ValvePlan) -> list[tuple[str, cq.Workplane]]:
 
 
 def cam_shape(own: ValvePlan) -> cq.Workplane:
-    """The cam of a valve, in the frame of its shaft."""
+    """Return the cam of a valve, in the frame of its shaft."""
     thick = CAM * own.bore
     return placed(cam_disc(own.cam, thick), z=own.valve.z - thick / 2)

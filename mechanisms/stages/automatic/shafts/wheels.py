@@ -85,7 +85,7 @@ class Wheels:
         return [wheel for wheel in self.every if wheel.wheel.body == body]
 
     def takes(self) -> Iterable[Takes]:
-        """Discs, and the strands of the belts at rest on ground."""
+        """Yield discs, and the strands of the belts at rest on ground."""
         unit = self.measures.unit
         for own in self.every:
             wheel = own.wheel
@@ -139,7 +139,7 @@ def wheels(machine: Machine, measures: Measures) -> Wheels:
 
 
 def _joints(machine: Machine) -> list[Joint]:
-    """Gears and belts. Raises UserError for a ring gear, and for a wheel whose centre is no shaft's axis."""
+    """Return gears and belts. Raises UserError for a ring gear, and for a wheel whose centre is no shaft's axis."""
     joints = []
     for joint in machine.m.joints.values():
         if joint.kind.name not in (GEARS, BELTS) or machine.left_out.intersection(joint.bodies):
@@ -168,7 +168,7 @@ def _joints(machine: Machine) -> list[Joint]:
 
 
 def _plane(machine: Machine, joint: Joint) -> float:
-    """Where both wheels are (mm)."""
+    """Return where both wheels are (mm)."""
     given = [plane(joint, body) for body in joint.bodies]
     known = [z for z in given if z is not None]
     if not known:
@@ -191,7 +191,9 @@ SEAT = 0.02
 
 
 def wheel_solids(own: ShaftWheel, shaft: float, seat: float) -> list[Solid]:
-    """A wheel on a shaft of that radius, in the frame of its body; ``seat`` (rmm) is between a pulley and its rim."""
+    """Return a wheel on a shaft of that radius, in the frame of its body; ``seat`` (rmm) is between a pulley and its
+    rim.
+    """
     wheel, unit = own.wheel, own.unit
     thickness, low = own.thickness / unit, own.mounted.low / unit
     bore = 2 * (shaft + SEAT) / unit

@@ -59,14 +59,14 @@ class CurvedSlot(Slot):
         return None if self.closed else self
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Posts of a plate on ground: beyond the two places that are farthest from each other."""
+        """Return posts of a plate on ground: beyond the two places that are farthest from each other."""
         hull = convex_hull(self.path)
         apart = np.linalg.norm(hull[:, None] - hull[None], axis=2)
         a, b = np.unravel_index(int(np.argmax(apart)), apart.shape)
         return Slot.posts(Slot(self.name, self.slot, self.pin, hull[[a, b]], self.pin_at), layout)
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """A wall round the slot, whole in its middle; an eye that holds the pin."""
+        """Return a wall round the slot, whole in its middle; an eye that holds the pin."""
         if self.slot == "ground":
             return Slot.anchors(self, layout)
         thinned = self.path[:: max(1, len(self.path) // 24)]
@@ -98,7 +98,7 @@ def curved_slot_solids(slot: CurvedSlot, plan: Plan, heights: Heights) -> None:
 
 @kind("point_on_curve")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint. Raises UserError where the curve bends too sharply for a roller."""
+    """Return one feature for each joint. Raises UserError where the curve bends too sharply for a roller."""
     return [entered(_slot(m, joint, layout), layout) for joint in joints]
 
 
@@ -143,7 +143,7 @@ def _refuse_near_itself(m: Mechanism, joint: Joint, path: np.ndarray, closed: bo
 
 
 def _offset(joint: Joint) -> np.ndarray:
-    """(n, 2) places (m) at the joint's distance from its curve, in the axes of the curve's marker."""
+    """Return (n, 2) places (m) at the joint's distance from its curve, in the axes of the curve's marker."""
     path = curve_path(joint.params["points"], bool(joint.params["closed"]))
     if joint.params["closed"]:
         path = np.vstack([path, path[:1]])
@@ -154,7 +154,7 @@ def _offset(joint: Joint) -> np.ndarray:
 def _run_through(
     whole: np.ndarray, ways: np.ndarray | None, seen: np.ndarray, layout: Layout
 ) -> tuple[np.ndarray, bool]:
-    """The part of a path where the pin comes, with a little more at its ends; and whether that is all of a loop.
+    """Return the part of a path where the pin comes, with a little more at its ends; and whether that is all of a loop.
 
     ``ways`` lead on from both ends of an open path.
     """
@@ -188,6 +188,6 @@ def _stepped(path: np.ndarray, clearance: float) -> np.ndarray:
 
 @extent("point_on_curve")
 def extent_of(joint: Joint, solution: Solution) -> Extent:
-    """Room for a roller where the curve bends."""
+    """Return the room for a roller where the curve bends."""
     bend = sharpest(_offset(joint))
     return Extent((), ((bend, LEAST),) if np.isfinite(bend) else ())

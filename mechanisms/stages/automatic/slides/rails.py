@@ -80,23 +80,23 @@ class Crossing:
         return float(x), float(y)
 
     def groove(self, slide: Slide) -> Ends:
-        """Middles (rmm) of the round ends of a groove."""
+        """Return middles (rmm) of the round ends of a groove."""
         reach = TONGUE_HALF - TONGUE / 2
         return [slide.rail_place(slide.travel[0] - reach), slide.rail_place(slide.travel[1] + reach)]
 
     def tongue(self, slide: Slide) -> Ends:
-        """Middles (rmm) of the round ends of a tongue, in the frame of its body."""
+        """Return middles (rmm) of the round ends of a tongue, in the frame of its body."""
         reach = TONGUE_HALF - TONGUE / 2
         return [slide.block_place(-reach), slide.block_place(reach)]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """The plates of the shuttles; what the grooved plate is fixed by."""
+        """Return the plates of the shuttles; what the grooved plate is fixed by."""
         eye = layout.sizes.eye
         anchors = [Anchor(slide.block, x, y, eye) for slide in self.slides for x, y in slide.block_ends(eye)]
         return [*anchors, *(Anchor("ground", x, y, WALL) for slide in self.slides for x, y in self.groove(slide))]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The plate below the shuttles, and their tongues in it."""
+        """Yield the plate below the shuttles, and their tongues in it."""
         tongues = {slide.name: f"the tongue of {slide.name}" for slide in self.slides}
         meshes, reach = frozenset(tongues.values()), Reach(self.blocks, -1, -1, base=True)
         for slide in self.slides:
@@ -108,7 +108,7 @@ class Crossing:
         yield Item(self.what, "ground", disc(*self.middle, CORE), reach, source=self, meshes=meshes, stands=self.what)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for the plate."""
+        """Yield the room for the plate."""
         if levels[self.blocks[0]] == 0:
             yield Need(BASE, FLOOR + TONGUE_DEPTH + 2 * layout.sizes.pivot.fit.axial)
         else:
@@ -116,7 +116,7 @@ class Crossing:
 
 
 def with_crossings(slides: Sequence[Slide], layout: Layout) -> list[Feature]:
-    """The slides, those on ground that cross as one feature."""
+    """Return the slides, those on ground that cross as one feature."""
     group = {slide.name: slide.name for slide in slides}
     for first, second in combinations([slide for slide in slides if slide.rail == "ground"], 2):
         if _crossing(first, second) is not None and group[first.name] != group[second.name]:
@@ -135,7 +135,7 @@ def with_crossings(slides: Sequence[Slide], layout: Layout) -> list[Feature]:
 
 
 def _crossing(first: Slide, second: Slide) -> np.ndarray | None:
-    """(2,) where two rails would cross; None where they stay clear of each other, or are nearly parallel."""
+    """Return (2,) where two rails would cross; None where they stay clear of each other, or are nearly parallel."""
     if first.block == second.block:
         return None
     (a, b), (c, d) = (np.array(slide.rail_ends()) for slide in (first, second))
@@ -188,7 +188,7 @@ NEAR = 0.05
 
 @extent("prismatic")
 def extent_of(joint: Joint, solution: Solution) -> Extent:
-    """Blocks that never pass each other on a line have room beside each other."""
+    """Raise UserError unless blocks on a line never pass each other."""
     least: list[tuple[float, float]] = []
     own = _way(joint, joint, solution)
     for other in solution.mechanism.joints.values():
@@ -206,7 +206,7 @@ def extent_of(joint: Joint, solution: Solution) -> Extent:
 
 
 def _way(joint: Joint, line: Joint, solution: Solution) -> np.ndarray:
-    """(T, 2): the block's marker along and across the line of another joint of the same rail (m)."""
+    """Return (T, 2) the block's marker along and across the line of another joint of the same rail (m)."""
     rail, block = solution.place(line.i), solution.place(joint.j)
     x, y, c, s = block.x - rail.x, block.y - rail.y, np.cos(rail.theta), np.sin(rail.theta)
     return np.stack([c * x + s * y, c * y - s * x], axis=1)
@@ -220,7 +220,7 @@ def on_one_line(slide: Slide, other: Slide) -> bool:
 
 
 def with_common_rails(slides: Sequence[Slide], layout: Layout) -> list[Slide]:
-    """The slides, those that overlap along one line on common rails or on longer ones."""
+    """Return the slides, those that overlap along one line on common rails or on longer ones."""
     lines: list[list[Slide]] = []
     for slide in slides:
         for line in lines:
@@ -275,14 +275,14 @@ def _may_share(slide: Slide, other: Slide, line: Slide, layout: Layout) -> bool:
 
 
 def _middle(slide: Slide, line: Slide, layout: Layout) -> np.ndarray:
-    """(T,) of a block along the line."""
+    """Return (T,) of a block along the line."""
     x, y, angle = line.rail_at
     seen = layout.seen(slide.block, slide.block_at[:2], slide.rail) - (x, y)
     return seen @ np.array([math.cos(angle), math.sin(angle)])
 
 
 def _span(slide: Slide, line: Slide) -> tuple[float, float]:
-    """Middles of a rail's round ends along the line, the lower first."""
+    """Return middles of a rail's round ends along the line, the lower first."""
     x, y, angle = line.rail_at
     places = (np.array(slide.rail_ends()) - (x, y)) @ np.array([math.cos(angle), math.sin(angle)])
     return float(places.min()), float(places.max())
@@ -293,7 +293,7 @@ def _joined(spans: Sequence[tuple[float, float]]) -> tuple[float, float]:
 
 
 def _with_ends(slide: Slide, line: Slide, low: float, high: float) -> Slide:
-    """The slide with a rail whose round ends are there."""
+    """Return the slide with a rail whose round ends are there."""
     first, last = _span(slide, line)
     before, behind = slide.shorter
     if math.cos(slide.rail_at[2] - line.rail_at[2]) > 0:
@@ -311,8 +311,8 @@ BESIDE = 0.5
 
 @kind("prismatic")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint, but one for those on ground that cross, and for those of two bodies along one line; several
-    blocks along one line have a common rail where they can.
+    """Return one feature for each joint, but one for those on ground that cross, and for those of two bodies along one
+    line; several blocks along one line have a common rail where they can.
     """
     slides: list[Slide] = []
     for joint in joints:

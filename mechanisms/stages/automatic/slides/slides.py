@@ -73,12 +73,12 @@ class Slide:
     """The slide whose rail this one runs on; empty: its own."""
 
     def rail_ends(self) -> list[tuple[float, float]]:
-        """Middles of the rail's round ends, in its body's frame: the block never leaves it."""
+        """Return middles of the rail's round ends, in its body's frame: the block never leaves it."""
         first, last = self.travel[0] - HALF_LENGTH, self.travel[1] + HALF_LENGTH
         return [self.rail_place(first + self.shorter[0]), self.rail_place(last - self.shorter[1])]
 
     def posts(self) -> list[list[tuple[float, float]]]:
-        """Middles of the round ends of both posts, which reach inwards from the rail's ends."""
+        """Return middles of the round ends of both posts, which reach inwards from the rail's ends."""
         a, b = np.array(self.rail_ends())
         inwards = POST * (b - a) / np.hypot(*(b - a))
         return [[(float(x), float(y)) for x, y in foot] for foot in ((a, a + inwards), (b, b - inwards))]
@@ -92,23 +92,23 @@ class Slide:
         return _along(self.block_at, distance)
 
     def stops(self, layout: Layout) -> list[tuple[str, float]]:
-        """Each stop on the rail: its name, and the distance of its middle from the rail's marker."""
+        """Return each stop on the rail: its name, and the distance of its middle from the rail's marker."""
         beyond = GIB[0] / 2 + CLEAR * layout.sizes.pivot.fit.running + STOP / 2
         words = (("lower", -beyond), ("upper", beyond))
         return [(word, end + off) for (word, off), end in zip(words, self.ends, strict=True) if end is not None]
 
     def across(self, distance: float) -> list[tuple[float, float]]:
-        """Two places beside the rail, that far from its marker, in its body's frame."""
+        """Return two places beside the rail, that far from its marker, in its body's frame."""
         x, y, angle = *self.rail_place(distance), self.rail_at[2] + math.pi / 2
         return [_along((x, y, angle), side) for side in (-RAIL / 2 - GIB[1] / 2, RAIL / 2 + GIB[1] / 2)]
 
     def block_ends(self, radius: float) -> list[tuple[float, float]]:
-        """Middles of the block's round ends, in its body's frame."""
+        """Return middles of the block's round ends, in its body's frame."""
         reach = HALF_LENGTH - radius
         return [self.block_place(-reach), self.block_place(reach)]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """The block's plate, and a plate under the rail."""
+        """Return the block's plate, and a plate under the rail."""
         eye = layout.sizes.eye
         anchors = [Anchor(self.block, x, y, eye) for x, y in self.block_ends(eye)]
         if self.rail != "ground":
@@ -116,7 +116,7 @@ class Slide:
         return anchors
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Rail, its posts, and the gibs of the block."""
+        """Yield the rail, its posts, and the gibs of the block."""
         rail = Rounded(np.array(self.rail_ends()), RAIL / 2 + 1.0)
         block = Rounded(np.array(self.block_ends(layout.sizes.eye)), layout.sizes.eye)
         what, gibs = f"the rail of {self.host or self.name}", f"the block of {self.name}"
@@ -150,7 +150,7 @@ class Slide:
             yield Item(gibs, self.block, block, between, source=self, meshes=frozenset((what, self.rail)))
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for the rail under, or between, the plates."""
+        """Yield the room for the rail under, or between, the plates."""
         axial = layout.sizes.pivot.fit.axial
         if self.rail == "ground":
             yield Need(levels[self.block] - 1, BEAM + 2 * axial)
@@ -262,7 +262,7 @@ def _stops(slide: Slide, z0: float, z1: float, plan: Plan) -> None:
 
 
 def _bar(ends: list[tuple[float, float]], radius: float, z0: float, z1: float) -> cq.Workplane:
-    """A bar with round ends and eased edges between two heights."""
+    """Return a bar with round ends and eased edges between two heights."""
     (x0, y0), (x1, y1) = ends
     shape = extruded(outline.hull([(x0, y0, radius), (x1, y1, radius)]), z1 - z0, z0)
     return eased(shape, min(0.6, 0.2 * (z1 - z0)), ">Z", chamfer=True)

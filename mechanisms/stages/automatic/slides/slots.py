@@ -74,7 +74,7 @@ class InSlot(Protocol):
 
 
 def common(slot: InSlot, layout: Layout) -> list[InSlot]:
-    """All through slots in which the pin of ``slot`` runs, this one among them."""
+    """Return all through slots in which the pin of ``slot`` runs, this one among them."""
     through: list[InSlot] = [
         s for s in (getattr(feature, "runs_through", None) for feature in layout.features) if s is not None
     ]
@@ -82,7 +82,7 @@ def common(slot: InSlot, layout: Layout) -> list[InSlot]:
 
 
 def passed(slot: InSlot, layout: Layout) -> frozenset[str]:
-    """Names of the items that the pin passes through by design."""
+    """Return names of the items that the pin passes through by design."""
     names = [
         (other.slot, f"the slotted plate of {other.name}", f"the wheel of {other.name}")
         for other in common(slot, layout)
@@ -147,11 +147,11 @@ class Slot:
         return (self.layer,) if self.pin == "ground" else (self.pin, self.layer)
 
     def radius(self, layout: Layout) -> float:
-        """Radius of the plate round the slot's ends."""
+        """Return the radius of the plate round the slot's ends."""
         return layout.sizes.roller / 2 + WALL
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Posts of a plate on ground: middles, beyond the two ends of the slot."""
+        """Return posts of a plate on ground: middles, beyond the two ends of the slot."""
         middles = []
         for end, other in ((self.path[0], self.path[-1]), (self.path[-1], self.path[0])):
             way = (end - other) / max(float(np.hypot(*(end - other))), 1e-9)
@@ -160,12 +160,12 @@ class Slot:
         return middles
 
     def outline(self, layout: Layout) -> list[tuple[float, float, float]]:
-        """Circles that a plate on ground goes round."""
+        """Return circles that a plate on ground goes round."""
         ends = [(x, y, POST / 2 + 2.0) for x, y in self.posts(layout)]
         return [*((float(x), float(y), self.radius(layout)) for x, y in self.path), *ends]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """A wall round the slot, and an eye that holds the pin."""
+        """Return a wall round the slot, and an eye that holds the pin."""
         if self.slot == "ground":
             places = [Anchor("ground", x, y, POST / 2) for x, y in self.posts(layout)]
         else:
@@ -173,7 +173,9 @@ class Slot:
         return [*places, Anchor(self.pin, *self.pin_at, layout.sizes.eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The pin from its body, or the base, through the slot, and its head; a plate on ground, with its posts."""
+        """Yield the pin from its body, or the base, through the slot, and its head; a plate on ground, with its
+        posts.
+        """
         shape, what = disc(*self.pin_at, layout.sizes.hardware), f"the pin of {self.name}"
         plate = f"the slotted plate of {self.name}"
         through = frozenset((self.slot, plate)) | passed(self, layout)
@@ -194,8 +196,8 @@ class Slot:
         return self.needs_under(self, levels, layout)
 
     def needs_under(self, source: object, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for a washer between the plates, and for the head above where the pin comes from below; ``source`` is
-        the feature that has the slot.
+        """Yield the room for a washer between the plates, and for the head above where the pin comes from below;
+        ``source`` is the feature that has the slot.
         """
         fit, pivot = layout.sizes.pivot.fit, layout.sizes.pivot
         low, high = min(levels[name] for name in self.layers), max(levels[name] for name in self.layers)
@@ -209,7 +211,7 @@ class Slot:
 
 @kind("pin_in_slot")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint."""
+    """Return one feature for each joint."""
     features: list[Feature] = []
     for joint in joints:
         slot, pin = joint.i.body.name, joint.j.body.name
@@ -221,7 +223,9 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 
 def _ends(joint: Joint, m: Mechanism, travel: tuple[float, float], layout: Layout) -> tuple[float, float]:
-    """Ends of the way of the roller's middle in the slot (rmm): limits that are near, for the slot ends there."""
+    """Return ends of the way of the roller's middle in the slot (rmm): limits that are near, for the slot ends
+    there.
+    """
     lower, upper = (None if end is None else layout.sizes.of_metres(end) for end in motion.sliding(joint, m))
     lower, upper = motion.reached((lower, upper), travel, FAR * layout.sizes.roller)
     return travel[0] - 1.0 if lower is None else lower, travel[1] + 1.0 if upper is None else upper
@@ -394,7 +398,7 @@ def _pin(through: list[InSlot], large: bool, depth: float | None, plan: Plan, he
 
 
 def _boss(gap: float, plan: Plan) -> float:
-    """How high a boss is that leaves room for a washer and for the slot's plate to move."""
+    """Return how high a boss is that leaves room for a washer and for the slot's plate to move."""
     pivot = plan.layout.sizes.pivot
     height = gap - pivot.fit.axial - pivot.washer_room
     return 0.0 if height < 0.05 else height

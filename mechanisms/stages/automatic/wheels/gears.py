@@ -55,7 +55,7 @@ def enter(wheels: Sequence[Wheel], layout: Layout) -> None:
 
 
 def with_own_layers(layout: Layout, beside_arms: bool) -> Layout:
-    """The layout, all of whose features are known, with wheels on tubes where their body's layer has no room;
+    """Return the layout, all of whose features are known, with wheels on tubes where their body's layer has no room;
     ``beside_arms``: also where an arm is in the way of their mates.
     """
     wheels = [
@@ -111,9 +111,9 @@ FEWEST, MOST = 8, 400
 
 
 def module_of(radii: Sequence[float]) -> float | None:
-    """The module (mm) for wheels that mesh with each other, from their pitch radii (mm): a standard one if it gives
-    whole numbers of teeth; else the one that gives them nearest to :data:`WISH`; None where the radii allow no whole
-    numbers.
+    """Return the module (mm) for wheels that mesh with each other, from their pitch radii (mm): a standard one if it
+    gives whole numbers of teeth; else the one that gives them nearest to :data:`WISH`; None where the radii allow no
+    whole numbers.
     """
     smallest, largest = min(radii), max(radii)
     fitting = [m for m in STANDARD if all(_whole(2 * radius / m) for radius in radii)]
@@ -215,7 +215,9 @@ def _refuse_foul(m: Mechanism, mesh: Mesh) -> None:
 
 
 def _tip(gear: Toothed) -> float:
-    """Tip radius of a wheel, tip height of a rack: teeth are shorter where they would reach below a base circle."""
+    """Return the tip radius of a wheel, tip height of a rack: teeth are shorter where they would reach below a base
+    circle.
+    """
     if isinstance(gear, Rack):
         return min(ADDENDUM * gear.module, *(longest_rack_tip(pinion.radius) for pinion in gear.mates))
     wheels = [mate for mate in gear.mates if isinstance(mate, Wheel)]
@@ -252,7 +254,7 @@ def _mesh(m: Mechanism, train: list[Toothed], meshes: Sequence[Mesh], layout: La
 
 
 def _phase_of(gear: Toothed, mate: Toothed, layout: Layout) -> float:
-    """Angle of a tooth of ``mate`` in its body's frame (place along a rack), from that of the other."""
+    """Return the angle of a tooth of ``mate`` in its body's frame (place along a rack), from that of the other."""
     if isinstance(mate, Rack) and isinstance(gear, Wheel):
         along, turn = mate.sees(gear, layout)
         return along + gear.radius * ((gear.phase or 0.0) + turn + math.pi / 2) + math.pi * gear.module / 2
@@ -297,7 +299,7 @@ CENTRES = 0.02
 @extent(PLAYING)
 @extent(GEARS)
 def extent_of_gears(joint: Joint | Force, solution: Solution) -> Extent:
-    """Both wheels; smaller ones of a stepped gear have room for the tube they sit on."""
+    """Return both wheels; smaller ones of a stepped gear have room for the tube they sit on."""
     sized = with_radii(joint.params)
     both = (joint.i, sized["radius_i"]), (joint.j, sized["radius_j"])
     least = tuple((radius, _least(marker, radius, solution.mechanism)) for marker, radius in both)
@@ -306,7 +308,7 @@ def extent_of_gears(joint: Joint | Force, solution: Solution) -> Extent:
 
 @extent(RACKS)
 def extent_of_rack(joint: Joint, solution: Solution) -> Extent:
-    """The pinion."""
+    """Return the pinion."""
     radius = with_radii(joint.params)["radius"]
     return Extent(((joint.j, radius),), ((radius, racks.LEAST),))
 
@@ -315,13 +317,13 @@ def extent_of_rack(joint: Joint, solution: Solution) -> Extent:
 @kind(RACKS)
 @kind(GEARS)
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """All wheels, racks and pulleys of the mechanism, in phase, when the first of these kinds is asked for."""
+    """Gather all wheels, racks and pulleys of the mechanism, in phase, when the first of these kinds is asked for."""
     return _gathered(m, layout)
 
 
 @force_kind(PLAYING)
 def gather_playing(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
-    """The same where gears with play are the first."""
+    """Gather wheels if gears with play are the first kind."""
     return _gathered(m, layout)
 
 
@@ -358,7 +360,7 @@ def _gathered(m: Mechanism, layout: Layout) -> list[Feature]:
 
 
 def _toothed(m: Mechanism, layout: Layout) -> list[Joint | Force]:
-    """Gear pairs and racks, and gears with play, unless their bodies are left out."""
+    """Return the gear pairs and racks, and gears with play, unless their bodies are left out."""
     with_play = [force for force in m.forces.values() if force.kind.name == PLAYING]
     return [
         *(joint for joint in m.joints.values() if joint.kind.name in (GEARS, RACKS)),
@@ -367,7 +369,7 @@ def _toothed(m: Mechanism, layout: Layout) -> list[Joint | Force]:
 
 
 def _apart(known: list[Wheel], wheel: Wheel, mate: Wheel, tip: float, layout: Layout) -> Wheel:
-    """The wheel, or an equal one in another layer where the mate would meet one that the wheel has already."""
+    """Return the wheel, or an equal one in another layer where the mate would meet one that the wheel has already."""
     if wheel.ring or mate.ring or wheel.radius < wheels.LEAST_ON_TUBE:
         return wheel
     for candidate in known:
@@ -405,7 +407,7 @@ def refuse_apart(m: Mechanism, joint: Joint | Force, first: Wheel, second: Wheel
 
 
 def wheel_at(known: list[Wheel], name: str, marker: Marker, radius: float, ring: bool, layout: Layout) -> Wheel:
-    """The wheel of that pitch radius (m) about a marker: one of ``known``, or a new one that joins them."""
+    """Return the wheel of that pitch radius (m) about a marker: one of ``known``, or a new one that joins them."""
     (x, y), body, size = layout.place(marker), marker.body.name, layout.sizes.of_metres(radius)
     for wheel in known:
         same = wheel.body == body and math.hypot(wheel.x - x, wheel.y - y) < SAME and wheel.ring == ring
@@ -426,7 +428,7 @@ def _rack(bars: list[Rack], name: str, marker: Marker, layout: Layout) -> Rack:
 
 
 def _least(marker: Marker, radius: float, m: Mechanism) -> float:
-    """Least pitch radius (rmm) of a wheel: on a tube it is larger."""
+    """Return the least pitch radius (rmm) of a wheel: on a tube it is larger."""
     others = []
     for joint in (*m.joints.values(), *m.forces.values()):
         sized = with_radii(joint.params) if joint.kind.name in (GEARS, RACKS, BELTS, PLAYING) else {}

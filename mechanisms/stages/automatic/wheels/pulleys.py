@@ -84,11 +84,11 @@ class Belt:
     crossed: bool
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """None."""
+        """Return an empty list."""
         return []
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Both strands, in a body in which they rest; none where there is no such body."""
+        """Yield both strands, in a body in which they rest; none where there is no such body."""
         first, second = self.pulleys
         for body in layout.poses:
             ends = [layout.seen(pulley.body, (pulley.x, pulley.y), body) for pulley in self.pulleys]
@@ -107,7 +107,7 @@ class Belt:
             return
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """None."""
+        """Return an empty list."""
         return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
@@ -143,19 +143,19 @@ def pulley_disc(pulley: Pulley, thickness: float, eyes: list[tuple[float, float,
 
 @build.register(Pulley)
 def build_pulley(pulley: Pulley, plan: Plan, heights: Heights) -> None:
-    """Disc and rim."""
+    """Build the disc and rim."""
     build_wheel(pulley, plan, heights)
     build_rim(pulley, plan, heights)
 
 
 def build_rim(pulley: Pulley, plan: Plan, heights: Heights) -> None:
-    """The rim about its disc."""
+    """Build the rim about its disc."""
     seat = plan.layout.sizes.pivot.fit.seat
     plan.add(pulley.body, rim_of(pulley, heights.thickness, heights.bottom(pulley.layer), seat))
 
 
 def rim_of(pulley: Pulley, thickness: float, z: float, seat: float) -> Solid:
-    """The rim of a pulley from z up, ``seat`` around its disc."""
+    """Return the rim of a pulley from z up, ``seat`` around its disc."""
     inner = pulley.root + seat
     middle, radius = z + thickness / 2, BELT
     if pulley.teeth:
@@ -174,7 +174,9 @@ def rim_of(pulley: Pulley, thickness: float, z: float, seat: float) -> Solid:
 
 
 def sprocket_outline(teeth: int, radius: float, tooth: float, phase: float) -> np.ndarray:
-    """(n, 2): round seats for rollers on the pitch circle, the first at the angle ``phase``, and teeth between them."""
+    """Return (n, 2): round seats for rollers on the pitch circle, the first at the angle ``phase``, and teeth between
+    them.
+    """
     seat, pitch = 0.95 * tooth, 2 * math.pi / teeth
     turn = np.linspace(-100.0, 100.0, SEAT) * math.pi / 180 + math.pi  # about the roller, inner half
     bed = np.stack([radius + seat * np.cos(turn), seat * np.sin(turn)], axis=1)[::-1]
@@ -192,19 +194,19 @@ BELTS = "belt"
 
 @extent(BELTS)
 def extent_of(joint: Joint, solution: Solution) -> Extent:
-    """Both pulleys."""
+    """Return both pulleys."""
     sized = with_radii(joint.params)
     both = (joint.i, sized["radius_i"]), (joint.j, sized["radius_j"])
     return Extent(both, tuple((radius, LEAST) for _, radius in both))
 
 
 def belts(m: Mechanism, layout: Layout) -> list[Belt]:
-    """All belts of the mechanism, with their pulleys. Raises UserError where two pulleys overlap."""
+    """Return all belts of the mechanism, with their pulleys. Raises UserError where two pulleys overlap."""
     return [belt_of(m, joint, layout) for joint in m.joints.values() if joint.kind.name == BELTS]
 
 
 def belt_of(m: Mechanism, joint: Joint, layout: Layout) -> Belt:
-    """The belt of a joint, with its pulleys. Raises UserError where these overlap."""
+    """Return the belt of a joint, with its pulleys. Raises UserError where these overlap."""
     pair = _pulley(joint, 0, layout), _pulley(joint, 1, layout)
     _fit(m, joint, pair, layout)
     for pulley, mate in (pair, pair[::-1]):

@@ -98,18 +98,18 @@ class Rack:
         return (self.phase or 0.0) + (first - 0.5) * self.pitch, (self.phase or 0.0) + (last + 0.5) * self.pitch
 
     def at(self, along: float, across: float) -> tuple[float, float]:
-        """A place in the body's frame."""
+        """Return a place in the body's frame."""
         c, s = math.cos(self.angle), math.sin(self.angle)
         return self.x + c * along - s * across, self.y + s * along + c * across
 
     def sees(self, pinion: Wheel, layout: Layout) -> tuple[float, float]:
-        """The pinion's place along the pitch line and its body's angle against the rack at the start."""
+        """Return the pinion's place along the pitch line and its body's angle against the rack at the start."""
         along, _ = _path(self, pinion, layout)[0]
         turn = layout.poses[pinion.body][0][2] - layout.poses[self.body][0][2] - self.angle
         return float(along), float(turn)
 
     def seats(self, layout: Layout) -> list[tuple[float, float]]:
-        """Where studs or posts carry the bar: as near to the rest of the body as they can be."""
+        """Return where studs or posts carry the bar: as near to the rest of the body as they can be."""
         low, high = (end + side * (STUD + 1.0) for end, side in zip(self.ends, (1, -1), strict=True))
         across = self.root - BACK / 2
         if self.body == "ground":
@@ -124,11 +124,11 @@ class Rack:
         return [self.at(middle - half, across), self.at(middle + half, across)]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Its seats."""
+        """Return its seats."""
         return [Anchor(self.body, x, y, STUD + 2.0) for x, y in self.seats(layout)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The bar, and what carries it."""
+        """Yield the bar, and what carries it."""
         (low, high), edge = self.ends, 0.2
         corners = [(low, self.root - BACK), (high, self.root - BACK), (high, self.tip), (low, self.tip)]
         bar = Rounded(np.array([self.at(*corner) for corner in corners]), edge)
@@ -141,12 +141,14 @@ class Rack:
             yield Item(f"a stud of {self.what}", self.body, disc(x, y, STUD), reach, source=self, spared=False)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """None."""
+        """Return an empty list."""
         return []
 
 
 def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layout) -> None:
-    """The pinion's way along the rack. Raises UserError if its centre is not always its radius above the pitch line."""
+    """Add the pinion's way along the rack. Raises UserError if its centre is not always its radius above the pitch
+    line.
+    """
     path = _path(rack, pinion, layout)
     rack.ways.append((float(path[:, 0].min()), float(path[:, 0].max())))
     off = float(np.abs(path[:, 1] - pinion.radius).max())
@@ -162,7 +164,7 @@ def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layou
 
 
 def _path(rack: Rack, pinion: Wheel, layout: Layout) -> np.ndarray:
-    """(T, 2): the pinion's centre along and across the pitch line."""
+    """Return (T, 2) the pinion's centre along and across the pitch line."""
     seen = layout.seen(pinion.body, (pinion.x, pinion.y), rack.body) - np.array([rack.x, rack.y])
     c, s = math.cos(rack.angle), math.sin(rack.angle)
     return np.stack([c * seen[:, 0] + s * seen[:, 1], c * seen[:, 1] - s * seen[:, 0]], axis=1)
@@ -173,7 +175,7 @@ def _path(rack: Rack, pinion: Wheel, layout: Layout) -> np.ndarray:
 
 @build.register(Rack)
 def build_rack(rack: Rack, plan: Plan, heights: Heights) -> None:
-    """A steel bar; in its body's layer it is part of the plate."""
+    """Build a steel bar; in its body's layer it is part of the plate."""
     first, last = rack.teeth
     outline = rack_outline(
         last - first + 1,

@@ -101,7 +101,7 @@ class Wheel:
         return 2 * math.pi / self.teeth
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """The wheel is no part of the outline; what carries it is."""
+        """Return anchors of what carries the wheel; the wheel is no part of the outline."""
         if self.body == "ground":
             return [Anchor("ground", self.x, self.y, self.outside)]
         if self.ring:
@@ -109,7 +109,7 @@ class Wheel:
         return [] if self.shares else [Anchor(self.body, self.x, self.y, TUBE[1])]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """A disc, or an annulus in pieces, and what carries it."""
+        """Yield a disc, or an annulus in pieces, and what carries it."""
         reach, spares = Reach((self.layer,)), frozenset[str]()
         meshes = frozenset(mate.what for mate in self.mates)
         if not self.ring:
@@ -147,12 +147,14 @@ class Wheel:
         return None if fills else Face(self.x, self.y, self.root, math.inf if in_ring else max(self.tip, self.radius))
 
     def _pins(self, layout: Layout) -> frozenset[str]:
-        """Names of the pins that its tube goes round."""
+        """Return names of the pins that its tube goes round."""
         pins = (pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places)
         return frozenset(pin.what for pin in pins if math.dist(pin.places[self.body], (self.x, self.y)) < SAME)
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Posts under the rim of a ring fixed to ground: a cross turned so that the fewest bodies come near it."""
+        """Return posts under the rim of a ring fixed to ground: a cross turned so that the fewest bodies come near
+        it.
+        """
         return min((self._cross(degrees) for degrees in CROSSES), key=lambda cross: _near(cross, layout))
 
     def _cross(self, degrees: float) -> list[tuple[float, float]]:
@@ -161,12 +163,12 @@ class Wheel:
         return [(self.x + at * math.cos(a), self.y + at * math.sin(a)) for a in angles]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """None."""
+        """Return an empty list."""
         return []
 
 
 def _near(posts: list[tuple[float, float]], layout: Layout) -> int:
-    """How many pairs of a post and a body's plate meet in the plane at some time."""
+    """Return how many pairs of a post and a body's plate meet in the plane at some time."""
     plates = [(layout.outline(body), layout.poses[body]) for body in layout.moving if layout.anchors[body]]
     still = layout.poses["ground"]
     room = layout.sizes.room
@@ -277,13 +279,13 @@ def _to_plate(wheel: Wheel, plan: Plan, heights: Heights) -> tuple[float, float]
 
 @singledispatch
 def shape_of(wheel: Carrier, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
-    """A wheel about the z axis from z = 0 up, with its eyes, and its number of through holes."""
+    """Return a wheel about the z axis from z = 0 up, with its eyes, and its number of through holes."""
     raise TypeError(f"{type(wheel).__name__} has no shape")
 
 
 @shape_of.register(Wheel)
 def wheel_shape(wheel: Wheel, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
-    """The wheel about the z axis from z = 0 up, with its eyes, and its number of through holes."""
+    """Return the wheel about the z axis from z = 0 up, with its eyes, and its number of through holes."""
     phase = wheel.phase or 0.0
     if wheel.ring:
         space = phase + math.pi / wheel.teeth
@@ -296,7 +298,7 @@ def wheel_shape(wheel: Wheel, thickness: float, eyes: list[tuple[float, float, E
 def with_hub(
     shape: cq.Workplane, root: float, thickness: float, eyes: list[tuple[float, float, Eye]]
 ) -> tuple[cq.Workplane, int]:
-    """A disc of that root radius with a milled-out web and its eyes, and its number of through holes."""
+    """Return a disc of that root radius with a milled-out web and its eyes, and its number of through holes."""
     alone = all(math.hypot(x, y) < 0.01 for x, y, _ in eyes)
     holes = 0
     if alone and root - RIM_WALL > HUB + 5.0:
@@ -315,7 +317,7 @@ def with_hub(
 
 
 def _milled(shape: cq.Workplane, outer: float, thickness: float) -> tuple[cq.Workplane, int]:
-    """A web between hub and rim, with round windows where there is room."""
+    """Return a web between hub and rim, with round windows where there is room."""
     for z0, z1 in ((thickness - WEB, thickness + 1.0), (-1.0, WEB)):
         shape = shape.cut(turned([(HUB, z0), (outer, z0), (outer, z1), (HUB, z1)]))
     room = outer - HUB - 4.0

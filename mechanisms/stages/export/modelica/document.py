@@ -143,7 +143,7 @@ CLASSES = {
 
 
 def text_of(name: str) -> str:
-    """The class as it stands inside the model."""
+    """Return the class as it stands inside the model."""
     what, declared, equations = CLASSES[name]
     return (
         f'  model {name} "{what}"\n    extends PlanarMechanics.Interfaces.PartialTwoFrames;\n'
@@ -171,7 +171,7 @@ class Identifiers:
         self._taken = {model.lower()}
 
     def new(self, *words: str) -> str:
-        """A name that is like these words, joined by ``_``: ``rod 1`` gives ``rod_1``.
+        """Return a name that is like these words, joined by ``_``: ``rod 1`` gives ``rod_1``.
 
         No two differ in the case of letters alone, as files of results on some systems do not.
         """
@@ -185,13 +185,13 @@ class Identifiers:
 
 
 def identifier(word: str) -> str:
-    """An identifier like a word."""
+    """Return an identifier like a word."""
     name = re.sub(r"[^0-9A-Za-z_]+", "_", word).strip("_") or "thing"
     return f"n{name}" if name[0].isdigit() else f"{name}_" if name in KEYWORDS else name
 
 
 def quoted(words: str) -> str:
-    """A comment of a component."""
+    """Return a comment of a component."""
     return '"' + words.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
@@ -199,22 +199,22 @@ def quoted(words: str) -> str:
 
 
 def number(value: float) -> str:
-    """One number with all its digits."""
+    """Return one number with all its digits."""
     return repr(0.0 if abs(value) < ROUNDING else float(value)).removesuffix(".0")
 
 
 def vector(*values: float) -> str:
-    """Several in braces."""
+    """Return several in braces."""
     return "{" + ", ".join(number(value) for value in values) + "}"
 
 
 def signed(value: float) -> str:
-    """A number to be multiplied or added."""
+    """Return a number to be multiplied or added."""
     return f"({number(value)})" if value < 0 else number(value)
 
 
 def law(motion: Any) -> str | None:
-    """A law of time; None of those that have no formula."""
+    """Return a law of time; None for those that have no formula."""
     match motion:
         case ConstantRate():
             return f"{number(motion.start)} + {signed(motion.rate)}*time"
@@ -256,7 +256,7 @@ class Document:
         self.connections.append(f"  connect({first}, {second});")
 
     def between(self, kind: str, name: str, ends: tuple[str, str], modifiers: Mapping[str, str], words: str) -> str:
-        """A component with two frames, connected to two others."""
+        """Return a component with two frames, connected to two others."""
         made = self.add(kind, self.names.new(name), modifiers, words)
         self.connect(ends[0], f"{made}.frame_a")
         self.connect(f"{made}.frame_b", ends[1])

@@ -374,7 +374,7 @@ def _amounts(force: Any, **names: str) -> dict[str, str]:
 
 
 def amount_of(force: Any, name: str) -> str | None:
-    """An amount of a force: a number, or the formula of its law; None of a law without one."""
+    """An amount of a force: a number, or the formula of its law; None for a law without one."""
     return law(force.laws[name]) if name in force.laws else number(force.params[name])
 
 

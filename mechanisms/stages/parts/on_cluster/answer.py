@@ -57,7 +57,7 @@ class Made(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def read(name: str, content: bytes, own_file: str, program: Mapping[str, str]) -> Made:
-    """The parts of the mechanism ``name`` from the bytes that a worker sent.
+    """Return the parts of the mechanism ``name`` from the bytes that a worker sent.
 
     ``own_file`` is the author's file that they must follow from, ``program`` has the versions of the packages here.
     Raises WrongAnswer unless everything holds together: document, names, hashes, solids with their meshes and masses.
@@ -86,7 +86,7 @@ def read(name: str, content: bytes, own_file: str, program: Mapping[str, str]) -
 
 
 def parts_from(content: bytes, where: str) -> Parts:
-    """The parts.json with these bytes; raises UserError unless it holds together."""
+    """Return the parts.json with these bytes; raises UserError unless it holds together."""
     document = jsonfile.decode(content, Parts, where)
     consistency.refuse_other_words("units", document.units, PARTS_UNITS, where)
     consistency.refuse_inconsistent_parts(document, where)

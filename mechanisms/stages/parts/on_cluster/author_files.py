@@ -43,7 +43,7 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def collected(name: str, read: Iterable[str] = ()) -> dict[str, bytes]:
-    """The files of authors, by the name that inputs have, that go along for the mechanism or variant ``name``.
+    """Return the files of authors, by the name that inputs have, that go along for the mechanism or variant ``name``.
 
     ``read`` are names of files of a user's own folder that the parts were made from before. One that cannot be read,
     or goes meanwhile, stays here; that it is missing is reported from here.
@@ -57,7 +57,7 @@ def collected(name: str, read: Iterable[str] = ()) -> dict[str, bytes]:
 
 
 def by_content(files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """The same contents by their hash."""
+    """Return the same contents by their hash."""
     return {content_hash(content): content for content in files.values()}
 
 
@@ -73,7 +73,7 @@ def _paths(owner: str) -> Iterator[Path]:
 
 
 def _own_paths(owner: str, read: Iterable[str]) -> Iterator[Path]:
-    """Files of a user's own folder."""
+    """Yield files of a user's own folder."""
     folder = paths.mechanism_folder(owner)
     if folder != paths.MECHANISMS:
         yield from (path for path in folder.rglob("*") if path.is_file() and not _is_hidden(path.relative_to(folder)))
@@ -103,7 +103,7 @@ def _imported(waiting: list[tuple[Path, str]]) -> Iterator[Path]:
 
 
 def _place(module: str) -> Path:
-    """Where a module of the user's folder would be, without its suffix."""
+    """Return where a module of the user's folder would be, without its suffix."""
     top, *rest = module.split(".")
     if top != "mechanisms" or not rest:
         return paths.MECHANISMS.joinpath(top, *rest)

@@ -41,7 +41,8 @@ LEAST = 50e6
 
 
 def parts(files: Mapping[str, Path], common: str, name: str) -> bytes:
-    """The parts of the mechanism ``name`` from the contents ``files``, of which ``common`` is the :class:`Order`.
+    """Return the parts of the mechanism ``name`` from the contents ``files``, of which ``common`` is the
+    :class:`Order`.
 
     They are :class:`Made` as MessagePack. Raises UserError where this worker, rather than the mechanism, is at fault:
     its sources have changed since it was started, its disk is full, or the system ended the stage.
@@ -84,7 +85,7 @@ def copy_program(tree: Path) -> None:
 
 
 def own_folder(tree: Path, called: str) -> Path | None:
-    """The copy of a user's own folder, beside the program; None where the mechanism is not in one."""
+    """Return the copy of a user's own folder, beside the program; None where the mechanism is not in one."""
     return tree.parent / "own" / Path(called).name if called else None
 
 

@@ -74,7 +74,7 @@ def _refuse_wrong_piece(folder: Path, where: str, piece: Piece) -> None:
 
 
 def _solid(path: Path, where: str) -> Any:
-    """The one solid of a STEP file."""
+    """Return the one solid of a STEP file."""
     import cadquery
 
     content = path.read_bytes()

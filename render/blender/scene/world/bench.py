@@ -154,7 +154,8 @@ TOOL_LIGHT = 0.12
 def build_pegboard(
     thing: Thing, colour: Colour, away: float, clear: float, bounce: float, lamps: Sequence[Lamp]
 ) -> None:
-    """The wall at y = ``away`` from the floor up, the origin of ``thing`` at the floor; tools hang beside ``clear``.
+    """Build the wall at y = ``away`` from the floor up, the origin of ``thing`` at the floor; tools hang beside
+    ``clear``.
 
     Only the eye sees the tools, so far off their light is not missed; that of ``lamps``, in the axes of ``thing``, is
     painted on them: rays from them took a tenth of a frame. ``bounce``: see Light in render/looks.py.

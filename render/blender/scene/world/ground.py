@@ -24,8 +24,9 @@ LANE = 1.55
 
 
 def paint(ground: Ground, radius: float, haze: Colour | None = None, bounce: float = 0.0) -> Any:
-    """The material of a ground around the origin of its object; it fades into ``haze`` far away. ``bounce``: see
-    Light in render/looks.py."""
+    """Return the material of a ground around the origin of its object; it fades into ``haze`` far away. ``bounce``: see
+    Light in render/looks.py.
+    """
     import bpy
 
     made = bpy.data.materials.new(ground.texture)
@@ -43,7 +44,7 @@ def paint(ground: Ground, radius: float, haze: Colour | None = None, bounce: flo
 
 
 def _seen_only(graph: Graph, shader: Any, ground: Ground, bounce: float) -> Any:
-    """The texture for the eye; light that bounces meets the colour between its two: half the time of a frame."""
+    """Return the texture for the eye; light that bounces meets the colour between its two: half the time of a frame."""
     middle: Colour = tuple((a + b) / 2 for a, b in zip(ground.colour, ground.other, strict=True))  # pyright: ignore[reportAssignmentType]
     plain = graph.add("BsdfDiffuse", Color=middle).outputs[0]
     if bounce > 0.0:
@@ -137,7 +138,7 @@ def _asphalt(graph: Graph, ground: Ground, place: Any) -> Any:
 
 
 def _lined(graph: Graph, colour: Any, line: Colour, place: Any, worn: Any) -> Any:
-    """A dashed line behind the machine and a whole one before it; tyres have worn them."""
+    """Return a dashed line behind the machine and a whole one before it; tyres have worn them."""
     split = graph.add("SeparateXYZ", Vector=place)
     y = split.outputs["Y"]
     behind = graph.math("COMPARE", y, LANE, 0.055)
@@ -194,7 +195,7 @@ PLASTER = (0.58, 0.57, 0.55)
 
 
 def build(scene: Any, studio: StudioSpec, bounce: float) -> Any:
-    """One sheet around the origin under the machine's middle, its x along the picture."""
+    """Return one sheet around the origin under the machine's middle, its x along the picture."""
     import bpy
 
     look, radius = studio.look, studio.radius
@@ -218,7 +219,7 @@ def build(scene: Any, studio: StudioSpec, bounce: float) -> Any:
 
 
 def wall(scene: Any, studio: StudioSpec) -> Any:
-    """A wall in the plane of the motion, at which the machine hangs."""
+    """Return a wall in the plane of the motion, at which the machine hangs."""
     import bpy
 
     look, radius = studio.look, studio.radius
@@ -234,7 +235,7 @@ def wall(scene: Any, studio: StudioSpec) -> Any:
 
 
 def _bent(away: float) -> list[tuple[float, float]]:
-    """A profile (away, up) that bends upwards."""
+    """Return a profile (away, up) that bends upwards."""
     profile = [(BEFORE, 0.0), (away, 0.0)]
     for step in range(1, 33):
         angle = math.pi / 2 * step / 32

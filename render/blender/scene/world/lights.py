@@ -56,7 +56,9 @@ class Shine(NamedTuple):
 def painted(
     name: str, colour: Colour, lamps: Sequence[Lamp], at: Vector3, ambient: float, shine: Shine | None = None
 ) -> Any:
-    """A material of a matt ``colour`` under ``lamps`` as seen from ``at``, and ``ambient`` light from all around."""
+    """Return a material of a matt ``colour`` under ``lamps`` as seen from ``at``, and ``ambient`` light from all
+    around.
+    """
     made, graph = new_material(name)
     made.cycles.emission_sampling = "NONE"
     coordinates = graph.add("TexCoord")
@@ -90,7 +92,7 @@ def painted(
 
 
 def _seen_from(lamp: Lamp, at: Vector3) -> tuple[Vector3, float]:
-    """The direction of a lamp from a place, and E / (pi n . l) there."""
+    """Return the direction of a lamp from a place, and E / (pi n . l) there."""
     away = tuple(there - here for there, here in zip(lamp.place, at, strict=True))
     far = math.hypot(*away)
     towards = (away[0] / far, away[1] / far, away[2] / far)
@@ -105,7 +107,7 @@ def _seen_from(lamp: Lamp, at: Vector3) -> tuple[Vector3, float]:
 
 
 def _mirrored(graph: Graph, normal: Any) -> Any:
-    """The direction from which the eye sees a mirror of this normal shine."""
+    """Return the direction from which the eye sees a mirror of this normal shine."""
     along = graph.math("MULTIPLY", _dot(graph, normal, TOWARDS_EYE), 2.0)
     return graph.vector("SUBTRACT", graph.vector("SCALE", normal, Scale=along), TOWARDS_EYE)
 
@@ -129,7 +131,7 @@ WINDOW_AWAY = 7.0
 
 
 def softbox(scene: Any, studio: StudioSpec, box: Softbox) -> Any:
-    """An area light of a look."""
+    """Return an area light of a look."""
     import bpy
 
     radius = studio.radius
@@ -153,7 +155,7 @@ def _placed_and_aimed(studio: StudioSpec, box: Softbox) -> tuple[Any, Any]:
 
 
 def lamps_seen_from(root: Any, studio: StudioSpec, boxes: Sequence[Softbox]) -> list[Lamp]:
-    """The lamps of a look in the axes of a thing's ``root``."""
+    """Return the lamps of a look in the axes of a thing's ``root``."""
     back = root.matrix_basis.inverted()
     lamps = []
     for box in boxes:
@@ -164,7 +166,7 @@ def lamps_seen_from(root: Any, studio: StudioSpec, boxes: Sequence[Softbox]) -> 
 
 
 def sun(scene: Any, studio: StudioSpec, shining: Sun) -> list[Any]:
-    """Parallel light, and the window that it falls through."""
+    """Return parallel light, and the window that it falls through."""
     import bpy
     from mathutils import Matrix, Vector
 
@@ -190,7 +192,7 @@ def _placed(scene: Any, light: Any, place: Any, aim: Any) -> Any:
 
 
 def _window(scene: Any, studio: StudioSpec, toward: Any) -> Any:
-    """Bars across the sun's way and a wall around them, which only throw shadows."""
+    """Return bars across the sun's way and a wall around them, which only throw shadows."""
     import bpy
     from mathutils import Vector
 
@@ -234,7 +236,7 @@ def _fade_to_rim(light: Any) -> None:
 
 
 def build(scene: Any, sky: Sky, up: tuple[float, float, float]) -> None:
-    """The world of a scene: one colour, or a gradient along ``up``."""
+    """Build the world of a scene: one colour, or a gradient along ``up``."""
     import bpy
 
     scene.world = bpy.data.worlds.new("sky")

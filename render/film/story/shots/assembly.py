@@ -25,7 +25,7 @@ ROW = 0.085
 
 
 def leaders(scenery: Scenery, camera: CameraPose) -> tuple[Leader, ...]:
-    """The leader lines of the machine when it is apart, as a camera sees it."""
+    """Return the leader lines of the machine when it is apart, as a camera sees it."""
     film = scenery.film
     wide, high = max(1.0, film.aspect), max(1.0, 1 / film.aspect)
     places: list[tuple[float, float, str, str]] = []
@@ -47,7 +47,7 @@ def leaders(scenery: Scenery, camera: CameraPose) -> tuple[Leader, ...]:
 
 
 def _named(scenery: Scenery) -> list[tuple[str, float]]:
-    """Bodies with solids that get a name, and their masses (kg)."""
+    """Return bodies with solids that get a name, and their masses (kg)."""
     film = scenery.film
     masses = {
         body: film.motion.bodies[body].mass if body in film.motion.bodies else solids.mass.mass
@@ -58,7 +58,7 @@ def _named(scenery: Scenery) -> list[tuple[str, float]]:
 
 
 def _side(places: list[tuple[float, float, str, str]], right: bool, row: float, top: float, low: float) -> list[Leader]:
-    """Names at one side, from above in the order of their places, so that no two lines cross; ``row`` apart."""
+    """Return names at one side, from above in the order of their places, so that no two lines cross; ``row`` apart."""
     places = sorted(places, key=lambda place: place[1])
     heights = [min(max(y, top), low) for _, y, _, _ in places]
     for k in range(1, len(heights)):
@@ -86,7 +86,7 @@ MOST = 25.0
 
 
 def assembly(scenery: Scenery) -> Shot | None:
-    """The assembly; None of a machine of one layer."""
+    """Return the assembly; None for a machine of one layer."""
     if not any(lift.distance for lift in scenery.lifts):
         return None
     lifts, move = scenery.lifts, scenery.moving(LIFTS)
@@ -102,7 +102,7 @@ def assembly(scenery: Scenery) -> Shot | None:
     seconds = back + move + SETTLED
 
     def apart(s: float) -> float:
-        """How far all is apart, 0 .. 1: what came last goes first, and comes back last."""
+        """Return how far all is apart, 0 .. 1: what came last goes first, and comes back last."""
         return min(max((s - whole) / move, 0.0), 1.0, max((back + move - s) / move, 0.0))
 
     def picture(s: float) -> Picture:
@@ -137,12 +137,12 @@ def _caption(scenery: Scenery) -> str:
 
 
 def _points(scenery: Scenery, apart: float) -> Array:
-    """Points (n, 3) around all pieces, lifted by a part of their distances (m)."""
+    """Return points (n, 3) around all pieces, lifted by a part of their distances (m)."""
     return np.concatenate([scenery.piece(lift, apart) for lift in scenery.lifts])
 
 
 def _stand(scenery: Scenery, points: Array) -> Stand:
-    """A stand that holds points (n, 3) around the machine."""
+    """Return a stand that holds points (n, 3) around the machine."""
     film = scenery.film
     lies = film.parts.mount.kind == "desk"
     azimuth, elevation = LYING if lies else STANDING

@@ -73,7 +73,7 @@ def ramp_of(rate: float, span: float, at: float | None) -> Ramp:
 
 
 def beside(scenery: Scenery, ramp: Ramp, differs: Difference | None, names: tuple[str, str]) -> Shot:
-    """The shot of one of them; both have the same ``ramp``, whose times count from the start of each."""
+    """Return the shot of one of them; both have the same ``ramp``, whose times count from the start of each."""
     stand, start = scenery.stand(), scenery.film.clock.start
     seconds, text, shown = ramp.seconds, "", (0.0, 0.0)
     if differs is not None:

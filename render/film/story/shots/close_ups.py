@@ -34,7 +34,7 @@ LYING, STANDING = ((-34.0, 34.0), (14.0, 44.0)), ((-40.0, 16.0), (6.0, 26.0))
 
 
 def macro(scenery: Scenery) -> Shot | None:
-    """The macro; None of a machine without joints."""
+    """Return the macro; None for a machine without joints."""
     name = _joint(scenery)
     if name is None:
         return None
@@ -64,12 +64,12 @@ def macro(scenery: Scenery) -> Shot | None:
 
 
 def _busy(scenery: Scenery) -> float:
-    """When what the story is about happens (s)."""
+    """Return when what the story is about happens (s)."""
     return scenery.reasons[0].time if scenery.reasons else scenery.film.clock.start
 
 
 def _joint(scenery: Scenery) -> str | None:
-    """The joint that is asked for; else of those on top the one of the event, or that carries most."""
+    """Return the joint that is asked for; else of those on top the one of the event, or that carries most."""
     joints = scenery.film.motion.joints
     if scenery.wishes.joint is not None:
         return scenery.wishes.joint
@@ -90,7 +90,7 @@ def _joint(scenery: Scenery) -> str | None:
 
 
 def _height(scenery: Scenery, name: str) -> float:
-    """The highest piece of a moving body at a joint, at the start of the motion (m)."""
+    """Return the highest piece of a moving body at a joint, at the start of the motion (m)."""
     film = scenery.film
     at = film.clock.moment(0)
     x, y = film.poses.joint(name, at)
@@ -101,7 +101,7 @@ def _height(scenery: Scenery, name: str) -> float:
 
 
 def _place(scenery: Scenery, name: str, at: float) -> tuple[float, float, float]:
-    """Where the joint is at a frame of the loop, for a camera that does not follow all of its way (m, world)."""
+    """Return where the joint is at a frame of the loop, for a camera that does not follow all of its way (m, world)."""
     moment = scenery.film.clock.moment(at)
     x, y = scenery.film.poses.joint(name, Moment(moment.time, 0))
     joint = scenery.film.motion.joints[name]
@@ -149,7 +149,9 @@ left is seen the other way round."""
 
 
 def section(scenery: Scenery) -> Shot | None:
-    """The section; None of a shot that cuts nothing open. Raises UserError where it is asked for all the same."""
+    """Return the section; None for a shot that cuts nothing open. Raises UserError where it is asked for all the
+    same.
+    """
     if scenery.cut is None:
         if "section" in (scenery.wishes.shots or ()):
             raise UserError(
@@ -178,7 +180,7 @@ def section(scenery: Scenery) -> Shot | None:
 
 
 def _turn(scenery: Scenery, cut: Film) -> float:
-    """Degrees from the azimuth of the story to that of the film that is cut open, with its light."""
+    """Return degrees from the azimuth of the story to that of the film that is cut open, with its light."""
     here, there = (angles(film.shot.camera, film.parts.mount, film.aspect)[0] for film in (scenery.film, cut))
     return math.degrees(there - here)
 

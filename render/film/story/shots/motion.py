@@ -15,7 +15,7 @@ SECONDS, FADE = 3.0, 0.5
 
 
 def title(scenery: Scenery, after: Shot | None) -> Shot | None:
-    """The title before a shot, whose first picture it shows; None where no shot follows."""
+    """Return the title before a shot, whose first picture it shows; None where no shot follows."""
     if after is None:
         return None
     first = after.picture(0.0)
@@ -37,7 +37,7 @@ REST = 0.7
 
 
 def motion(scenery: Scenery) -> Shot:
-    """Whole turns at the rate of the loop film; a longer motion once, fast through what is dull."""
+    """Return the whole turns at the rate of the loop film; a longer motion once, fast through what is dull."""
     clock = scenery.film.clock
     whole = clock.moving / scenery.fps
     showings = max(1, int(np.ceil(SHORT / (whole if clock.repeats else whole + REST) - 1e-9)))

@@ -24,7 +24,7 @@ NEAR = 0.09
 
 
 def notes(scenery: Scenery, picture: Picture) -> tuple[Note, ...]:
-    """Names and sizes of the largest arrows, at their tips, as the picture's camera sees them."""
+    """Return names and sizes of the largest arrows, at their tips, as the picture's camera sees them."""
     film = scenery.forces
     assert film is not None
     time = film.clock.moment(picture.at).time
@@ -69,7 +69,7 @@ EDGE = 0.03
 
 
 def reason(scenery: Scenery) -> Shot | None:
-    """The stop at the first reason; None where the motion has none."""
+    """Return the stop at the first reason; None where the motion has none."""
     if not scenery.reasons:
         return None
     what, clock = scenery.reasons[0], scenery.film.clock
@@ -105,7 +105,7 @@ def reason(scenery: Scenery) -> Shot | None:
 
 
 def sentence(scenery: Scenery, what: Reason) -> str:
-    """A caption in plain words."""
+    """Return a caption in plain words."""
     with_force = what.kind in ("turns_back", "event") and what.joint
     key = f"{what.kind}_force" if with_force else what.kind
     return scenery.say(
@@ -145,7 +145,7 @@ DIP = 0.4
 
 
 def loop(scenery: Scenery, seconds: float) -> Shot:
-    """The loop: of a motion with a period whole periods, of another all of it."""
+    """Return the loop: of a motion with a period whole periods, of another all of it."""
     clock, what = scenery.film.clock, scenery.reasons[0] if scenery.reasons else None
     period = clock.end - clock.start
     if what is None:

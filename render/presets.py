@@ -142,7 +142,7 @@ def _meant(word: str) -> str:
 
 
 def has_sound(text: str) -> bool:
-    """Return True if SOUND, ``on`` if nothing is said, asks for a film with sound; raises UserError for another word."""
+    """Return True if SOUND asks for a film with sound, as an empty one does; raises UserError for another word."""
     if text not in ("", "on", "off"):
         raise UserError(f"SOUND={text!r} is neither on nor off; without SOUND a film has its sound")
     return text != "off"

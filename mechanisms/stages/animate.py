@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.inputs import Inputs, observed, recording, sources_state
-from mechanisms.stages.parts.current import current_parts
+from mechanisms.stages.parts.stage import current_parts
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.skeleton_file import body_colours, main_material
 from shared.stage import console

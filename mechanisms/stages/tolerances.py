@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.inputs import Inputs, observed, recording, sources_state
 from mechanisms.stages.loading.loading import refuse_arguments
-from mechanisms.stages.parts.current import current_parts
+from mechanisms.stages.parts.stage import current_parts
 from mechanisms.stages.solve import solving
 from shared.stage import console
 from shared.stage.errors import UserError

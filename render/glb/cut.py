@@ -127,7 +127,7 @@ def front_of(film: Film) -> float:
 
 
 def said_of(film: Film) -> str:
-    """Return the sentence about bodies that are cut so, and springs, ropes and belts that are not; empty without any."""
+    """Return words on bodies that are cut so, and springs, ropes and belts that are not; empty without any."""
     bodies = dict.fromkeys(piece.body for piece in film.scene.pieces if piece.fixed)
     words = [f"{', '.join(bodies)}: {PART}"] if bodies else []
     if film.cut and front_of(film) == math.inf:

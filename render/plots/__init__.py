@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from render import FRAME_SOURCES
-from render.plots.asked import spectra_asked
+from render.plots.quantities import spectra_asked
 from shared.contract import Motion, read_motion
 from shared.contract.skeleton import read_skeleton
 from shared.stage.console import say

@@ -383,7 +383,7 @@ def automatic(
     """
     if solution is None:
         from mechanisms.stages.loading.loading import running
-        from mechanisms.stages.solve.bare_motion import bare_solution
+        from mechanisms.stages.solve.masses import bare_solution
 
         solution = bare_solution(running(m.name))
     return Automatic(m, solution, pin, fit)

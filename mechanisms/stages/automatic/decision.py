@@ -1,4 +1,4 @@
-"""Decisions before anything is built: pins, layers, springs and bridges; or the reason why no order of layers exists."""
+"""Decisions before anything is built: pins, layers, springs and bridges; or why no order of layers exists."""
 
 from __future__ import annotations
 

@@ -123,12 +123,7 @@ def check(
     from shared.contract.spanning import with_rods
 
     name, motion = title or parts.mechanism, with_rods(motion, parts)
-    lost = sorted({piece.body for piece in pieces} - {"ground"} - set(motion.bodies))
-    if lost:
-        raise UserError(
-            f"{name}: parts.json has a body '{lost[0]}' that data.json does not move; "
-            "use the names of mechanism.py in parts()"
-        )
+    _refuse_lost(name, pieces, motion)
     where = paths(motion)
     axes, in_mesh = axes_of(motion, parts, where), meshes(motion, pieces)
     slides = slides_of(motion, where)
@@ -178,6 +173,15 @@ def check(
             apart += 1
     if refused:
         raise UserError(_refusal(name, refused, limit))
+    return _clearance_of(parts, key, limit, error, pairs, apart)
+
+
+def _clearance_of(
+    parts: Parts, key: str, limit: float, error: float, pairs: list[PairClearance], apart: int
+) -> Clearance:
+    """Return the document; ``limit`` and ``error`` in mm."""
+    from mechanisms.stages.clearance.search import RESOLUTION
+
     return Clearance(
         mechanism=parts.mechanism,
         provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
@@ -189,6 +193,16 @@ def check(
         may_touch=parts.may_touch,
         pieces_may_touch=parts.pieces_may_touch,
     )
+
+
+def _refuse_lost(name: str, pieces: list[MeshPiece], motion: Motion) -> None:
+    """Raise UserError for a body of parts.json that does not move in data.json."""
+    lost = sorted({piece.body for piece in pieces} - {"ground"} - set(motion.bodies))
+    if lost:
+        raise UserError(
+            f"{name}: parts.json has a body '{lost[0]}' that data.json does not move; "
+            "use the names of mechanism.py in parts()"
+        )
 
 
 def _turn(

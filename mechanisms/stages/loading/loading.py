@@ -321,7 +321,7 @@ def _is_below(filename: str, folder: Path) -> bool:
 
 
 def _is_programs(place: str) -> bool:
-    """Return True if what lies in a user's folder is an environment's or the program's, as where that folder is a home."""
+    """Return True if a place in a user's folder belongs to an environment or to the program."""
     own = MECHANISMS.is_relative_to(ROOT)
     return is_installed(f"{place}{os.sep}") or (not own and Path(place).is_relative_to(ROOT))
 

@@ -10,8 +10,7 @@ from mechanisms.stages.loading import loading
 from mechanisms.stages.loading.loading import load, params
 from mechanisms.stages.loading.wishes import wished_scale
 from mechanisms.stages.solve import solving
-from mechanisms.stages.solve.bare_motion import bare_solution, depends_on_masses
-from mechanisms.stages.solve.masses import leaves_masses
+from mechanisms.stages.solve.masses import bare_solution, depends_on_masses, leaves_masses
 from mechanisms.stages.solve.solving import build
 from shared.contract import Mount, consistency, mounted
 from shared.stage.errors import UserError

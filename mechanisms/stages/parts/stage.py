@@ -1,4 +1,4 @@
-"""The ``parts`` stage: mechanisms/<name>/parts.py, or the model alone, becomes STL, STEP and parts.json.
+"""The stage ``parts``: mechanisms/<name>/parts.py, or the model alone, becomes STL, STEP and parts.json.
 
 It runs again only if something changed that the solids follow from: parts.py and what it imports or reads, the part
 library, the densities, CadQuery, a parameter that ``parts()`` reads, or ``mount`` of shot.py, whose other fields count
@@ -24,13 +24,16 @@ from mechanisms.stages.loading.wishes import of_shot, scaling, wishing
 from mechanisms.stages.parts import memory
 from mechanisms.stages.parts.automatic_solids import needs_machine, needs_masses
 from mechanisms.stages.parts.memory import KeptPieces, fields_of, plain_text, traced
+from shared import contract
 from shared.cluster.address import address
 from shared.contract import Parts, Provenance, write_parts
 from shared.contract.materials import MATERIALS
 from shared.contract.mount import Kind
 from shared.contract.quantity import written
+from shared.stage import console
 from shared.stage.console import Shown, say, warn
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out, is_single_file, mechanism_file
 from shared.stage.scale import Scale, scale_of
@@ -44,7 +47,7 @@ SOURCES = [
     *(_STAGES / "parts" / f"{name}.py" for name in _STAGE),
     *contract_sources(),
 ]
-_MOTION = ("bare_motion", "solving", "masses")
+_MOTION = ("solving", "masses")
 _AUTOMATIC = ("automatic", "loading/loading.py")
 AUTOMATIC = [
     *SOURCES,
@@ -349,3 +352,18 @@ def _summary(name: str, document: Parts, count: int) -> str:
         f"{name}: {len(pieces)} solids of {len(document.bodies)} bodies, {written(moving, 'kg')} moving, "
         f"{triangles} triangles, {count} files written"
     )
+
+
+# The parts of a mechanism, for stages that take their masses and colours but go on without them.
+
+
+def current_parts(out: Out, stage: str) -> Parts | None:
+    """Return the parts that are there, unless what they follow from has changed since, which ``stage`` says."""
+
+    if not out.parts.is_file():
+        return None
+    if are_current(out.name):
+        return contract.read_parts(out.parts, out.name)
+    remedy = to_run("parts", out.name)
+    console.say(stage, f"{out.name}: the parts are of an older state, so their masses do not count; {remedy}")
+    return None

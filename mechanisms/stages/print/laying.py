@@ -265,7 +265,7 @@ def groups(pieces: Sequence[tuple[str, Laid]]) -> list[list[int]]:
 
 
 def is_equal(piece: Laid, other: Laid) -> bool:
-    """Return True if a turn, as it lies or turned over, and a shift bring the corners of one onto those of the other."""
+    """Return True if a turn, also turned over, and a shift bring the corners of one onto those of the other."""
     if abs(piece.size[2] - other.size[2]) > NEAR or len(piece.vertices) != len(other.vertices):
         return False
     first, second = _centred(piece), _centred(other)

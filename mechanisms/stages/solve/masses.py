@@ -1,14 +1,16 @@
-"""Masses for a motion: from mechanism.py, from parts.json, or estimated."""
+"""Masses for a motion: from mechanism.py, from parts.json, or estimated; and motions without masses."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from mechanisms.stages.loading import loading
+from mechanisms.stages.solve import solving
 from shared.contract.materials import MATERIALS
 from shared.contract.quantity import written
 from shared.stage.console import say
@@ -16,9 +18,11 @@ from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean
 
 if TYPE_CHECKING:
-    from mbsd import Marker, Mechanism
-    from shared.contract import BodyParts, Parts
+    from mbsd import Marker, Mechanism, Solution
+    from shared.contract import BodyParts, Mass, Parts
 
+
+# Masses for a motion: from mechanism.py, from parts.json, or estimated.
 
 # Estimates masses of bodies that have none yet: each counts as a uniform aluminium plate through its markers.
 #
@@ -196,3 +200,27 @@ def _refuse_other_bodies(m: Mechanism, parts: Parts) -> None:
                 f"{did_you_mean(min(missing), there) or '.'} mechanism.py and parts.py must name the same bodies "
                 "(Bodies.leave_out names one without solids)"
             )
+
+
+# The motion of a mechanism from mechanism.py alone, before there are any parts.
+
+
+def bare_solution(name: str, masses: Mapping[str, Mass] | None = None) -> Solution:
+    """Solve a mechanism with the masses of mechanism.py; where it gives none, with ``masses`` or estimated ones.
+
+    Poses of a mechanism whose drivers fix every freedom do not depend on masses; those of a simulation do, so parts
+    made for it follow from a motion with their own masses (automatic_solids.py). Raises UserError.
+    """
+    module, p = loading.load(name, "mechanism"), loading.params(name)
+    m = solving.build(name, module, p)
+    sources, _ = give_masses(m, None)
+    for body in (body for body, source in sources.items() if source == "estimate" and body in (masses or {})):
+        mass = (masses or {})[body]
+        m.set_mass(body, mass.mass, mass.com, mass.inertia)
+    return solving.motion_of(name, module, m, p)
+
+
+def depends_on_masses(name: str, solution: Solution) -> bool:
+    """Return True if the motion is a simulation of bodies some of which have no mass in mechanism.py."""
+    m = solving.build(name, loading.load(name, "mechanism"), loading.params(name))
+    return solution.work is not None and "estimate" in give_masses(m, None)[0].values()

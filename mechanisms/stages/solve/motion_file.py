@@ -209,26 +209,10 @@ def to_motion(
     ``sources`` says where the mass of each body is from; if it is not given, from the parts.
     """
     import mbsd
-    from mbsd.drawing.inks import on_dark
 
     notes = list(solution.notes)
     solution = solution.only(solution.is_defined) if notes else solution
-    inks = body_colours(solution.mechanism, parts)
-    m, stats, energy = solution.mechanism, solution.stats, solution.energy
-    bodies = {
-        name: contract.BodyMotion(
-            **_lists(solution.body(name), FRAME),
-            z=parts.bodies[name].z if parts and name in parts.bodies else None,
-            mass=body.mass,
-            mass_from=sources[name] if sources else "parts",
-            com=body.com,
-            inertia=body.inertia,
-            colour=inks[name],
-            colour_on_dark=on_dark(inks[name]),
-        )
-        for name, body in m.bodies.items()
-        if name != "ground"
-    }
+    m, energy = solution.mechanism, solution.energy
     return contract.Motion(
         mechanism=m.name,
         provenance=contract.Provenance(inputs=inputs, versions=packages | {"mbsd": mbsd.__version__}),
@@ -236,32 +220,9 @@ def to_motion(
         analysis="sweep" if solution.work is None else "simulation",
         period=solution.period,
         time=solution.t.tolist(),
-        bodies=bodies,
-        joints={
-            name: contract.JointMotion(
-                kind=joint.kind.name,
-                bodies=joint.bodies,
-                **_lists(solution.joint(name), PLACED),
-                pair=joint.kind.pair,  # pyright: ignore[reportArgumentType]  (the contract lists them)
-                look=joint.kind.look,  # pyright: ignore[reportArgumentType]
-                acts=_acts(solution.joint(name).acts) if joint.kind.touching else None,
-                shape=shape_of(joint),
-            )
-            for name, joint in m.joints.items()
-        },
-        drivers={
-            name: contract.DriverMotion(
-                kind=driver.kind.name.removeprefix("drive_"),
-                bodies=driver.bodies,
-                unit="rad" if driver.kind.angular else "m",
-                effort_unit="N m" if driver.kind.angular else "N",
-                look=driver.kind.look,  # pyright: ignore[reportArgumentType]
-                actions=_actions(solution, driver),
-                shape=shape_of(driver),
-                **_lists(solution.driver(name), ("value", "effort", "power")),
-            )
-            for name, driver in m.drivers.items()
-        },
+        bodies=_bodies(solution, parts, sources),
+        joints={name: _joint(solution, joint) for name, joint in m.joints.items()},
+        drivers={name: _driver(solution, driver) for name, driver in m.drivers.items()},
         points={
             name: contract.PointMotion(
                 body=marker.body.name, **_lists(solution.point(name), ("x", "y", "vx", "vy", "ax", "ay"))
@@ -286,15 +247,68 @@ def to_motion(
         ],
         start_changes=list(solution.changes),
         notes=notes,
-        diagnostics=contract.Diagnostics(
-            position_residual=stats.position_residual,
-            velocity_residual=stats.velocity_residual,
-            acceleration_residual=stats.acceleration_residual,
-            power_residual=stats.power_residual,
-            dof=solution.mobility.dof,
-            redundant=list(solution.mobility.redundant),
-            singularity_margin=solution.singularity_margin.tolist(),
-        ),
+        diagnostics=_diagnostics(solution),
+    )
+
+
+def _bodies(
+    solution: Solution, parts: contract.Parts | None, sources: Mapping[str, Source] | None
+) -> dict[str, contract.BodyMotion]:
+    from mbsd.drawing.inks import on_dark
+
+    inks = body_colours(solution.mechanism, parts)
+    return {
+        name: contract.BodyMotion(
+            **_lists(solution.body(name), FRAME),
+            z=parts.bodies[name].z if parts and name in parts.bodies else None,
+            mass=body.mass,
+            mass_from=sources[name] if sources else "parts",
+            com=body.com,
+            inertia=body.inertia,
+            colour=inks[name],
+            colour_on_dark=on_dark(inks[name]),
+        )
+        for name, body in solution.mechanism.bodies.items()
+        if name != "ground"
+    }
+
+
+def _joint(solution: Solution, joint: Joint) -> contract.JointMotion:
+    view = solution.joint(joint.name)
+    return contract.JointMotion(
+        kind=joint.kind.name,
+        bodies=joint.bodies,
+        **_lists(view, PLACED),
+        pair=joint.kind.pair,  # pyright: ignore[reportArgumentType]  (the contract lists them)
+        look=joint.kind.look,  # pyright: ignore[reportArgumentType]
+        acts=_acts(view.acts) if joint.kind.touching else None,
+        shape=shape_of(joint),
+    )
+
+
+def _driver(solution: Solution, driver: Joint) -> contract.DriverMotion:
+    return contract.DriverMotion(
+        kind=driver.kind.name.removeprefix("drive_"),
+        bodies=driver.bodies,
+        unit="rad" if driver.kind.angular else "m",
+        effort_unit="N m" if driver.kind.angular else "N",
+        look=driver.kind.look,  # pyright: ignore[reportArgumentType]
+        actions=_actions(solution, driver),
+        shape=shape_of(driver),
+        **_lists(solution.driver(driver.name), ("value", "effort", "power")),
+    )
+
+
+def _diagnostics(solution: Solution) -> contract.Diagnostics:
+    stats = solution.stats
+    return contract.Diagnostics(
+        position_residual=stats.position_residual,
+        velocity_residual=stats.velocity_residual,
+        acceleration_residual=stats.acceleration_residual,
+        power_residual=stats.power_residual,
+        dof=solution.mobility.dof,
+        redundant=list(solution.mobility.redundant),
+        singularity_margin=solution.singularity_margin.tolist(),
     )
 
 

@@ -40,7 +40,7 @@ def mark_chamfers(mesh: Any) -> None:
 
 
 def engraved(mesh: Any) -> Array:
-    """Return (n,) True for each triangle that is the floor or a wall of what is engraved into the largest level face."""
+    """Return (n,) True for triangles that are floor or wall of an engraving in the largest level face."""
     places = np.empty((len(mesh.vertices), 3), np.float32)
     mesh.vertices.foreach_get("co", places.ravel())
     corners = np.empty(len(mesh.loops), np.int32)

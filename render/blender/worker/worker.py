@@ -107,7 +107,7 @@ def save_scene(built: Any, path: Path) -> None:
 
 
 def _blend_fault(path: Path) -> str | None:
-    """Return the fault of a .blend that was cut short, or None: a whole one ends with a table of its compressed pieces."""
+    """Return the fault of a .blend that was cut short, or None; a whole one ends with a table of its pieces."""
     import bpy
 
     content = path.read_bytes() if path.exists() else b""

@@ -159,7 +159,7 @@ class Clauses:
         return list(total.rhs)
 
     def solved(self, assumed: Sequence[int] = (), budget: int | None = None) -> bool | None:
-        """Return True if there is a model under assumptions; None if ``budget`` conflicts of the solver do not decide."""
+        """Return True if there is a model under assumptions; None if ``budget`` conflicts do not decide."""
         if budget is None:
             answer = self.solver.solve(assumptions=assumed)
         else:

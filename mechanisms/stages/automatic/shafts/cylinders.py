@@ -176,7 +176,7 @@ def _shaft(machine: Machine, piston: Piston) -> Shaft | None:
 
 
 def _wish(machine: Machine, piston: Piston) -> float:
-    """Return the bore that the gas has; else one equal to the stroke, as far as neighbours along the shaft leave room."""
+    """Return the bore of the gas; else one equal to the stroke, as far as neighbours along the shaft allow."""
     if piston.area is not None:
         return math.sqrt(4 * piston.area / math.pi)
     low, high, _ = _stroke(machine, piston)
@@ -271,7 +271,7 @@ def flange_shape(machine: Machine, link: Link, bore: float) -> Rounded:
 
 
 def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bore: float) -> bool:
-    """Return True if no rod meets a liner that begins at ``low``: its own would lean against it, others pass beside it."""
+    """Return True if no rod meets a liner that begins at ``low``: its own leans, others pass beside it."""
     along, own = np.array(piston.along), machine.links[piston.link or ""]
     left = np.array([-along[1], along[0]])
     main = rod_foot(machine, own)

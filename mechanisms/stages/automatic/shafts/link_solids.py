@@ -93,7 +93,7 @@ def cut_up(shape: cq.Workplane, cuts: Sequence[Cut]) -> list[Piece]:
 def split(
     shape: cq.Workplane, at: tuple[float, float], towards: float, reach: float
 ) -> tuple[cq.Workplane, cq.Workplane]:
-    """Return the parts of a shape ahead of and behind a line through ``at``, seen in the direction ``towards`` (rad)."""
+    """Return the parts of a shape ahead of and behind a line through ``at``; ``towards`` (rad) is ahead."""
     import cadquery as cq
 
     low, high = rough_box(shape)

@@ -355,7 +355,7 @@ class Family:
     size: float
 
     @classmethod
-    def of(cls, motion: Motion, mount: Mount, size: float) -> Family:
+    def from_motion(cls, motion: Motion, mount: Mount, size: float) -> Family:
         """Return the family of a machine with these files."""
         engine = any(force.gas is not None for force in motion.forces.values())
         return cls(mount.kind, engine, bool(motion.drivers), size)
@@ -379,4 +379,4 @@ def chosen(family: Family) -> str:
 
 def look_of(shot: Shot, motion: Motion, mount: Mount, size: float) -> Look:
     """Return the look that a shot names, else the one chosen."""
-    return LOOKS[shot.look or chosen(Family.of(motion, mount, size))]
+    return LOOKS[shot.look or chosen(Family.from_motion(motion, mount, size))]

@@ -45,7 +45,7 @@ class Preset:
         return dash + shape
 
     @property
-    def asked(self) -> str:
+    def request(self) -> str:
         """The words that ask for it: ``PRESET=preview ASPECT=9:16`` of make, ``--preset preview`` of mbsd."""
         base, _, shape = self.name.partition("-")
         return said(preset=base, **({"aspect": shape.replace("x", ":")} if shape else {}))

@@ -97,7 +97,7 @@ def _all_names() -> list[str]:
 
 def _entry(name: str) -> dict[str, object]:
     out = Out(name)
-    made = _made(out)
+    made = _products(out)
     return {
         "name": name,
         "title": _title(name),
@@ -128,13 +128,13 @@ def _freedom(name: str) -> str:
 def _made_words(name: str) -> str:
     """``made: parts, motion; of an older version: poster``."""
     out = Out(name)
-    made = _made(out)
+    made = _products(out)
     older = _older(out, made)
     words = f"made: {', '.join(word for word in made if word not in older) or 'nothing yet'}"
     return f"{words}; of an older version: {', '.join(older)}" if older else words
 
 
-def _made(out: Out) -> dict[str, Path]:
+def _products(out: Out) -> dict[str, Path]:
     """Return what is there of a mechanism, with the file that stands for it."""
     files = {
         "parts": out.parts,

@@ -38,7 +38,7 @@ TAKEN = ("sizes", "result", "limits", "n", "seed", "duration", "steps", "way", "
 FORM = 'def tolerances(p): return {"far_end": {"sizes": {"crank": 5e-5}, "result": largest("slider.x")}}'
 
 
-def asked(name: str, m: Mechanism, p: Any) -> dict[str, Callable[..., Tolerances]]:
+def wished_results(name: str, m: Mechanism, p: Any) -> dict[str, Callable[..., Tolerances]]:
     """By result, what finds it when it is called. Raises UserError for whatever cannot be, before anything is found."""
     module = loading.load(name, "tolerances")
     file = shown_file(name, "tolerances")
@@ -202,7 +202,7 @@ def _found(name: str, parts: Parts | None) -> tuple[dict[str, Tolerances], Input
     results: dict[str, Tolerances] = {}
     with recording() as recorder:
         m, p = _built(name, parts), loading.params(name)
-        for result, find in asked(name, m, p).items():
+        for result, find in wished_results(name, m, p).items():
             try:
                 with loading.author_code(name), solving.model_warnings_said():
                     results[result] = find()

@@ -74,7 +74,7 @@ class Arrows:
             )
         return rows
 
-    def at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, Point]]:
+    def ends_at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, Point]]:
         """Return the tail and tip of each at time ``t``, ``heights`` (m) over the base; equal where it is left out."""
         out = []
         for vector, z in zip(self.vectors, heights, strict=True):
@@ -158,7 +158,7 @@ class Arcs:
             for quantity in dict.fromkeys(torque.quantity for torque in self.torques)
         ]
 
-    def at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, float]]:
+    def sweeps_at(self, t: float, heights: Sequence[float]) -> list[tuple[Point, float]]:
         """Return the centre and sweep (rad, positive counter-clockwise) of each at time ``t``, ``heights`` (m) over the
         base.
         """
@@ -229,7 +229,7 @@ def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
     """Return the number that lives, as a function of time; it stands still."""
     name = shot.title.number if shot.title is not None else ""
     if name is None:
-        name = _told(motion)
+        name = _shown_effort(motion)
     if not name:
         return lambda t: ""
     time = np.asarray(motion.time)
@@ -249,7 +249,7 @@ def number(motion: Motion, shot: Shot) -> Callable[[float], str]:
     return lambda t: f"{name}  {write(float(at_time(time, efforts, t)[0]))}"
 
 
-def _told(motion: Motion) -> str:
+def _shown_effort(motion: Motion) -> str:
     """Return the first of the drivers that give something; of those that act in their place; of the traced points."""
     drivers = [name for name, driver in motion.drivers.items() if any(driver.effort)]
     acting = [

@@ -49,7 +49,7 @@ class TimeMap:
     """True if the next showing goes on with the motion where this one ends, as of a motion with a period."""
 
     @classmethod
-    def through(cls, film: Sequence[float], model: Sequence[float], closes: bool) -> TimeMap:
+    def from_moments(cls, film: Sequence[float], model: Sequence[float], closes: bool) -> TimeMap:
         """Return the map with straight pieces between moments ``model`` (s) at film seconds ``film``, both (n,).
 
         Two moments at one film second are a cut.
@@ -74,7 +74,7 @@ class TimeMap:
         end, moment = self.seconds, self.pieces[-1].model[1]
         return TimeMap((*self.pieces, TimePiece((end, seconds), (moment, moment))), False) if seconds > end else self
 
-    def at(self, film: Array) -> tuple[Array, Array]:
+    def moments_at(self, film: Array) -> tuple[Array, Array]:
         """Return moments of the motion (s) and rates, (n,) each, at seconds ``film`` (n,) of a showing."""
         starts = np.array([piece.film[0] for piece in self.pieces])
         k = np.clip(np.searchsorted(starts, film, side="right") - 1, 0, len(starts) - 1)
@@ -148,7 +148,7 @@ class Clock:
         """The same between the frames, for what is no picture."""
         fps = self.shot.fps
         film, model = [0.0, self.moving / fps, self.frames / fps], [self.start, self.end, self.end]
-        return TimeMap.through(film, model, closes=self.repeats)
+        return TimeMap.from_moments(film, model, closes=self.repeats)
 
     def moment(self, frame: float) -> Moment:
         """Return the moment that a frame shows; those beyond one showing, or before frame 0, go on with the loop.

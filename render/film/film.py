@@ -109,8 +109,8 @@ class Film:
             labels=[self.heights.words(label, at) for label in self.shot.labels],
             camera=camera or self.camera(int(frame)),
             tubes=[path for arrow in self.drawn for path in arrow.paths(self.poses, at)],
-            arrows=self.arrows.at(at.time, arrows),
-            arcs=self.arcs.at(at.time, arcs),
+            arrows=self.arrows.ends_at(at.time, arrows),
+            arcs=self.arcs.sweeps_at(at.time, arcs),
             number=self.number(at.time),
         )
 

@@ -47,7 +47,7 @@ def hermite(time: Array, value: Array, rate: Array, acceleration: Array, t: Arra
     Samples right before and after an event share a time; at that time the later counts. ``t`` outside ``time`` is
     held at the nearest end.
     """
-    return Quintic(time).at(t).of(value, rate, acceleration)
+    return Quintic(time).weights_at(t).series(value, rate, acceleration)
 
 
 class Quintic:
@@ -56,7 +56,7 @@ class Quintic:
     def __init__(self, time: Array) -> None:
         self._time, self._starts = time, np.flatnonzero(np.diff(time) > 0)
 
-    def at(self, t: Array | float) -> Quintic.Weights:
+    def weights_at(self, t: Array | float) -> Quintic.Weights:
         """Return weights of times ``t`` (m,)."""
         time, starts = self._time, self._starts
         t = np.clip(np.atleast_1d(np.asarray(t, dtype=float)), time[0], time[-1])
@@ -81,7 +81,7 @@ class Quintic:
         first: tuple[Array, Array, Array]
         second: tuple[Array, Array, Array]
 
-        def of(self, value: Array, rate: Array, acceleration: Array) -> Array:
+        def series(self, value: Array, rate: Array, acceleration: Array) -> Array:
             """Return a series (n,) at these times (m,)."""
             i, h, (a, b, c), (d, e, f) = self.i, self.h, self.first, self.second
             return (
@@ -109,7 +109,7 @@ class Poses:
         self.motion = motion
         self.time = np.asarray(motion.time)
         self._quintic = Quintic(self.time)
-        self._last = math.nan, self._quintic.at(self.time[0])
+        self._last = math.nan, self._quintic.weights_at(self.time[0])
         self._series: dict[tuple[str, str], tuple[Array, Array, Array]] = {}
         for name, body in motion.bodies.items():
             self._series[name, "x"] = _arrays(body.x, body.vx, body.ax)
@@ -125,9 +125,9 @@ class Poses:
         if name not in self.motion.bodies:
             return 0.0, 0.0, 0.0
         if self._last[0] != at.time:  # all bodies are asked for one moment after another
-            self._last = at.time, self._quintic.at(at.time)
+            self._last = at.time, self._quintic.weights_at(at.time)
         weights = self._last[1]
-        x, y, theta = (float(weights.of(*self._series[name, k])[0]) for k in ("x", "y", "theta"))
+        x, y, theta = (float(weights.series(*self._series[name, k])[0]) for k in ("x", "y", "theta"))
         angles = self.motion.bodies[name].theta
         whole = round((angles[-1] - angles[0]) / math.tau) if self.motion.period is not None else 0
         return x, y, theta + math.tau * whole * at.turns
@@ -136,13 +136,13 @@ class Poses:
         """Return poses (n, 3) of a body at times (n,) of the motion's first period."""
         if name not in self.motion.bodies:
             return np.zeros((len(times), 3))
-        weights = self._quintic.at(times)
-        return np.stack([weights.of(*self._series[name, k]) for k in ("x", "y", "theta")], axis=1)
+        weights = self._quintic.weights_at(times)
+        return np.stack([weights.series(*self._series[name, k]) for k in ("x", "y", "theta")], axis=1)
 
     def point(self, name: str, times: Array) -> Array:
         """Return positions (n, 2) of a traced point at mechanism times (n,)."""
-        weights = self._quintic.at(times)
-        return np.stack([weights.of(*self._points[name, k]) for k in ("x", "y")], axis=1)
+        weights = self._quintic.weights_at(times)
+        return np.stack([weights.series(*self._points[name, k]) for k in ("x", "y")], axis=1)
 
     def joint(self, name: str, at: Moment) -> tuple[float, float]:
         """x, y (m) of a joint: a marker fixed to its second body, carried along by that body's pose."""

@@ -173,7 +173,7 @@ def _answers(client: Client, job: Job, store: FrameStore) -> Iterator[Answer]:
             say("frames", f"{name}: worker {worker}: {picture.device}")
         if not made:
             yield Answer(device="cluster")
-        store.put(picture.name, picture.content)
+        store.keep(picture.name, picture.content)
         made[worker] += 1
         yield Answer(path=str(store.folder / picture.name), key=key, cycles=picture.cycles)
     shares = ", ".join(f"{worker} {count}" for worker, count in sorted(made.items()))

@@ -97,7 +97,7 @@ class FrameStore:
                 return content
         return None
 
-    def put(self, name: str, content: bytes) -> None:
+    def keep(self, name: str, content: bytes) -> None:
         """Keep a picture that was made elsewhere. Raises UserError if these are not its bytes, or the disk is full."""
         path = self.folder / name
         if not self._is_picture(path, content):
@@ -120,7 +120,7 @@ class FrameStore:
         except OSError as error:
             raise UserError(refusal(lock, error)) from error
         try:
-            self._take(handle)
+            self._lock(handle)
             self._sweep()
             yield
         finally:
@@ -128,7 +128,7 @@ class FrameStore:
                 self._sweep()
             os.close(handle)
 
-    def _take(self, handle: int) -> None:
+    def _lock(self, handle: int) -> None:
         end, announced = time.monotonic() + WAIT, False
         try:
             while not locks.take(handle):

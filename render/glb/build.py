@@ -103,7 +103,7 @@ def mesh_of(document: Document, piece: PieceSpec, paints: Paints, radius: float)
     """
     triangles = read_triangles(Path(piece.stl))
     faces = faces_of(triangles, piece, radius) if piece.cut else [(triangles, piece.surface)]
-    primitives = [_primitive(document, part, piece, paints.of(surface)) for part, surface in faces if len(part)]
+    primitives = [_primitive(document, part, piece, paints.number_of(surface)) for part, surface in faces if len(part)]
     return document.add("meshes", {"name": f"{piece.body}/{piece.name}", "primitives": primitives})
 
 

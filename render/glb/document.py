@@ -101,7 +101,7 @@ class Paints:
         self._document = document
         self._known: dict[SurfaceSpec, int] = {}
 
-    def of(self, surface: SurfaceSpec) -> int:
+    def number_of(self, surface: SurfaceSpec) -> int:
         """Return the number of a surface's material."""
         if surface not in self._known:
             made = material(surface, f"{surface.finish} {len(self._known)}")

@@ -72,7 +72,7 @@ def primitive(document: Document, paints: Paints, spec: TubeSpec, tube: Tube) ->
             "NORMAL": document.array(normals.astype(np.float32), VERTICES),
         },
         "indices": document.array(corners.astype(np.uint16 if len(positions) < 65535 else np.uint32), INDICES),
-        "material": paints.of(spec.surface),
+        "material": paints.number_of(spec.surface),
     }
 
 

@@ -47,7 +47,7 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
         raise UserError("showreel: films that are asked for are older than their machines, as said above")
     if not films or (only.strip() and left):
         wanted = ", ".join(left) if only.strip() else "any mechanism"
-        remedy = f"{to_run('film', (left or ['<name>'])[0])} {preset.asked}"
+        remedy = f"{to_run('film', (left or ['<name>'])[0])} {preset.request}"
         raise UserError(f"showreel: there is no film of {wanted} at {preset.name}; {remedy}")
     if any("-" not in name for name in left):
         missing = [name for name in left if "-" not in name]  # a variant's film is one that somebody asked for
@@ -80,7 +80,9 @@ def _is_older(freshness: Freshness, name: str, film: Path, preset: Preset) -> bo
     """Return True if a film shows the machine as it was, which is reported."""
     why = freshness.why_older(Out(name), film)
     if why:
-        warn(NAME, f"{film.name} is left out, being of an older version: {why}; {to_run('film', name)} {preset.asked}")
+        warn(
+            NAME, f"{film.name} is left out, being of an older version: {why}; {to_run('film', name)} {preset.request}"
+        )
     return bool(why)
 
 

@@ -71,7 +71,7 @@ class Setting:
         self.steps = max(16, round(self.seconds * CONTROL))
         self.at = np.linspace(0.0, self.seconds, self.steps + 1)
         """(M + 1,) film seconds of what changes slowly, both ends included."""
-        self.model, self.rate = self.map.at(self.at)
+        self.model, self.rate = self.map.moments_at(self.at)
         """(M + 1,) moments of the motion (s), and its rate there."""
 
     def heard(self, items: Mapping[str, Item]) -> Iterator[tuple[str, Item]]:
@@ -197,7 +197,7 @@ class Setting:
         low, high = float(along.min()), float(along.max())
         if film.travel is None:
             return right, (low + high) / 2, max((high - low) / 2, 1e-9)
-        moments, _ = film.clock.time_map.at(np.arange(len(film.travel)) / film.shot.fps)
+        moments, _ = film.clock.time_map.moments_at(np.arange(len(film.travel)) / film.shot.fps)
         way = np.interp(self.model, moments, film.travel @ right)
         return right, way + float(right @ film.space.middle - way.mean()), max(film.size / 2, 1e-9)
 

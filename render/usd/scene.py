@@ -100,7 +100,7 @@ class Surfaces:
         names = Names(scope)
         self._made = [(_material(stage, names.path(made["name"]), made), _colour(made)) for made in materials]
 
-    def of(self, number: int) -> tuple[UsdShade.Material, Colour]:
+    def material(self, number: int) -> tuple[UsdShade.Material, Colour]:
         """Return a material by its number, and its colour (linear)."""
         return self._made[number]
 
@@ -149,7 +149,7 @@ class Meshes:
         mesh.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(corners) // 3, 3, np.int32)))
         _shape(mesh, Usd.TimeCode.Default(), *self._arrays(primitive["attributes"]))
         mesh.SetNormalsInterpolation(UsdGeom.Tokens.vertex)
-        material, colour = self._surfaces.of(primitive["material"])
+        material, colour = self._surfaces.material(primitive["material"])
         mesh.CreateDisplayColorAttr([Gf.Vec3f(*colour)])
         UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(material)
         return mesh

@@ -68,14 +68,14 @@ def middle(first: Array, second: Array) -> Array:
     """Return (3,) halfway between the two nearest points of triangles (n, 3, 3) and (m, 3, 3)."""
     size = max(float(np.ptp(faces.reshape(-1, 3), axis=0).max()) for faces in (first, second))
     # Far triangles of a large piece need no points: those within reach of the other's box alone.
-    near = [_beside(faces, other, size / 4) for faces, other in ((first, second), (second, first))]
+    near = [_overlapping(faces, other, size / 4) for faces, other in ((first, second), (second, first))]
     a, b = (_points(faces, size / FINE) for faces in near)
     distance, index = KDTree(b).query(a)
     k = int(np.argmin(distance))
     return (a[k] + b[int(np.asarray(index)[k])]) / 2
 
 
-def _beside(faces: Array, other: Array, reach: float) -> Array:
+def _overlapping(faces: Array, other: Array, reach: float) -> Array:
     corners = other.reshape(-1, 3)
     low, high = corners.min(axis=0) - reach, corners.max(axis=0) + reach
     there = ((faces.max(axis=1) >= low) & (faces.min(axis=1) <= high)).all(axis=1)

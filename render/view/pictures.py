@@ -50,7 +50,7 @@ def picture_of(out: Out) -> Path:
     return out.view.with_suffix(".png")
 
 
-def take(out: Out, browser: str) -> None:
+def take_picture(out: Out, browser: str) -> None:
     """Write view.png. Raises UserError with what the page or the browser complained of; then there is none."""
     picture_of(out).unlink(missing_ok=True)
     with tempfile.TemporaryDirectory(prefix="mbsd-page-") as folder:

@@ -101,7 +101,7 @@ def _made(name: str, is_current: bool, browser: str | None, version: str) -> str
     try:
         stage = pictures.stage_of(out, version)
         if not stage.is_fresh():
-            pictures.take(out, browser)
+            pictures.take_picture(out, browser)
             stage.done()
     except UserError as error:
         return f"picture: {error}"

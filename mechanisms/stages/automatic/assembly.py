@@ -192,7 +192,7 @@ def base(plan: Plan, engraved_too: bool = True) -> list[Solid]:
     back = back_plate(plan)
     if back is None:
         return []
-    upright, (x0, y0, x1, y1) = Upright.of(plan.mount), back.corners
+    upright, (x0, y0, x1, y1) = Upright.from_mount(plan.mount), back.corners
     bolts = [(x, y, 2 * radius, BOLT_HOLE) for x, y, radius in back.holes]
     rests = plan.mount.kind in ("desk", "wall")
     corners = [(x, y) for x in (x0 + INSET, x1 - INSET) for y in (y0 + INSET, y1 - INSET)] if rests else []
@@ -215,7 +215,7 @@ def back_plate(plan: Plan) -> BackPlate | None:
     """Return the plate (rmm) as its mount has it; None where the ground itself is all that one needs."""
     if plan.mount.kind == "ground" and all(stand.road for stand in plan.feet) and not plan.base_under:
         return None
-    upright, sizes = Upright.of(plan.mount), plan.layout.sizes
+    upright, sizes = Upright.from_mount(plan.mount), plan.layout.sizes
     hole = sizes.screw / sizes.finished + 0.4
     bolts = [(*upright.seen_place(x, y), hole / 2) for stand in plan.feet for x, y in stand.holes]
     return BackPlate(_extent(plan, upright), 0.0, PLATE, 1.0, sizes.pivot.fit.seat, tuple(bolts))

@@ -193,7 +193,7 @@ def with_room(path: np.ndarray, back: float, touch: Joint | Force, layout: Layou
     m, scale = layout.m, layout.sizes.scale
     raise UserError(
         f"{m.name}: contact '{touch.name}': what touches its closed curve is {back * scale:.3g} mm larger in radius "
-        "than in the model, and nothing of the curve is left when it is set back by that; make it larger, or write "
+        "than in the model; nothing of the curve is left when it is set back by that; make the curve larger, or write "
         f"{shown_file(m.name, 'parts')}"
     )
 

@@ -89,17 +89,17 @@ def gathered(layout: Layout) -> list[Feature]:
             by_kind.setdefault(kind, []).append(joint)
     features = [feature for kind, joints in by_kind.items() for feature in KINDS[kind](m, joints, layout)]
     layout.features = list(features)  # springs look for pins that hold them
-    features += _of(FORCE_KINDS, m, m.forces.values(), layout)
-    features += _of(CONTACT_KINDS, m, m.contacts.values(), layout)
+    features += _gather_kinds(FORCE_KINDS, m, m.forces.values(), layout)
+    features += _gather_kinds(CONTACT_KINDS, m, m.contacts.values(), layout)
     features = with_shared_roads(features)
-    features += _of(DRIVER_KINDS, m, m.drivers.values(), layout)
+    features += _gather_kinds(DRIVER_KINDS, m, m.drivers.values(), layout)
     features += stops(m, features, layout)
     refuse_pins_of_both_kinds(m, features)
     features = with_free_bolts(features, layout)
     return features + _loose_eyes(loose, features, layout)
 
 
-def _of[Thing: (Force, Joint)](
+def _gather_kinds[Thing: (Force, Joint)](
     kinds: Mapping[str, Gather[Thing]], m: Mechanism, things: Iterable[Thing], layout: Layout
 ) -> list[Feature]:
     """Return features of forces, contacts or drivers whose kinds have parts; the others need none."""

@@ -37,7 +37,7 @@ class Upright:
     """Angle of ``up`` from y, counter-clockwise (rad)."""
 
     @classmethod
-    def of(cls, mount: Mount) -> Upright:
+    def from_mount(cls, mount: Mount) -> Upright:
         """Return the upright axes of a mount."""
         x, y, _ = mount.up
         return cls() if mount.kind == "desk" else cls(math.atan2(-x, y) + 0.0)
@@ -131,7 +131,7 @@ class Hull:
     centre: np.ndarray
 
     @classmethod
-    def of(cls, solid: Solid, shape: cq.Workplane | None = None) -> Hull:
+    def from_solid(cls, solid: Solid, shape: cq.Workplane | None = None) -> Hull:
         """Return the hull of its ``shape`` or one that is turned, by a coarse mesh."""
         whole = (solid.shape if shape is None else shape).solids()
         faces = facets(whole.vals()[0], CHORD * rough_size(whole), ANGLE, relative=True).astype(float)
@@ -164,7 +164,7 @@ def standing(bodies: Mapping[str, Sequence[Solid]], poses: Mapping[str, np.ndarr
     for body, solids in bodies.items():
         if body != "ground" and body not in poses:
             continue
-        hulls = [Hull.of(solid, upright.as_seen(solid.shape) if body == "ground" else None) for solid in solids]
+        hulls = [Hull.from_solid(solid, upright.as_seen(solid.shape) if body == "ground" else None) for solid in solids]
         for own in hulls:
             path, turn = (still, None) if body == "ground" else (poses[body], upright)
             corners = np.array([_seen(corner, path, turn) for corner in own.corners])
@@ -462,7 +462,7 @@ def hold(made: Bodies, mount: Mount, plate: BackPlate | None, poses: Mapping[str
     """Note how parts stand, and what makes the stand of their back ``plate`` (mm), or of ground without one, over
     ``poses`` (T, 3) (mm, rad); nothing does where they lie or hang at a wall.
     """
-    made.mount, upright = (mount.kind, mount.up), Upright.of(mount)
+    made.mount, upright = (mount.kind, mount.up), Upright.from_mount(mount)
     if mount.kind not in ("stand", "ground"):
         return
     if plate is None:

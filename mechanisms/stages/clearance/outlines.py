@@ -251,7 +251,7 @@ def _outlines(sweep: Sweep, beyond: float) -> tuple[Outline, Outline] | None:
 def are_over(sweep: Sweep, still: Outline, mover: Outline) -> bool:
     """Return True if one of the two covers a corner of the other at the start."""
     moment = sweep.times[:1]
-    pose = relative(sweep.path.mover.at(moment), sweep.path.still.at(moment))[0]
+    pose = relative(sweep.path.mover.poses_at(moment), sweep.path.still.poses_at(moment))[0]
     c, s = np.cos(pose[2]), np.sin(pose[2])
     turn = np.array([[c, s], [-s, c]])
     places = mover.edges[:, 0] @ turn + pose[:2], (still.edges[:, 0] - pose[:2]) @ turn.T

@@ -135,7 +135,7 @@ class BodyPath:
             point = point[:, :-1] + u[:, :, None] * (point[:, 1:] - point[:, :-1])
         return point[:, 0]
 
-    def at(self, time: np.ndarray) -> np.ndarray:
+    def poses_at(self, time: np.ndarray) -> np.ndarray:
         """Return (m, 3) poses at any times."""
         return self.within(self.interval(time), time)
 

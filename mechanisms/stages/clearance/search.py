@@ -238,7 +238,7 @@ class Sweep:
 
     def _moved(self, time: float) -> Any:
         moment = np.array([time])
-        x, y, theta = relative(self.path.mover.at(moment), self.path.still.at(moment))[0]
+        x, y, theta = relative(self.path.mover.poses_at(moment), self.path.still.poses_at(moment))[0]
         c, s = np.cos(theta), np.sin(theta)
         return self.mover.manifold.transform(np.array([[c, -s, 0, x], [s, c, 0, y], [0, 0, 1, 0]]))
 

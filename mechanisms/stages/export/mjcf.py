@@ -53,7 +53,7 @@ class _Sites:
     def __init__(self) -> None:
         self.wanted: list[tuple[str, str, Any]] = []
 
-    def at(self, marker: Any) -> str:
+    def site(self, marker: Any) -> str:
         """Return the name of the site of a marker."""
         name = f"{marker.body.name} {len(self.wanted)}"
         self.wanted.append((name, marker.body.name, marker))
@@ -139,7 +139,7 @@ class _Writer:
             if joint.kind.name in MESHING:
                 self._mesh(joint, tree)
                 continue
-            first, second = self.sites.at(joint.i), self.sites.at(joint.j)
+            first, second = self.sites.site(joint.i), self.sites.site(joint.j)
             if joint.kind.name == "distance":
                 self._tendon(joint.name, first, second, {})
                 SubElement(self._section("equality"), "tendon", {"tendon1": joint.name, **STIFF})
@@ -172,7 +172,7 @@ class _Writer:
                 p = force.params
                 amounts = {"stiffness": number(p.get("stiffness", 0.0)), "damping": number(p.get("damping", 0.0)),
                            "springlength": number(p.get("free_length", 0.0))}  # fmt: skip
-                self._tendon(name, self.sites.at(force.i), self.sites.at(force.j), amounts)
+                self._tendon(name, self.sites.site(force.i), self.sites.site(force.j), amounts)
             else:
                 self.left_out.append(f"force '{name}' ({force.kind.name})")
 

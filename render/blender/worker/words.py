@@ -148,13 +148,13 @@ def _arc(draw: Any, x: float, y: float, radius: float, row: LegendRow) -> None:
     y -= radius * (1 + math.cos(min(row.sweep / 2, math.pi))) / 2  # its middle stands in the row's
     start, end = math.pi / 2 + row.sweep / 2, math.pi / 2 - row.sweep / 2  # y goes down: counter-clockwise falls
 
-    def at(angle: float, r: float) -> tuple[float, float]:
+    def place(angle: float, r: float) -> tuple[float, float]:
         return x + r * math.cos(angle), y + r * math.sin(angle)
 
     angles = [start + (end + head - start) * k / 48 for k in range(49)]
-    ring = [at(a, radius + shaft) for a in angles] + [at(a, radius - shaft) for a in reversed(angles)]
+    ring = [place(a, radius + shaft) for a in angles] + [place(a, radius - shaft) for a in reversed(angles)]
     draw.polygon(ring, fill=ink)
-    draw.polygon([at(end + head, radius + half), at(end, radius), at(end + head, radius - half)], fill=ink)
+    draw.polygon([place(end + head, radius + half), place(end, radius), place(end + head, radius - half)], fill=ink)
 
 
 # What is laid over a rendered picture: arrows with a faint glow, the legend, a title.

@@ -131,7 +131,7 @@ def below(aspect: float, strip: bool) -> float:
     return (CAPTION + (STRIP if strip else 0.0)) / sides(aspect)[1]
 
 
-def beside(aspect: float) -> float:
+def side_width(aspect: float) -> float:
     """Return the part of the picture's width that a camera leaves empty at the right for a strip that stands there."""
     return SIDE / sides(aspect)[0]
 

@@ -44,7 +44,7 @@ def planned(
     """
     scenery = replace(scenery_of(film, forces, reasons, preset), cut=cut)
     if seconds:
-        return _made(scenery, [loop(scenery, seconds)])
+        return _assemble(scenery, [loop(scenery, seconds)])
     most = BUDGET * min(film.clock.frames, film.clock.moving + 1) * (2 / scenery.step)
     story = _story(scenery)
     for turning, scale in WAYS[1:]:
@@ -58,7 +58,7 @@ def scenery_of(film: Film, forces: Film | None, reasons: Sequence[Reason], prese
     """Return the scenery that the shots share. Raises UserError for an unknown event or language."""
     wishes, mechanism = film.shot.story, film.motion.mechanism
     base = preset.name.partition("-")[0]
-    reasons = _asked(mechanism, wishes.event, reasons)
+    reasons = _wished_first(mechanism, wishes.event, reasons)
     return Scenery(
         film=film,
         forces=forces,
@@ -88,10 +88,10 @@ def _story(scenery: Scenery) -> Story:
             f"{scenery.film.motion.mechanism}: shot.story.shots = {', '.join(names)} leaves nothing to show: the "
             "machine has no such shots, and a title stands before another shot; add motion or last"
         )
-    return _made(scenery, shots)
+    return _assemble(scenery, shots)
 
 
-def _made(scenery: Scenery, shots: Sequence[Shot]) -> Story:
+def _assemble(scenery: Scenery, shots: Sequence[Shot]) -> Story:
     mechanism, fps, step = scenery.film.motion.mechanism, scenery.fps, scenery.step
     return Story(mechanism, fps, step, shots, scenery.curves, scenery.at_side)
 
@@ -107,7 +107,7 @@ SHOTS: dict[str, Callable[[Scenery], Shot | None]] = {
 """By the names that a shot.py gives; the title needs what follows it."""
 
 
-def _asked(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list[Reason]:
+def _wished_first(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list[Reason]:
     """Return the reasons, that of the shot's ``event`` first. Raises UserError where nothing like it ever happens."""
     if event is None:
         return list(reasons)

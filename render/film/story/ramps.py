@@ -36,7 +36,7 @@ class Ramp:
         """Seconds of film."""
         return sum(seconds for seconds, _, _ in self.segments)
 
-    def at(self, s: float) -> float:
+    def time_at(self, s: float) -> float:
         """Return the time of the motion (s) at film second ``s``; held at both ends."""
         time = self.start
         for seconds, low, high in self.segments:
@@ -82,7 +82,7 @@ class Warp:
         """Seconds of film."""
         return self.film[-1]
 
-    def at(self, s: float) -> float:
+    def time_at(self, s: float) -> float:
         """Return the time of the motion (s) at film second ``s``."""
         return float(np.interp(s, self.film, self.motion))
 
@@ -90,7 +90,7 @@ class Warp:
         """Return seconds of the motion in a second of film, at film second ``s``."""
         h = 0.02 * self.seconds
         low, high = max(s - h, 0.0), min(s + h, self.seconds)
-        return (self.at(high) - self.at(low)) / max(high - low, 1e-12)
+        return (self.time_at(high) - self.time_at(low)) / max(high - low, 1e-12)
 
 
 LEAST, SOFT = 0.35, 0.04

@@ -246,7 +246,7 @@ class Scenery:
         at = angles(film.shot.camera, film.parts.mount, film.aspect)
         turned = at[0] + np.radians(azimuth), min(at[1] + np.radians(elevation), np.radians(85))
         empty = frame.above(film.aspect), frame.below(film.aspect, strip and not side)
-        camera, aside = film.shot.camera, frame.beside(film.aspect) if side else 0.0
+        camera, aside = film.shot.camera, frame.side_width(film.aspect) if side else 0.0
         margin = min(camera.margin, MARGIN)
         view = View(float(turned[0]), float(turned[1]), camera.lens, margin, empty, film.aspect, aside)
         return raised(stand(film.subject, self.up, view), self.up, self.top)

@@ -136,18 +136,18 @@ class Story:
         """Seconds of the film."""
         return self.total / self.fps
 
-    def at(self, frame: int) -> Placed:
+    def placed_at(self, frame: int) -> Placed:
         """Return the shot of a frame."""
         return next(placed for placed in self.placed if frame < placed.end)
 
     def picture(self, frame: int) -> Picture:
         """Return the picture that Blender makes for a frame."""
-        placed = self.at(frame)
+        placed = self.placed_at(frame)
         return placed.shot.picture(self._second(placed, frame, self.step))
 
     def around(self, frame: int) -> tuple[Picture, Picture, Picture]:
         """Return the picture of a frame between those that a shutter sees before and after, none of another shot."""
-        placed = self.at(frame)
+        placed = self.placed_at(frame)
         here = placed.first + (frame - placed.first) // self.step * self.step
         near = (max(here - 1, placed.first), here, min(here + 1, placed.end - 1))
         before, now, after = (placed.shot.picture(self._second(placed, k, 1)) for k in near)
@@ -155,7 +155,7 @@ class Story:
 
     def over(self, frame: int) -> Over:
         """Return the overlay of a frame; words go on ones, and the playhead with the picture."""
-        placed = self.at(frame)
+        placed = self.placed_at(frame)
         over = placed.shot.over(self._second(placed, frame, 1))
         still = placed.shot.over(self._second(placed, frame, self.step))
         return msgspec.structs.replace(over, now=still.now, rate=still.rate)
@@ -166,7 +166,7 @@ class Story:
         It is monotone within a shot, jumps at cuts, and goes on beyond a period that begins anew.
         """
         frame = min(max(int(s * self.fps), 0), self.total - 1)
-        placed = self.at(frame)
+        placed = self.placed_at(frame)
         return placed.shot.model(s - placed.first / self.fps)
 
     def time_map(self, start: float, end: float, anew: bool = True) -> TimeMap:
@@ -179,8 +179,8 @@ class Story:
                 seconds.append((placed.first + k) / self.fps)
                 moments.append(placed.shot.model(k / self.fps))
         if not anew:
-            return TimeMap.through(*_held(seconds, moments, start, end), closes=False)
-        return TimeMap.through(*_folded(seconds, moments, start, end), closes=False)
+            return TimeMap.from_moments(*_held(seconds, moments, start, end), closes=False)
+        return TimeMap.from_moments(*_folded(seconds, moments, start, end), closes=False)
 
     @cached_property
     def pictures(self) -> list[Picture]:

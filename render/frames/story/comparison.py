@@ -13,7 +13,8 @@ from render.film.film import Film
 from render.film.inputs import encoder_version, read_film, refuse_missing, stage_key
 from render.film.story.planned import scenery_of
 from render.film.story.scenery import Scenery, at_distance
-from render.film.story.shots.beside import beside, differences, ramp_of
+from render.film.story.shots.comparison import comparison_shot
+from render.film.story.shots.comparison import differences, ramp_of
 from render.film.story.shots.motion import title
 from render.film.story.story import Curve, Story, curve_of, curves_of
 from render.film.story.words import plain, words_in
@@ -69,7 +70,7 @@ def pair_of(outs: Sequence[Out], preset: Preset, half: Preset) -> Pair:
     _on_one_scale(sceneries)
     tellings = []
     for film, scenery in zip(films, sceneries, strict=True):
-        shot = beside(scenery, ramp, most[0] if most else None, names)
+        shot = comparison_shot(scenery, ramp, most[0] if most else None, names)
         shots = [made for made in (title(scenery, shot), shot) if made is not None]
         story = Story(film.motion.mechanism, films[0].shot.fps, scenery.step, shots, curves[0])
         tellings.append(Telling(film, None, story, drawing))
@@ -189,7 +190,7 @@ def _silent_film(outs: list[Out], preset: Preset, pair: Pair, film: Path) -> Pat
     stage = Stage(outs[1], film.stem.replace(outs[1].name, "pictures", 1), _key(outs, preset), [target])
     if not stage.is_fresh():
         made = [rendered(out, part, telling) for out, telling in zip(outs, pair.tellings, strict=True)]
-        encoded(_beside(preset, made), pair.tellings[0].story, pair.drawing, preset, target)
+        encoded(_side_by_side(preset, made), pair.tellings[0].story, pair.drawing, preset, target)
         stage.done()
     return target
 
@@ -232,7 +233,7 @@ def half(preset: Preset) -> Preset:
     return replace(preset, name=f"{preset.name}-half", width=wide, height=high)
 
 
-def _beside(preset: Preset, made: Sequence[Rendered]) -> Iterator[tuple[str, Any]]:
+def _side_by_side(preset: Preset, made: Sequence[Rendered]) -> Iterator[tuple[str, Any]]:
     from PIL import Image
 
     kept: tuple[str, Any] | None = None

@@ -105,13 +105,13 @@ def _body_panels(motions: Motions) -> list[Panel]:
             for field in ("x", "y", "theta")
         }
         if moved["theta"] > STILL:
-            out.append((f"{body}, angle", "°", _of("bodies", body, "theta", np.degrees(1.0))))
+            out.append((f"{body}, angle", "°", _series_of("bodies", body, "theta", np.degrees(1.0))))
             floor = NOISE * max(map(speed_scale, motions.values()))
-            out.append((f"{body}, turning", "rad/s", _of("bodies", body, "omega", 1.0, floor)))
+            out.append((f"{body}, turning", "rad/s", _series_of("bodies", body, "omega", 1.0, floor)))
         elif max(moved["x"], moved["y"]) > STILL:
             field = "x" if moved["x"] >= moved["y"] else "y"
-            out.append((f"{body}, {field}", "m", _of("bodies", body, field)))
-            out.append((f"{body}, speed along {field}", "m/s", _of("bodies", body, f"v{field}")))
+            out.append((f"{body}, {field}", "m", _series_of("bodies", body, field)))
+            out.append((f"{body}, speed along {field}", "m/s", _series_of("bodies", body, f"v{field}")))
     return out
 
 
@@ -119,8 +119,8 @@ def _driver_panels(motions: Motions) -> list[Panel]:
     out: list[Panel] = []
     for name, driver in next(iter(motions.values())).drivers.items():
         unit = driver.effort_unit
-        out.append((f"{name}, {'torque' if unit == 'N m' else 'force'}", unit, _of("drivers", name, "effort")))
-        out.append((f"{name}, power", "W", _of("drivers", name, "power")))
+        out.append((f"{name}, {'torque' if unit == 'N m' else 'force'}", unit, _series_of("drivers", name, "effort")))
+        out.append((f"{name}, power", "W", _series_of("drivers", name, "power")))
     return out
 
 
@@ -143,11 +143,13 @@ def _force_panels(motions: Motions) -> list[Panel]:
     for name, force in next(iter(motions.values())).forces.items():
         if force.effort is not None:
             unit = force.effort_unit
-            out.append((f"{name}, {'torque' if unit == 'N m' else 'force'}", unit, _of("forces", name, "effort")))
-        out.append((f"{name}, power", "W", _of("forces", name, "power")))
+            out.append(
+                (f"{name}, {'torque' if unit == 'N m' else 'force'}", unit, _series_of("forces", name, "effort"))
+            )
+        out.append((f"{name}, power", "W", _series_of("forces", name, "power")))
     for name, contact in next(iter(motions.values())).contacts.items():
         says = "normal force" if contact.effort_unit == "N" else "torque"
-        out.append((f"{name}, {says}", contact.effort_unit, _of("contacts", name, "normal")))
+        out.append((f"{name}, {says}", contact.effort_unit, _series_of("contacts", name, "normal")))
     return out
 
 
@@ -166,7 +168,7 @@ def _energy_panels() -> list[Panel]:
     ]
 
 
-def _of(
+def _series_of(
     kind: str, name: str, field: str, scale: float = 1.0, floor: float = 0.0
 ) -> Callable[[Motion], np.ndarray | None]:
     """Reads one series of every motion that has it."""

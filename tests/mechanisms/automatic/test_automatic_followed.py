@@ -82,7 +82,7 @@ def test_a_road_goes_on_under_its_wheel(half: float) -> None:
     assert away == pytest.approx(wheel.radius, abs=0.03), "neither without a road nor through one"
     assert (road.band is not None) == (half > 2.0)
     sides = road.path[-1:], road.feet if road.band is None else road.band.back[::-1], road.path[:1]
-    assert distances(centres, np.vstack(sides)).min() > wheel.made
+    assert distances(centres, np.vstack(sides)).min() > wheel.built_radius
     solid = road._wall(0.0, 5.0).val()
     assert solid.isValid()
 
@@ -106,7 +106,7 @@ def test_a_terrain_goes_on_as_far_as_it_is_touched() -> None:
     assert centres[-1, 0] > 0.7 * scale, "the ball goes far beyond the last point"
     assert road.path[-1, 0] > centres[-1, 0]
     assert road.path[0, 0] == pytest.approx(-0.4 * scale), "at the other end the road is as long as the curve"
-    assert distances(centres, road.path).min() > part.made
+    assert distances(centres, road.path).min() > part.built_radius
 
 
 def test_a_point_is_followed_through_a_crossing() -> None:

@@ -110,7 +110,7 @@ def test_what_runs_on_a_track_is_clear_of_it_by_the_clearance(name: str) -> None
     assert track.inside == inside
     part = track.carried
     away = distances(made.layout.seen(part.body, part.at, track.body), track.path)
-    assert 0.05 < (away.min() - part.made) * made.sizes.scale < 1.5
+    assert 0.05 < (away.min() - part.built_radius) * made.sizes.scale < 1.5
     assert not meets(made)
 
 

@@ -18,7 +18,7 @@ from mechanisms.slider_crank import tolerances as author
 from mechanisms.slider_crank.mechanism import Params, build
 from mechanisms.stages import tolerances as tolerances_stage
 from mechanisms.stages.solve.masses import give_masses
-from mechanisms.stages.tolerances import advice, asked
+from mechanisms.stages.tolerances import advice, wished_results
 from shared.stage.errors import UserError
 from tests.studio.command.test_own_folder import mbsd
 
@@ -154,13 +154,13 @@ def test_bad_input_is_refused_before_any_result_is_found(
     m = build(Params())
     give_masses(m, None)
     with pytest.raises(UserError, match=rf"mechanisms/slider_crank/tolerances\.py: .*{said}"):
-        asked("slider_crank", m, Params())
+        wished_results("slider_crank", m, Params())
 
 
 def test_a_function_of_other_arguments_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(author, "tolerances", lambda p, more: {"far": GOOD})
     with pytest.raises(UserError, match=r"tolerances\.py: .*\(p, more\) is called with 1 argument: missing a required"):
-        asked("slider_crank", build(Params()), Params())
+        wished_results("slider_crank", build(Params()), Params())
 
 
 def test_a_mechanism_without_one_says_what_to_write() -> None:
@@ -184,11 +184,11 @@ def test_the_duration_of_mechanism_py_holds_where_nothing_else_is_said(monkeypat
     monkeypatch.setattr(mechanism, "DURATION", 0.25, raising=False)
     m = build(Params())
     give_masses(m, None)
-    t = asked("slider_crank", m, Params())["end_of_stroke"]()
+    t = wished_results("slider_crank", m, Params())["end_of_stroke"]()
     assert t.nominal == pytest.approx(0.16)
     monkeypatch.setattr(mechanism, "DURATION", -1.0)
     with pytest.raises(UserError, match=r"'end_of_stroke': slider_crank: duration is -1"):
-        asked("slider_crank", m, Params())
+        wished_results("slider_crank", m, Params())
 
 
 def test_what_takes_long_says_how_far_it_is(
@@ -198,7 +198,7 @@ def test_what_takes_long_says_how_far_it_is(
     monkeypatch.setattr("shared.stage.console.SHORTEST", 0.0)
     m = build(Params())
     give_masses(m, None)
-    asked("slider_crank", m, Params())["far"]()
+    wished_results("slider_crank", m, Params())["far"]()
     said = capsys.readouterr().out
     parts = [int(part) for part in re.findall(r"far: (\d+) of 100 per cent of its machines", said)]
     assert parts == sorted(parts)

@@ -103,7 +103,7 @@ def test_a_guide_has_a_torque_and_what_acts_beside_its_marker_the_torque_there()
 def test_the_largest_has_the_full_sweep_tiny_ones_and_rounding_are_left_out():
     made = Arcs(TIME, [steady(-50.0), steady(5.0, at=(1, 0)), steady(0.4 * TINY * 50.0)], size=0.4)
     assert [torque.value[0] for torque in made.torques] == [-50.0, 5.0]
-    assert [sweep for _, sweep in made.at(0.5, [0.01, 0.02])] == pytest.approx([-FULL_TURN, FULL_TURN / 10])
+    assert [sweep for _, sweep in made.sweeps_at(0.5, [0.01, 0.02])] == pytest.approx([-FULL_TURN, FULL_TURN / 10])
     assert [row.number for row in made.legend()] == ["20 N m"]
     assert made.legend()[0].sweep == pytest.approx(FULL_TURN * 20 / 50)
     forces = vectors(four_bar_motion(), ("forces", "reactions"))
@@ -111,13 +111,13 @@ def test_the_largest_has_the_full_sweep_tiny_ones_and_rounding_are_left_out():
     assert 0 < least < 1e-8
     assert Arcs(TIME, [steady(0.5 * least)], 0.3, least).specs() == []
     fading = Arcs(TIME, [steady(100.0 * (1 - TIME))], size=1.0)
-    assert fading.at(0.999, [0.0])[0][1] == 0.0
+    assert fading.sweeps_at(0.999, [0.0])[0][1] == 0.0
 
 
 def test_a_short_peak_is_cut_and_no_arc_meets_its_own_tail():
     pulse = np.where(np.abs(TIME - 0.5) < 0.006, 300.0, 10.0)
     made = Arcs(TIME, [steady(pulse, "reactions")], size=1.0)
-    assert made.at(0.5, [0.0])[0][1] == pytest.approx(FULL_TURN * LONGEST)
+    assert made.sweeps_at(0.5, [0.0])[0][1] == pytest.approx(FULL_TURN * LONGEST)
     assert 1.8 * np.pi > FULL_TURN * LONGEST
     assert made.legend()[0].words == "torques of joints, peaks cut"
 

@@ -118,9 +118,9 @@ def test_rubbish_that_is_in_the_folder_already_is_missed(kind: str, tmp_path: Pa
     """The same command makes it again, where it said that there was nothing to do."""
     content, size = RUBBISH[kind], (WIDTH, HEIGHT)
     name = name_of(KEY, content)
-    FrameStore(tmp_path).put(name, content)
+    FrameStore(tmp_path).keep(name, content)
     assert FrameStore(tmp_path, size).read(name) is None
     assert FrameStore(tmp_path, size).find(KEY) is None
     assert not (tmp_path / name).exists()
     with pytest.raises(UserError, match="came damaged"):
-        FrameStore(tmp_path, size).put(name, content)
+        FrameStore(tmp_path, size).keep(name, content)

@@ -101,7 +101,7 @@ def test_halves_fill_the_picture() -> None:
 
     for preset in (wide, tall):
         half = comparison.half(preset)
-        [(_, page)] = comparison._beside(preset, [Made(half, (255, 0, 0)), Made(half, (0, 0, 255))])  # pyright: ignore[reportArgumentType]
+        [(_, page)] = comparison._side_by_side(preset, [Made(half, (255, 0, 0)), Made(half, (0, 0, 255))])  # pyright: ignore[reportArgumentType]
         assert page.size == (preset.width, preset.height)
         assert page.getpixel((5, 5)) == (255, 0, 0)
         assert page.getpixel((page.width - 5, page.height - 5)) == (0, 0, 255)

@@ -86,7 +86,7 @@ def test_sound_follows_the_times_of_the_story(out_root) -> None:
     heard = story.time_map(clock.start, clock.end)
     assert heard.seconds == pytest.approx(story.seconds)
     seconds = (np.arange(story.total - 1) + 0.3) / story.fps
-    moments, rates = heard.at(seconds)
+    moments, rates = heard.moments_at(seconds)
     exact = np.array([story.model_time(float(s)) for s in seconds])
     period = clock.end - clock.start
     off = (moments - exact + period / 2) % period - period / 2
@@ -110,7 +110,7 @@ def test_sound_of_a_motion_that_ends_stands_where_the_picture_does(out_root) -> 
     heard = story.time_map(film.clock.start, film.clock.end, anew=False)
     seconds = (np.arange(story.total) + 0.5) / story.fps
     shown = np.array([min(max(story.model_time(float(s)), film.clock.start), film.clock.end) for s in seconds])
-    moments, rates = heard.at(seconds)
+    moments, rates = heard.moments_at(seconds)
     anew = np.abs(moments - shown) > 0.1 * (film.clock.end - film.clock.start)
     assert anew.sum() <= 3, "frames in which the motion begins anew"
     assert np.abs(moments - shown)[~anew].max() < film.clock.rate / story.fps

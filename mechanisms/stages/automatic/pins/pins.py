@@ -266,7 +266,7 @@ def _refuse_shared(m: Mechanism, force: Force, places: dict[str, tuple[float, fl
                 u, v = pin.places[body]
                 if abs(x - u) < SAME and abs(y - v) < SAME:
                     raise UserError(
-                        f"{m.name}: clearance joint '{force.name}' and '{pin.name}' are at one place of '{body}', and "
+                        f"{m.name}: clearance joint '{force.name}' and '{pin.name}' are at one place of '{body}'; "
                         "bodies that share a pin have no play of their own in automatic parts; move one of them, or "
                         f"write {shown_file(m.name, 'parts')}"
                     )

@@ -68,53 +68,65 @@ class Round:
         return self.body
 
     @property
-    def made(self) -> float:
+    def built_radius(self) -> float:
         """The radius as it is made."""
         return self.radius - self.short
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Return the middle, within what touches."""
-        return [Anchor(self.body, *self.at, min(self.hub(layout), self.made))]
+        return [Anchor(self.body, *self.at, min(self.hub(layout), self.built_radius))]
 
     def face_of(self, body: str, layout: Layout) -> Face | None:
         """Within the tyre of a wheel; a disc but for its edge."""
         if body != self.body or self.look == "ball":
             return None
-        return Face(*self.at, self.rim(layout) - 0.5 if self.look == "wheel" else self.made - 0.5)
+        return Face(*self.at, self.rim(layout) - 0.5 if self.look == "wheel" else self.built_radius - 0.5)
 
     def tyre(self, layout: Layout) -> float:
         """Return how thick the tyre of a wheel is (rmm): thicker where it is pressed in, as far as that is possible."""
         running = layout.sizes.pivot.fit.running
-        return max(min(TYRE * self.made, 5.0), min(self.pressed + running, self.made - self.hub(layout) - RIM))
+        return max(
+            min(TYRE * self.built_radius, 5.0), min(self.pressed + running, self.built_radius - self.hub(layout) - RIM)
+        )
 
     def rim(self, layout: Layout) -> float:
         """Return the radius of a wheel within its tyre (rmm)."""
-        return self.made - self.tyre(layout) - layout.sizes.pivot.fit.seat
+        return self.built_radius - self.tyre(layout) - layout.sizes.pivot.fit.seat
 
     def hub(self, layout: Layout) -> float:
         """Return the radius of the solid middle (rmm)."""
         if self.look == "wheel":
-            return layout.sizes.eye if self.pinned else HUB * self.made
-        return min(layout.sizes.eye, WITHIN * self.made)
+            return layout.sizes.eye if self.pinned else HUB * self.built_radius
+        return min(layout.sizes.eye, WITHIN * self.built_radius)
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Yield the circle at the height of its body; a ball is higher than that."""
         reach = Reach((self.body,), -1, 1) if self.look == "ball" else Reach((self.body,))
         yield Item(
-            f"the {self.look} of {self.name}", self.body, disc(*self.at, self.made), reach, frozenset(self.meets), self
+            f"the {self.look} of {self.name}",
+            self.body,
+            disc(*self.at, self.built_radius),
+            reach,
+            frozenset(self.meets),
+            self,
         )
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Yield the room of a ball below and above the layer."""
         if self.look == "ball":
-            level, beyond = levels[self.body], self.made - layout.sizes.thickness / 2 + layout.sizes.pivot.fit.axial
+            level, beyond = (
+                levels[self.body],
+                self.built_radius - layout.sizes.thickness / 2 + layout.sizes.pivot.fit.axial,
+            )
             yield Need(level - 1, beyond)
             yield Need(level, beyond)
 
     def top(self, heights: Heights) -> float:
         """Return how high what it touches must reach (rmm)."""
         if self.look == "ball":
-            return max(heights.top(self.body), heights.bottom(self.body) + heights.thickness / 2 + OVER * self.made)
+            return max(
+                heights.top(self.body), heights.bottom(self.body) + heights.thickness / 2 + OVER * self.built_radius
+            )
         return heights.top(self.body)
 
 
@@ -134,7 +146,7 @@ def round_at(
         new = layout.rounds[key] = Round(name, body, at, radius, short, look, pinned)
         return new, True
     there = cast(Round, layout.rounds[key])
-    least = min(there.made, radius - short)
+    least = min(there.built_radius, radius - short)
     there.radius = min(there.radius, radius)
     there.short = there.radius - least
     there.look = "wheel" if "wheel" in (there.look, look) else there.look
@@ -166,8 +178,8 @@ def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
         scale = plan.layout.sizes.scale
         raise UserError(
             f"{plan.layout.m.name}: '{wheel.name}' lets the wheel of {wheel.body} be pressed "
-            f"{wheel.pressed * scale:.4g} mm into what it runs on, and with a radius of {wheel.made * scale:.4g} mm "
-            f"its tyre is {tyre * scale:.4g} mm thick at most; make the contact stiffer or the radius larger, "
+            f"{wheel.pressed * scale:.4g} mm into what it runs on; with a radius of "
+            f"{wheel.built_radius * scale:.4g} mm its tyre is {tyre * scale:.4g} mm thick at most; make the contact stiffer or the radius larger, "
             "or let the wheel start nearer to the surface"
         )
     rim = wheel.rim(plan.layout)
@@ -178,7 +190,7 @@ def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
         tool = extruded(circle((hub + rim) / 2, 0, 0.3 * (rim - hub)), heights.thickness + 2.0, -1.0)
         shape = shape.cut(placed(tool, turn=360.0 * k / holes))
     plan.plate(wheel.body, placed(shape, x, y), (x, y, hub + 0.1 if holes else rim - 0.5), holes)
-    band = washer(2 * (rim + fit.seat), 2 * wheel.made, heights.thickness, chamfer=0.25 * tyre)
+    band = washer(2 * (rim + fit.seat), 2 * wheel.built_radius, heights.thickness, chamfer=0.25 * tyre)
     plan.outer[wheel] = plan.make(
         wheel.body, f"tyre_{wheel.name}", placed(band, x, y, heights.bottom(wheel.body)), "rubber", 1
     )
@@ -187,13 +199,13 @@ def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
 def ball(ball: Round, plan: Plan, heights: Heights) -> None:
     """A ball is its body, its middle in the middle of the layer."""
     (x, y), z = ball.at, heights.thickness / 2
-    shape = sphere(ball.made)
-    plan.plate(ball.body, placed(shape, x, y, z), (x, y, ball.made + 0.1))
+    shape = sphere(ball.built_radius)
+    plan.plate(ball.body, placed(shape, x, y, z), (x, y, ball.built_radius + 0.1))
 
 
 def plain_disc(disc: Round, plan: Plan, heights: Heights) -> None:
     """A disc is part of its body's plate."""
     x, y = disc.at
-    edge = min(0.4, 0.1 * disc.made)
-    shape = extruded(circle(x, y, disc.made), heights.thickness).faces("|Z").edges().chamfer(edge)
-    plan.plate(disc.body, shape, (x, y, disc.made + 0.1))
+    edge = min(0.4, 0.1 * disc.built_radius)
+    shape = extruded(circle(x, y, disc.built_radius), heights.thickness).faces("|Z").edges().chamfer(edge)
+    plan.plate(disc.body, shape, (x, y, disc.built_radius + 0.1))

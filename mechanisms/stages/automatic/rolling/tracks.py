@@ -288,12 +288,12 @@ def touched_road(touch: Joint | Force, part: Round, path: np.ndarray, places: np
     UserError where nothing has room behind the surface.
     """
     few = places[:: max(1, len(places) // MOST)]
-    road = backed(touch.name, part, path, few, part.made - part.pressed - OFF)
+    road = backed(touch.name, part, path, few, part.built_radius - part.pressed - OFF)
     road = road or along(touch.name, [part], path)
     if road.band is None and not is_simple(path, road.feet):
         m = layout.m
         raise UserError(
-            f"{m.name}: contact '{touch.name}': its curve turns back so far that neither a straight lower side nor a "
+            f"{m.name}: contact '{touch.name}': its curve turns back too far: neither a straight lower side nor a "
             f"band of {THICK * layout.sizes.scale:.3g} mm behind it is clear of what touches it; cut it into several "
             f"curves, or write {shown_file(m.name, 'parts')}"
         )

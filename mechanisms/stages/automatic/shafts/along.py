@@ -173,7 +173,7 @@ class Along:
     def _mounted(self, shaft: str) -> list[Mounted]:
         """Return valves and wheels that sit on a shaft beside its throws."""
         cams = [valve.mounted for valve in self.valves.values() if valve.valve.shaft == shaft]
-        return [*(wheel.mounted for wheel in self.wheels.of(shaft)), *cams]
+        return [*(wheel.mounted for wheel in self.wheels.wheels_on(shaft)), *cams]
 
     @cached_property
     def valves(self) -> dict[str, ValvePlan]:

@@ -267,19 +267,19 @@ def bearers(
     for tapered, journals in tries:
 
         def holds(place: tuple[float, float], journal: Journal, tapered: bool = tapered) -> bool:
-            return _is_free(machine, _arm(plan, place, radius, tapered), _beside(plan, journal, taken))
+            return _is_free(machine, _arm(plan, place, radius, tapered), _shapes_at_heights(plan, journal, taken))
 
         for wider in WIDER:
             free = []
             for turn in np.radians(np.arange(0, 360, STEP)):
-                place = _at(plan, wider * nearest, turn)
+                place = _place_round(plan, wider * nearest, turn)
                 if _is_free(machine, disc(*place, radius + room), taken) and all(
                     holds(place, journal) for journal in journals
                 ):
                     free.append(turn)
             chosen = _spread(machine, plan, free)
             if len(chosen) >= 2:
-                places = tuple(_at(plan, wider * nearest, turn) for turn in chosen)
+                places = tuple(_place_round(plan, wider * nearest, turn) for turn in chosen)
                 held = tuple(
                     journal
                     for journal in plan.journals
@@ -297,7 +297,7 @@ def _hubs_of_links(plan: ShaftPlan) -> float:
     return max((math.hypot(pin.x, pin.y) for pin in plan.pins), default=0.0) + 1.5 * plan.pin
 
 
-def _at(plan: ShaftPlan, away: float, turn: float) -> tuple[float, float]:
+def _place_round(plan: ShaftPlan, away: float, turn: float) -> tuple[float, float]:
     x, y = plan.shaft.at
     return float(x + away * math.cos(turn)), float(y + away * math.sin(turn))
 
@@ -311,7 +311,7 @@ def _arm(plan: ShaftPlan, place: tuple[float, float], radius: float, tapered: bo
     return around([plan.shaft.at, place], max(BOSS * radius, 0.8 * HUB * plan.journal))
 
 
-def _beside(plan: ShaftPlan, journal: Journal, taken: Sequence[Takes]) -> list[Takes]:
+def _shapes_at_heights(plan: ShaftPlan, journal: Journal, taken: Sequence[Takes]) -> list[Takes]:
     """Return the shapes that share heights with a bearing."""
     low, high = heights_of(plan, journal)
     return [space for space in taken if space.low < high and space.high > low]

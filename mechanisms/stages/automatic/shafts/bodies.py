@@ -346,7 +346,7 @@ def refuse_near(machine: Machine, link: Link, bore: float) -> None:
         away = math.hypot(x - main.x, y - main.y)
         if away < least:
             raise UserError(
-                f"{machine.m.name}: '{body}' turns on '{link.body}' {away:.4g} mm from the crank pin, and with a bore "
+                f"{machine.m.name}: '{body}' turns on '{link.body}' {away:.4g} mm from the crank pin; with a bore "
                 f"of {bore:.4g} mm its eye beside the big end needs {least:.4g} mm; move the knuckle pin out, or make "
                 "the bore smaller"
             )

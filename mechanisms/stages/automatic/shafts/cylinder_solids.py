@@ -62,7 +62,7 @@ class PistonSize(NamedTuple):
     """Offset of the wrist pin from the middle."""
 
     @classmethod
-    def of(cls, own: Cylinder) -> PistonSize:
+    def from_cylinder(cls, own: Cylinder) -> PistonSize:
         """Return the size for a cylinder, rounded: what follows from the motion differs from bore to bore in its last
         bits.
         """
@@ -125,7 +125,7 @@ class LinerSize(NamedTuple):
     top: float
 
     @classmethod
-    def of(cls, own: Cylinder) -> LinerSize:
+    def from_cylinder(cls, own: Cylinder) -> LinerSize:
         """Return the size for a cylinder, rounded like that of its piston."""
         return cls(*(rounded(size) for size in (own.bore, own.outer, own.low, own.top)))
 
@@ -200,7 +200,9 @@ def bank_solids(
     solids = []
     for own in bank:
         name = own.piston.body
-        shape = _in_place(own, liner_shape(LinerSize.of(own), rounded(fin[name]), _window(own, bank, others)))
+        shape = _in_place(
+            own, liner_shape(LinerSize.from_cylinder(own), rounded(fin[name]), _window(own, bank, others))
+        )
         solids.append(Solid(f"liner_{name}", shape, "aluminium", through_holes(shape)))
         if own.against is not None:
             continue  # the other piston is its head

@@ -124,7 +124,7 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
                 break
             bore *= STEP
         else:
-            wider = ", the angle between banks wider" if _beside(machine, piston, own) else ""
+            wider = ", the angle between banks wider" if _neighbour_limit(machine, piston, own) else ""
             raise UserError(
                 f"{machine.m.name}: a bore of {own:.4g} mm has no room for piston '{name}' in '{piston.joint}': "
                 f"{_fitted(machine, piston, bore / STEP, wished)}; make the rod longer, the throw shorter{wider}, "
@@ -226,7 +226,7 @@ def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, f
         skirt = min(skirt, max(LEAST_SKIRT * bore, lowest - swept))
         if lowest - skirt - room < CRANK_PIN * bore * 1.25:
             return f"its skirt would come down to {lowest - skirt:.4g} mm from the axis of the shaft"
-        low, most = max(swept, lowest - skirt, _beside(machine, piston, bore)), lowest + LATEST * bore
+        low, most = max(swept, lowest - skirt, _neighbour_limit(machine, piston, bore)), lowest + LATEST * bore
         while low <= most and not _has_room(machine, piston, foot, low, bore):
             low += room / 2
         if low > most:
@@ -298,7 +298,7 @@ def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bo
     return True
 
 
-def _beside(machine: Machine, piston: Piston, bore: float) -> float:
+def _neighbour_limit(machine: Machine, piston: Piston, bore: float) -> float:
     """Return how far from the shaft liners of other banks leave room for this one."""
     low = 0.0
     for other in machine.pistons.values():

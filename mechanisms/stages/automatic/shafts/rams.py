@@ -110,10 +110,10 @@ class RamPlan:
         own, body = self.ram, self.ram.body
         links = frozenset(pin.link for pin in own.pins)
         u = math.cos(own.turn), math.sin(own.turn)
-        beam = box(self.at(0.0, self.middle), u, self.low, self.high, self.half)
+        beam = box(self.place(0.0, self.middle), u, self.low, self.high, self.half)
         spaces = [Takes(f"the beam of '{body}'", body, beam, *self.span)]
         for pin, _, bottom, top in self.clevises:
-            cheek = around([self.at(pin.s, pin.q), self.at(self.low, pin.q)], self.eye)
+            cheek = around([self.place(pin.s, pin.q), self.place(self.low, pin.q)], self.eye)
             spaces.append(Takes(f"the clevis of '{pin.joint}'", body, cheek, bottom, top, links))
         r, rams = COLUMN * self.unit, frozenset([body])
         for z in self.columns:
@@ -127,7 +127,7 @@ class RamPlan:
         (x, y), (u, v) = self.ram.line, self.ram.along
         return box((x - self.middle * v, y + self.middle * u), self.ram.along, low, high, half)
 
-    def at(self, s: float, q: float) -> tuple[float, float]:
+    def place(self, s: float, q: float) -> tuple[float, float]:
         """Return a place in the frame of the body."""
         c, d = math.cos(self.ram.turn), math.sin(self.ram.turn)
         return self.ram.origin[0] + s * c - q * d, self.ram.origin[1] + s * d + q * c

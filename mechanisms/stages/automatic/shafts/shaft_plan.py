@@ -303,7 +303,7 @@ class ShaftPlan:
     def _flies(self, before: Pin, after: Pin) -> bool:
         return any(web.low == before.high and web.high == after.low for web in self.webs)
 
-    def beside(self, pin: Pin) -> list[Web]:
+    def webs_of(self, pin: Pin) -> list[Web]:
         """Return the webs at both ends of a crank pin."""
         return [web for web in self.webs if web.high == pin.low or web.low == pin.high]
 
@@ -346,7 +346,7 @@ class ShaftPlan:
         end = (2.2 if flywheel else 1.0) * FLANGE if self.pins else PROUD
         return min([self.ends[0] - end * self.unit, *beyond])
 
-    def through(self, part: Mounted) -> float:
+    def seat_radius(self, part: Mounted) -> float:
         """Return the radius of the shaft where a wheel or a cam sits."""
         inside = self.ends[0] < part.z < self.ends[1]
         return self.journal if inside or not self.pins else THIN * self.journal
@@ -394,9 +394,9 @@ def _refuse_mounted(name: str, plan: ShaftPlan) -> None:
                 f"bearings, from {low:.4g} to {high:.4g} mm; give it a place beyond, below "
                 f"{low - plan.gap - part.thickness / 2:.4g} or above {high + plan.gap + part.thickness / 2:.4g} mm"
             )
-        if part.inner < plan.through(part):
+        if part.inner < plan.seat_radius(part):
             raise UserError(
-                f"{name}: {part.what} has no room for its shaft, whose radius is {plan.through(part):.4g} mm, and "
+                f"{name}: {part.what} has no room for its shaft, whose radius is {plan.seat_radius(part):.4g} mm, and "
                 f"inside of its rim there are {part.inner:.4g} mm; make the wheel larger"
             )
 

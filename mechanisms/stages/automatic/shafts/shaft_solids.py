@@ -49,7 +49,7 @@ def shaft_solid(plan: ShaftPlan, webs: Sequence[cq.Workplane], flywheel: float =
         shape = shape.union(_rod(plan.journal, journal.low - into, journal.high + into))
     shape = shape.union(_upper_end(plan, into)).union(_lower_end(plan, into, flywheel))
     for pin in plan.pins if plan.hole else ():
-        webs_of = plan.beside(pin)
+        webs_of = plan.webs_of(pin)
         low, high = min(web.low for web in webs_of), max(web.high for web in webs_of)
         shape = shape.cut(_rod(plan.hole, low - 1, high + 1, (pin.x, pin.y)))
     x, y = plan.shaft.axis
@@ -142,12 +142,14 @@ def _hull(a: Circle, b: Circle) -> cq.Wire:
 def _counterweight(neck: float, weight: Weight, height: float, z: float) -> cq.Workplane:
     import cadquery as cq
 
-    def at(radius: float, turn: float) -> tuple[float, float]:
+    def place(radius: float, turn: float) -> tuple[float, float]:
         return radius * math.cos(weight.towards + turn), radius * math.sin(weight.towards + turn)
 
     far, half = weight.radius, weight.half
-    flat = cq.Workplane(origin=(0, 0, z)).moveTo(*at(neck, -math.pi / 2)).lineTo(*at(far, -half))
-    return flat.threePointArc(at(far, 0.0), at(far, half)).lineTo(*at(neck, math.pi / 2)).close().extrude(height)
+    flat = cq.Workplane(origin=(0, 0, z)).moveTo(*place(neck, -math.pi / 2)).lineTo(*place(far, -half))
+    return (
+        flat.threePointArc(place(far, 0.0), place(far, half)).lineTo(*place(neck, math.pi / 2)).close().extrude(height)
+    )
 
 
 # What the crank pins of a shaft carry: the masses that its counterweights are to balance.
@@ -252,7 +254,7 @@ def balanced_webs(plan: ShaftPlan, loads: Sequence[Load], density: float) -> lis
         place = density * math.pi * np.array([pin.x, pin.y])
         area = plan.pin**2 - plan.hole**2
         turning.append(((pin.low + pin.high) / 2, cubic_metres(area * (pin.high - pin.low)) * place))
-        for web in plan.beside(pin):
+        for web in plan.webs_of(pin):
             k = plan.webs.index(web)
             moments[k] = moments[k] - cubic_metres(plan.hole**2 * (web.high - web.low)) * place
     turning += [(z, own) for z, own, web in zip(middles, moments, plan.webs, strict=True) if not web.weight]

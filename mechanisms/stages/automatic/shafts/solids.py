@@ -112,7 +112,7 @@ def plate_of(own: Along, mount: Mount, base_under: Sequence[tuple[float, float]]
     """Return the base plate, below all that moves and round all that stands on it: a rectangle, or on a stand its
     hull.
     """
-    unit, upright = own.measures.unit, Upright.of(mount)
+    unit, upright = own.measures.unit, Upright.from_mount(mount)
     places = np.array([upright.seen_place(x, y) for x, y in (*own.feet, *base_under)])
     more = MARGIN * unit
     (x0, y0), (x1, y1) = places.min(axis=0) - more, places.max(axis=0) + more
@@ -128,7 +128,7 @@ def plate_of(own: Along, mount: Mount, base_under: Sequence[tuple[float, float]]
 
 def _base(own: BackPlate, mount: Mount) -> list[Solid]:
     """Return the base plate, and its rubber feet where it is on no stand."""
-    unit, upright, (x0, y0, x1, y1) = own.unit, Upright.of(mount), own.corners
+    unit, upright, (x0, y0, x1, y1) = own.unit, Upright.from_mount(mount), own.corners
     if own.hull:
         rim = hull([(x, y, own.corner) for x, y in own.hull])
         plate = eased(extruded(rim, own.thickness, -own.thickness), 0.8 * unit, ">Z", chamfer=True)
@@ -173,8 +173,8 @@ def _of_body(own: Along, body: str, material: str, is_wished: bool, made: Mappin
     pieces = built_up(shape, plan, [pin for pin in plan.pins if any(_is_closed(own, link) for link in pin.links)])
     names = [body, *(f"rear_{body}" for _ in pieces[1:])]
     all_pieces = [Solid(name, piece, material, through_holes(piece)) for name, piece in zip(names, pieces, strict=True)]
-    for wheel in own.wheels.of(body):
-        all_pieces += wheel_solids(wheel, plan.through(wheel.mounted), own.sizes.pivot.fit.seat)
+    for wheel in own.wheels.wheels_on(body):
+        all_pieces += wheel_solids(wheel, plan.seat_radius(wheel.mounted), own.sizes.pivot.fit.seat)
     return all_pieces
 
 
@@ -196,15 +196,15 @@ def _piston(own: Along, body: str, material: str) -> list[Solid]:
     c, s = math.cos(piston.turn), math.sin(piston.turn)
     x, y = piston.wrist[0] + s * piston.aside, piston.wrist[1] - c * piston.aside
 
-    def at(shape: cq.Workplane) -> cq.Workplane:
+    def stand(shape: cq.Workplane) -> cq.Workplane:
         return placed(shape, x, y, piston.z, math.degrees(piston.turn))
 
-    size = PistonSize.of(cylinder)
-    shape = at(piston_shape(size, thickness, gap))
+    size = PistonSize.from_cylinder(cylinder)
+    shape = stand(piston_shape(size, thickness, gap))
     pieces = [Solid(body, shape, material, through_holes(shape))]
     for k, ring in enumerate(ring_shapes(size), start=1):
-        pieces.append(Solid(f"ring_{body}_{k}", at(ring), "steel", 1))
-    pieces.append(Solid(f"wrist_pin_{body}", at(wrist_pin_shape(size)), "brass", 1))
+        pieces.append(Solid(f"ring_{body}_{k}", stand(ring), "steel", 1))
+    pieces.append(Solid(f"wrist_pin_{body}", stand(wrist_pin_shape(size)), "brass", 1))
     return pieces
 
 

@@ -141,7 +141,7 @@ def valve_plans(machine: Machine, measures: Measures, cylinders: Mapping[str, Cy
         if radius < LEAST * bore:
             raise UserError(
                 f"{machine.m.name}: valve '{name}' is {away:.4g} mm along z from the middle of its cylinder with a "
-                f"bore of {bore:.4g} mm, which leaves a head of {2 * radius:.3g} mm; two valves of a cylinder are best "
+                f"bore of {bore:.4g} mm; that leaves a head of {2 * radius:.3g} mm; put two valves of a cylinder "
                 f"{0.47 * bore:.3g} mm apart"
             )
         cam, centre, base = _cam(machine, valve)

@@ -80,7 +80,7 @@ class Wheels:
     every: list[ShaftWheel] = field(default_factory=list)
     belts: list[ShaftBelt] = field(default_factory=list)
 
-    def of(self, body: str) -> list[ShaftWheel]:
+    def wheels_on(self, body: str) -> list[ShaftWheel]:
         """Return the wheels of a shaft, each once."""
         return [wheel for wheel in self.every if wheel.wheel.body == body]
 

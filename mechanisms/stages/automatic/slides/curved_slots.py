@@ -112,7 +112,7 @@ def _slot(m: Mechanism, joint: Joint, layout: Layout) -> CurvedSlot:
         scale = layout.sizes.scale
         raise UserError(
             f"{m.name}: the curve of joint '{joint.name}' bends with a radius of {bend * scale:.3g} mm where its pin "
-            f"runs, and a slot for a roller of {layout.sizes.roller * scale:.3g} mm needs {least * scale:.3g} mm; make "
+            f"runs; a slot for a roller of {layout.sizes.roller * scale:.3g} mm needs {least * scale:.3g} mm; make "
             "the curve smoother or pins thinner (automatic(m, pin=...))"
         )
     _refuse_near_itself(m, joint, path, closed, layout)
@@ -134,11 +134,11 @@ def _refuse_near_itself(m: Mechanism, joint: Joint, path: np.ndarray, closed: bo
         return
     scale, body, (x, y) = sizes.scale, joint.i.body.name, (path[first] + path[second]) / 2 * sizes.scale
     raise UserError(
-        f"{m.name}: the pin of joint '{joint.name}' crosses its own way, or comes within "
-        f"{away[first, second] * scale:.3g} mm of it, near ({x:.4g}, {y:.4g}) mm in the frame of '{body}', "
-        f"and a slot for its roller of {roller * scale:.3g} mm needs {apart * scale:.3g} mm between two stretches; let "
-        "the motion end before, part the stretches of the curve (its straight continuations are some of them), make "
-        f"pins thinner (automatic(m, pin=...)), or write {shown_file(m.name, 'parts')}"
+        f"{m.name}: the pin of joint '{joint.name}' crosses its own path, or comes within "
+        f"{away[first, second] * scale:.3g} mm of it, near ({x:.4g}, {y:.4g}) mm in the frame of '{body}'; "
+        f"a slot for its roller of {roller * scale:.3g} mm needs {apart * scale:.3g} mm between two stretches; let "
+        "the motion end before, make pins thinner (automatic(m, pin=...)), part the stretches of the curve and of its "
+        f"straight continuations, or write {shown_file(m.name, 'parts')}"
     )
 
 

@@ -244,7 +244,7 @@ def _laid(line: list[Slide], layout: Layout) -> list[Slide]:
             rail.append(slide)
     laid: list[Slide] = []
     taken: list[tuple[float, float]] = []
-    beside = _beside(layout)
+    beside = _rail_distance(layout)
     for host, *guests in rails:
         low, high = _joined([_span(slide, line[0]) for slide in (host, *guests)])
         if host.rail == "ground":
@@ -258,7 +258,7 @@ def _laid(line: list[Slide], layout: Layout) -> list[Slide]:
     return laid
 
 
-def _beside(layout: Layout) -> float:
+def _rail_distance(layout: Layout) -> float:
     """Between the middles of the round ends of two rails that do not overlap, at least."""
     return RAIL + 2.0 + layout.sizes.room
 
@@ -266,7 +266,7 @@ def _beside(layout: Layout) -> float:
 def _may_share(slide: Slide, other: Slide, line: Slide, layout: Layout) -> bool:
     """Return True if two overlapping rails can be one: the blocks never meet, and no stop is in the way of either."""
     first, second = _span(slide, line), _span(other, line)
-    if min(first[1], second[1]) - max(first[0], second[0]) < -_beside(layout):
+    if min(first[1], second[1]) - max(first[0], second[0]) < -_rail_distance(layout):
         return False
     if any(end is not None for end in (*slide.ends, *other.ends)):
         return False

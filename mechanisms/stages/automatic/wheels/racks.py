@@ -97,7 +97,7 @@ class Rack:
         first, last = self.teeth
         return (self.phase or 0.0) + (first - 0.5) * self.pitch, (self.phase or 0.0) + (last + 0.5) * self.pitch
 
-    def at(self, along: float, across: float) -> tuple[float, float]:
+    def place(self, along: float, across: float) -> tuple[float, float]:
         """Return a place in the body's frame."""
         c, s = math.cos(self.angle), math.sin(self.angle)
         return self.x + c * along - s * across, self.y + s * along + c * across
@@ -113,7 +113,7 @@ class Rack:
         low, high = (end + side * (STUD + 1.0) for end, side in zip(self.ends, (1, -1), strict=True))
         across = self.root - BACK / 2
         if self.body == "ground":
-            return [self.at(low, across), self.at(high, across)]
+            return [self.place(low, across), self.place(high, across)]
         others = [f for f in layout.features if f is not self and not isinstance(f, Rack)]
         c, s = math.cos(self.angle), math.sin(self.angle)
         places = [a for f in others for a in f.anchors(layout) if a.body == self.body]
@@ -121,7 +121,7 @@ class Rack:
         middle = sum(along) / len(along) if along else (low + high) / 2
         half = min(APART, high - low) / 2
         middle = min(max(middle, low + half), high - half)
-        return [self.at(middle - half, across), self.at(middle + half, across)]
+        return [self.place(middle - half, across), self.place(middle + half, across)]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Return its seats."""
@@ -131,7 +131,7 @@ class Rack:
         """Yield the bar, and what carries it."""
         (low, high), edge = self.ends, 0.2
         corners = [(low, self.root - BACK), (high, self.root - BACK), (high, self.tip), (low, self.tip)]
-        bar = Rounded(np.array([self.at(*corner) for corner in corners]), edge)
+        bar = Rounded(np.array([self.place(*corner) for corner in corners]), edge)
         meshes = frozenset(mate.what for mate in self.mates)
         yield Item(self.what, self.body, bar, Reach((self.layer,)), source=self, meshes=meshes, spared=False)
         reach = (
@@ -157,8 +157,8 @@ def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layou
         scale = layout.sizes.scale
         raise UserError(
             f"{m.name}: {joint.kind.name} '{joint.name}': at t={layout.times[at]:.3g} s the pinion's centre is "
-            f"{path[at, 1] * scale:.4g} mm above the rack's x axis, its pitch line, and teeth of a pitch radius of "
-            f"{pinion.radius * scale:.4g} mm need that; move the rack's marker or the pinion, or write "
+            f"{path[at, 1] * scale:.4g} mm above the rack's x axis, its pitch line; teeth need that to be the pitch radius, "
+            f"{pinion.radius * scale:.4g} mm; move the rack's marker or the pinion, or write "
             f"{shown_file(m.name, 'parts')}"
         )
 

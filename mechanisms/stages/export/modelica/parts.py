@@ -30,16 +30,16 @@ class Places:
         self._origins: dict[str, str] = {}
         self._frames: dict[tuple[str, float, float], str] = {}
 
-    def at(self, marker: Any, user: str) -> str:
+    def frame_at(self, marker: Any, user: str) -> str:
         """The frame at a marker, in the body's axes; it may be called after its ``user``."""
         body, x, y = marker.body.name, float(marker.x), float(marker.y)
         near = (key for key in self._frames if key[0] == body and max(abs(key[1] - x), abs(key[2] - y)) < SMALL)
         key = next(near, (body, x, y))
         if key not in self._frames:
-            self._frames[key] = self._made(body, x, y, user)
+            self._frames[key] = self._make_frame(body, x, y, user)
         return self._frames[key]
 
-    def _made(self, body: str, x: float, y: float, user: str) -> str:
+    def _make_frame(self, body: str, x: float, y: float, user: str) -> str:
         if body == GROUND:
             name = self._document.names.new(GROUND, user)
             made = self._document.add("Parts.Fixed", name, {"r": vector(x, y)}, f"place of '{user}'")
@@ -88,7 +88,7 @@ class Start:
     rates: Mapping[str, Array]
 
     @classmethod
-    def of(cls, solution: Any) -> Start:
+    def from_solution(cls, solution: Any) -> Start:
         """Return the start at a solution's first output."""
         poses, rates = {GROUND: np.zeros(3)}, {GROUND: np.zeros(3)}
         for name in solution.mechanism.bodies:
@@ -267,7 +267,7 @@ class Parts:
 
     def ends(self, thing: Any) -> tuple[str, str]:
         """Frames of its markers."""
-        return self._places.at(thing.i, thing.name), self._places.at(thing.j, thing.name)
+        return self._places.frame_at(thing.i, thing.name), self._places.frame_at(thing.j, thing.name)
 
     def revolute(self, joint: Any, words: str) -> None:
         """A pin."""

@@ -31,7 +31,7 @@ COORDINATED = ("revolute", "prismatic", "pin_in_slot", "weld")
 
 def modelica(solution: Any) -> tuple[str, list[str]]:
     """Return the file's text, and what it leaves out."""
-    m, start = solution.mechanism, Start.of(solution)
+    m, start = solution.mechanism, Start.from_solution(solution)
     size = max(float(solution.packed.size), 1e-6)
     repeated = _repeated(solution)
     joints = [joint for joint in m.joints.values() if joint.kind.name in JOINTS and joint.name not in repeated]

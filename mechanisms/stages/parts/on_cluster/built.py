@@ -56,7 +56,7 @@ def parts(files: Mapping[str, Path], common: str, name: str) -> bytes:
         if any(order.program.get(f"sources of {room}") != sources_of(room, tree) for room in PARTS):
             raise UserError("its sources have changed since it was started; start it again")
         for path, content in order.files.items():
-            _put(tree, path, files[content].read_bytes(), own_folder(tree, order.folder))
+            _write_file(tree, path, files[content].read_bytes(), own_folder(tree, order.folder))
         if order.machine:
             write_bytes(tree / RESULTS / name / "parts" / "parts.json", files[order.machine].read_bytes())
         return msgspec.msgpack.encode(_stage(tree, order))
@@ -89,7 +89,7 @@ def own_folder(tree: Path, called: str) -> Path | None:
     return tree.parent / "own" / Path(called).name if called else None
 
 
-def _put(tree: Path, path: str, content: bytes, own: Path | None = None) -> None:
+def _write_file(tree: Path, path: str, content: bytes, own: Path | None = None) -> None:
     """Write one of the author's files. Raises UserError for one that is not the author's."""
     place = tree / "mechanisms" if own is None else own
     target = Path(os.path.abspath(tree / path if own is None else own / path.removeprefix(WORKSHOP)))

@@ -45,7 +45,7 @@ def macro(scenery: Scenery) -> Shot | None:
     stands = _stands(scenery)
 
     def picture(s: float) -> Picture:
-        time = ramp.at(min(s, move))
+        time = ramp.time_at(min(s, move))
         at = scenery.loop_frame(time)
         a, b = (_aimed(scenery, stand, _place(scenery, name, at)) for stand in stands)
         camera = focused(between(a, b, eased(s / move)), scenery.up, scenery.blur)
@@ -56,11 +56,11 @@ def macro(scenery: Scenery) -> Shot | None:
     def over(s: float) -> Over:
         shown = shown_in(s, 0.5, SECONDS - 0.2)
         return scenery.going(
-            ramp.at(s), ramp.rate(s) if s < move else 0.0, strip=False, caption=text, caption_shown=shown
+            ramp.time_at(s), ramp.rate(s) if s < move else 0.0, strip=False, caption=text, caption_shown=shown
         )
 
     captions = (Caption(0.5, SECONDS - 0.2, text),)
-    return Shot("macro", scenery.say("macro"), SECONDS, picture, over, ramp.at, captions)
+    return Shot("macro", scenery.say("macro"), SECONDS, picture, over, ramp.time_at, captions)
 
 
 def _busy(scenery: Scenery) -> float:
@@ -167,16 +167,16 @@ def section(scenery: Scenery) -> Shot | None:
 
     def picture(s: float) -> Picture:
         stand = between(first, last, eased(s / move))
-        return scenery.picture(stand, ramp.at(min(s, move)), hidden="trails", cut=True)
+        return scenery.picture(stand, ramp.time_at(min(s, move)), hidden="trails", cut=True)
 
     text = scenery.say("cut_open")
 
     def over(s: float) -> Over:
         rate, shown = ramp.rate(s) if s < move else 0.0, shown_in(s, 0.4, SECTION_SECONDS - 0.2)
-        return scenery.going(ramp.at(s), rate, strip=False, caption=text, caption_shown=shown)
+        return scenery.going(ramp.time_at(s), rate, strip=False, caption=text, caption_shown=shown)
 
     captions = (Caption(0.4, SECTION_SECONDS - 0.2, text),)
-    return Shot("section", scenery.say("section"), SECTION_SECONDS, picture, over, ramp.at, captions)
+    return Shot("section", scenery.say("section"), SECTION_SECONDS, picture, over, ramp.time_at, captions)
 
 
 def _turn(scenery: Scenery, cut: Film) -> float:

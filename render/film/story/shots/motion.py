@@ -70,7 +70,7 @@ def _shot(scenery: Scenery, passes: Ramp | Warp, seconds: float, again: float = 
     first, last = (scenery.stand(azimuth) for azimuth in (-side, side))
 
     def model(s: float) -> float:
-        return passes.at(s % again if again else s)
+        return passes.time_at(s % again if again else s)
 
     def picture(s: float) -> Picture:
         return scenery.picture(between(first, last, eased(s / seconds)), model(s))
@@ -109,9 +109,9 @@ def last(scenery: Scenery) -> Shot:
     begin = turned(end, -14.0, 3.0, 1.1)
 
     def picture(s: float) -> Picture:
-        return scenery.picture(between(begin, end, eased(s / stop)), ramp.at(min(s, stop)))
+        return scenery.picture(between(begin, end, eased(s / stop)), ramp.time_at(min(s, stop)))
 
     def over(s: float) -> Over:
         return Over(ending=shown_in(s, stop - 0.4, 1e9, 0.5))
 
-    return Shot("last", scenery.say("last"), stop + RESTS, picture, over, ramp.at)
+    return Shot("last", scenery.say("last"), stop + RESTS, picture, over, ramp.time_at)

@@ -78,12 +78,12 @@ def reason(scenery: Scenery) -> Shot | None:
     ramp = into(what.time, earliest, clock.rate, goes, slows)
     stop = goes + slows
     begins = stop + grows + STANDS
-    after = Ramp(ramp.at(stop), ((on, 0.0, clock.rate),))
+    after = Ramp(ramp.time_at(stop), ((on, 0.0, clock.rate),))
     seconds = begins + on
-    wide, near = _stands(scenery, ramp.at(stop))
+    wide, near = _stands(scenery, ramp.time_at(stop))
 
     def model(s: float) -> float:
-        return ramp.at(s) if s < begins else after.at(s - begins)
+        return ramp.time_at(s) if s < begins else after.time_at(s - begins)
 
     def picture(s: float) -> Picture:
         way = eased(s / stop) if s < stop else 1.0
@@ -177,7 +177,7 @@ def loop(scenery: Scenery, seconds: float) -> Shot:
 
     def picture(s: float) -> Picture:
         grown = min(eased((s - stop) / LOOP_GROWS), eased((begins + LOOP_GOES - s) / LOOP_GOES)) if s >= stop else 0.0
-        return scenery.picture(stand, ramp.at(s), forces=True, grown=round(grown, 6))
+        return scenery.picture(stand, ramp.time_at(s), forces=True, grown=round(grown, 6))
 
     text = "" if what is None else scenery.wishes.caption or sentence(scenery, what)
     name = plain(scenery.film.motion.mechanism.partition("-")[0])
@@ -191,9 +191,9 @@ def loop(scenery: Scenery, seconds: float) -> Shot:
         here = next((row for row in captions if row.start <= s < row.end), None)
         dark = 0.0 if clock.repeats else 1 - min(s / DIP, (seconds - s) / DIP, 1.0)
         return scenery.going(
-            ramp.at(s), ramp.rate(s), caption=here.text if here else "", dark=max(dark, 0.0),
+            ramp.time_at(s), ramp.rate(s), caption=here.text if here else "", dark=max(dark, 0.0),
             caption_shown=shown_in(s, here.start, here.end, 0.25) if here else 0.0,
             notes=labels, notes_shown=shown_in(s, stop + 0.7 * LOOP_GROWS, begins),
         )  # fmt: skip
 
-    return Shot("loop", scenery.say("motion"), seconds, picture, over, ramp.at, captions)
+    return Shot("loop", scenery.say("motion"), seconds, picture, over, ramp.time_at, captions)

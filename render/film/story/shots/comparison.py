@@ -1,4 +1,4 @@
-"""Two variants on one clock: both move, time stops where they differ most, and goes on."""
+"""The shot of one of two variants side by side: what differs, and a ramp that both share."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def ramp_of(rate: float, span: float, at: float | None) -> Ramp:
     )  # fmt: skip
 
 
-def beside(scenery: Scenery, ramp: Ramp, differs: Difference | None, names: tuple[str, str]) -> Shot:
+def comparison_shot(scenery: Scenery, ramp: Ramp, differs: Difference | None, names: tuple[str, str]) -> Shot:
     """Return the shot of one of them; both have the same ``ramp``, whose times count from the start of each."""
     stand, start = scenery.stand(), scenery.film.clock.start
     seconds, text, shown = ramp.seconds, "", (0.0, 0.0)
@@ -85,12 +85,12 @@ def beside(scenery: Scenery, ramp: Ramp, differs: Difference | None, names: tupl
         shown = (stop - 0.2, stop + STANDS + 0.2)
 
     def picture(s: float) -> Picture:
-        return scenery.picture(stand, start + ramp.at(s))
+        return scenery.picture(stand, start + ramp.time_at(s))
 
     def over(s: float) -> Over:
         return scenery.going(
-            start + ramp.at(s), ramp.rate(s), caption=text, caption_shown=shown_in(s, *shown) if text else 0.0
+            start + ramp.time_at(s), ramp.rate(s), caption=text, caption_shown=shown_in(s, *shown) if text else 0.0
         )
 
     captions = (Caption(*shown, text),) if text else ()
-    return Shot("beside", scenery.say("compare"), seconds, picture, over, lambda s: start + ramp.at(s), captions)
+    return Shot("beside", scenery.say("compare"), seconds, picture, over, lambda s: start + ramp.time_at(s), captions)

@@ -13,8 +13,7 @@ from render.film.film import Film
 from render.film.inputs import encoder_version, read_film, refuse_missing, stage_key
 from render.film.story.planned import scenery_of
 from render.film.story.scenery import Scenery, at_distance
-from render.film.story.shots.comparison import comparison_shot
-from render.film.story.shots.comparison import differences, ramp_of
+from render.film.story.shots.comparison import comparison_shot, differences, ramp_of
 from render.film.story.shots.motion import title
 from render.film.story.story import Curve, Story, curve_of, curves_of
 from render.film.story.words import plain, words_in

@@ -69,7 +69,7 @@ def test_a_slot_goes_on_along_the_tangent_of_its_curve() -> None:
 
 def test_a_slot_that_crosses_itself_is_refused() -> None:
     m, solution = _runs(_loop(), 8, 4.0, 0.0, 1.2)
-    with pytest.raises(UserError, match=r"runs: the pin of joint 'track' crosses its own way.* near \(.*motion end"):
+    with pytest.raises(UserError, match=r"runs: the pin of joint 'track' crosses its own path.* near \(.*motion end"):
         _ = Automatic(m, solution).levels
 
 

@@ -179,8 +179,8 @@ def tyred_wheel(wheel: Round, plan: Plan, heights: Heights) -> None:
         raise UserError(
             f"{plan.layout.m.name}: '{wheel.name}' lets the wheel of {wheel.body} be pressed "
             f"{wheel.pressed * scale:.4g} mm into what it runs on; with a radius of "
-            f"{wheel.built_radius * scale:.4g} mm its tyre is {tyre * scale:.4g} mm thick at most; make the contact stiffer or the radius larger, "
-            "or let the wheel start nearer to the surface"
+            f"{wheel.built_radius * scale:.4g} mm its tyre is {tyre * scale:.4g} mm thick at most; "
+            "make the contact stiffer or the radius larger, or let the wheel start nearer to the surface"
         )
     rim = wheel.rim(plan.layout)
     shape = extruded(circle(0, 0, rim), heights.thickness).faces("|Z").edges().chamfer(0.4)

@@ -15,7 +15,8 @@ from typing import IO
 
 import msgspec
 
-from render.blender.job import Answer, Job, Patience, Picture, scratch_folder
+from render.blender.job import Answer, Job, Picture
+from render.blender.process import Patience, scratch_folder
 from shared.stage.console import duration, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes

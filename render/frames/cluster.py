@@ -15,8 +15,9 @@ import msgspec
 
 from mbsd.dealing.wrong_answer import WrongAnswer, printable
 from render.blender.child import KeptBlender
-from render.blender.job import START, Answer, Job, Patience
+from render.blender.job import Answer, Job
 from render.blender.picture_file import fault_of, most_bytes, name_of
+from render.blender.process import START, Patience
 from render.frames.store import FrameStore
 from shared.cluster.address import connected
 from shared.cluster.contents import content_hash

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from render.blender.job import Patience
+from render.blender.process import Patience
 from render.presets import Preset
 from shared.stage.console import duration
 from shared.stage.errors import UserError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from pathlib import Path
 
-from render.blender.job import scratch_folder
+from render.blender.process import scratch_folder
 from render.film.inputs import named
 from render.frames.story.stage import film_of
 from render.freshness import Freshness

@@ -14,7 +14,7 @@ from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
-from render.blender.job import scratch_folder
+from render.blender.process import scratch_folder
 from render.film.inputs import named
 from render.frames.film import wav_of, write_sound
 from render.frames.store import FrameIndex, FrameStore

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from render.blender.job import scratch_folder
+from render.blender.process import scratch_folder
 from render.film.inputs import encoder_version, named, stage_key
 from render.film.story.story import Story
 from render.film.story.words import chapters

@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from render.blender import child
-from render.blender.job import FLOOR, START, Job, Patience, Picture
+from render.blender.job import Job, Picture
+from render.blender.process import FLOOR, START, Patience
 from render.film.scene import Scene, StudioSpec
 from render.looks import LOOKS
 from shared.stage.errors import UserError

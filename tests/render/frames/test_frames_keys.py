@@ -106,7 +106,7 @@ def test_an_edit_of_what_blender_runs_changes_every_key(
     shutil.copytree(render_keys.BLENDER, copy, ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.setattr(render_keys, "BLENDER", copy)
     assert keys(pictures()) == before
-    for file in ("scene/studio.py", "worker/worker.py"):
+    for file in ("scene/built_scene.py", "worker/worker.py"):
         (copy / file).write_text((copy / file).read_text() + "\n# brighter\n")
         after = keys(pictures())
         assert not set(before) & set(after)

@@ -158,8 +158,8 @@ def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layou
         raise UserError(
             f"{m.name}: {joint.kind.name} '{joint.name}': at t={layout.times[at]:.3g} s the pinion's centre is "
             f"{path[at, 1] * scale:.4g} mm above the rack's x axis, its pitch line; "
-            f"teeth need that to be the pitch radius, {pinion.radius * scale:.4g} mm; move the rack's marker or the pinion, or write "
-            f"{shown_file(m.name, 'parts')}"
+            f"teeth need that to be the pitch radius, {pinion.radius * scale:.4g} mm; "
+            f"move the rack's marker or the pinion, or write {shown_file(m.name, 'parts')}"
         )
 
 

@@ -11,7 +11,7 @@ from shared.contract import Motion
 from shared.contract.mount import Kind, Mount
 from shared.contract.shot import Shot
 
-# What a look is made of: plain data that Blender's scene and the page both read.
+# A look is plain data that Blender's scene and the page both read.
 #
 # Places are (right, away, up) as the camera stands, in radii of the swept motion around its middle, so that a machine
 # of any size stands in the same light. A lamp's power grows with the square of its distance. Colours are linear RGB.
@@ -100,7 +100,7 @@ class Screen(msgspec.Struct, kw_only=True, frozen=True):
     """Light of the page: WebGL has no light that bounces."""
 
     edge: Colour
-    """What the floor fades into."""
+    """Colour that the floor fades into."""
     lamp: float = 2.6
     ambient: float = 0.0
     reflected: float = 0.5

@@ -191,7 +191,7 @@ def without_noise(values: np.ndarray, floor: float) -> np.ndarray:
     return np.where(np.abs(values) <= floor, 0.0, values)
 
 
-# What the inertia of all bodies does to the frame: from data.json alone.
+# Inertia forces of all bodies on the frame, from data.json alone.
 #
 #     F = -sum m a                                  force (N), a of the centres of mass
 #     M = -sum [(r - r0) x m a + I alpha]           moment (N m); r0: the axis of the crank, else the origin
@@ -207,7 +207,7 @@ class Shaking:
     fy: np.ndarray
     moment: np.ndarray
     about: str
-    """What the moment is about, in words."""
+    """Point or axis of the moment, in words."""
     mx: np.ndarray | None = None
     """Couples; None where the model gives no places."""
     my: np.ndarray | None = None

@@ -116,7 +116,7 @@ MEANT = {
     "velocities": ("speeds",),
     "title": ("titles", "names", "rates", "numbers"),
 }
-"""What else one may ask for, by the words that show it."""
+"""Other words of a request, by what they show."""
 
 
 def show_words(text: str) -> str:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from shared.contract import Parts
 
 
-# What tolerances.py asks: by the name of a result, what :func:`mbsd.tolerances` is to take.
+# Requests of tolerances.py: by the name of a result, the arguments of :func:`mbsd.tolerances`.
 #
 #     def tolerances(p: Params) -> dict[str, dict[str, Any]]:
 #         sizes = {"crank": "m", "rod": "m", "A": Clearance.from_fit(0.006, "H7/g6")}
@@ -102,7 +102,7 @@ def _shown(given: Any) -> str:
     return shown(given)
 
 
-# What was found, for people: a sentence a result for the terminal, and summary.md.
+# Results for people: a sentence for each in the terminal, and summary.md.
 
 NOTHING = 0.01
 """Part of the standard deviation, and of the yield, that is not worth a tighter tolerance."""

@@ -35,7 +35,7 @@ class Silent(Exception):
     def __init__(self, message: str, remedy: str = "") -> None:
         super().__init__(message)
         self.remedy = remedy
-        """What a user can do, if it comes again."""
+        """Remedy if it happens again."""
 
 
 def how_it_ended(code: int, doing: str, said: str) -> str:
@@ -90,7 +90,7 @@ def _signal_name(number: int) -> str:
         return f"signal {number}"
 
 
-# Whether a Blender process grows from picture to picture; one that does is replaced before the machine is full.
+# Memory of a Blender process: one that grows from picture to picture is replaced before the machine is full.
 #
 # Measured: 1000 pictures in one process take as much as ten (docs/night.md).
 

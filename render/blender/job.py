@@ -17,7 +17,7 @@ class Picture(msgspec.Struct, kw_only=True, frozen=True):
     folder: str
     key: str
     name: str
-    """What messages call it: ``frame 12``."""
+    """Name in messages: ``frame 12``."""
 
 
 class Job(msgspec.Struct, kw_only=True, frozen=True):
@@ -48,7 +48,7 @@ class Answer(msgspec.Struct, kw_only=True, frozen=True, omit_defaults=True):
 
     device: str = ""
     doing: str = ""
-    """What it is about to do, after the word "Blender"."""
+    """Next step, in words after "Blender"."""
     path: str = ""
     """A file that is whole."""
     key: str = ""

@@ -88,7 +88,7 @@ def is_as_named(path: Path, content: bytes) -> bool:
 # Checks a picture that came from another machine, or whose maker is not known, more strictly than Blender's own.
 
 CHUNKS = (b"IHDR", b"IDAT", b"IEND", *COLOUR)
-"""Those of a picture that Blender's process has named."""
+"""Names of pictures that Blender's process has written."""
 HEADER = 13
 """Bytes of IHDR: width, height, depth, kind of colour, compression, filter, interlacing."""
 RGB = b"\x08\x02\x00\x00\x00"

@@ -22,7 +22,7 @@ LYING, STANDING = (-16.0, 42.0), (-24.0, 10.0)
 """Azimuth and elevation (degrees) where a shot says none: of what lies on a desk, and, at eye level, of what stands."""
 TALL = 9 / 16
 LYING_TALL, STANDING_TALL = (-6.0, 15.0), (-12.0, 2.0)
-"""What is added to these in a picture that is 9:16, and in part in those between: from higher up what lies is taller,
+"""Degrees added to these in a picture that is 9:16, and in part in those between: from higher up what lies is taller,
 and from farther aside what stands is narrower."""
 
 

@@ -15,7 +15,7 @@ from shared.contract import Motion
 from shared.contract.quantity import figures
 from shared.contract.shot import Shot
 
-# Which moment of the motion the film shows at any of its seconds, and when it shows a given moment.
+# The map from seconds of the film to moments of the motion, and back.
 #
 # A showing is a row of pieces with a steady rate each: film seconds f0 .. f1 show the motion from m0 to m1, so that
 #

@@ -275,7 +275,7 @@ AWAY = 0.5
 GONE = 0.6
 """... and if at the end it is so far from where it began, as a part of the length of the box around its way."""
 WIDEST = 0.9
-"""What is followed is framed by less than this part of what it sweeps, else the camera may as well stand."""
+"""A subject is followed if its frame is less than this part of its sweep; else the camera may as well stand."""
 
 
 def travels(places: Array, repeats: bool) -> bool:

@@ -25,7 +25,7 @@ COLOURED, KEPT = 0.05, 0.06
 TINT, PANE = 0.6, 0.06
 """How much of its colour a transparent piece keeps, and its roughness."""
 GREY, DARKEST = 0.9, 0.14
-"""What a coloured surface is beside arrows, in its lightness, and that at least."""
+"""Lightness of a coloured surface beside arrows, as a part of its own, and the least."""
 
 
 def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = None) -> list[PieceSpec]:

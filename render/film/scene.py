@@ -212,4 +212,4 @@ class State(msgspec.Struct, kw_only=True, frozen=True):
     lifts: dict[str, float] = {}
     """By ``body/piece``: how far a piece is lifted along z (m); those that are not named are where they belong."""
     hidden: Hidden = ""
-    """What is not shown: trails, or all but the solids (trails, tubes, labels)."""
+    """Hidden objects: trails, or all but the solids (trails, tubes, labels)."""

@@ -15,7 +15,7 @@ from shared.contract import BodyMotion, Motion
 from shared.contract.felt import felt
 from shared.contract.shot import Quantity
 
-# What straight arrows stand for: forces, reactions, velocities, accelerations over the motion, each where it acts.
+# Quantities of straight arrows: forces, reactions, velocities, accelerations over the motion, each where it acts.
 
 Array = NDArray[np.float64]
 SAME = 1e-6
@@ -162,7 +162,7 @@ def _two(x: Sequence[float], y: Sequence[float]) -> Array:
     return np.stack([np.asarray(x, float), np.asarray(y, float)], axis=1)
 
 
-# What curved arrows stand for: torques of joints, drivers, springs and loads over the motion, each where it acts.
+# Quantities of curved arrows: torques of joints, drivers, springs and loads over the motion, each where it acts.
 
 UNIT = "N m"
 NOTHING = 1e-9

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
 
-# What a worker of a cluster does for frames: one Blender, kept from frame to frame of a film; pictures as bytes.
+# Frames on a worker of a cluster: one Blender, kept from frame to frame of a film; pictures as bytes.
 
 IDLE = 60.0
 """Seconds without an order after which Blender is ended."""

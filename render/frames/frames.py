@@ -42,7 +42,7 @@ LETTERS = Path(__file__).parents[1] / "letters.py"
 HATCHES = Path(__file__).parents[1] / "film" / "section.py"
 """Stripes of its cut faces."""
 BLENDER_SOURCES = ("job.py", "picture_file.py", "scene", "worker")
-"""What runs in Blender; the other files of the room start it, and decide nothing that is seen."""
+"""Sources that run in Blender; the other files of the room start it, and decide nothing that is seen."""
 
 
 def scene_key(scene: Scene, preset: Preset, blender: str) -> str:

@@ -22,7 +22,7 @@ from shared.contract import Motion
 TYPES = {(): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4"}
 COMPONENTS = {"float32": 5126, "uint32": 5125, "uint16": 5123}
 VERTICES, INDICES = 34962, 34963
-"""What a view is for; others have none."""
+"""Target of a buffer view; others have none."""
 
 
 class Document:

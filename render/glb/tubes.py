@@ -179,7 +179,7 @@ def _units(
     return nodes
 
 
-# What changes its shape, as nodes of a glTF scene.
+# Tubes that change their shape, as nodes of a glTF scene.
 #
 # straight   a tube along x from its first end: moved, turned, and longer or shorter by its scale along x
 # coil       the same with the coil of its mean length

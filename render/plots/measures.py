@@ -16,7 +16,7 @@ from render.report.transmission import marks
 from shared.contract import Motion
 from shared.contract.quantity import angle_step, figures, labelled, prefixed, written
 
-# What an axis measures: its words with the unit, its numbers with the prefix that they need, ticks of angles, cuts.
+# Quantities of an axis: its words with the unit, its numbers with the prefix that they need, ticks of angles, cuts.
 
 TICKS = 5
 """On an axis at most, about; of angles one more."""

@@ -75,13 +75,13 @@ class Quantity:
 
     name: str
     says: str
-    """What it is, for the page's second line."""
+    """Description for the page's second line."""
     symbol: str
     unit: str
     components: dict[str, np.ndarray]
     """(T,) each, by the name of its line."""
     floor: float
-    """What is rounding."""
+    """Values below are rounding."""
 
     @property
     def rows(self) -> np.ndarray:

@@ -129,7 +129,7 @@ def spread(wanted: np.ndarray, gap: float, height: float) -> np.ndarray:
     return placed
 
 
-# Which colour a curve has: that of the body it belongs to, as in every other picture (data.json).
+# Colours of curves: that of the body it belongs to, as in every other picture (data.json).
 
 
 def ink_of(motion: Motion, bodies: Sequence[str]) -> str:

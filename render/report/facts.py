@@ -161,7 +161,7 @@ def _largest(efforts: Mapping[str, tuple[Sequence[float], bool]], motion: Motion
     return name, most if most > effort_floor(motion, pushes) else 0.0, pushes
 
 
-# What a story may stop for: impacts, dead points, events, and the peaks of efforts, reactions and speeds.
+# Reasons to stop in a story: impacts, dead points, events, and the peaks of efforts, reactions and speeds.
 
 LEVEL = 0.02
 """A quantity that changes by less than this part of its largest has no peak that is worth a stop."""

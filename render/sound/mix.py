@@ -18,7 +18,7 @@ from render.sound.waves import frequencies, irfft, rfft, shaped, shaped_spectrum
 #     gates            blocks above -70 LUFS, then those above their mean less 10 LU;   the loudness is that of their
 #     mean
 #
-# What is measured here is a ring that is played several times; its blocks go round its end.
+# The wave is a ring that is played several times; blocks of the measurement go round its end.
 
 Array = NDArray[np.float64]
 RATE = 48_000
@@ -234,7 +234,7 @@ BALANCE = 2 / 3
 QUIETEST = -190.0
 """A stem below is nothing (LUFS, 1 Pa being full scale); 0 dB of hearing are -94."""
 LOWEST = 28.0
-"""What is below is no sound (Hz)."""
+"""Frequencies below are no sound (Hz)."""
 
 
 def mixed(stems: Mapping[str, Spectrum], count: int, showings: int) -> Array:

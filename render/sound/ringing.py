@@ -60,7 +60,7 @@ def matter(material: str) -> Matter:
     return Matter(modulus, known.density if known else 2700.0, loss)
 
 
-# What a body rings with when it is struck: frequencies and decay of its main piece, from its size and material.
+# Modes of a body that is struck: frequencies and decay of its main piece, from its size and material.
 #
 # A piece is taken as a plate of length L, width w and height h, which follow from its volume V, its height and its
 # moment of inertia J of mass m about the normal:

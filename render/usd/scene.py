@@ -57,7 +57,7 @@ class Clock:
         self.last = self.codes[-1]
 
 
-# What a prim does: translate, rotateZ and scale at time codes.
+# Operations of a prim: translate, rotateZ and scale at time codes.
 
 ADD = {"translation": "AddTranslateOp", "angle": "AddRotateZOp", "scale": "AddScaleOp"}
 """In the order of the prim's list: the last acts first."""

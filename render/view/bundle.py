@@ -26,9 +26,9 @@ from shared.stage.paths import cache_roots
 PAGE = Path(__file__).parent / "page"
 LOCKED = ("package.json", "package-lock.json", ".npmrc")
 LICENSED = {"three": "three.js", "uplot": "µPlot"}
-"""What is in the bundle, by its folder in node_modules."""
+"""Libraries in the bundle, by folder in node_modules."""
 MINUTES = 10
-"""That npm may take."""
+"""Time that npm may take (s)."""
 REMEDY = "set XDG_CACHE_HOME to a folder that you can write to"
 
 

@@ -100,7 +100,7 @@ def sketch(skeleton: dict[str, Any]) -> str:
 POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; connect-src {}"
 )
-"""What the browser lets the page load: nothing; a live page alone its own server."""
+"""Sources that the browser lets the page load: none; a live page alone its own server."""
 FILE = """<!doctype html>
 <html lang="en">
 <head>

@@ -26,7 +26,7 @@ from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.paths import Out
 
-# What the page shows, as one dict of plain values and arrays; binary.py makes bytes of it.
+# The content of the page, as one dict of plain values and arrays; document.py makes bytes of it.
 #
 # SI units and radians; names are those of data.json. Arrays are float32 unless said; T is the number of times.
 #

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from shared.shapes.outline import Circle
 
 
-# What the CAD kernel cannot make of automatic parts is a refusal that names it, no traceback.
+# A failure of the CAD kernel in automatic parts becomes an error that names the part, no traceback.
 
 KERNEL = "the CAD kernel cannot make"
 """Words of such a refusal."""
@@ -57,7 +57,7 @@ def kernel_refusals(name: str, what: str) -> Iterator[None]:
         ) from error
 
 
-# Which material each body gets where nobody says: that of the colour of its role (mbsd/drawing/inks.py).
+# Materials of bodies without a wish: those of the colour of their role (mbsd/drawing/inks.py).
 
 ROD = "steel"
 
@@ -69,7 +69,7 @@ def materials(m: Mechanism) -> dict[str, str]:
     return {body: "aluminium" if word == "silver" else f"aluminium_{word}" for body, word in colours_by_role(m).items()}
 
 
-# Whether the bores of a body's plate leave a wall between them.
+# A check that the bores of a body's plate leave a wall between them.
 
 WALL = 0.5
 """Least wall between two bores (rmm)."""

@@ -41,7 +41,7 @@ BANDS = (0.6, 0.7, 0.85, 1.0)
 WIDENINGS = 24
 """How often the sides at an eye may get wider for its wall."""
 EYE_WALL = 0.85
-"""What stays of a plate round an eye, in its radii."""
+"""Width of a plate that stays round an eye, in its radii."""
 LEAST_WINDOW = 6.0
 CORNER = 2.5
 

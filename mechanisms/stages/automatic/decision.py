@@ -99,7 +99,7 @@ def _listed(names: Sequence[str]) -> str:
     return f"the pieces of {names[0]}" if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
-# What is decided before anything is built: the size of the pins, the layers, springs, and bridges over pivots.
+# Decisions before anything is built: the size of the pins, the layers, springs, and bridges over pivots.
 #
 # Pins as thick as the links allow come first. Where these leave no order of layers, thinner ones are tried, down to
 # half of that; then pivots are sunk into their links where something passes close above; then pivots hang from bridges;

@@ -324,7 +324,7 @@ PAD = (7.0, 2.0)
 CORNER, EDGE = 9.0, 1.2
 """Radius of the corners of a foot, and of its rounded edges (units)."""
 LINKAGE, ENGINE = ("beech", "aluminium"), ("cast_iron", "cast_iron")
-"""What foot and column are made of."""
+"""Material of foot and column."""
 
 
 @dataclass(frozen=True)
@@ -427,7 +427,7 @@ def _screw(name: str, screw: Bolt, place: tuple[float, float, float], way: str) 
 # The ground under a road that needs no back plate: a slab as long as the road, and so deep that nothing tips (mm).
 
 SLAB = "concrete"
-"""What it is made of."""
+"""Its material."""
 
 
 @dataclass(frozen=True)
@@ -455,7 +455,7 @@ class GroundSlab:
         return [*bodies["ground"], *named([made], bodies)]
 
 
-# Which stand a machine gets, by its mount.
+# The stand of a machine, by its mount.
 
 
 def hold(made: Bodies, mount: Mount, plate: BackPlate | None, poses: Mapping[str, np.ndarray], sizes: Sizes) -> None:

@@ -262,7 +262,7 @@ def _same(pair: tuple[Outline, Outline], other: tuple[Outline, Outline]) -> bool
     return all(np.array_equal(x.edges, y.edges) for x, y in zip(pair, other, strict=True))
 
 
-# Whether two pieces ever lie over each other: faces that look at each other seen from above, over the whole motion.
+# Pieces that lie over each other: faces that look at each other seen from above, over the whole motion.
 #
 # The way from a horizontal face to the nearest point of another solid is vertical, unless a facet beside it is on that
 # way too. So where no horizontal face is ever over or under a facet that faces it, within the gap that is sought in

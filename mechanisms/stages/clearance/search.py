@@ -256,7 +256,7 @@ class Sweep:
 #   between: a lower bound. Along the normal of either facet parts may slide past each other as fast as they like and it
 #   stays sharp. If it is not enough, the span is halved. The sides of the boxes do the same for whole groups of facets.
 #
-# What is left is known to :data:`RESOLUTION`. The cost follows from how much surface runs close to other surface, not
+# The rest is known to :data:`RESOLUTION`. The cost follows from how much surface runs close to other surface, not
 # from how close it runs or how fast.
 
 RESOLUTION = 0.005
@@ -278,7 +278,7 @@ class Least:
     proven: float
     poses: int
     error: float = 0.0
-    """What the time between samples takes off the proven gap (mm)."""
+    """Deduction from the proven gap for the time between samples (mm)."""
     given_up: bool = False
     """True if the search ended at :data:`MOST` candidates."""
 

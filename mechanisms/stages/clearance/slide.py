@@ -109,7 +109,7 @@ class Sliced:
     """Gap of these slices, mm; infinite where they stay farther than ``away``."""
     away: float
     rest: list[tuple[MeshPiece, MeshPiece]]
-    """What is left: parts of the mover, and what of the other piece they come near to."""
+    """The rest: parts of the mover, and the parts of the other piece that they come near to."""
 
 
 def sliced(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float) -> Sliced | None:

@@ -19,7 +19,7 @@ from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.paths import Out
 
-# What is to be exported: a solved mechanism, the time of a pose, and its parts where there are some.
+# The request of an export: a solved mechanism, the time of a pose, and its parts if there are some.
 
 
 @dataclass(frozen=True)

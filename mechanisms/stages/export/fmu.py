@@ -24,7 +24,7 @@ from mbsd.native import quantities as native
 from mbsd.native.quantities import INPUT, OUTPUT, PARAMETER, RATE, STATE, Quantity
 from shared.stage.errors import UserError
 
-# What the C sources need to know of a mechanism: memory, tables, variables, frames and joints, as a header.
+# The header that describes a mechanism to the C sources: memory, tables, variables, frames and joints, as a header.
 
 DRIFT = 1e-9
 """Drift of an importer's steps in sizes or rad, beyond which the unit asks for an event that projects it away."""

@@ -127,4 +127,4 @@ FORMATS: dict[str, tuple[str, Callable[[Wanted], Written]]] = {
 }
 """By name: the ending of the file, and what writes it."""
 POSED = ("svg", "dxf", "step")
-"""Those of one pose."""
+"""Formats of one pose."""

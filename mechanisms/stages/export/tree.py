@@ -95,7 +95,7 @@ class Tree:
     nodes: list[Node] = field(default_factory=list)
     loops: list[Any] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
-    """What such a description cannot say, by name."""
+    """Elements that such a description cannot express, by name."""
 
     def children(self, parent: str) -> list[Node]:
         """Return the nodes that are attached to a body."""

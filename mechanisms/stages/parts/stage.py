@@ -101,7 +101,7 @@ class _Wish(NamedTuple):
     scale: Scale | None = None
     """Scale of a model; None for the machine itself."""
     masses: str = ""
-    """Those of the machine, where the motion of its model follows from them."""
+    """Masses of the machine, if the motion of its model follows from them."""
 
 
 def _wish(name: str, scale: Scale | None = None, with_machine: bool = True) -> _Wish:

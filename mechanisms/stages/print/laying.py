@@ -18,13 +18,13 @@ type Bed = tuple[float, float, float]
 """Length, width and height that a printer can use (mm); the height is infinite if it is not given."""
 
 FLAT = 2e-3
-"""What counts as in a plane (mm)."""
+"""Corners within this distance lie in one plane (mm)."""
 PLANES = 60
 """Faces of the convex hull that are tried, from the largest down; those of a round surface are many."""
 STEEP = math.cos(math.radians(45.0))
 """A face that looks down steeper than this needs support."""
 SUPPORT = 0.5
-"""What an area in the air counts against one on the bed."""
+"""Weight of an area in the air against one on the bed."""
 
 
 @dataclass(frozen=True, eq=False)

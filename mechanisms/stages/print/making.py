@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from shared.stage.paths import Out
 
 
-# What is to be made and what is to be bought, for people (Markdown) and for tables (CSV).
+# Lists of pieces to make and to buy, for people (Markdown) and for tables (CSV).
 
 HEADER = (
     "do", "name", "count", "material", "x_mm", "y_mm", "z_mm", "mass_g", "plates", "bed_mm", "outline", "sheet_mm",

@@ -104,7 +104,7 @@ def _pairs(path: Any) -> list[tuple[float, float]]:
     return [(float(x), float(y)) for x, y in path]
 
 
-# What makes the frame vibrate, as data.json has it: only of motions that repeat with a crank.
+# Vibration of the frame, as data.json has it: only of motions that repeat with a crank.
 
 HIGHEST = 8
 """The highest order."""

@@ -28,8 +28,9 @@ if TYPE_CHECKING:
 # again. Stiff contacts and short pulses need it: for milliseconds their accelerations say nothing about the rest of a
 # step.
 #
-# What snaps through needs more. The proof of clearance knows rows alone, and trusts a step by how far the quintic is
-# from the cubic through places and rates (clearance/path.py), with h the step, at their middle control points:
+# A motion that snaps through needs more. The proof of clearance knows rows alone, and trusts a step by how far the
+# quintic is from the cubic through places and rates (clearance/path.py), with h the step, at their middle control
+# points:
 #
 #     3 (q0 - q1) / 10 + h (2 v0 + v1) / 10 + h^2 a0 / 20      and the same from the other end
 #
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 CLOSE = 2e-5
 """Largest difference, in sizes of the mechanism (turned bodies count by their angle times that size)."""
 PROVABLE = 5e-4
-"""What the proof of clearance may doubt of a step, in the same sizes: a third of the gap by which a block clears its
+"""Doubt of the proof of clearance that a step may leave, in the same sizes: a third of the gap by which a block clears its
 rail in automatic parts."""
 DOUBT = 3.0 * 0.625
 """Factor on that difference of control points, as in the proof."""

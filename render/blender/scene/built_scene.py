@@ -95,7 +95,7 @@ def _workshop(scene: Any, studio: StudioSpec, light: Light) -> list[Any]:
 PINHOLE = 1000.0
 """f-stop of a camera without a lens blur."""
 NEAR, FAR = 0.01, 1000.0
-"""What a camera sees, in radii of the machine."""
+"""Field of a camera, in radii of the machine."""
 
 
 @dataclass
@@ -112,7 +112,7 @@ class BuiltScene:
     arcs: list[Any] = field(default_factory=list)
     """In that scene."""
     beside: list[Any] = field(default_factory=list)
-    """What states may hide; empty where none does."""
+    """Objects that states may hide; empty if none does."""
 
     def show(self, index: int) -> None:
         """Go to state ``index``."""

@@ -100,9 +100,9 @@ def hatch(mesh: Any, surface: SurfaceSpec, name: str, radius: float, planes: Seq
     mesh.polygons.foreach_set("material_index", paints.astype(np.int32))
 
 
-# What moves through planes that stand still: Blender cuts it anew at every moment, also in a saved scene.
+# Bodies that move through planes that stand still: Blender cuts them anew at every moment, also in a saved scene.
 #
-# What is beyond all planes is a box, for sides of a section are along axes; it is taken from each solid by a boolean
+# The room beyond all planes is a box, for sides of a section are along axes; it is taken from each solid by a boolean
 # modifier, which leaves the box's faces, with their paint, as the cut faces.
 
 # pyright: reportAttributeAccessIssue=false

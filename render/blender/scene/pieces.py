@@ -12,7 +12,7 @@ from render.blender.scene.materials import EDGE, WORN, flat, ink, material
 from render.film.scene import Colour, LabelSpec, PieceSpec, SurfaceSpec
 from render.film.solids import MILLIMETRE
 
-# What tools left in the faces of a solid: chamfers, whose edges wear, and engraving, which is filled with paint.
+# Traces of tools in the faces of a solid: chamfers, whose edges wear, and engraving, which is filled with paint.
 
 # pyright: reportAttributeAccessIssue=false
 # bpy fills itself in when it is imported, its stubs are empty.

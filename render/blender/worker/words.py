@@ -13,7 +13,7 @@ import numpy as np
 from render.film.scene import ARC, LegendRow, Writing
 from render.letters import font_of
 
-# What is written over a picture: the legend on a card, the title, the rate, a number that follows the motion.
+# Text over a picture: the legend on a card, the title, the rate, a number that follows the motion.
 
 FINE = 3
 """Letters and legend are drawn so many times larger."""
@@ -157,7 +157,7 @@ def _arc(draw: Any, x: float, y: float, radius: float, row: LegendRow) -> None:
     draw.polygon([place(end + head, radius + half), place(end, radius), place(end + head, radius - half)], fill=ink)
 
 
-# What is laid over a rendered picture: arrows with a faint glow, the legend, a title.
+# The overlay of a rendered picture: arrows with a faint glow, the legend, a title.
 
 ARROW_HALO, HALO_WIDTH, HALO_EDGE = 0.9, 0.0013, 4.0
 """How far the picture is darkened around an arrow, how wide, as a part of its width, and how sharply that ends."""

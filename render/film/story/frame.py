@@ -12,7 +12,7 @@ from render.film.composing import sides
 from render.film.framing import CameraPose
 from render.film.scene import Hidden
 
-# What a frame of a story shows: a picture that is rendered, and what is laid over it.
+# A frame of a story: a picture that is rendered, and its overlay.
 
 
 class Picture(msgspec.Struct, kw_only=True, frozen=True):
@@ -37,7 +37,7 @@ class Leader(msgspec.Struct, frozen=True):
     y: float
     words: str
     quiet: str
-    """What stands behind the words: a mass."""
+    """Amount behind the words: a mass."""
     right: bool
     height: float
     """Height of the middle of the words, in parts of the picture's height."""
@@ -141,7 +141,7 @@ def above(aspect: float) -> float:
     return 0.05 / sides(aspect)[1]
 
 
-# What a story stops for: an event or a peak of the motion, as plain data; ``render/report/facts.py`` has them.
+# Reasons to stop: an event or a peak of the motion, as plain data; ``render/report/facts.py`` has them.
 
 Kind = Literal["impact", "turns_back", "event", "effort", "reaction", "speed"]
 
@@ -154,7 +154,7 @@ class Reason:
     """s"""
     kind: Kind
     name: str
-    """What it happens to: a contact, a follower, an event, a driver or force, a joint, a point."""
+    """Name of the element: a contact, a follower, an event, a driver or force, a joint, a point."""
     amount: str = ""
     """How much, with its unit."""
     joint: str = ""

@@ -24,7 +24,7 @@ BUDGET = 2.2
 WAYS = ((True, 1.0), (False, 1.0), (False, 0.75), (False, 0.55), (False, 0.4), (False, 0.25), (False, 0.12))
 """If the camera turns while the machine is shown, and the part of the seconds of moves: the first that fits."""
 ARROWED = 2.6
-"""What a picture with arrows takes, which are rendered for themselves, in one without."""
+"""Cost of a picture with arrows, which are rendered apart, in pictures without."""
 TWOS = ("draft", "preview")
 """Presets that move on twos."""
 BLUR = {"draft": 9.0, "preview": 11.0}

@@ -126,7 +126,7 @@ def turned(stand: Stand, azimuth: float, elevation: float = 0.0, nearer: float =
     )
 
 
-# What the shots of a story are made of: the film with and without arrows, its stands, its words.
+# Scenery that the shots of a story share: the film with and without arrows, its stands, its words.
 
 WIDE = 1.5
 """Aspect of a picture from which on there may be room for the strip beside the machine."""

@@ -112,7 +112,7 @@ class Story:
     """Frames for which a picture that moves stands."""
     shots: Sequence[Shot]
     curves: Sequence[Curve] = ()
-    """Those of the strip."""
+    """Curves of the strip."""
     at_side: bool = False
     """True if the strip stands beside the machine."""
 

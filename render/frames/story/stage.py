@@ -32,7 +32,7 @@ from shared.stage.stages import Stage, key_of
 PATIENCE = 600.0
 """Seconds for ffmpeg to write the chapters."""
 Page = tuple[str, Any]
-"""What a picture is called, and the picture (RGB)."""
+"""Name of a picture, and the picture (RGB)."""
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ class StoryPictures(Pictures):
 
     rows: tuple[Around, ...] = ()
     what: str = ""
-    """What they are, for people."""
+    """Their name, for people."""
 
     @cached_property
     def _scene(self) -> Scene:
@@ -90,7 +90,7 @@ def _along(tail: Point, tip: Point, part: float) -> Point:
 # Reads the files of a machine and makes its story: the films it is rendered from, its shots, what is drawn over.
 
 SHOWN = {"effort": "forces", "speed": "velocities"}
-"""What arrows show by the kind of what a story stops for; reactions else."""
+"""Quantities of arrows by the kind of reason; reactions else."""
 FACTS = 4
 """Facts at the end, at most."""
 WALK = 5.0

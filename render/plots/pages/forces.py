@@ -23,7 +23,7 @@ from render.plots.style import INK, PALETTE, SIZE, acting_on, ink_of, page, rows
 from shared.contract import Motion
 from shared.contract.quantity import written
 
-# What the joints carry, the drivers give and the forces do: reactions, hodographs, forces.
+# Loads of joints, drivers and forces: reactions, hodographs, forces.
 
 TITLE, LETTER = 9.5, 0.56
 """Size of a title (points), and the width of a letter in it."""
@@ -167,7 +167,7 @@ def _within(text: str, room: float) -> str:
     return text if len(text) <= room else f"{text[: max(int(room) - 1, 1)]}…"
 
 
-# What the frame feels of machines with bodies in different places along the normal: force, couple, centre of mass.
+# Loads on the frame, of machines with bodies in different places along the normal: force, couple, centre of mass.
 
 STILL = 1e-9
 """A centre of mass that moves by less (m) is at rest."""

@@ -46,9 +46,9 @@ class Spectrum:
     base: float
     """Frequency of order 1 (Hz), on average where the speed varies; else the resolution."""
     over: str
-    """What it was taken over, in words."""
+    """Span of the transform, in words."""
     order_of: str
-    """What the orders count: a crank's name, or "period"."""
+    """Name of the crank whose turns the orders count, or "period"."""
 
 
 def spectrum(motion: Motion, values: np.ndarray) -> Spectrum:

@@ -33,9 +33,9 @@ UNBALANCE = (0.3, 0.25, 0.15)
 SERIES = 10.0 ** (np.arange(0, 41) / 5)
 """Ratios of gearboxes, R5."""
 TAKEN = 0.01
-"""What takes no more than this part of the work that goes in and out takes none."""
+"""A load below this part of the work that goes in and out is none."""
 IDLE = 0.005
-"""What a motor gives that has no load: this part of the machine's weight, at the arm of its size."""
+"""Torque of a motor without load: this part of the machine's weight, at the arm of its size."""
 REST = 0.1
 """Part of the greatest speed at which a motor that holds still is as loud."""
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 from mechanisms.stages.automatic.layout.planar import Rounded
 
-# What takes room: a shape in the plane that moves with a body, and the heights it reaches through.
+# Items take room: a shape in the plane that moves with a body, and the heights that it reaches through.
 #
 # Heights are counted in half layers: layer k of plates is 2 k, the gap above it 2 k + 1; -1 is the gap above the base.
 
 BASE = -1
 TOP = 10**6
 PIVOT = "pivot"
-"""What pivots on ground are, which may stand beside each other."""
+"""Kind of pivots on ground, which may stand beside each other."""
 
 type Levels = Mapping[str, int]
 """The layer of each body, as far as it is decided; and the choices (0 or 1) of items that have one."""

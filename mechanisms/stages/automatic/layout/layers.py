@@ -192,7 +192,7 @@ def choices_of(items: Sequence[Item]) -> list[str]:
     return list(dict.fromkeys(c for item in items if (c := choice_of(item.reach)) is not None))
 
 
-# What the search for layers may cost in all, in conflicts of the solver: no clock, so it ends the same everywhere.
+# The budget of the search for layers, in conflicts of the solver: no clock, so it ends the same everywhere.
 
 ALL = 500_000
 """Conflicts that the whole search for the parts of one mechanism may cost: some hundred times what it takes."""

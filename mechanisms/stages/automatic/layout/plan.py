@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from shared.shapes.outline import Circle
 
 
-# What a kind of joint, force or contact puts on its bodies, and the registries; the package's docstring says how.
+# Features of kinds of joints, forces and contacts, and the registries; the package's docstring says how.
 
 type Gather[Thing] = Callable[[Mechanism, list[Thing], Layout], Sequence[Feature]]
 """The features of all joints (forces, contacts) of one kind."""
@@ -78,7 +78,7 @@ def _enter[Thing](kinds: dict[str, Gather[Thing]], name: str) -> Callable[[Gathe
     return enter
 
 
-# What the features agreed on: eyes of every body, feet on the base, and solids, each with a name of its own.
+# The result of all features: eyes of every body, feet on the base, and solids, each with a name of its own.
 
 BOLT_HOLE = 9.0
 """Depth of the holes in the base for the screws of its feet (rmm)."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from shared.stage.scale import Scale
 
 
-# What the scale of the parts follows from: how far the joints reach, and lengths that must hold a pin's width.
+# Lengths from which the scale of the parts follows: the reach of joints, and lengths that must hold a pin's width.
 
 LINK, STUD = 22.0, 18.0
 """Least distances of two pins of one body, and of a spring's stud and a pin or stud beside it (rmm)."""
@@ -250,7 +250,7 @@ class Sizes:
     pedestal: float = 8.0
     """Least height of a pedestal."""
     pin_end: float = 1.2
-    """What a pin shows beyond its circlip."""
+    """Length of a pin beyond its circlip."""
     room: float = 1.5
     """Least gap in the plane between bodies that share a height."""
     ratio: float = 1.0
@@ -370,7 +370,7 @@ def refuse_sizes(name: str, pin: float | None, fit: Fit | None) -> None:
 
 # Sizes of models at a scale, which are printed: pins and clearances in millimetres of the finished piece.
 #
-# What goes with a pin of :data:`LEAST` mm is as thin as a nozzle allows: the wall of a bushing is 0.41 mm, its flange
+# Hardware of a pin of :data:`LEAST` mm is as thin as a nozzle allows: the wall of a bushing is 0.41 mm, its flange
 # 0.45 mm, and washers and circlips of that size are bought (DIN 988, DIN 471).
 
 LEAST = 3.0

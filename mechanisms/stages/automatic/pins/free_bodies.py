@@ -170,7 +170,7 @@ LARGEST = (14.0, 20.0)
 """Least and most radius of the largest (rmm)."""
 LEAST_DISC = 6.0
 APART = 0.9
-"""What the radii of two balls may be together, of their least distance."""
+"""Largest sum of the radii of two balls, as a part of their least distance."""
 DENSITY = MATERIALS["aluminium"].density
 
 

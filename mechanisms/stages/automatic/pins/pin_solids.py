@@ -232,7 +232,7 @@ def _boss(height: float) -> float:
     return height if height > 0.05 else 0.0
 
 
-# Which solids a pin has, by what holds it.
+# Solids of a pin, by the element that holds it.
 
 
 @build.register(Pin)

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.plan import Plan
 
 
-# What stretches between two points, and the ball studs that hold its ends: in a body's plate, on a post on ground, or
-# on the end of a joint's pin.
+# Elements that stretch between two points, and the ball studs that hold its ends: in a body's plate, on a post on
+# ground, or on the end of a joint's pin.
 
 BALL = 3.8
 """Radius of a stud's ball."""
@@ -195,7 +195,7 @@ class Stud:
 # Springs, dampers, actuators and ropes between two points: the room in which the film draws them, and studs at both
 # ends. A driver of a distance is an actuator, too.
 #
-# What stretches has a layer of its own, over both of its bodies where there is an order of layers that allows it. Its
+# Such an element has a layer of its own, over both of its bodies where there is an order of layers that allows it. Its
 # barrel is thicker than a layer, so it takes a part of the gaps beside its own.
 #
 #     radius    of a coil, 9 rmm, at most 0.17 of its least length; 0.6 of that for cylinders and rods

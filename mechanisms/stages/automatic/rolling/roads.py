@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.rolling.rounds import Round
 
 
-# What lies behind the surface of a road: matter down to a straight lower side, or a band along it where that would
+# Backings behind the surface of a road: matter down to a straight lower side, or a band along it where that would
 # cross the surface, itself or the way of what runs on it.
 
 THICK = 10.0
@@ -125,7 +125,8 @@ def behind(way: np.ndarray) -> np.ndarray:
     return np.array([way[1], -way[0]]) / np.hypot(*way)
 
 
-# What round parts touch on ground: roads with the profile of a terrain, straight walls that meet in mitred corners.
+# Surfaces on ground that round parts touch: roads with the profile of a terrain, straight walls that meet in mitred
+# corners.
 
 HELD = 0.7
 """Cosine of the angle between gravity and what is under a road on which it holds a wheel."""
@@ -137,13 +138,13 @@ class Road:
 
     name: str
     rounds: Sequence[Round]
-    """What runs on it; it reaches from the base to the highest of them."""
+    """Round parts that run on it; it reaches from the base to the highest of them."""
     path: np.ndarray
     """(n, 2) the surface; the free side is on its left."""
     feet: np.ndarray
     """(2, 2) the other corners: behind the last place of the path, and behind the first."""
     band: Band | None = None
-    """What lies behind the surface where that is no straight lower side."""
+    """Backing of the surface where that is no straight lower side."""
 
     @property
     def is_square(self) -> bool:

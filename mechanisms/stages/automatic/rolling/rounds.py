@@ -40,7 +40,7 @@ WITHIN = 0.8
 TYRE = 0.16
 """Thickness of a tyre as a part of the wheel's radius; 5 rmm at most, or as much as it is pressed in."""
 RIM = 1.0
-"""What stays of the wheel between its hub and a tyre that is pressed in far (rmm)."""
+"""Width of the wheel that stays between its hub and a tyre that is pressed in far (rmm)."""
 OVER = 0.4
 """How far a wall reaches above the middle of a ball, in its radii."""
 

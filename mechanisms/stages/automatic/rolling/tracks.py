@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.rolling.rounds import Round
 
 
-# What round parts run on or in where it is no road on ground: rings and discs about closed curves, and roads of moving
+# Tracks of round parts where there is no road on ground: rings and discs about closed curves, and roads of moving
 # bodies.
 #
 # A track on ground stands on the base. One of a moving body stands on its plate and reaches through to the layer of
@@ -247,10 +247,10 @@ MOST = 2000
 OFF = 0.05
 """How much nearer than its radius a wheel may come to a surface that it does not touch, for rounding (rmm)."""
 TOUCHES = 0.5
-"""What is nearer than this to a surface touches it (rmm)."""
+"""A part nearer than this to a surface touches it (rmm)."""
 
 LEAST = 1e-6
-"""What goes on by less than this (rmm) does not."""
+"""A continuation shorter than this (rmm) is left out."""
 
 
 def rolled_road(joint: Joint, part: Round, layout: Layout) -> Road:

@@ -196,7 +196,7 @@ def _meet(machine: Machine, a: Item, b: Item, measures: Measures) -> bool:
     return least_gap(a.shape, b.shape, (machine.poses[a.body], machine.poses[b.body]), room)[0] < room
 
 
-# What carries a shaft: pillars on the base plate, and bearings between them (mm).
+# Bearers of a shaft: pillars on the base plate, and bearings between them (mm).
 
 PILLAR = 0.085
 """Radius of a pillar, in bores."""
@@ -225,7 +225,7 @@ class Bearers:
     running: float
     """Gap of a journal in its bearing."""
     journals: tuple[Journal, ...]
-    """Those that have a bearing."""
+    """Journals with a bearing."""
     tapered: bool = False
     """True if there is room for its arms only as they are, thinner towards the pillars."""
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mbsd.model.joint import Joint
 
 
-# What bodies of a machine with places along the normal become: shafts, links in one plane, pistons, rams, valves
+# Roles of bodies with places along the normal: shafts, links in one plane, pistons, rams, valves
 # (mm).
 
 type Point = tuple[float, float]
@@ -93,7 +93,7 @@ class Piston:
     aside: float
     """From the line of its middle to the wrist pin, to the left of ``along``."""
     link: str | None
-    """What drives it."""
+    """Name of the link that drives it."""
     wrist_joint: str
     area: float | None
     """Area of the bore (mm^2), where gas acts on it."""
@@ -137,7 +137,7 @@ class Valve:
 
     body: str
     joint: str
-    """What guides it."""
+    """Name of the joint that guides it."""
     cam: str
     """The joint with the cam."""
     shaft: str
@@ -237,7 +237,7 @@ def no_plane(m: Mechanism, joint: str, body: str) -> UserError:
     )
 
 
-# What sits on a shaft in one plane, as its plan sees it (mm).
+# Parts that sit on a shaft in one plane, as its plan sees them (mm).
 
 
 @dataclass(frozen=True)

@@ -183,7 +183,7 @@ def squish(own: Cylinder) -> float:
     return SQUISH * own.bore
 
 
-# What holds liners on ground: a deck for each bank, and the heads (mm).
+# Holders of liners on ground: a deck for each bank, and the heads (mm).
 
 SIDE = math.radians(38)
 """How far the windows of cylinders that stand in line look to their side, from along z."""

@@ -199,7 +199,7 @@ def _area(m: Mechanism, body: str) -> float | None:
     return None
 
 
-# What each body of a machine with places along the normal becomes: a shaft, a link in one plane, what slides (mm).
+# Roles of bodies with places along the normal: a shaft, a link in one plane, or a body that slides (mm).
 
 WHEELS = ("gear_pair", "belt")
 CAM = "cam_flat"

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.shafts.shaft_plan import Measures, ShaftPlan
 
 
-# Whether bodies pass each other in the plane where they share heights: known before anything is built (mm).
+# Checks that bodies pass each other in the plane where they share heights, before anything is built (mm).
 
 LEAST = 0.1
 """Gap (mm) that must be left."""

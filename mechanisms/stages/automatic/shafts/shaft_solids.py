@@ -152,7 +152,7 @@ def _counterweight(neck: float, weight: Weight, height: float, z: float) -> cq.W
     )
 
 
-# What the crank pins of a shaft carry: the masses that its counterweights are to balance.
+# Masses on the crank pins of a shaft, which its counterweights balance.
 #
 # A rod of mass m, its centre of mass at the part s of its length from the crank pin, is replaced by masses at its ends:
 #

@@ -62,7 +62,7 @@ radius of its corners (rmm).
 """
 SEAT = 0.02
 ROD = "aluminium_gold"
-"""What connecting rods are made of."""
+"""Material of connecting rods."""
 
 
 def solids(

@@ -68,7 +68,7 @@ class Slide:
     where other blocks run on it, too, or where it lies above another rail.
     """
     guests: tuple[Slide, ...] = ()
-    """What else runs on its rail."""
+    """Other slides on its rail."""
     host: str = ""
     """The slide whose rail this one runs on; empty: its own."""
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.layout import Layout
 
 
-# Which wheel of a body lies in its body's layer: the largest, unless what else is there is in the way.
+# The wheel that lies in its body's layer: the largest, unless something else is in the way.
 #
 # A cam, a wheel on a road or a Geneva wheel fills its body's layer: what touches it would meet the teeth. An arm does
 # so only where it meets the mates; then thinner pins are tried first. All other wheels lie in layers of their own, on
@@ -133,7 +133,7 @@ def _whole(number: float) -> bool:
     return abs(number - round(number)) < 1e-6 * number
 
 
-# What meshes with each other: one module, whole teeth, and phases so that a tooth stands in a space everywhere.
+# Wheels that mesh: one module, whole teeth, and phases so that a tooth stands in a space everywhere.
 
 type Toothed = Wheel | Rack
 

@@ -117,7 +117,7 @@ class Belt:
 # The solids of pulleys (rmm): a disc with a web, and the rim round it, grooved for a round belt or cut for a chain.
 
 EDGE, FLOOR = 0.7, 1.3
-"""What stays beside a groove, and half the width of the groove's floor."""
+"""Width that stays beside a groove, and half the width of the groove's floor."""
 MARKS, LEAST_MARK, LARGEST_MARK = 3, 1.0, 2.5
 """Small holes between hub and rim, and their radii."""
 SPROCKET = 0.45

@@ -11,7 +11,7 @@ from mbsd.model.laws.harmonic import Harmonic
 from mbsd.model.laws.polynomial import Polynomial
 from mechanisms.stages.export.tree import ROUNDING
 
-# What PlanarMechanics has not, as classes inside the model: each acts between two of its frames.
+# Classes inside the model that PlanarMechanics lacks: each acts between two of its frames.
 #
 # A frame has x, y, phi and the flows fx, fy, t (counter-clockwise), which its component takes there: a body is pushed
 # with the opposite. Of its equations each class has six for these flows, and one for every variable of its own.
@@ -161,7 +161,7 @@ _LANGUAGE = (
 )
 _USED = "time planarWorld Modelica PlanarMechanics Real Integer Boolean String StateSelect cos sin sqrt"
 KEYWORDS = frozenset(f"{_LANGUAGE} {_USED}".split())
-"""Those of the language (Modelica 3.6, 2.3.3), and what a model of planar mechanics uses."""
+"""Keywords of the language (Modelica 3.6, 2.3.3), and names that a model of planar mechanics uses."""
 
 
 class Identifiers:

@@ -126,7 +126,7 @@ def along(poses: Mapping[str, Array], joint: Any) -> Array:
     return np.array([c * dx + s * dy, c * dy - s * dx])
 
 
-# Which coordinates a model starts from: as many as it has freedoms, and independent of each other.
+# Coordinates that a model starts from: as many as it has freedoms, and independent of each other.
 #
 # J     rows of its joints and drivers by the bodies' coordinates, at the start, by differences; N: J N = 0
 # C     the same of coordinates of joints; rows of C N that are independent, by QR with pivots

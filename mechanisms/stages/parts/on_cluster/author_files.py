@@ -35,9 +35,9 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
     program: dict[str, str]
     """Versions and sources of who asks, as ``identity`` gives them."""
     folder: str = ""
-    """What the user's own folder is called, in which the mechanism is."""
+    """Name of the user's own folder in which the mechanism is."""
     scale: str = ""
-    """That of a model, such as 1:20; empty for the machine itself."""
+    """Scale of a model, such as 1:20; empty for the machine itself."""
     machine: str = ""
     """Hash of the parts.json of the machine itself, where the motion of its model follows from it."""
 

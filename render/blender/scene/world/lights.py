@@ -229,7 +229,7 @@ def _fade_to_rim(light: Any) -> None:
     graph.add("OutputLight", Surface=graph.add("Emission", Strength=strength).outputs[0])
 
 
-# What shines from all around.
+# Light from all around.
 
 # pyright: reportAttributeAccessIssue=false
 # bpy fills itself in when it is imported, its stubs are empty.

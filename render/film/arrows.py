@@ -32,7 +32,7 @@ class Arrows:
         self.time, self.size = time, size
         self.scales = scales_of(vectors)
         self.vectors = [v for v in vectors if self._lengths(v).max() >= TINY * FULL * size]
-        """Return those that are seen at some time."""
+        """Vectors that are seen at some time."""
 
     def specs(self) -> list[ArrowSpec]:
         """Return their looks, in the order of ``vectors``."""
@@ -127,7 +127,7 @@ class Arcs:
         self.time, self.size = time, size
         self.scale = scales_of(torques, {UNIT: least}).get(UNIT)
         self.torques = [torque for torque in torques if abs(self._sweeps(torque)).max() >= TINY * FULL_TURN]
-        """Return those that are seen at some time."""
+        """Torques that are seen at some time."""
 
     def specs(self) -> list[ArcSpec]:
         """Return their looks, in the order of ``torques``; those about one point lie around each other."""

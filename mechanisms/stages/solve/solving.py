@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 CLOSE = 2e-5
 """Largest difference, in sizes of the mechanism (turned bodies count by their angle times that size)."""
 PROVABLE = 5e-4
-"""Doubt of the proof of clearance that a step may leave, in the same sizes: a third of the gap by which a block clears its
-rail in automatic parts."""
+"""Doubt of the proof of clearance that a step may leave, in the same sizes: a third of the gap by which a block clears
+its rail in automatic parts."""
 DOUBT = 3.0 * 0.625
 """Factor on that difference of control points, as in the proof."""
 PARTS = 4

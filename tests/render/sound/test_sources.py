@@ -117,7 +117,7 @@ def test_the_map_of_a_clock_shows_what_its_frames_show() -> None:
         clock = film.clock
         frames = np.arange(clock.frames)
         shown = [clock.moment(int(frame)).time for frame in frames]
-        assert np.allclose(clock.time_map.at(frames / film.shot.fps)[0], shown, atol=1e-12)
+        assert np.allclose(clock.time_map.moments_at(frames / film.shot.fps)[0], shown, atol=1e-12)
         assert clock.time_map.seconds == pytest.approx(clock.frames / film.shot.fps)
 
 

@@ -59,7 +59,7 @@ def test_make_hands_the_view_over_as_it_is() -> None:
 KILLED = """
 import os, signal
 from mbsd.drawing.animation import encoders
-from mechanisms.stages.animate import stage
+from mechanisms.stages import animate as stage
 run = encoders._run
 def killed(path, command, pictures):
     run(path, command, pictures)  # the first round is a whole film of its own

@@ -2,7 +2,7 @@
 
 Every pair of pieces of two bodies is settled by the first of these that suffices:
 
-1. Circles. Pieces whose circles in the plane stay apart do not meet, nor do those of bodies far apart (far.py).
+1. Circles. Pieces whose circles in the plane stay apart do not meet, nor do those of bodies far apart (path.py).
 2. Layers. The motion is planar, so pieces at different heights stay apart, whatever the motion.
 3. Turn. Bodies with a revolute joint between them turn about one axis: the gap of pieces round it at every angle at
    once (turn.py).
@@ -11,7 +11,7 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
    place at once (slide.py). This covers a piston in its liner. Where slices alone are proven so, as for a
    valve in its guide, the rest is left to the motion.
 5. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
-   the plane (outline_search.py), and where these do not suffice, of their facets (search.py). For gears, over one pitch
+   the plane (outlines.py), and where these do not suffice, of their facets (search.py). For gears, over one pitch
    of their teeth (meshing.py).
 
 What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film

@@ -62,7 +62,7 @@ def _try_to_write(part: Path, size: int) -> None:
         os.fsync(file.fileno())
 
 
-# A drawing made of codes (``scene/coded.py``): outlines, edges and a wash of light on squared paper.
+# A drawing made of codes (``scene/materials.py``): outlines, edges and a wash of light on squared paper.
 
 Array = np.ndarray
 OUTLINE, EDGE, BORDER = 1.9, 0.9, 1.2

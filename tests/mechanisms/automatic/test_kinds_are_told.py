@@ -12,7 +12,7 @@ from mechanisms.stages.automatic.layout import plan
 from shared.stage.paths import ROOT
 
 STOPS = {"angle_stop", "coordinate_stop"}
-"""They are looked for by the joints whose way they end (layout/limits.py)."""
+"""They are looked for by the joints whose way they end (layout/motion.py)."""
 
 
 def _rows() -> tuple[set[str], set[str]]:

@@ -110,7 +110,7 @@ def test_a_film_that_is_killed_while_it_is_muxed_goes_on_there(
     slow = tmp_path / "ffmpeg"
     slow.write_text('#!/bin/sh\nfor last; do :; done\necho part > "$last"\necho muxing >&2\nexec sleep 3\n')
     slow.chmod(0o755)
-    code = f"from render.frames import film, muxing; muxing.ffmpeg = lambda: {str(slow)!r}; "
+    code = f"from render.frames import encode, film; encode.ffmpeg = lambda: {str(slow)!r}; "
     code += "from render.presets import Preset; film.run('four_bar', Preset('tiny', 96, 54, 2))"
     with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.DEVNULL) as process:
         end = time.monotonic() + 60

@@ -346,7 +346,7 @@ class Weight:
 
 def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
     """Return one for every traced point of a moving body, except where a joint's eye or a weight is, and on balls.
-    Points on rims get marks there (rim_marks.py), with ``pointers`` where these are wanted.
+    Points on rims get marks there, with ``pointers`` where these are wanted.
     """
     features: list[Feature] = []
     balls = {feature.body for feature in layout.features if isinstance(feature, FreeBody) and feature.is_ball}

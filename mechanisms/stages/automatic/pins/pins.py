@@ -62,12 +62,12 @@ def extent_of(joint: Joint, solution: Solution) -> Extent:
     return Extent(least=((joint.params["length"], LEAST),))
 
 
-# Revolute joints: links that turn about a common axis on one pin, with bushings, washers and circlip. Rods (rods.py)
+# Revolute joints: links that turn about a common axis on one pin, with bushings, washers and circlip. Rods (above)
 # turn about a pin at either end.
 #
 # Joints that share a place on a body share their pin. The lowest body holds it and its head is on top, or the highest
 # holds it and it hangs down, kept by a circlip; on ground a pedestal holds it, or a bridge (bridges.py). Where
-# something passes close above a pivot, its head is sunk into its link; a pin may join two webs of a crank (webs.py).
+# something passes close above a pivot, its head is sunk into its link; a pin may join two webs of a crank (below).
 
 LEAST_COLUMN = 2.5
 """Height of what carries a pivot over a wheel of ground (rmm)."""
@@ -84,7 +84,7 @@ class Pin:
     m: Mechanism
     places: dict[str, tuple[float, float]]
     webs: tuple[str, str] | None = None
-    """Two plates of one body that it joins (webs.py); all others on it turn between these."""
+    """Two plates of one body that it joins; all others on it turn between these."""
     play: float = 0.0
     """How far its axis is from that of its bushings at most (rmm): of a pin with clearance, and what that yields."""
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 # On ground the rail stands on the base, or on two posts where the block is high. Between moving bodies the rail is
 # screwed to its body's plate on the side of the block. Where the second marker is on ground, the block stands there,
 # and the rail hangs under its body. Limits and stops are blocks beside the rail, which the gibs meet. Rails on ground
-# that would cross are the grooves of a plate (crossings.py).
+# that would cross are the grooves of a plate (rails.py).
 
 RAIL = 12.0
 """Width of a rail."""

@@ -101,7 +101,7 @@ VICE_LIGHT = 0.04
 def build_vice(thing: Thing, lamps: Sequence[Lamp], scale: float = 1.0) -> None:
     """On the floor at the origin of ``thing``, its screw towards -y; about 0.5 wide and 0.45 high at scale 1.
 
-    ``lamps`` are in the axes of ``thing``; their light is painted on it (painted_light.py).
+    ``lamps`` are in the axes of ``thing``; their light is painted on it (lights.py).
     """
     middle = (0.0, 0.0, 0.25 * scale * thing.radius)
     enamel = painted("enamel", ENAMEL, lamps, middle, VICE_LIGHT, Shine(0.9, 20.0))

@@ -77,10 +77,12 @@ def _parser() -> argparse.ArgumentParser:
         sub = commands.add_parser(command, help=text)
         sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
         if command == "animate":
-            sub.add_argument("--view", default="", help="what is shown, such as reactions,velocities; all if not given")
+            sub.add_argument(
+                "--view", default="", help="quantities to show, such as reactions,velocities; all if not given"
+            )
         if command == "print":
             sub.add_argument("--bed", default="", help="size of a plate in mm, 220x220 if not given")
-            sub.add_argument("--gap", default="", help="what pieces keep apart in mm, 5 if not given")
+            sub.add_argument("--gap", default="", help="distance between pieces in mm, 5 if not given")
         if command in ("parts", "print", "clearance"):
             sub.add_argument("--scale", default="", help="of a model, such as 1:20; the machine itself if not given")
         if command == "parts":
@@ -105,13 +107,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     grid = commands.add_parser("study", help="the mechanism at every point of a grid of its Params: study.csv")
     grid.add_argument("name", help="mechanism; four-bar and four_bar are one")
-    grid.add_argument("--over", default="", help="what is varied: crank=0.03:0.05:5; speed=6,12")
-    looked = commands.add_parser("check", help="what in a model looks as if it was not meant")
+    grid.add_argument("--over", default="", help="fields to vary: crank=0.03:0.05:5; speed=6,12")
+    looked = commands.add_parser("check", help="look for likely mistakes in a model")
     looked.add_argument("name", help="mechanism; four-bar and four_bar are one")
     looked.add_argument("--json", action="store_true", help="for other programs")
-    now = commands.add_parser("current", help="those whose motion, parts and shot are of their files as they are")
+    now = commands.add_parser("current", help="names of mechanisms whose motion, parts and shot are up to date")
     now.add_argument("names", nargs="*", help="mechanisms")
-    every = commands.add_parser("list", help="the mechanisms and what is made of them")
+    every = commands.add_parser("list", help="list the mechanisms and their products")
     every.add_argument("--names", action="store_true", help="names alone, a line each")
     every.add_argument("--json", action="store_true", help="for other programs")
     return parser

@@ -82,7 +82,9 @@ def _parser() -> argparse.ArgumentParser:
             sub.add_argument("--aspect", default="", help=f"{', '.join(ASPECTS)}; {WIDE} if not given")
         if command not in ("plots", "compare", "report", "glb", "usd", "view", "exploded"):
             sub.add_argument(
-                "--show", default="", help="what to show: reactions,velocities,title; as shot.py says if not given"
+                "--show",
+                default="",
+                help="quantities to show: reactions,velocities,title; as shot.py says if not given",
             )
         if command == "film":
             sub.add_argument("--story", default="loop", help="loop, explain or compare; loop if not given")
@@ -94,7 +96,7 @@ def _parser() -> argparse.ArgumentParser:
             sub.add_argument(
                 "--every",
                 action="store_true",
-                help="one of every mechanism: leave out spectra of what this one has not",
+                help="one of every mechanism: leave out spectra of quantities that this one lacks",
             )
         if command == "usd":
             sub.add_argument("--format", default="usd", help="usd (.usdc) or usdz; usd if not given")
@@ -107,11 +109,9 @@ def _parser() -> argparse.ArgumentParser:
     reel.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
     reel.add_argument("--aspect", default="", help=f"of the films: {', '.join(ASPECTS)}; {WIDE} if not given")
     reel.add_argument("--only", default="", help="these films in this order: four_bar,geneva_drive; all if not given")
-    reel.add_argument(
-        "--show", default="", help="the films that show this; those that show what shot.py says if not given"
-    )
+    reel.add_argument("--show", default="", help="quantities that the films show; as shot.py says if not given")
     reel.add_argument("--story", default="explain", help="explain: stories where they are made; loop: none")
-    commands.add_parser("overview", help="a table of the runs that its standard input tells of")
+    commands.add_parser("overview", help="a table of the runs that standard input lists")
     return parser
 
 

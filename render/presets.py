@@ -127,7 +127,7 @@ def show_words(text: str) -> str:
     for word in asked:
         if word not in WORDS:
             raise UserError(
-                f"SHOW={text!r}: there is no word {word!r}; there is: {', '.join(WORDS)}; commas join several, and "
+                f"SHOW={text!r}: {word!r} is no quantity; choose of: {', '.join(WORDS)}; commas join several, and "
                 f"without SHOW a picture has what the shot says{_meant(word)}"
             )
     return ",".join(word for word in WORDS if word in asked)

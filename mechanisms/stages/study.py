@@ -45,7 +45,7 @@ def grid_of(name: str, words: str, p: Any) -> dict[str, list[Any]]:
             raise UserError(f"{name}: the grid has '{field}' twice")
         grid[field] = _values(name, field, said, getattr(p, field), math.prod(map(len, grid.values())))
     if not grid:
-        raise UserError(f"{name}: say what to vary: {FORM}")
+        raise UserError(f"{name}: name the fields to vary: {FORM}")
     return grid
 
 

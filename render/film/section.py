@@ -230,7 +230,7 @@ def _cut(parts: Parts, section: Section, depths: dict[str, float], moves: bool) 
     still = [(key, piece) for key, piece in every if key[0] == "ground"]
     if not still:
         raise UserError(
-            f"{parts.mechanism}: shot.section cuts from {' and '.join(depths)}, which is what stands still, and ground "
+            f"{parts.mechanism}: shot.section cuts from {' and '.join(depths)} what stands still; ground "
             f"has no solids; name bodies in section.only: {', '.join(parts.bodies)}, or say fixed=True"
         )
     return iter(still)

@@ -234,7 +234,9 @@ def _encoded_anew(clip: Clip, preset: Preset, fps: int, target: Path) -> Clip:
 def _refuse_unlike(row: Sequence[Clip]) -> None:
     for clip in row:
         if clip.parameters != row[0].parameters:
-            raise UserError(f"{clip.path.name}: its parameters differ from those of its neighbours, also encoded anew")
+            raise UserError(
+                f"{clip.path.name}: its parameters differ from its neighbours', even after it was encoded again; remove it and make the film again"
+            )
 
 
 def _concatenate(parts: Sequence[Sequence[Clip]], titles: Sequence[Title], target: Path, scratch: Path) -> None:

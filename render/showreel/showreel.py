@@ -44,7 +44,7 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
     }
     left = [name for name in names if name not in there]
     if only.strip() and len(films) < len(there):
-        raise UserError("showreel: films that are asked for are older than their machines, as said above")
+        raise UserError("showreel: requested films are older than their machines, as said above; make them again")
     if not films or (only.strip() and left):
         wanted = ", ".join(left) if only.strip() else "any mechanism"
         remedy = f"{to_run('film', (left or ['<name>'])[0])} {preset.request}"

@@ -64,5 +64,5 @@ def test_steps_of_ones_own_that_are_too_long_are_told(own: str, capsys: pytest.C
     given = {"STEPS": 300} if own == "STEPS" else {"motion": lambda m, p: m.simulate(0.5, 300)}
     assert len(solving.motion_of("truss", SimpleNamespace(DURATION=0.5, **given), m, None).t) == 301
     said = " ".join("".join(capsys.readouterr()).split())
-    assert "too long for what moves fast within, first at t = " in said
+    assert "too long for the fastest bodies, first at t = " in said
     assert f"leave out {own}, so that rows are added there" in said

@@ -89,10 +89,10 @@ def test_films_of_older_versions_are_left_out(
     said = capsys.readouterr()
     assert "pendulum-tiny.mp4 is left out, being of an older version: it is of an older data.json" in said.err
     assert "1 films of" in said.out
-    with pytest.raises(UserError, match="films that are asked for are older"):
+    with pytest.raises(UserError, match="requested films are older"):
         showreel.run(TINY, "pendulum")
     monkeypatch.setattr(freshness, "current_names", lambda names: {"pendulum"})
-    with pytest.raises(UserError, match="films that are asked for are older"):
+    with pytest.raises(UserError, match="requested films are older"):
         showreel.run(TINY, "four-bar")
     assert "the machine has changed since it was solved" in capsys.readouterr().err
 

@@ -154,7 +154,7 @@ def bed_of(text: str) -> Bed:
 def gap_of(text: str) -> float:
     """Return a gap (mm); raises UserError if it is none."""
     if not _LENGTH.fullmatch(text):
-        raise UserError(f"{said(gap=text)} is no gap; write what pieces keep apart in mm, such as {said(gap='5')}")
+        raise UserError(f"{said(gap=text)} is no gap; write the distance between pieces in mm, such as {said(gap='5')}")
     return float(text)
 
 

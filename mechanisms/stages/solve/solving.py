@@ -291,7 +291,7 @@ def _tell_long_steps(name: str, module: Any, solution: Solution) -> None:
         steps = "1 step is" if len(long) == 1 else f"{len(long)} steps are"
         console.warn(
             "solve",
-            f"{name}: {steps} too long for what moves fast within, first at t = {solution.t[long[0]]:.6g} s: plots and "
+            f"{name}: {steps} too long for the fastest bodies, first at t = {solution.t[long[0]]:.6g} s: plots and "
             f"films may stray from the motion there, and clearances may not be proven; {remedy}",
         )
 

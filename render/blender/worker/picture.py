@@ -45,7 +45,9 @@ def save_whole(
                     os.fsync(written.fileno())
                 return
             _try_to_write(part, most)
-        raise UserError(f"{name}: what Blender saved {wrong}, though the disk has room; run the same command again")
+        raise UserError(
+            f"{name}: the file that Blender saved {wrong}, though the disk has room; run the same command again"
+        )
     except BaseException as error:
         with suppress(OSError):
             part.unlink(missing_ok=True)

@@ -116,6 +116,6 @@ def _wished_first(mechanism: str, event: str | None, reasons: Sequence[Reason]) 
             return [reason_, *(other for other in reasons if other is not reason_)]
     known = list(dict.fromkeys(words for other in reasons for words in other.words))
     raise UserError(
-        f"{mechanism}: shot.story.event names '{event}', which never happens in this motion; what does: "
+        f"{mechanism}: shot.story.event names '{event}', which never happens in this motion; its events are: "
         f"{', '.join(known) or 'nothing'}{did_you_mean(event, known)}"
     )

@@ -31,7 +31,7 @@ def test_ranges_and_lists_by_the_kind_of_the_field() -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ("", "say what to vary"),
+        ("", "name the fields to vary"),
         ("length", "is no part of a grid"),
         ("lenght=1", "did you mean 'length'"),
         ("length=0.1:0.2", "is no range"),

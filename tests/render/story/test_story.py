@@ -212,7 +212,7 @@ def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:
     ("wishes", "message"),
     [
         (Wishes(event="rocker flies"), r"four_bar: shot\.story\.event names 'rocker flies', which never happens in "
-         r"this motion; what does: rocker turns back.*"),
+         r"this motion; its events are: rocker turns back.*"),
         (Wishes(caption="much too long a word " * 9), r"four_bar: the caption of the shot 'reason' is too long for a "
          r"picture of 640x360: it takes \d\.\d lines of 2 .*; write a shorter shot\.story\.caption"),
         (Wishes(shots=("titel",)), r"four_bar: shot\.story\.shots\[0\] names 'titel', which is not there; known: "

@@ -99,8 +99,8 @@ def ram(machine: Machine, body: str, joint: Joint, wrists: Sequence[Joint]) -> R
         other = other_on(wrist, body).body.name
         if other not in machine.links:
             raise UserError(
-                f"{m.name}: '{body}' slides on ground in '{joint.name}' and is driven by several bodies, of which "
-                f"'{other}' in '{wrist.name}' is no link; leave it out (automatic(m).leave_out) or write "
+                f"{m.name}: '{body}' slides on ground in '{joint.name}' and is driven by several bodies; "
+                f"'{other}' in '{wrist.name}' is no link; leave '{body}' out (automatic(m).leave_out) or write "
                 f"{shown_file(m.name, 'parts')}"
             )
     ground = marker_on(joint, "ground")
@@ -358,8 +358,8 @@ def _link(
     slides = [joint.name for joint in own if joint.kind.name == "prismatic"]
     if slides:
         raise UserError(
-            f"{m.name}: joint '{slides[0]}' lets '{body}' slide on a body that moves; where bodies have places z there "
-            f"are guides on ground alone; leave '{body}' out (automatic(m).leave_out), or write "
+            f"{m.name}: joint '{slides[0]}' guides '{body}' on a body that moves; where bodies have places z, "
+            f"guides are on ground alone; leave '{body}' out (automatic(m).leave_out), or write "
             f"{shown_file(m.name, 'parts')}"
         )
     places = _known_planes(body, pins, sliding)

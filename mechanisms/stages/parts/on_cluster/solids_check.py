@@ -57,7 +57,7 @@ def _refuse_wrong_piece(folder: Path, where: str, piece: Piece) -> None:
         )
     heights = tuple(metres(float(height)) for height in mesh.bounds[:, 2])
     if not np.allclose(heights, piece.z_range, rtol=0.0, atol=1e-9):
-        raise UserError(f"{where}: {piece.stl} is not between the heights that parts.json tells")
+        raise UserError(f"{where}: {piece.stl} has the heights {heights} m, parts.json {piece.z_range}")
     solid = _solid(folder / piece.step, where)
     if abs(mesh.volume / volume_of(solid) - 1) > VOLUME_TOLERANCE:
         raise UserError(f"{where}: the mesh has {mesh.volume:.1f} mm^3, the solid {volume_of(solid):.1f} mm^3")
@@ -70,7 +70,7 @@ def _refuse_wrong_piece(folder: Path, where: str, piece: Piece) -> None:
     size = metres(box.DiagonalLength)
     along = piece.mass.z is not None
     if not _alike(mass_of(solid, MATERIALS[piece.material].density, along), piece.mass, size, RELATIVE):
-        raise UserError(f"{where}: parts.json tells another mass than its solid has")
+        raise UserError(f"{where}: the mass in parts.json is not that of its solid")
 
 
 def _solid(path: Path, where: str) -> Any:

@@ -84,7 +84,7 @@ def _parser() -> argparse.ArgumentParser:
             sub.add_argument(
                 "--show",
                 default="",
-                help="quantities to show: reactions,velocities,title; as shot.py says if not given",
+                help="arrows and title: reactions,velocities,title; as in shot.py if not given",
             )
         if command == "film":
             sub.add_argument("--story", default="loop", help="loop, explain or compare; loop if not given")

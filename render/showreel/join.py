@@ -235,7 +235,8 @@ def _refuse_unlike(row: Sequence[Clip]) -> None:
     for clip in row:
         if clip.parameters != row[0].parameters:
             raise UserError(
-                f"{clip.path.name}: its parameters differ from its neighbours', even after it was encoded again; remove it and make the film again"
+                f"{clip.path.name}: its parameters differ from its neighbours', even after it was encoded again; "
+                "remove it and make the film again"
             )
 
 

@@ -93,7 +93,7 @@ class Centre:
 
 
 def centre_of_mass(body: BodyMotion) -> Centre:
-    """From the motion of the body's frame."""
+    """Return the motion of the centre of mass, from that of the body's frame."""
     c, s = np.cos(body.theta), np.sin(body.theta)
     rx, ry = c * body.com[0] - s * body.com[1], s * body.com[0] + c * body.com[1]
     omega, alpha = np.asarray(body.omega), np.asarray(body.alpha)

@@ -82,12 +82,12 @@ def _without_file(out: Out) -> None:
 
 
 def _key(names: Names | None, inputs: Inputs) -> str:
-    """Hash of all that shot.json follows from; ``inputs``: what shot.py is made of, and what it reads."""
+    """Return the hash of all that shot.json follows from; ``inputs``: what shot.py is made of, and what it reads."""
     return key_of(sources_hash(*SOURCES), names and names.listed(), inputs.digest(), *_look())
 
 
 def _look() -> list[str]:
-    """The look that the user's folder wishes for machines whose shot names none, if it does."""
+    """Return the look that the user's folder wishes for machines whose shot names none, if it does."""
     wished = os.environ.get(LOOK)
     return [wished] if wished else []
 

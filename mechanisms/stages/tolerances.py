@@ -39,7 +39,7 @@ FORM = 'def tolerances(p): return {"far_end": {"sizes": {"crank": 5e-5}, "result
 
 
 def wished_results(name: str, m: Mechanism, p: Any) -> dict[str, Callable[..., Tolerances]]:
-    """By result, what finds it when it is called. Raises UserError for whatever cannot be, before anything is found."""
+    """Return by result a function that finds it. Raises UserError for an invalid request, before it computes."""
     module = loading.load(name, "tolerances")
     file = shown_file(name, "tolerances")
     refuse_arguments(file, module.tolerances, p)
@@ -109,7 +109,7 @@ NOTHING = 0.01
 
 
 def sentence(result: str, t: Tolerances) -> str:
-    """How far it strays, how many are good, and which dimension to tighten."""
+    """Return the sentence on how far a result strays, how many are good, and which dimension to tighten."""
     return f"{result}: {_spread(t)}; {advice(t)}"
 
 
@@ -187,14 +187,14 @@ def _stage(out: Out) -> Stage:
 
 
 def _key(parts: Parts | None, inputs: Inputs) -> str:
-    """Hash of all that follows; ``inputs``: what the author's files are made of, and what they read."""
+    """Return the hash of all that follows; ``inputs``: what the author's files are made of, and what they read."""
     masses = parts and {body: solids.mass for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
     return key_of(*sources, masses, versions(*PACKAGES), inputs.digest())
 
 
 def _found(name: str, parts: Parts | None) -> tuple[dict[str, Tolerances], Inputs]:
-    """All results, after all were looked at, and what they were made of."""
+    """Return all results, after all were checked, and what they were made of."""
     from mbsd import MechanismError
     from mechanisms.stages.loading.inputs import loaded_inputs
 

@@ -72,7 +72,9 @@ class FilmCamera:
         self.way = None if subject.way is None else in_studio(subject.way, self.up)
 
     def pose(self, frame: int) -> CameraPose:
-        """At a frame: it stands still, swings about the middle once in each showing of the motion, or goes along."""
+        """Return the pose at a frame: it stands still, swings about the middle once in each showing of the motion, or
+        goes along.
+        """
         swing = math.radians(self.shot.orbit)
         azimuth = self.azimuth + swing * math.sin(math.tau * self.clock.phase(frame))
         at = np.zeros(3) if self.way is None else self.way[frame % self.clock.frames]
@@ -90,7 +92,9 @@ class FilmCamera:
         return [self._posed(self.azimuth + swing * part, np.zeros(3)) for part in np.linspace(-1, 1, 5)]
 
     def _moved(self, by: Array) -> CameraPose:
-        """As it stands, moved by (3,) m of the studio: what is in focus is measured once, not a frame."""
+        """Return the camera as it stands, moved by (3,) m of the studio: what is in focus is measured once, not a
+        frame.
+        """
         if not by.any():
             return self._still
         position = np.array(self._still.position) + in_world(by, self.up)
@@ -102,7 +106,9 @@ class FilmCamera:
         return self._posed(self.azimuth, np.zeros(3))
 
     def _posed(self, azimuth: float, by: Array) -> CameraPose:
-        """At an azimuth (rad), where the shot has its own or swings about the middle, moved by (3,) m."""
+        """Return the camera at an azimuth (rad), where the shot has its own or swings about the middle, moved by (3,)
+        m.
+        """
         elevation = self.elevation
         position, target, distance = self._stand
         if self.shot.orbit:

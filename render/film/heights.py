@@ -202,7 +202,7 @@ class Heights:
         """The highest piece that is ever under each label."""
 
     def arrow(self, bodies: Iterable[str], x: float, y: float) -> float:
-        """On the highest piece where it begins at the start; else over all its bodies."""
+        """Return the height on the highest piece where it begins at the start; else over all its bodies."""
         bodies, start = list(bodies), self.clock.moment(0)
         heights = [top for body in bodies for top in self.space.tops_at(body, x, y, start)]
         heights = heights or [top for body in bodies for top in tops(self.parts, body)]
@@ -253,7 +253,7 @@ class Heights:
         return max(over)
 
     def label(self, name: str, at: Moment) -> Point:
-        """Just over the highest piece that a joint or traced point goes through."""
+        """Return the height just over the highest piece that a joint or traced point goes through."""
         motion = self.poses.motion
         if name in motion.points:
             x, y = (float(value) for value in self.poses.point(name, np.array([at.time]))[0])

@@ -42,7 +42,8 @@ def local_place(body: BodyMotion, x: float, y: float) -> tuple[float, float]:
 
 
 def hermite(time: Array, value: Array, rate: Array, acceleration: Array, t: Array | float) -> Array:
-    """Quintic through samples at ``time`` (n,) with their first and second derivatives, evaluated at ``t`` (m,).
+    """Return the quintic through samples at ``time`` (n,) with their first and second derivatives, evaluated at ``t``
+    (m,).
 
     Samples right before and after an event share a time; at that time the later counts. ``t`` outside ``time`` is
     held at the nearest end.
@@ -121,7 +122,7 @@ class Poses:
             self._points[name, "y"] = _arrays(point.y, point.vy, point.ay)
 
     def body(self, name: str, at: Moment) -> tuple[float, float, float]:
-        """x, y (m) and the unwrapped theta (rad) of a body's frame; a body that never moves is at the origin."""
+        """Return x, y (m) and the unwrapped theta (rad) of a body's frame; a body that never moves is at the origin."""
         if name not in self.motion.bodies:
             return 0.0, 0.0, 0.0
         if self._last[0] != at.time:  # all bodies are asked for one moment after another
@@ -145,7 +146,7 @@ class Poses:
         return np.stack([weights.series(*self._points[name, k]) for k in ("x", "y")], axis=1)
 
     def joint(self, name: str, at: Moment) -> tuple[float, float]:
-        """x, y (m) of a joint: a marker fixed to its second body, carried along by that body's pose."""
+        """Return x, y (m) of a joint: a marker fixed to its second body, carried along by that body's pose."""
         joint = self.motion.joints[name]
         body = joint.bodies[1]
         if body not in self.motion.bodies:

@@ -73,7 +73,9 @@ def _leaving(normal: Array, contact: ContactMotion) -> Flank:
 
 
 def _pushed(across: Array, joint: JointMotion, sense: float, there: Mask | None = None) -> Flank:
-    """By the reaction on the second body, times ``sense``: left or right in a slot, while a pin is ``there``."""
+    """Return the flank that the reaction on the second body chooses, times ``sense``: left or right in a slot, while a
+    pin is ``there``.
+    """
     fx, fy = np.asarray(joint.fx), np.asarray(joint.fy)
     force = np.where(True if there is None else there, sense * (fx * across[:, 0] + fy * across[:, 1]), 0.0)
     side = np.sign(np.where(np.abs(force) > ROUNDING * np.hypot(fx, fy).max(initial=0.0), force, 0.0))
@@ -153,7 +155,7 @@ class Rollers:
         ]
 
     def poses(self, at: Moment) -> dict[str, tuple[float, float, float]]:
-        """x, y (m) of the axis of each and its angle (rad), by ``body/piece``."""
+        """Return x, y (m) of the axis of each and its angle (rad), by ``body/piece``."""
         out = {}
         for roller in self.found:
             x, y, theta = self._poses.body(roller.body, at)

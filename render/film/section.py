@@ -175,7 +175,7 @@ class _Solid:
         return self._reach[normal]
 
     def cut(self, planes: list[tuple[Normal, float]]) -> Cut:
-        """By these planes of the world, each a normal and how far along it."""
+        """Return the cut by these planes of the world, each a normal and how far along it."""
         gone = all(self.reach(normal)[0] >= place for normal, place in planes)
         world = tuple((*normal, place) for normal, place in planes)
         if self._goes_through(planes):

@@ -92,6 +92,6 @@ def _not_inside(points: Array) -> Array:
 
 
 def _around(count: int) -> Array:
-    """So many directions (n, 2) in the plane."""
+    """Return so many directions (n, 2) in the plane."""
     angles = np.linspace(0.0, 2 * np.pi, count, endpoint=False)
     return np.stack([np.cos(angles), np.sin(angles)], axis=1)

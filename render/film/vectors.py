@@ -259,7 +259,7 @@ class Sized(Protocol):
 
 
 def scales_of(things: Sequence[Sized], least: Mapping[str, float] | None = None) -> dict[str, Scale]:
-    """By unit, for those that are more than ``least`` of their unit, or than nothing."""
+    """Return scales by unit, for those that are more than ``least`` of their unit, or than nothing."""
     by_unit: dict[str, list[Array]] = {}
     for thing in things:
         by_unit.setdefault(thing.unit, []).append(thing.size)

@@ -266,7 +266,7 @@ class Animation:
         thing["rotation"] = turn[0].astype(np.float32).tolist()
 
     def content(self) -> dict[str, Any]:
-        """As it stands in the document."""
+        """Return the animation as it stands in the document."""
         return {"name": "motion", "samplers": self._samplers, "channels": self._channels}
 
 

@@ -114,7 +114,7 @@ def known_names(motion: Motion) -> list[str]:
 
 
 def quantity(motion: Motion, name: str) -> Quantity:
-    """By a name of :func:`known_names`."""
+    """Return the quantity with a name of :func:`known_names`."""
     if name in SHAKING or (name == COUPLE and motion.couple):
         return _shaking_quantity(motion, name)
     weak = {"N": NOISE * force_scale(motion), "N m": NOISE * torque_scale(motion)}

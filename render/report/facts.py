@@ -154,7 +154,7 @@ def _effort(motion: Motion) -> str:
 
 
 def _largest(efforts: Mapping[str, tuple[Sequence[float], bool]], motion: Motion) -> tuple[str, float, bool]:
-    """Whose it is, how much, 0 where that is rounding, and whether it is a force."""
+    """Return whose it is, how much, 0 where that is rounding, and whether it is a force."""
     name = max(efforts, key=lambda key: float(np.abs(efforts[key][0]).max()))
     effort, pushes = efforts[name]
     most = float(np.abs(effort).max())

@@ -101,7 +101,7 @@ def _words(size: tuple[int, int], title: Title) -> np.ndarray:
 
 
 def _lines(said: str, letters: int, most: int) -> list[str]:
-    """As many whole sentences as fit into so many lines of so many letters."""
+    """Return as many whole sentences as fit into so many lines of so many letters."""
     sentences = re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", said)
     for count in range(len(sentences), 0, -1):
         lines = textwrap.wrap(" ".join(sentences[:count]), letters)
@@ -111,7 +111,7 @@ def _lines(said: str, letters: int, most: int) -> list[str]:
 
 
 def _fitting(draw: Any, words: str, size: float, width: float) -> Any:
-    """Bold letters of this height, or smaller ones where the words would be too wide."""
+    """Return bold letters of this height, or smaller ones where the words would be too wide."""
     font = font_of(size, bold=True)
     length = draw.textlength(words, font=font)
     return font if length <= width else font_of(size * width / length, bold=True)

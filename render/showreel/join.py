@@ -312,5 +312,5 @@ def _quoted(path: Path) -> str:
 
 
 def _escaped(words: str) -> str:
-    """For ffmpeg's metadata files."""
+    """Return the text escaped for ffmpeg's metadata files."""
     return "".join(f"\\{letter}" if letter in "=;#\\\n" else letter for letter in words)

@@ -40,7 +40,9 @@ class GapPlace:
 
 
 def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
-    """For each pair, at the time of its least gap; None beyond MOST, for missing pieces, and between layers."""
+    """Return points for each pair, at the time of its least gap; None beyond MOST, for missing pieces, and between
+    layers.
+    """
     out: list[GapPlace | None] = []
     for number, pair in enumerate(clearance.pairs):
         pieces = [

@@ -232,7 +232,7 @@ def solid(film: Film) -> dict[str, Any]:
 
 
 def sawn_of(film: Film) -> dict[tuple[str, str], dict[str, Any]]:
-    """By body and piece, how the shot's section cuts it; nothing where the page's own slider does the same."""
+    """Return by body and piece how the shot's section cuts it; nothing where the page's own slider does the same."""
     section = section_of(film.shot.section)
     if section == Section(front=section.front):
         return {}

@@ -63,7 +63,7 @@ ROD = "steel"
 
 
 def materials(m: Mechanism) -> dict[str, str]:
-    """By moving body."""
+    """Return the material of each moving body."""
     from mbsd.drawing.inks import colours_by_role
 
     return {body: "aluminium" if word == "silver" else f"aluminium_{word}" for body, word in colours_by_role(m).items()}

@@ -90,7 +90,7 @@ class Cam:
         return self.cam
 
     def face_of(self, body: str, layout: Layout) -> Face | None:
-        """Within the base circle."""
+        """Return the face of the cam, within the base circle."""
         return Face(*self.centre, self.base - 1.0) if body == self.cam else None
 
     @property
@@ -126,7 +126,7 @@ class Cam:
         yield Item(what, self.follower, shape, Reach((self.follower, self.cam)), both, self)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """As a pin in a slot."""
+        """Return the same as for a pin in a slot."""
         return self.pin.needs_under(self, levels, layout) if self.roller is not None else []
 
 
@@ -199,7 +199,7 @@ def with_room(path: np.ndarray, back: float, touch: Joint | Force, layout: Layou
 
 
 def pushing_extent(touch: Joint | Force) -> Extent:
-    """As :func:`roller_extent`, of a contact with a closed curve."""
+    """Return what :func:`roller_extent` does, for a contact with a closed curve."""
     away, roller = np.hypot(*np.array(touch.params["points"], dtype=float).T), touch.params["radius"]
     least = ((float(away.min()), BASE), (roller, ROLLER)) if roller > 0 else ((float(away.min()), BASE + POINT),)
     return Extent(((touch.i, float(away.max())), (touch.j, roller)), least)
@@ -208,7 +208,7 @@ def pushing_extent(touch: Joint | Force) -> Extent:
 def _touched(
     outline: np.ndarray, at: tuple[float, float, float], names: tuple[str, str], layout: Layout
 ) -> tuple[float, float]:
-    """From where to where a cam touches a face, along it from the face's marker."""
+    """Return the range in which a cam touches a face, along it from the face's marker."""
     x, y, angle = at
     along, up = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
     points = evenly(outline, 4 * HULL)
@@ -328,7 +328,7 @@ class GenevaDrive:
         yield Item(f"the pin of {self.name}", self.crank, pin, reach, both, self, meshes)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """As a pin in a slot."""
+        """Return the same as for a pin in a slot."""
         return self.pin.needs_under(self, levels, layout)
 
     def _ends(self) -> list[tuple[str, tuple[float, float, float]]]:

@@ -161,14 +161,14 @@ class _Tried:
     shown: list[Shown] = field(default_factory=list)
 
     def layout(self, sizes: Sizes, springs: Springs, tubes: bool = False) -> Layout:
-        """With flush styluses."""
+        """Return the layout with flush styluses."""
         key = sizes.scale, springs, tubes
         if key not in self.known:
             self.known[key] = self.layout_of(sizes, springs, tubes)
         return self.known[key]
 
     def with_devices(self, wishes: Sequence[Sizes], tubes: bool = False) -> Outcome | None:
-        """With the fewest devices, and then the thickest pins, that leave an order."""
+        """Return the outcome with the fewest devices, and then the thickest pins, that leave an order."""
         for (flush, bridges), sizes, above in product(DEVICES, wishes, (True, False)):
             outcome = self.attempt(sizes, Springs(above), flush, bridges, tubes)
             if outcome is not None:
@@ -211,7 +211,8 @@ class _Tried:
         return None
 
     def with_webs(self, wishes: Sequence[Sizes]) -> Outcome | None:
-        """With one body of two webs, the thickest and then the thinnest pins: the fewest bridges, then layers.
+        """Return the outcome with one body of two webs, the thickest and then the thinnest pins: the fewest bridges,
+        then layers.
 
         One of the bodies that leave no order must be the one; none is tried where there are too many ways.
         """

@@ -83,7 +83,7 @@ class BackPlate:
     """Radius of these corners."""
 
     def scaled(self, scale: float) -> BackPlate:
-        """With all lengths times ``scale``."""
+        """Return a copy with all lengths times ``scale``."""
         x0, y0, x1, y1 = (scale * value for value in self.corners)
         holes = tuple((scale * x, scale * y, scale * radius) for x, y, radius in self.holes)
         hull = tuple((scale * x, scale * y) for x, y in self.hull)
@@ -157,7 +157,9 @@ class Standing:
 
 
 def standing(bodies: Mapping[str, Sequence[Solid]], poses: Mapping[str, np.ndarray], upright: Upright) -> Standing:
-    """Over the ``poses`` (T, 3) (mm, rad) of the bodies; of one without poses nothing is known."""
+    """Return the masses that stand, over the ``poses`` (T, 3) (mm, rad) of the bodies; of one without poses nothing is
+    known.
+    """
     still = np.zeros((1, 3))
     lows, highs, moving = [], [], np.inf
     mass, moment = 0.0, np.zeros((1, 3))
@@ -274,7 +276,7 @@ def foot_spans(load: Standing, ground: float) -> tuple[Span, Span, Span]:
 
 
 def evened(low: float, high: float, middle: float) -> Span:
-    """From ``low`` to ``high``, made symmetrical about ``middle`` where it nearly is."""
+    """Return ``low`` and ``high``, made symmetrical about ``middle`` where it nearly is."""
     left, right = middle - low, high - middle
     if abs(left - right) < EVEN * max(left, right):
         left = right = max(left, right)

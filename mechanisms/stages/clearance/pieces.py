@@ -335,7 +335,9 @@ def _repeats(angles: np.ndarray, count: int) -> bool:
 
 
 def _distances(facets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """From the origin in the plane: a lower bound of the nearest point of each facet, and the farthest corner."""
+    """Return distances from the origin in the plane: a lower bound of the nearest point of each facet, and the farthest
+    corner.
+    """
     away = np.hypot(facets[:, :, 0], facets[:, :, 1])
     sides = np.linalg.norm((np.roll(facets, -1, axis=1) - facets)[:, :, :2], axis=2).max(axis=1)
     return away.min(axis=1) - sides / 2, away.max(axis=1)

@@ -86,8 +86,9 @@ def _least_radius(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _within(t: np.ndarray, other: np.ndarray, reach: float) -> np.ndarray:
-    """Without the triangles that are seen at a glance to be farther from another mesh than ``reach``: by their heights,
-    and by the radii of their corners, which are not farther from any point of a triangle than its longest edge.
+    """Return a piece without the triangles that are seen at a glance to be farther from another mesh than ``reach``: by
+    their heights, and by the radii of their corners, which are not farther from any point of a triangle than its
+    longest edge.
     """
     r, z = np.hypot(t[:, :, 0], t[:, :, 1]), t[:, :, 2]
     radius, height = np.hypot(other[:, :, 0], other[:, :, 1]), other[:, :, 2]
@@ -115,7 +116,7 @@ def _box_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _bounds(a: np.ndarray, b: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
-    """For each box of either set, its distance to the nearest box of the other, or ``enough`` if that is less."""
+    """Return for each box of either set its distance to the nearest box of the other, or ``enough`` if that is less."""
     (first_a, which_a), (first_b, which_b) = distinct(a), distinct(b)
     (a, place_a, hull_a), (b, place_b, hull_b) = _grouped(a[first_a]), _grouped(b[first_b])
     low_a, low_b = np.full(len(a), max(enough, 0.0)), np.full(len(b), max(enough, 0.0))

@@ -46,7 +46,7 @@ class Pose:
     angle: float
 
     def seen_from(self, other: Pose) -> Pose:
-        """This frame in the axes of another."""
+        """Return this frame in the axes of another."""
         dx, dy = self.x - other.x, self.y - other.y
         c, s = math.cos(other.angle), math.sin(other.angle)
         return Pose(c * dx + s * dy, c * dy - s * dx, math.remainder(self.angle - other.angle, math.tau))

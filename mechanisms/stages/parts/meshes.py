@@ -133,7 +133,7 @@ def combined(masses: Iterable[Mass]) -> Mass:
 
 
 def _along(pieces: list[Mass], mass: float, com: tuple[float, float]) -> dict[str, Any]:
-    """z of the common centre of mass and the products of inertia about it, where all pieces have them."""
+    """Return z of the common centre of mass and the products of inertia about it, where all pieces have them."""
     known = [(piece, piece.z, piece.products) for piece in pieces if piece.z is not None and piece.products is not None]
     if len(known) < len(pieces):
         return {}

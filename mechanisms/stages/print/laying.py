@@ -113,7 +113,7 @@ def _resting(corners: np.ndarray) -> list[np.ndarray]:
 
 
 def _exact(normal: np.ndarray) -> np.ndarray:
-    """Without what single precision leaves on a normal along an axis."""
+    """Return a normal without what single precision leaves on a normal along an axis."""
     whole = np.round(normal)
     return whole + 0.0 if np.abs(normal - whole).max() < 1e-5 else normal
 

@@ -156,7 +156,7 @@ def _bed_for(part: Made, bed: Bed) -> str:
 
 
 def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Made]) -> tuple[list[Made], dict[str, bytes]]:
-    """With the outlines of those that can be cut from a sheet, and the DXF files."""
+    """Return the pieces with the outlines of those that can be cut from a sheet, and the DXF files."""
     parts: list[Made] = []
     files: dict[str, bytes] = {}
     for part in made:
@@ -176,7 +176,9 @@ def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Made]) -> tup
 def plates_of(
     title: str, made: Sequence[Made], bed: Bed, gap: float, stem: str = "plate"
 ) -> tuple[list[Made], dict[str, bytes]]:
-    """With the plates that the pieces lie on, and the files of these, whose names begin with ``stem``."""
+    """Return the pieces with the plates that the pieces lie on, and the files of these, whose names begin with
+    ``stem``.
+    """
     items = [(k, name) for k, part in enumerate(made) if not part.bed for name in part.names]
     places = packed([made[k].piece.size[:2] for k, _ in items], bed[:2], gap)
     plates: dict[int, list[Placed]] = {}

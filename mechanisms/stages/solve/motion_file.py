@@ -156,7 +156,7 @@ def vibration(solution: Solution) -> contract.Vibration | None:
 
 
 def _crank(solution: Solution) -> str | None:
-    """By whose angle orders count; None where nothing on a pin of ground turns one way by a whole turn."""
+    """Return the body by whose angle orders count; None if nothing on a pin of ground makes whole turns one way."""
     from mbsd import ModelError
 
     try:
@@ -313,7 +313,7 @@ def _diagnostics(solution: Solution) -> contract.Diagnostics:
 
 
 def _couple(solution: Solution) -> contract.Couple | None:
-    """About the middle of the bodies along the normal of the plane."""
+    """Return moments about the middle of the bodies along the normal of the plane."""
     assert solution.planes is not None
     if solution.planes.is_one:
         return None
@@ -368,7 +368,7 @@ def _look(look: str, holds_energy: bool) -> Look:
 
 
 def _gas(force: Force, view: ForceView) -> contract.GasMotion | None:
-    """Gas motion of a force that comes from gas behind a piston, else None."""
+    """Return the gas motion of a force that comes from gas behind a piston, else None."""
     from mbsd.results.gas import GasView
 
     if not isinstance(view, GasView):

@@ -176,7 +176,7 @@ def _cloudy(graph: Graph, roughness: float, swing: float, scale: float, grain: f
 
 
 def _mixed(graph: Graph, part: Any, first: Any, second: Any) -> Any:
-    """Between two colours."""
+    """Return a mix of two colours."""
     mix = graph.add("Mix", {"data_type": "RGBA"})
     for socket, value in ((0, part), (6, first), (7, second)):
         graph.set(mix, socket, value)

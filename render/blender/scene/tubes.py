@@ -128,7 +128,7 @@ def place_trail(thing: Any, path: list[Point], radius: float) -> None:
 
 
 def _fade(rings: int) -> np.ndarray:
-    """1 at the point, 0 at the end of the tail."""
+    """Return the fade: 1 at the point, 0 at the end of the tail."""
     return (1 - np.linspace(0, 1, rings)) ** 1.5
 
 

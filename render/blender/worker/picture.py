@@ -159,7 +159,7 @@ def _smaller(values: Array, times: int) -> Array:
 
 
 def _paper(drawing: Drawing, width: int, height: int) -> Array:
-    """Squared paper (height, width, 3) with a frame."""
+    """Return squared paper (height, width, 3) with a frame."""
     paper, grid = np.array(drawing.paper), np.array(drawing.grid)
     pixel = width / 1280
     square = width / SQUARES

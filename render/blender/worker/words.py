@@ -198,7 +198,7 @@ def _with_arrows(picture: np.ndarray, arrows: np.ndarray) -> np.ndarray:
 
 
 def _blurred(picture: np.ndarray, sigma: float) -> np.ndarray:
-    """Gaussian over rows and columns of (h, w, n)."""
+    """Return a Gaussian blur over rows and columns of (h, w, n)."""
     reach = max(1, round(3 * sigma))
     weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
     weights /= weights.sum()

@@ -102,7 +102,7 @@ class Belt:
         return PLATES * self.radius * (OUTER if self.alike or link % 2 == 0 else INNER)
 
     def still(self) -> Placing:
-        """Beside its first pulley's centre at the origin, the second on the x axis."""
+        """Return the placing with its first pulley's centre at the origin, the second on the x axis."""
         return Placing(self, (0.0, 0.0), 0.0)
 
     def run(self, poses: Poses, at: Moment) -> tuple[Placing, Array]:
@@ -131,7 +131,7 @@ class Placing:
     line: float
 
     def points(self, along: Array, height: float = 0.0) -> list[Point]:
-        """At these lengths, so far over the belt's middle (m)."""
+        """Return places at these lengths, so far over the belt's middle (m)."""
         flat, rest = self.belt.path.places(along)
         c, s = math.cos(self.line), math.sin(self.line)
         over = APART * self.belt.radius * np.sin(np.pi * rest) if self.belt.path.crossed else 0 * rest

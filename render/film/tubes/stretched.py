@@ -153,7 +153,7 @@ def sagging(a: Array, b: Array, length: float, down: Array) -> Array:
 
 
 def _coil(name: str, radius: float, least: float, most: float) -> list[tuple[TubeSpec, Path]]:
-    """So many turns as fill it well in between, and never lie on one another."""
+    """Return a coil of as many turns as fill it well in between, and never lie on one another."""
     wire, room = WIRE * radius, 1 - 2 * HOOK
     turns = min(round(room * (least + most) / 2 / (0.95 * radius)), int(room * least / (2.3 * wire)) - 2)
     turns = min(max(turns, 3), 18)

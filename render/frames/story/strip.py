@@ -59,7 +59,7 @@ def broken(text: str, letters: float, most: int, bold: bool = False) -> list[str
 
 
 def _even(words: Sequence[str], widths: Sequence[float], count: int, space: float) -> list[str]:
-    """Greedy lines towards the mean width."""
+    """Return lines of words, filled greedily towards the mean width."""
     mean = (sum(widths) + space * (len(words) - 1)) / count
     lines: list[list[str]] = [[]]
     length = 0.0

@@ -91,7 +91,7 @@ def statement(motion: Motion) -> str:
 
 
 def _tolerance(motion: Motion, given: np.ndarray, rate: np.ndarray) -> float:
-    """Below this the difference of the two powers (W) says nothing."""
+    """Return the power (W) below which the difference of the two says nothing."""
     largest = max(float(np.abs(given).max()), float(np.abs(rate).max()))
     return max(BALANCED * largest, 10 * power_floor(motion), 10 * motion.diagnostics.power_residual)
 

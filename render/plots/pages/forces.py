@@ -163,7 +163,7 @@ def _spacing(count: int, gap: float, room: float) -> float:
 
 
 def _within(text: str, room: float) -> str:
-    """As many letters as there is room for."""
+    """Return as many letters of a text as there is room for."""
     return text if len(text) <= room else f"{text[: max(int(room) - 1, 1)]}…"
 
 

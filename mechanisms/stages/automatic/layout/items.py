@@ -80,7 +80,7 @@ class PinReach:
         return {self.choice: ((1, 1), (-1, -1))}
 
     def span(self, levels: Levels) -> tuple[int, int] | None:
-        """As :meth:`Reach.span`; while the choice is open, without an end."""
+        """Return what :meth:`Reach.span` does; while the choice is open, without an end."""
         return _span(self, levels)
 
 
@@ -102,7 +102,7 @@ class PivotReach:
         return {self.choice: ((None, 0 if self.flush else 1), (-1, None))}
 
     def span(self, levels: Levels) -> tuple[int, int] | None:
-        """As :meth:`Reach.span`; while the choice is open, what both have in common."""
+        """Return what :meth:`Reach.span` does; while the choice is open, what both have in common."""
         return _span(self, levels)
 
 

@@ -135,7 +135,7 @@ class Clauses:
         return literals
 
     def _crossed(self, lows: Sequence[str | None], highs: Sequence[str | None], given: Sequence[int]) -> list[int]:
-        """From the lowest to the highest of bodies; None is what is below, or above, all of them."""
+        """Return the span from the lowest to the highest of bodies; None is what is below, or above, all of them."""
         if lows == highs and len(lows) < 2:
             return []
         literals = [self.new() for _ in range(self.count - 1)]
@@ -175,11 +175,11 @@ class Clauses:
         return (self.solver.accum_stats() or {})["conflicts"]
 
     def holds(self, literal: int) -> bool:
-        """In the model."""
+        """Return True if the literal holds in the solver's model."""
         return (abs(literal) in self._model) == (literal > 0)
 
     def layer(self, body: str) -> int:
-        """In the model."""
+        """Return the layer of a body in the solver's model."""
         return sum(self.holds(step) for step in self.steps[self.heads[body]])
 
     def close(self) -> None:
@@ -188,7 +188,7 @@ class Clauses:
 
 
 def choices_of(items: Sequence[Item]) -> list[str]:
-    """Without repeats."""
+    """Return the choices of items, without repeats."""
     return list(dict.fromkeys(c for item in items if (c := choice_of(item.reach)) is not None))
 
 

@@ -58,7 +58,7 @@ def _parts(solution: Solution) -> np.ndarray:
 
 
 def _between(t: np.ndarray, value: np.ndarray, rate: np.ndarray, parts: np.ndarray) -> np.ndarray:
-    """Hermite's cubic at ``parts`` places of every step, and the last value."""
+    """Return Hermite's cubic at ``parts`` places of every step, and the last value."""
     if len(t) < 2 or (parts == 1).all():
         return value.astype(float).copy()
     at = np.repeat(np.arange(len(parts)), parts)

@@ -168,7 +168,9 @@ def distance(joint: Joint, solution: Solution) -> float:
 
 
 def rods_of(m: Mechanism, left_out: Collection[str] = ()) -> dict[str, Joint]:
-    """By name, which is that of the joint, but for joints whose name a body has; without those that lack an end."""
+    """Return rods by name, which is that of the joint, but for joints whose name a body has; without those that lack an
+    end.
+    """
     rods: dict[str, Joint] = {}
     for name, joint in m.joints.items():
         rod = f"rod_{name}" if name in m.bodies else name
@@ -304,8 +306,8 @@ class Sizes:
 
 
 def sizes(shortest: float, overall: float, fit: Fit | None = None, thinnest: float = THINNEST) -> list[Sizes]:
-    """From the shortest distance of two joints of one body and the longer side of what all joints sweep (m); then
-    with thinner pins, the last ``thinnest`` times as thick at least.
+    """Return sizes from the shortest distance of two joints of one body and the longer side of what all joints sweep
+    (m); then with thinner pins, the last ``thinnest`` times as thick at least.
     """
     pin = standard(min(mm(shortest) / LEAST_LINK, mm(overall) / OVERALL))
     thinner = [d for d in reversed(STANDARD) if thinnest * pin <= d < pin]
@@ -341,7 +343,7 @@ def of_pin(diameter: float, fit: Fit | None = None, ratio: float = 1.0) -> Sizes
 
 
 def _bought(pivot: Pivot, diameter: float, scale: float) -> Pivot:
-    """With the sizes of standard washers and circlips."""
+    """Return the pivot with the sizes of standard washers and circlips."""
     ring, clip = shim_ring(diameter, pivot.washer_thickness * scale), CIRCLIPS.get(diameter)
     if ring:
         washer, thickness = ring.outer / scale, ring.thickness / scale

@@ -131,7 +131,9 @@ def may_hang(layout: Layout) -> frozenset[str]:
 
 
 def bridges_over(layout: Layout, levels: Mapping[str, int]) -> list[Feature]:
-    """For all pivots that hang by the choices in ``levels``. Raises UserError where a bridge has no place."""
+    """Return bridges for all pivots that hang by the choices in ``levels``. Raises UserError where a bridge has no
+    place.
+    """
     waiting = [pin for pin in layout.features if isinstance(pin, Pin) and pin.on_ground and levels[pin.choice] == 1]
     points, still = _points(layout, waiting)
     moving = Swept(points)

@@ -138,7 +138,7 @@ def face_at(body: str, x: float, y: float, layout: Layout) -> Face | None:
 def rim_mark(
     name: str, body: str, x: float, y: float, face: Face, taken: Sequence[Anchor], raised: bool, layout: Layout
 ) -> RimMark | None:
-    """As near to the point as the rim leaves room; None where hub and pins leave none."""
+    """Return the mark, as near to the point as the rim leaves room; None where hub and pins leave none."""
     away, hardware = math.hypot(x - face.x, y - face.y), layout.sizes.hardware
     own = [anchor for anchor in taken if anchor.body == body]
     held = any(math.hypot(a.x - face.x, a.y - face.y) < 0.02 and a.radius > hardware for a in own)
@@ -370,8 +370,8 @@ def styluses(layout: Layout, tall: bool, pointers: bool) -> list[Feature]:
 
 
 def weights(layout: Layout, heavy: bool) -> list[Feature]:
-    """For bars with a free end, and for bodies with one joint, but no wheels or tyres, whose centre of mass is
-    elsewhere.
+    """Return weights for bars with a free end, and for bodies with one joint, but no wheels or tyres, whose centre of
+    mass is elsewhere.
 
     ``heavy``: only for ends of bars where their centre of mass is, even if they are traced.
     """

@@ -58,7 +58,7 @@ def places(joint: Joint) -> tuple[Place, Place]:
 
 @extent(ROD)
 def extent_of(joint: Joint, solution: Solution) -> Extent:
-    """As long as a bar."""
+    """Return an extent as long as a bar."""
     return Extent(least=((joint.params["length"], LEAST),))
 
 
@@ -193,7 +193,7 @@ def gather_rods(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Featu
 
 
 def _rod_ends(layout: Layout) -> list[tuple[str, dict[str, tuple[float, float]]]]:
-    """Named, with the place on the rod and that on the body which it is pinned to."""
+    """Return named ends, with the place on the rod and that on the body which it is pinned to."""
     return [
         (f"{rod}_{number}", {rod: own, body: place})
         for rod, joint in layout.rods.items()

@@ -68,7 +68,7 @@ class Weld:
         return [Anchor(body, x, y, ROUND) for body, *_ in self.ends for x, y in self.bolts(body)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """From the lower body, or the base, to the bolts' heads."""
+        """Yield the room from the lower body, or the base, to the bolts' heads."""
         home = self.ends[0][0] if len(self.movers) == 2 else "ground"
         shape = around(self.bolts(home), BLOCK + 1.0)
         reach = Reach(self.movers, 1, 1) if home != "ground" else Reach(self.movers, high=1, base=True)

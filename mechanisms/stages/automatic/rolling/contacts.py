@@ -277,7 +277,7 @@ def _is_held(m: Mechanism, body: str) -> bool:
 
 
 def _feet(m: Mechanism, body: str) -> int:
-    """At how many places of it a body touches something: one with several cannot roll."""
+    """Return at how many of its places a body touches something: one with several cannot roll."""
     touches = [touch for touch in (*m.contacts.values(), *m.forces.values()) if "radius" in touch.params]
     return len({(touch.j.x, touch.j.y) for touch in touches if touch.j.body.name == body})
 

@@ -54,7 +54,7 @@ class Band:
     """(k, 2) the other side, from behind the first place of the surface to behind the last."""
 
     def wall(self, low: float, high: float) -> cq.Workplane:
-        """From one height to another."""
+        """Return the solid from one height to another."""
         return extruded(polygon(self.border), high - low, low, [polygon(hole) for hole in self.holes])
 
 
@@ -90,7 +90,7 @@ def is_clear(backing: Band, path: np.ndarray, centres: np.ndarray, radius: float
 
 
 def band(path: np.ndarray, thick: float = THICK) -> Band | None:
-    """Behind a surface; None where that is in several parts."""
+    """Return the band behind a surface; None where that is in several parts."""
     surface = simplified(path, CHORD)
     back = surface - thick * _mitres(surface)
     quads = [
@@ -261,7 +261,7 @@ def runs_on_ground(layout: Layout) -> bool:
 
 
 def _thinned(path: np.ndarray) -> np.ndarray:
-    """About so many places of a path, with both of its ends."""
+    """Return about so many places of a path, with both of its ends."""
     step = max(1, len(path) // PIECES)
     return path if step == 1 else np.vstack([path[:-1:step], path[-1:]])
 

@@ -77,7 +77,7 @@ class Round:
         return [Anchor(self.body, *self.at, min(self.hub(layout), self.built_radius))]
 
     def face_of(self, body: str, layout: Layout) -> Face | None:
-        """Within the tyre of a wheel; a disc but for its edge."""
+        """Return the face within the tyre of a wheel; a disc but for its edge."""
         if body != self.body or self.look == "ball":
             return None
         return Face(*self.at, self.rim(layout) - 0.5 if self.look == "wheel" else self.built_radius - 0.5)

@@ -184,7 +184,8 @@ class Track:
 
 
 def track(name: str, body: str, carried: Round, path: np.ndarray, closed: bool, road: Road | None = None) -> Track:
-    """On a path (n, 2) (rmm, the body's frame) with what it carries on its left; a closed one is closed here.
+    """Return a track on a path (n, 2) (rmm, the body's frame) with what it carries on its left; a closed one is closed
+    here.
 
     An open one has behind it what a ``road`` on the same path has, by default a straight lower side.
     """
@@ -301,7 +302,7 @@ def touched_road(touch: Joint | Force, part: Round, path: np.ndarray, places: np
 
 
 def _run(path: np.ndarray, ways: np.ndarray, centres: np.ndarray, radius: float) -> tuple[float, float]:
-    """From where to where along a curve a disc rolls (rmm from its first place)."""
+    """Return the range along a curve in which a disc rolls (rmm from its first place)."""
     even = evenly(path, FINE * len(path))
     offset = even + radius * normals(even)
     length, step = float(np.hypot(*np.diff(path, axis=0).T).sum()), float(np.hypot(*np.diff(offset, axis=0).T).max())

@@ -184,7 +184,7 @@ class Along:
         return [space for own in self.valves.values() for space in own.takes()]
 
     def _below_liners(self, plan: ShaftPlan) -> ShaftPlan:
-        """With a first journal so long that a flywheel turns below all liners."""
+        """Return the plan with a first journal so long that a flywheel turns below all liners."""
         if plan.shaft.body not in self.flywheels:
             return plan
         first, *rest = plan.journals

@@ -128,7 +128,8 @@ def free_places(
     pins: Sequence[Axle],
     taken: Sequence[Takes],
 ) -> dict[str, float]:
-    """By link of ``free``, which the machine of ``measures`` has in any plane. ``taken`` is what else takes room.
+    """Return the place of each link of ``free``, which the machine of ``measures`` has in any plane. ``taken`` is what
+    else takes room.
 
     Raises UserError naming the links where no order of layers lets them pass.
     """

@@ -76,7 +76,7 @@ def rounded(size: float) -> float:
 
 @built_once
 def piston_shape(own: PistonSize, thickness: float, gap: float) -> cq.Workplane:
-    """From its wrist pin along x; ``thickness`` of the rod in it, ``gap`` beside that."""
+    """Return the piston, from its wrist pin along x; ``thickness`` of the rod in it, ``gap`` beside that."""
     import cadquery as cq
 
     b, r = own.bore, own.bore / 2 - own.running
@@ -132,8 +132,8 @@ class LinerSize(NamedTuple):
 
 @built_once
 def liner_shape(own: LinerSize, fin: float, window: float) -> cq.Workplane:
-    """From its lower end (x = own.low) up; ``fin`` is the radius of its fins, ``window`` the direction about x, from
-    y towards z (rad), to which it is open.
+    """Return the liner from its lower end (x = own.low) up; ``fin`` is the radius of its fins, ``window`` the direction
+    about x, from y towards z (rad), to which it is open.
     """
     import cadquery as cq
 
@@ -179,7 +179,7 @@ def head_shape(own: Cylinder, radius: float, valves: Sequence[ValvePlan] = ()) -
 
 
 def squish(own: Cylinder) -> float:
-    """From the piston to the head at its top dead centre."""
+    """Return the gap (mm) from the piston to the head at its top dead centre."""
     return SQUISH * own.bore
 
 

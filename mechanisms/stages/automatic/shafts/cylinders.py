@@ -107,7 +107,9 @@ class Cylinder:
 
 
 def cylinders(machine: Machine) -> dict[str, Cylinder]:
-    """By piston. Raises UserError naming cylinders that have no room beside each other, or none for their rod."""
+    """Return cylinders by piston. Raises UserError naming cylinders that have no room beside each other, or none for
+    their rod.
+    """
     wished = {name: _wish(machine, piston) for name, piston in machine.pistons.items()}
     _refuse_near(machine, wished)
     fitted = {}
@@ -134,7 +136,9 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
 
 
 def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylinder]) -> Cylinder:
-    """With the piston that works against it in the same cylinder. Raises UserError where their crowns would meet."""
+    """Return the cylinder, shared with a piston that works against its own. Raises UserError if their crowns would
+    meet.
+    """
     for name, other in every.items():
         way = np.array(other.origin) - np.array(own.origin)
         along = np.array(own.piston.along)

@@ -146,7 +146,9 @@ class Fork:
 def carrier_shape(
     main: Point, hole: float, small: tuple[float, float, Eye], pins: Sequence[Point], fork: Fork
 ) -> cq.Workplane:
-    """From z = 0 up: ``main`` on the crank pin with a ``hole`` (diameter), the ``small`` end, knuckle ``pins``."""
+    """Return a carrier from z = 0 up: ``main`` on the crank pin with a ``hole`` (diameter), the ``small`` end, knuckle
+    ``pins``.
+    """
     (x, y), bore, height = main, fork.bore, fork.height
     plate = _flange(main, pins, fork.flange, bore)
     shape = plate.union(placed(plate, z=height - fork.flange))
@@ -167,7 +169,7 @@ def knuckle_pin(at: Point, height: float, bore: float) -> cq.Workplane:
 
 
 def _flange(main: Point, pins: Sequence[Point], height: float, bore: float, edge: float = EDGE) -> cq.Workplane:
-    """From z = 0 up: round the big end and all pins, drawn in between them where there is room."""
+    """Return the flange from z = 0 up: round the big end and all pins, drawn in between them where there is room."""
     x, y = main
     own, hub = KNUCKLE_EYE * bore, BIG_END * bore
     ring = extruded(outline.circle(x, y, hub), height)

@@ -184,7 +184,7 @@ BESIDE = 0.12
 
 
 def fins(all_of: Mapping[str, Cylinder]) -> dict[str, float]:
-    """By piston: radius of the fins of its liner, as far as its neighbours leave room."""
+    """Return by piston the radius of the fins of its liner, as far as its neighbours leave room."""
     radii = {}
     for name, own in all_of.items():
         radius = own.outer + FIN * own.bore
@@ -244,5 +244,5 @@ def deck_half(bank: Sequence[Cylinder]) -> float:
 
 
 def deck_range(bank: Sequence[Cylinder]) -> tuple[float, float]:
-    """s of the lower and of the upper face of a deck."""
+    """Return s of the lower and of the upper face of a deck."""
     return max(own.top - DECK[0] * own.bore for own in bank), min(own.top - DECK[1] * own.bore for own in bank)

@@ -114,7 +114,9 @@ class Measures:
 
 
 def thicknesses(measures: Measures) -> dict[str, float]:
-    """By link. Raises UserError naming both bodies, their distance and what to do where plates do not fit."""
+    """Return thicknesses by link. Raises UserError naming both bodies, their distance and what to do where plates do
+    not fit.
+    """
     machine = measures.machine
     thickness = {name: measures.wished(link) for name, link in machine.links.items()}
     for first, second in _near(measures, thickness):

@@ -124,7 +124,7 @@ def web_solid(plan: ShaftPlan, web: Web, weight: Weight | None = None) -> cq.Wor
 
 
 def _hulls(circles: Sequence[Circle], height: float, z: float) -> cq.Workplane:
-    """Round all circles: the hulls of all pairs, which for a web is all that it needs."""
+    """Return an outline round all circles: the hulls of all pairs, which for a web is all that it needs."""
     wires = [_hull(a, b) for a, b in combinations(circles, 2)]
     shape = extruded(wires[0], height, z)
     for wire in wires[1:]:
@@ -133,7 +133,7 @@ def _hulls(circles: Sequence[Circle], height: float, z: float) -> cq.Workplane:
 
 
 def _hull(a: Circle, b: Circle) -> cq.Wire:
-    """Round two circles; the larger alone if it holds the other."""
+    """Return an outline round two circles; the larger alone if it holds the other."""
     if math.dist(a[:2], b[:2]) <= abs(a[2] - b[2]) + 1e-6:
         return outline.circle(*max(a, b, key=lambda circle: circle[2]))
     return outline.hull([a, b])

@@ -129,7 +129,9 @@ class ValvePlan:
 
 
 def valve_plans(machine: Machine, measures: Measures, cylinders: Mapping[str, Cylinder]) -> dict[str, ValvePlan]:
-    """By body. Raises UserError naming a valve that is over no cylinder, has no room in one, or stands too low."""
+    """Return valve plans by body. Raises UserError naming a valve that is over no cylinder, has no room in one, or
+    stands too low.
+    """
     over = {name: _cylinder(machine, valve, cylinders) for name, valve in machine.valves.items()}
     plans = {}
     for name, valve in machine.valves.items():

@@ -75,7 +75,7 @@ class CurvedSlot(Slot):
         return [*places, Anchor(self.pin, *self.pin_at, layout.sizes.eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """As those of a straight slot; in a groove the pin ends."""
+        """Yield items as for a straight slot; in a groove the pin ends."""
         for item in Slot.items(self, layout):
             if self.closed and item.body == self.pin and isinstance(item.reach, Reach) and item.reach.high == 1:
                 base = self.pin == "ground"
@@ -86,7 +86,7 @@ class CurvedSlot(Slot):
                 yield item
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """As a straight slot."""
+        """Return the same as for a straight slot."""
         return Slot.needs(self, levels, layout)
 
 
@@ -175,7 +175,7 @@ def _run_through(
 
 
 def _stepped(path: np.ndarray, clearance: float) -> np.ndarray:
-    """At even steps, as few as follow the path so closely that the roller keeps its ``clearance`` (rmm)."""
+    """Return a path at even steps, as few as keep the roller's ``clearance`` (rmm) along the path."""
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
     count = min(MOST, max(8, int(way[-1] / STEP)))
     while True:

@@ -233,7 +233,7 @@ def with_common_rails(slides: Sequence[Slide], layout: Layout) -> list[Slide]:
 
 
 def _laid(line: list[Slide], layout: Layout) -> list[Slide]:
-    """On one line: the first of each group of slides that share a rail builds it."""
+    """Return slides on one line: the first of each group of slides that share a rail builds it."""
     rails: list[list[Slide]] = []
     for slide in line:
         free = (rail for rail in rails if all(_may_share(slide, other, line[0], layout) for other in rail))
@@ -259,7 +259,7 @@ def _laid(line: list[Slide], layout: Layout) -> list[Slide]:
 
 
 def _rail_distance(layout: Layout) -> float:
-    """Between the middles of the round ends of two rails that do not overlap, at least."""
+    """Return the least distance between the middles of the round ends of two rails that do not overlap."""
     return RAIL + 2.0 + layout.sizes.room
 
 
@@ -337,7 +337,7 @@ def _repeats(slide: Slide, other: Slide) -> bool:
 
 
 def _room_for_pins(slide: Slide, m: Mechanism, layout: Layout) -> tuple[float, float]:
-    """By how much the rail's ends are shortened beside pins of its own body: down to the end of the block at most."""
+    """Return how much the rail's ends are shortened beside pins of its body, down to the end of the block."""
     if slide.rail == "ground":
         return 0.0, 0.0
     c, s = math.cos(slide.rail_at[2]), math.sin(slide.rail_at[2])

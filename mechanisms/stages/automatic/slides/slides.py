@@ -84,11 +84,11 @@ class Slide:
         return [[(float(x), float(y)) for x, y in foot] for foot in ((a, a + inwards), (b, b - inwards))]
 
     def rail_place(self, distance: float) -> tuple[float, float]:
-        """On the rail, that far from its marker, in its body's frame."""
+        """Return a place on the rail, that far from its marker, in its body's frame."""
         return _along(self.rail_at, distance)
 
     def block_place(self, distance: float) -> tuple[float, float]:
-        """On the line of the block, that far from its marker, in its body's frame."""
+        """Return a place on the line of the block, that far from its marker, in its body's frame."""
         return _along(self.block_at, distance)
 
     def stops(self, layout: Layout) -> list[tuple[str, float]]:

@@ -192,7 +192,7 @@ class Slot:
                 yield Item(f"a post of {plate}", "ground", disc(x, y, POST / 2 + 1.0), post, source=self, stands=plate)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """As :meth:`needs_under`, where the slot itself is a feature."""
+        """Yield what :meth:`needs_under` does, where the slot itself is a feature."""
         return self.needs_under(self, levels, layout)
 
     def needs_under(self, source: object, levels: Levels, layout: Layout) -> Iterable[Need]:
@@ -232,7 +232,7 @@ def _ends(joint: Joint, m: Mechanism, travel: tuple[float, float], layout: Layou
 
 
 def entered(slot: Slot, layout: Layout) -> Slot:
-    """With a layer of its own for a plate on ground."""
+    """Return the slot with a layer of its own for a plate on ground."""
     if slot.slot == "ground":
         layout.extra.append(slot.layer)
     return slot

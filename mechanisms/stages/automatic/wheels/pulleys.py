@@ -128,8 +128,8 @@ SEAT = 5
 
 @shape_of.register(Pulley)
 def pulley_disc(pulley: Pulley, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
-    """From z = 0 up, with its eyes, and its number of through holes. One without windows has small holes, so that one
-    sees it turn.
+    """Return the disc of a pulley from z = 0 up, with its eyes, and its number of through holes. One without windows
+    has small holes, so that one sees it turn.
     """
     shape, holes = with_hub(extruded(circle(0, 0, pulley.root), thickness), pulley.root, thickness, eyes)
     room = pulley.root - Sizes.hardware

@@ -139,7 +139,7 @@ class Wheel:
                 yield Item(f"a post of {self.what}", self.body, disc(x, y, RIM), reach, spares, self, meshes)
 
     def face_of(self, body: str, layout: Layout) -> Face | None:
-        """Within its teeth, where it is its body's plate."""
+        """Return the disc within its teeth, where it is its body's plate."""
         if body != self.body or self.ring or not self.shares:
             return None
         fills = any(getattr(feature, "fills", "") == body for feature in layout.features)
@@ -270,7 +270,7 @@ def _cup(wheel: Wheel, plan: Plan, heights: Heights) -> None:
 
 
 def _to_plate(wheel: Wheel, plan: Plan, heights: Heights) -> tuple[float, float]:
-    """From where to where something between the wheel and its body's plate reaches."""
+    """Return the range in which something between the wheel and its body's plate reaches."""
     seat = plan.layout.sizes.pivot.fit.seat
     if heights.bottom(wheel.body) < heights.bottom(wheel.layer):
         return heights.top(wheel.body) + seat, heights.bottom(wheel.layer)

@@ -31,7 +31,7 @@ class Places:
         self._frames: dict[tuple[str, float, float], str] = {}
 
     def frame_at(self, marker: Any, user: str) -> str:
-        """The frame at a marker, in the body's axes; it may be called after its ``user``."""
+        """Return the frame at a marker, in the body's axes; it may be called after its ``user``."""
         body, x, y = marker.body.name, float(marker.x), float(marker.y)
         near = (key for key in self._frames if key[0] == body and max(abs(key[1] - x), abs(key[2] - y)) < SMALL)
         key = next(near, (body, x, y))
@@ -48,7 +48,7 @@ class Places:
         return origin if max(abs(x), abs(y)) < SMALL else self._moved(origin, body, x, y, user)
 
     def _origin(self, body: str) -> str:
-        """The frame that the author drew the body in."""
+        """Return the frame that the author drew the body in."""
         if body not in self._origins:
             own, com = f"{self.name[body]}.frame_a", self._bodies[body].com
             if max(map(abs, com)) >= SMALL:
@@ -99,7 +99,7 @@ class Start:
         return cls(poses, rates)
 
     def rate(self, value: Any) -> float:
-        """How fast an analytic function of the poses changes."""
+        """Return how fast an analytic function of the poses changes."""
         return float(
             value({name: pose + 1j * IMAGINARY_STEP * self.rates[name] for name, pose in self.poses.items()}).imag
             / IMAGINARY_STEP
@@ -107,19 +107,19 @@ class Start:
 
 
 def place(poses: Mapping[str, Array], marker: Any) -> Array:
-    """(2,) where a marker is."""
+    """Return (2,) the place of a marker."""
     x, y, theta = poses[marker.body.name]
     c, s = np.cos(theta), np.sin(theta)
     return np.array([x + c * marker.x - s * marker.y, y + s * marker.x + c * marker.y])
 
 
 def angle(poses: Mapping[str, Array], joint: Any) -> Any:
-    """Angle of the second body against the first."""
+    """Return the angle of the second body against the first."""
     return poses[joint.j.body.name][2] - poses[joint.i.body.name][2]
 
 
 def along(poses: Mapping[str, Array], joint: Any) -> Array:
-    """(2,) the second marker in the axes of the first."""
+    """Return (2,) the second marker in the axes of the first."""
     dx, dy = place(poses, joint.j) - place(poses, joint.i)
     turn = poses[joint.i.body.name][2] + joint.i.angle
     c, s = np.cos(turn), np.sin(turn)
@@ -176,7 +176,7 @@ class Function:
 
 
 def coordinates(joints: Sequence[Any], loose: Sequence[str], size: float) -> dict[Key, Function]:
-    """Coordinates of joints, and of bodies that no joint with a coordinate holds; free of dimension."""
+    """Return coordinates of joints, and of bodies that no joint with a coordinate holds; free of dimension."""
     out: dict[Key, Function] = {}
     for joint in joints:
         if joint.kind.name in ("revolute", "pin_in_slot"):
@@ -190,7 +190,7 @@ def coordinates(joints: Sequence[Any], loose: Sequence[str], size: float) -> dic
 
 
 def chosen(start: Start, held: Sequence[Any], loose: Sequence[str], size: float) -> set[Key]:
-    """The coordinates to start from, of a model that these joints and drivers hold."""
+    """Return the coordinates to start from, of a model that these joints and drivers hold."""
     wanted = coordinates(held, loose, size)
     joints = [Function(joint.bodies, lambda poses, joint=joint: rows(joint, poses, size)) for joint in held]
     free = _null(_jacobian(start, joints, size))
@@ -201,7 +201,7 @@ def chosen(start: Start, held: Sequence[Any], loose: Sequence[str], size: float)
 
 
 def _jacobian(start: Start, functions: Sequence[Function], size: float) -> Array:
-    """(m, 3 bodies): all values by the bodies' coordinates, by differences."""
+    """Return (m, 3 bodies) all values by the bodies' coordinates, by differences."""
     names = [name for name in start.poses if name != GROUND]
     columns = {name: 3 * k for k, name in enumerate(names)}
     blocks: list[Array] = [np.zeros((0, 3 * len(names)))]
@@ -217,7 +217,7 @@ def _jacobian(start: Start, functions: Sequence[Function], size: float) -> Array
 
 
 def _null(matrix: Array) -> Array:
-    """(n, k) all that a matrix (m, n) takes to zero."""
+    """Return (n, k) all that a matrix (m, n) takes to zero."""
     if not len(matrix):
         return np.eye(matrix.shape[1])
     _, values, rows = np.linalg.svd(matrix)
@@ -225,7 +225,7 @@ def _null(matrix: Array) -> Array:
 
 
 def _independent(matrix: Array) -> list[int]:
-    """Numbers of rows that are independent, as many as there are."""
+    """Return numbers of rows that are independent, as many as there are."""
     from scipy.linalg import qr
 
     r, pivots = qr(matrix.T, mode="r", pivoting=True)  # pyright: ignore[reportAssignmentType]
@@ -266,7 +266,7 @@ class Parts:
         self._document.between(kind, thing.name, self.ends(thing), modifiers, words)
 
     def ends(self, thing: Any) -> tuple[str, str]:
-        """Frames of its markers."""
+        """Return frames of its markers."""
         return self._places.frame_at(thing.i, thing.name), self._places.frame_at(thing.j, thing.name)
 
     def revolute(self, joint: Any, words: str) -> None:
@@ -338,7 +338,7 @@ class Parts:
         self.between("AppliedTorque", force, words, tau=str(amount_of(force, "torque")))
 
     def _turned(self, joint: Any, second: str) -> str:
-        """The frame of the second body, or that of a FixedRotation on it which has the angle of the first body."""
+        """Return the frame of the second body, or that of a FixedRotation on it with the first body's angle."""
         alpha = angle(self._start.poses, joint)
         if abs(alpha) < SMALL:
             return second
@@ -357,24 +357,24 @@ class Parts:
         )
 
     def _variable(self, joint: Any, value: str, rate: str, of: Callable[[Any], float]) -> dict[str, str]:
-        """Start values, fixed if the model starts from them."""
+        """Return start values, fixed if the model starts from them."""
         fixed = ", fixed=true" if (joint.name, value) in self._chosen else ""
         numbers = {value: of(self._start.poses), rate: self._start.rate(of)}
         return {key: f"(start={number(amount)}{fixed})" for key, amount in numbers.items()}
 
 
 def _way(thing: Any) -> dict[str, str]:
-    """The x axis of its first marker, in the axes of that body."""
+    """Return the x axis of its first marker, in the axes of that body."""
     return {"ux": number(math.cos(thing.i.angle)), "uy": number(math.sin(thing.i.angle))}
 
 
 def _amounts(force: Any, **names: str) -> dict[str, str]:
-    """Numbers of a force by the names of parameters."""
+    """Return numbers of a force by the names of parameters."""
     return {name: number(force.params.get(amount, 0.0)) for name, amount in names.items()}
 
 
 def amount_of(force: Any, name: str) -> str | None:
-    """An amount of a force: a number, or the formula of its law; None for a law without one."""
+    """Return an amount of a force: a number, or the formula of its law; None for a law without one."""
     return law(force.laws[name]) if name in force.laws else number(force.params[name])
 
 

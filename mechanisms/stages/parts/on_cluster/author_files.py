@@ -88,7 +88,7 @@ def _is_hidden(path: Path) -> bool:
 
 
 def _imported(waiting: list[tuple[Path, str]]) -> Iterator[Path]:
-    """These files, each with its package, and those of the user's folder that their import statements name."""
+    """Return these files, each with its package, and those of the user's folder that their import statements name."""
     seen: set[Path] = set()
     while waiting:
         file, package = waiting.pop()

@@ -58,7 +58,9 @@ def glow(graph: Graph, colour: Colour, bounce: float) -> Any:
 
 
 def _hazed(graph: Graph, shader: Any, haze: Colour, radius: float) -> Any:
-    """As the eye sees it from far; light that falls on it and what it reflects stay as they are."""
+    """Return a shader with haze, as the eye sees it from far; light that falls on it and what it reflects stay as they
+    are.
+    """
     away = graph.math("DIVIDE", graph.add("CameraData").outputs["View Distance"], radius)
     part = graph.add(
         "MapRange", {"interpolation_type": "SMOOTHERSTEP"}, Value=away, From_Min=HAZE_FROM, From_Max=HAZE_TO

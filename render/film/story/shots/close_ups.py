@@ -186,6 +186,6 @@ def _turn(scenery: Scenery, cut: Film) -> float:
 
 
 def _side(scenery: Scenery) -> float:
-    """1 for a cut that is seen from the right, or the front; -1 from the left."""
+    """Return 1 for a cut that is seen from the right, or the front; -1 from the left."""
     cut = scenery.cut.shot.section if scenery.cut is not None else 0.0
     return -1.0 if isinstance(cut, Section) and cut.left else 1.0

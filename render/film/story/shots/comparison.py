@@ -34,7 +34,7 @@ class Difference:
 def differences(
     first: Sequence[Curve], second: Sequence[Curve], spans: tuple[float, float], repeats: tuple[bool, bool]
 ) -> list[Difference]:
-    """For curves that both variants have, the largest difference as a part of the larger curve first.
+    """Return differences of curves that both variants have, the largest difference as a part of the larger curve first.
 
     Where the shorter motion has no period it stands at its end.
     """
@@ -56,7 +56,7 @@ def differences(
 
 
 def ramp_of(rate: float, span: float, at: float | None) -> Ramp:
-    """From 0 over all of a ``span`` (s) at about a ``rate``, with a stop ``at`` a time of it."""
+    """Return a ramp from 0 over all of a ``span`` (s) at about a ``rate``, with a stop ``at`` a time of it."""
     seconds = min(max(span / rate, SHORT), SECONDS)
     rate = span / seconds
     if at is None:

@@ -51,7 +51,7 @@ def motion(scenery: Scenery) -> Shot:
 
 
 def _lively(scenery: Scenery, start: float, end: float, seconds: float) -> Warp:
-    """Slow where what the strip shows changes much, and where something happens."""
+    """Return a ramp that is slow where what the strip shows changes much, and where something happens."""
     time = np.asarray(scenery.film.motion.time)
     happens = np.zeros(len(time))
     for curve in scenery.curves:
@@ -99,7 +99,7 @@ MOVES, SLOWS, RESTS = 0.8, 1.2, 2.4
 
 
 def last(scenery: Scenery) -> Shot:
-    """From a little aside into the three-quarter view, and to the moment of the poster."""
+    """Return the shot from a little aside into the three-quarter view, and to the moment of the poster."""
     clock = scenery.film.clock
     goes, slows = scenery.moving(MOVES), scenery.moving(SLOWS)
     poster = clock.moment(clock.frame_at(scenery.film.shot.poster)).time

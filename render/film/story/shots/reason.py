@@ -114,7 +114,7 @@ def sentence(scenery: Scenery, what: Reason) -> str:
 
 
 def _stands(scenery: Scenery, time: float) -> tuple[Stand, Stand]:
-    """From a little aside, and nearer when time stands still at ``time`` (s)."""
+    """Return the stands: from a little aside, and nearer when time stands still at ``time`` (s)."""
     wide, near = (scenery.stand(*way, arrows=True) for way in (BEFORE, AFTER))
     stands = [Stand(near.target, near.azimuth, near.elevation, part * near.distance, near.lens) for part in NEARER]
     return wide, next((stand for stand in stands if _holds_arrows(scenery, stand, time)), stands[-1])

@@ -8,8 +8,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from render.film.inputs import named, stage_key
 from render.letters import font_of, width_of
 from render.presets import Preset
@@ -123,6 +121,8 @@ def frames_of(film: Film) -> list[int]:
 
     Where a period has several turns of the drivers, each step is a little longer, so that no turn is shown as another.
     """
+    import numpy as np  # a poster that is there needs none
+
     count, number = film.clock.moving, NUMBER
     if film.clock.repeats:
         count = count * (number + 1) / number if film.clock.turns > 1 else count

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from render.plots import READ
-from render.plots.quantities import spectra_asked
+from render.plots import READ, spectra_asked
 from shared.contract import Motion, read_motion
 from shared.stage.console import say
 from shared.stage.errors import UserError

@@ -16,11 +16,10 @@ from mbsd import Mechanism, constant_rate
 from mechanisms.stages.solve.motion_file import to_motion
 from render import plots
 from render.magnitudes import crank_of
-from render.plots import compare, figures
+from render.plots import compare, figures, spectra_asked
 from render.plots.measures import horizon, marks
 from render.plots.pages.comparison import spectra_figure
 from render.plots.pages.spectra import Spectrum, spectrum, stems
-from render.plots.quantities import spectra_asked
 from shared.contract import Motion, write_motion
 from shared.contract.skeleton import write_skeleton
 from shared.stage import paths

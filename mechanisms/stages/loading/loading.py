@@ -26,7 +26,6 @@ from types import CodeType, FrameType, ModuleType
 from typing import Any, Literal
 
 from mechanisms.stages.loading.inputs import is_installed
-from shared.shapes.kernel import is_of_kernel
 from shared.stage.errors import UserError
 from shared.stage.paths import (
     MECHANISMS,
@@ -82,6 +81,8 @@ def worded(
     caller = next((line for line in lines if line.name == "parts" and line is not last), None)
     if caller is not None and caller.line:
         text += f" (from line {caller.lineno}: {caller.line.rstrip(',')})"
+    from shared.shapes.kernel import is_of_kernel
+
     if not is_of_kernel(error):
         return text
     operation, arguments = _operation(error)

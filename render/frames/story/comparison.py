@@ -29,7 +29,7 @@ from shared.stage.paths import Out, compared, mechanism_name, owner_of, variant_
 from shared.stage.stages import Stage, key_of
 
 if TYPE_CHECKING:
-    from render.frames.story.stage import Rendered
+    from render.frames.story.composed import Rendered
     from render.sound.sound import Heard
 
 
@@ -182,7 +182,7 @@ def run(name: str, preset: Preset, sound: str = "") -> None:
 
 def _silent_film(outs: list[Out], preset: Preset, pair: Pair, film: Path) -> Path:
     """Return the film without sound, in the folder of the second's frames; not made again where nothing has changed."""
-    from render.frames.story.stage import encoded, rendered
+    from render.frames.story.composed import encoded, rendered
 
     part = half(preset)
     target = outs[1].frames(f"{part.name}-story") / film.name

@@ -47,7 +47,7 @@ SOURCES = [
     *(_STAGES / "parts" / f"{name}.py" for name in _STAGE),
     *contract_sources(),
 ]
-_MOTION = ("solving", "masses")
+_MOTION = ("solving", "refinement", "masses")
 _AUTOMATIC = ("automatic", "loading/loading.py")
 AUTOMATIC = [
     *SOURCES,

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import solving
 from shared.contract.materials import MATERIALS
@@ -78,6 +76,8 @@ def _discs(m: Mechanism) -> Iterator[tuple[Marker, float]]:
 
 
 def _extent(discs: list[tuple[float, float, float]]) -> float:
+    import numpy as np
+
     places = np.array([disc[:2] for disc in discs]).reshape(-1, 2)
     if not len(places):
         return 0.0
@@ -85,6 +85,7 @@ def _extent(discs: list[tuple[float, float, float]]) -> float:
 
 
 def _plate(discs: list[tuple[float, float, float]], size: float) -> Estimate:
+    import numpy as np
     from scipy.spatial import ConvexHull
 
     places = discs or [(0.0, 0.0, 0.0)]

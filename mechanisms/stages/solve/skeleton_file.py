@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from shared.contract import Provenance
 from shared.contract.materials import MATERIALS
 from shared.contract.skeleton import Carried, CarriedName, Carrier, End, Moving, Name, Pose, Skeleton, Stroke
@@ -47,6 +45,8 @@ FINENESS = 1e-4
 
 def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
     """Return the first pose whole, with its names; of the others what is elsewhere."""
+    import numpy as np
+
     from mbsd.drawing.strokes import moved, strokes_of
 
     times = np.linspace(solution.t[0], solution.t[-1], POSES + 1)[:-1]

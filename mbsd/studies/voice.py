@@ -1,4 +1,4 @@
-"""What a study says of the workers that it has points for: warnings that point at the user's line, and ModelError."""
+"""Messages of a study about its workers: warnings that point at the user's line, and ModelError."""
 
 from __future__ import annotations
 

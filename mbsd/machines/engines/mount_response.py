@@ -72,7 +72,7 @@ class MountResponse:
 def mount_response(
     m: Mechanism, speeds: Sequence[float] | np.ndarray, orders: Sequence[float] | None = None
 ) -> MountResponse:
-    """What an ``engine(..., block=...)`` does on its mounts at constant ``speeds`` (rad/s), for small motions.
+    """Return the steady vibration of an ``engine(..., block=...)`` on its mounts at ``speeds`` (rad/s), linearised.
 
     ``orders``: periods in a turn of the shaft, whole numbers or, with gas of four strokes, halves; by default all up to
     8. Raises ModelError for an engine without a block or without a motor, for speeds that are not positive and orders

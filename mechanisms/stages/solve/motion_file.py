@@ -209,9 +209,11 @@ def to_motion(
     ``sources`` says where the mass of each body is from; if it is not given, from the parts.
     """
     import mbsd
+    from mbsd.results.releases import release_times
 
     notes = list(solution.notes)
     solution = solution.only(solution.is_defined) if notes else solution
+    released = release_times(solution)
     m, energy = solution.mechanism, solution.energy
     return contract.Motion(
         mechanism=m.name,
@@ -221,7 +223,7 @@ def to_motion(
         period=solution.period,
         time=solution.t.tolist(),
         bodies=_bodies(solution, parts, sources),
-        joints={name: _joint(solution, joint) for name, joint in m.joints.items()},
+        joints={name: _joint(solution, joint, released.get(name)) for name, joint in m.joints.items()},
         drivers={name: _driver(solution, driver) for name, driver in m.drivers.items()},
         points={
             name: contract.PointMotion(
@@ -273,7 +275,7 @@ def _bodies(
     }
 
 
-def _joint(solution: Solution, joint: Joint) -> contract.JointMotion:
+def _joint(solution: Solution, joint: Joint, released: float | None) -> contract.JointMotion:
     view = solution.joint(joint.name)
     return contract.JointMotion(
         kind=joint.kind.name,
@@ -283,6 +285,7 @@ def _joint(solution: Solution, joint: Joint) -> contract.JointMotion:
         look=joint.kind.look,  # pyright: ignore[reportArgumentType]
         acts=_acts(view.acts) if joint.kind.touching else None,
         shape=shape_of(joint),
+        released=released,
     )
 
 

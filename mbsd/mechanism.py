@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mbsd.base.arguments import checked_methods
+from mbsd.base.quantity import counted
 from mbsd.building import Building
 from mbsd.model.adding.forces import Amount
 from mbsd.model.body import Body, Marker
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from mbsd.dynamics.batch.simulate_many import Simulations
     from mbsd.dynamics.measures.kinds import Measure
     from mbsd.kinematics.batch import Batch
-    from mbsd.pictures.picture import Picture, Svg
+    from mbsd.pictures import Picture, Svg
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
 
@@ -341,4 +342,5 @@ class Mechanism(Building):
 
     def __repr__(self) -> str:
         bodies, joints, drivers = len(self.bodies) - 1, len(self.joints), len(self.drivers)
-        return f"<Mechanism {self.name}: {bodies} bodies, {joints} joints, {drivers} drivers>"
+        said = ", ".join([counted(bodies, "body"), counted(joints, "joint"), counted(drivers, "driver")])
+        return f"<Mechanism {self.name}: {said}>"

@@ -1,7 +1,7 @@
 """Numbers with units as people write them: engineering prefixes, few digits, a true minus sign, no exponents.
 
-shared/contract/quantity.py and render/view/page/src/data/numbers.js follow the same rules; the cases in
-tests/shared/quantities.json hold all three to the same answers.
+render/view/page/src/data/numbers.js follows the same rules; the cases in tests/shared/quantities.json hold both to the
+same answers.
 """
 
 from __future__ import annotations
@@ -61,6 +61,12 @@ def figures(value: float, digits: int = DIGITS) -> str:
         return f"{mantissa} × 10{raised}".replace("-", MINUS)
     text = f"{number:.{max(digits - 1 - power, 0)}f}"
     return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
+
+
+def counted(count: int, noun: str) -> str:
+    """A number of things with their noun: ``1 impact``, ``3 bodies``, ``no drivers``."""
+    several = f"{noun[:-1]}ies" if noun.endswith("y") else f"{noun}s"
+    return f"{count or 'no'} {noun if count == 1 else several}"
 
 
 def live(values: Iterable[float], unit: str, digits: int = DIGITS) -> Callable[[float], str]:

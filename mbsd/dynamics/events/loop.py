@@ -52,7 +52,7 @@ from mbsd.dynamics.events.rows import any_held, hold_rows
 from mbsd.dynamics.events.search import event_time, first_met
 from mbsd.dynamics.events.sticking.jumps import resolve_friction
 from mbsd.dynamics.events.sticking.ways import share_here, share_outputs
-from mbsd.dynamics.events.users.actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
+from mbsd.dynamics.events.user_actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
 from mbsd.dynamics.events.users.values import begin_sides, find_sides, first_reached
 from mbsd.dynamics.formulation import begin_run, measure, without_contacts
 from mbsd.dynamics.independent.arrays import Embedding

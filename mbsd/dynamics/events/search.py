@@ -43,8 +43,8 @@ from mbsd.dynamics.events.guards import (
 )
 from mbsd.dynamics.events.roots import MOST_ROOTS, SAMPLES, dips_before, may_dip, root_between
 from mbsd.dynamics.events.rows import gaps_of, read_gaps
+from mbsd.dynamics.events.user_search import first_event
 from mbsd.dynamics.events.users.arrays import SIDE
-from mbsd.dynamics.events.users.search import first_event
 from mbsd.dynamics.events.users.values import rounding_of
 from mbsd.dynamics.formulation import along, derivative
 from mbsd.dynamics.integrators.root_search import narrowed, next_part

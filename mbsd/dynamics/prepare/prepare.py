@@ -22,6 +22,7 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.states import columns_of, ones_of, widened, with_states
 from mbsd.base.errors import MobilityError, ModelError
+from mbsd.base.quantity import counted
 from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.inertia import as_heavy_as_ground, lift_inertia, passes_for
 from mbsd.dynamics.prepare.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
@@ -238,6 +239,6 @@ def _refuse_superfluous_drivers(packed: Packed, mobility: Mobility) -> None:
     drivers = len(packed.ws.phi) - packed.driver_rows
     if drivers > mobility.dof:
         raise MobilityError(
-            f"{packed.name}: {drivers} drivers for {mobility.dof} degree{'s' * (mobility.dof != 1)} of freedom; "
+            f"{packed.name}: {counted(drivers, 'driver')} for {counted(mobility.dof, 'degree')} of freedom; "
             "remove a driver or free a joint"
         )

@@ -88,6 +88,6 @@ def _progress(what: str) -> Callable[[float], None]:
 
 
 def _shown(given: Any) -> str:
-    from mbsd.base.shown import shown
+    from mbsd.base.names import shown
 
     return shown(given)

@@ -10,7 +10,7 @@ import pytest
 
 from mbsd import Mechanism
 from mbsd.measures import final, largest, samples
-from tools.models.crossing_curves import EIGHT, coaster
+from tools.models.guided import EIGHT, coaster
 
 STEPS = 30
 CASES: dict[str, Callable[[], Mechanism]] = {

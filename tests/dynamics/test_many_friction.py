@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, SimulationError, harmonic
 from mbsd.measures import final, first, samples
-from tools.models.loose_gears import loose_gears
+from tools.models.guided import loose_gears
 from tools.models.rough_contacts import ball, belt, crank, discs, freewheel, hills, incline, ring, rod, tumbling
 
 pytestmark = pytest.mark.slow

@@ -12,12 +12,16 @@ from hypothesis import HealthCheck, given, settings
 from mbsd import Mechanism
 from mbsd.measures import final, first, samples
 from tests.dynamics.beside_single_runs import between
-from tools.models.genevas import free, swinging, two
+from tools.models.guided import free_geneva, heavy_pair_of_genevas, swinging_geneva
 
 STEPS = 40
 
 
-CASES: dict[str, Callable[[], Mechanism]] = {"turning": lambda: free(6), "swinging": swinging, "two": two}
+CASES: dict[str, Callable[[], Mechanism]] = {
+    "turning": lambda: free_geneva(6),
+    "swinging": swinging_geneva,
+    "two": heavy_pair_of_genevas,
+}
 VARY = {"spring": {"stiffness": np.linspace(0.0, 0.03, 6), "damping": np.linspace(0.0, 2e-4, 6)}}
 MEASURES = {
     "theta": samples("wheel.theta", np.linspace(0.0, 2.0, STEPS + 1).tolist()),
@@ -47,7 +51,7 @@ def test_genevas_have_the_digits_of_single_simulations(case: str, formulation: s
 
 def test_starts_vary_and_rows_end_early_by_the_steps_of_whole_ones() -> None:
     degrees = np.linspace(-170.0, 170.0, 12)
-    m = free(5)
+    m = free_geneva(5)
     early = {"far": first("wheel.theta", above=1.5), "late": first("crank.theta", below=-9.0, give="wheel.omega")}
     short, whole = (
         m.simulate_many(
@@ -62,7 +66,7 @@ def test_starts_vary_and_rows_end_early_by_the_steps_of_whole_ones() -> None:
 
 
 def test_a_row_that_cannot_start_has_its_reason_beside_others() -> None:
-    many = free(5).simulate_many(
+    many = free_geneva(5).simulate_many(
         1.0, vary={"index": {"radius": [0.1 * math.sin(math.pi / 5), 0.07]}}, measure={"end": final("wheel.theta")},
         steps=4, formulation="independent",
     )  # fmt: skip
@@ -75,7 +79,7 @@ def test_a_row_that_cannot_start_has_its_reason_beside_others() -> None:
 def test_random_genevas_move_as_by_themselves(
     start: float, speed: float, stiffness: float, out_of_balance: float
 ) -> None:
-    m = free(4 + int(abs(start)) % 5)
+    m = free_geneva(4 + int(abs(start)) % 5)
     m.change("spring", stiffness=stiffness)
     m.change("crank", com=(out_of_balance, 0.0))
     m.start_near(crank=start, wheel=180 / (4 + int(abs(start)) % 5))

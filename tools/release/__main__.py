@@ -16,11 +16,9 @@ from shared.stage.console import run_cli, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT
-from tools.release.archives import sums
+from tools.release.archives import clone, sums
 from tools.release.checks import CHECKS, Release
-from tools.release.clone import clone
-from tools.release.notes import notes
-from tools.release.versions import wanted_version
+from tools.release.written import notes, wanted_version
 
 
 def main() -> int:
@@ -38,12 +36,12 @@ def main() -> int:
         if failed:
             raise UserError(f"release: {len(failed)} of {len(chosen)} checks failed: {', '.join(failed)}")
         if not asked.only:
-            put(release, asked.out)
+            write(release, asked.out)
     return 0
 
 
 def passes(name: str, check: object, release: Release) -> bool:
-    """Whether a check holds; its line says what it saw or what is wrong."""
+    """Return True if a check holds; its line says what it saw or what is wrong."""
     assert callable(check)
     try:
         say("release", f"{name}: {check(release)}")
@@ -53,7 +51,7 @@ def passes(name: str, check: object, release: Release) -> bool:
     return True
 
 
-def put(release: Release, out: Path) -> None:
+def write(release: Release, out: Path) -> None:
     """Write the archives, their hashes and the notes of the tag."""
     version = wanted_version(release.sources)
     archives = release.archives()

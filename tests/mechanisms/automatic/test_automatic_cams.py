@@ -13,7 +13,7 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.cams.cams import Cam
 from mechanisms.stages.automatic.cams.geneva import GenevaDrive
 from shared.stage.errors import UserError
-from tools.models.genevas import geneva
+from tools.models.guided import geneva
 
 LIFT = Lift.of((2.0, 0.02, "cycloidal"), (1.0, 0.02), (2.0, 0.0, "cycloidal"), (2 * math.pi - 5.0, 0.0))
 

@@ -339,9 +339,7 @@ schema: install ## write docs/schema/ from shared/contract/ and the solver's joi
 	@$(PYTHON) -m tools.schema
 	@$(PYTHON) -m mbsd.saving.schema docs/schema/model.schema.json
 
-docs: install ## docs/theory.md and the map of rooms from docstrings, pictures, the lecture's outputs, the site
-	@$(PYTHON) tools/theory.py
-	@$(PYTHON) tools/rooms.py
+docs: install ## the pictures of docs/, the lecture's outputs, the site
 	@$(PYTHON) -m tools.documents figures
 	@$(PYTHON) -m tools.documents lecture
 	@$(PYTHON) -m tools.site
@@ -366,8 +364,8 @@ integrators: install ## measure the integrators again, for docs/integrators.md: 
 	@$(PYTHON) -m tools.documents integrators
 	@$(PYTHON) -m tools.documents figures integrators
 
-wheel: install ## mbsd with all rooms as sdist and wheel: dist/; KERNELS=1: a wheel with compiled kernels, too
-	@$(PYTHON) -m tools.wheel $${KERNELS:+--kernels}
+wheel: install ## sdist and wheels with compiled kernels: dist/; KERNELS="3.11 3.12 3.13 3.14", KERNELS=none
+	@case "$$KERNELS" in none) $(PYTHON) -m tools.wheel ;; *) $(PYTHON) -m tools.wheel --kernels $$KERNELS ;; esac
 
 release: install ## what must hold before a tag, looked at in a clean clone: archives, hashes, NOTES.md in dist/
 	@$(PYTHON) -m tools.release

@@ -1,4 +1,4 @@
-"""``make bench``: every code on every problem, the tables of docs/benchmarks.md, and out/bench.json.
+"""``make bench``: every code on every problem, the table of docs/benchmarks.md, out/bench.md and out/bench.json.
 
 python -m benchmarks                  all of it
 python -m benchmarks calls            the calls as users make them alone, only shown
@@ -126,7 +126,7 @@ def _all() -> int:
     table.write(everything, bars)
     for line in missed:
         say("bench", f"missed: {line}")
-    say("bench", "out/bench.json and the tables of docs/benchmarks.md written")
+    say("bench", "out/bench.md, out/bench.json and the table of docs/benchmarks.md written")
     return _tell(bars) or (1 if missed else 0)
 
 

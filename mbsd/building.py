@@ -1,4 +1,4 @@
-"""What a mechanism is made of, by name: joints, drivers, forces, contacts, traced points, starts, events.
+"""Building a mechanism by name: joints, drivers, forces, contacts, traced points, starts, events.
 
 Each method of a joint, driver, force or contact stands in the file of its kind; a line here makes it a method.
 """

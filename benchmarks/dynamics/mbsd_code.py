@@ -16,8 +16,8 @@ from benchmarks.dynamics.settings import tolerances
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.runs.motion import in_reference, independent_steps, integrate
 from mbsd.dynamics.runs.run import Run
-from mbsd.dynamics.runs.to_end import in_reference, independent_steps, integrate
 from mbsd.dynamics.simulate import integrator_named
 
 VERSION = mbsd.__version__

@@ -10,7 +10,7 @@ from mbsd.analyses.finding import Finding
 from mbsd.arrays.force_phases import relative_poses
 from mbsd.arrays.packing import pack
 from mbsd.base.errors import MechanismError
-from mbsd.dynamics.mobility import mobility
+from mbsd.dynamics.prepare.large import mobility
 from mbsd.kinematics.pose.close import assemble
 from mbsd.model.mechanism import Model
 from mbsd.model.teeth import with_radii

@@ -55,7 +55,7 @@ class Placed:
 
 
 def chambers(packed: Packed) -> Iterator[Placed]:
-    """Those of all forces, in their order. Raises ModelError where a cylinder is not known."""
+    """Return the chambers of all forces, in their order. Raises ModelError where a cylinder is unknown."""
     for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
         if force.kind.chamber is not None:
             chamber = force.kind.chamber(force, packed.masses)

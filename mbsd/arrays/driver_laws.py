@@ -1,4 +1,4 @@
-"""What laws of drivers must be before anything is solved: finite, positive where they are distances, with f' and f''
+"""Checks of drivers' laws before anything is solved: finite, positive where they are distances, with f' and f''
 that are the derivatives of f.
 
 A sweep takes f, f' and f'' as the law gives them. Where its author gave the derivatives, they are compared with f once,

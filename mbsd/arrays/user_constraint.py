@@ -72,7 +72,7 @@ def _as_it_is(function: Callable) -> Callable:
 
 
 def _takes_complex(function: Callable, size: float) -> bool:
-    """Whether complex steps work and agree with differences wherever the function can be evaluated."""
+    """Return True if complex steps work and agree with differences wherever the function can be evaluated."""
     agreed = 0
     for trial in TRIALS:
         try:

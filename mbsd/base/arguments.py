@@ -108,7 +108,7 @@ def number_array(what: str, value: object, finite: bool = True) -> np.ndarray:
 
 
 def _entries(value: Any, at: str = "", level: int = 0) -> Iterator[tuple[str, Any]]:
-    """What lies within nested lists and arrays, with its place; finite floats are passed over."""
+    """Yield entries of nested lists and arrays with their positions; finite floats are passed over."""
     if isinstance(value, np.ndarray) and (value.ndim == 0 or value.dtype.kind in "fiu"):
         yield from () if value.ndim else [(at, value.item())]
     elif level < 4 and isinstance(value, list | tuple | np.ndarray):
@@ -292,7 +292,7 @@ def in_order(name: str, signature: inspect.Signature) -> str:
 
 
 def _word(given: object) -> str:
-    """What a value given without a name says about the name that is missing."""
+    """Return the words about a missing name that a value given without one stands for."""
     name = getattr(given, "name", given)
     return name if isinstance(name, str) and name.isidentifier() else "name"
 

@@ -1,4 +1,4 @@
-"""What the function that adds something made of arguments that were left out.
+"""Values of arguments that were left out, derived by the function that adds an entry.
 
 An argument that is None by default is found from the others: static friction from friction, the inertia of a bar from
 its mass and length. What comes of it stands in the params like a number that was given, but it is none: it is found

@@ -45,5 +45,5 @@ def users_progress(what: str, function: Any, wanted: str, count: int = 1) -> Cal
 
 
 def from_user(error: BaseException) -> bool:
-    """Whether a function of :func:`users_progress` raised it."""
+    """Return True if a function of :func:`users_progress` raised it."""
     return getattr(error, FROM_USER, False)

@@ -36,7 +36,7 @@ def value_at(function: Callable[[float], Any], t: float, what: str) -> float:
 
 
 class law_of:
-    """What a law does wrong within ``with law_of(what)`` gets ``what`` before its text: mechanism, driver or force."""
+    """Put ``what``, a mechanism, driver or force, before the text of an error that a law raises within this context."""
 
     def __init__(self, what: str) -> None:
         self.what = what

@@ -1,4 +1,4 @@
-"""What is asked of derivatives, checked before a motion is solved: quantities by name, functions, times of measures."""
+"""Checks of requests before a motion is solved: quantities by name, functions, times of measures."""
 
 from __future__ import annotations
 

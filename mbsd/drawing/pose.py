@@ -14,6 +14,7 @@ from mbsd.base.errors import AssemblyError, ModelError
 from mbsd.base.shown import shown
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
+from mbsd.results.releases import released_rows
 
 if TYPE_CHECKING:
     from mbsd.model.force import Force
@@ -124,7 +125,7 @@ def tracks_of(sol: Solution) -> Tracks:
     """Tracks of a whole solution."""
     m = sol.mechanism
     views = {name: sol.body(name) for name in m.bodies}
-    travel, aside, released = {}, {}, _released(sol)
+    travel, aside, released = {}, {}, released_rows(sol)
     for name, joint in _markers_of(m).items():
         first, second = views[joint.i.body.name], views[joint.j.body.name]
         gap = _path(second, joint.j) - _path(first, joint.i)
@@ -137,16 +138,6 @@ def tracks_of(sol: Solution) -> Tracks:
     points = {name: sol.point(name) for name in m.traces}
     paths = {name: np.stack([view.x, view.y], axis=1) for name, view in points.items()}
     return Tracks(sol.t, views, paths, travel, aside, released)
-
-
-def _released(sol: Solution) -> dict[str, np.ndarray]:
-    """(T,) of each joint and driver that an event releases: whether that has happened."""
-    if sol.held is None:
-        return {}
-    count = len(sol.packed.joints) - sol.packed.contacts
-    joints = zip(sol.packed.joints[:count], sol.packed.first_row, strict=False)
-    gone = {joint.name: ~sol.held[:, first] for joint, first in joints}
-    return {name: since for name, since in gone.items() if since.any()}
 
 
 def _markers_of(m: Model) -> dict[str, Joint | Force]:

@@ -106,7 +106,7 @@ class Body:
             self.__dict__["inertia"] = rod_inertia(self.mass, self.length)
 
     def _checked(self, name: str, value: object) -> object:
-        """What may be set. Raises ModelError for what no body has."""
+        """Return the numbers that may be set. Raises ModelError for what no body has."""
         what = f"{self.owner}: {name} of body '{self.name}'" if name in ("mass", "inertia", "com") else name
         if name == "com":
             return number_pair(f"{what} (m)", value)
@@ -170,7 +170,7 @@ class Body:
 
     @property
     def mechanism(self) -> Owner | None:
-        """That this body was made for."""
+        """The mechanism of this body."""
         return self.__dict__.get("_mechanism")
 
     @property

@@ -33,11 +33,11 @@ class Event(WithFunctions):
 
     @property
     def acts(self) -> bool:
-        """Whether it changes the motion."""
+        """True if it changes the motion."""
         return self.action is not None or bool(self.releases)
 
     def value_at(self, moment: Any) -> Any:
-        """What the function gives at a moment of a simulation."""
+        """Return the value of the function at a moment of a simulation."""
         if self.frames and not isinstance(self.value, Reaching):
             return self.value(moment.t, *moment.numbers(self.frames))
         return self.value(moment.t, moment)

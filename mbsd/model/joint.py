@@ -1,4 +1,4 @@
-"""What a joint or driver is made of, and the registry that one test walks through.
+"""Joints and drivers: their data, and the registry of kinds.
 
 A kind names its constraints in the order of its rows. It must bring an example, so that none escapes the test.
 """
@@ -115,7 +115,7 @@ class JointKind(ByName):
 
     @property
     def slides(self) -> bool:
-        """Whether marker j moves along the x axis of marker i."""
+        """True if marker j moves along the x axis of marker i."""
         return self.pair in ("guide", "slot")
 
     @property
@@ -125,7 +125,7 @@ class JointKind(ByName):
 
     @property
     def angular(self) -> bool:
-        """Whether a driver of this kind imposes an angle."""
+        """True if a driver of this kind imposes an angle."""
         return self.units[1] == "rad"
 
     @property

@@ -1,4 +1,4 @@
-"""What a mechanism holds: named bodies, joints, drivers, traces and rough starts; bodies and shared checks."""
+"""The model of a mechanism: named bodies, joints, drivers, traces and rough starts; bodies and shared checks."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class StartVelocity:
 
 @dataclass(eq=False)
 class Model(Suggesting):
-    """What a mechanism holds, and the checks that all its methods share. See :class:`mbsd.mechanism.Mechanism`."""
+    """The model of a mechanism, and checks that all its methods share. See :class:`mbsd.mechanism.Mechanism`."""
 
     name: str
     gravity: tuple[float, float] | None = STANDARD_GRAVITY
@@ -218,7 +218,7 @@ SHORTEST = 1e-12
 
 
 def connections(m: Model) -> tuple[Mapping[str, object], ...]:
-    """What shares one set of names: whatever connects two bodies."""
+    """Entries that share one set of names: all that connect two bodies."""
     return m.joints, m.drivers, m.forces, m.contacts
 
 

@@ -238,7 +238,7 @@ def _with_inner(path: str, value: Any, new: float) -> Any:
 
 
 def _arguments(m: Model, whole: str) -> dict[str, Any]:
-    """What ``change`` takes, with all values that are known, derived ones, too."""
+    """Return the arguments that ``change`` takes, with all values that are known, derived ones, too."""
     out: dict[str, Any] = {}
     if whole in m.bodies:
         body = m.bodies[whole]

@@ -1,4 +1,4 @@
-"""What a contact did during a simulation."""
+"""Results of a contact during a simulation."""
 
 from __future__ import annotations
 

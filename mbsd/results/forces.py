@@ -126,12 +126,12 @@ def _way(moved: Moved, force: Force, i: int, j: int) -> _Way | None:
 
 
 def _touches(force: Force) -> bool:
-    """Whether it acts where surfaces touch."""
+    """Return True if it acts where surfaces touch."""
     return force.kind.surface is not None or force.kind.journal is not None
 
 
 def _elements(packed: Packed, force: Force) -> tuple[Element, ...]:
-    """Those of a force; a friction has that along which its joint moves."""
+    """Return the elements of a force; a friction has that along which its joint moves."""
     if force.kind.along is not None:
         return (force.kind.along(force),)
     if not force.kind.of_reactions:

@@ -29,6 +29,7 @@ from mbsd.arrays.start_state import AnyModel
 from mbsd.base.arguments import finite_number, number_array, number_pair
 from mbsd.base.errors import ModelError
 from mbsd.base.names import Named, Suggesting, no_such
+from mbsd.base.quantity import counted
 from mbsd.base.shown import shown
 from mbsd.model.event import Happening
 from mbsd.results.acting import acting
@@ -211,7 +212,7 @@ class Solution(Suggesting, Generic[AnyModel]):
         return friction_view(self.packed, name, self.q, self.v, self.lam, self.held)
 
     def force(self, name: str) -> ForceView:
-        """What a force did: force, torque and point on each of its bodies, what it measures, its power.
+        """Return the results of a force: force, torque and point on each body, what it measures, its power.
 
         Of every force of ``m.forces``: springs, contacts by penalty, friction, functions of the user. A contact
         without give is ``contact(name)``, a joint ``joint(name)``. Raises ModelError where a user's function fails.
@@ -389,7 +390,7 @@ class Solution(Suggesting, Generic[AnyModel]):
 
     def __repr__(self) -> str:
         return (
-            f"<Solution {self.mechanism.name}: {len(self.t)} times, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
+            f"<Solution {self.mechanism.name}: {counted(len(self.t), 'time')}, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
             f"largest residual {self.stats.position_residual:.1e}{self._noted()}>"
         )
 
@@ -398,7 +399,7 @@ class Solution(Suggesting, Generic[AnyModel]):
 
     def _repr_html_(self) -> str:
         moving = self.view()._repr_html_() if len(self.mechanism.bodies) <= SHOWN and len(self.t) > 1 else ""
-        span = f"{len(self.t)} times from {self.t[0]:g} to {self.t[-1]:g} s"
+        span = f"{counted(len(self.t), 'time')} from {self.t[0]:g} to {self.t[-1]:g} s"
         about = f"{self.mobility}; {span}; largest residual {self.stats.position_residual:.1e}{self._noted()}"
         return html_of(self.mechanism.name, about, self.columns(), moving)
 

@@ -1,4 +1,4 @@
-"""What a solution gives of a frame, a joint, a driver and its energy, (T,) arrays in SI units; its residuals."""
+"""Views of a solution: a frame, a joint, a driver and energy, (T,) arrays in SI units; its residuals."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Wrench(ShownView):
 
 @dataclass(frozen=True, repr=False)
 class JointView(Wrench):
-    """What a joint does to its second body, at its second marker."""
+    """The wrench of a joint on its second body, at its second marker."""
 
     acts: Wrench
     """The same at the place where it acts: beside the marker where wheels, cams or curves touch; the torque is that
@@ -125,4 +125,4 @@ class Stats:
     inserted_steps: int
     """Steps added between outputs to stay on the branch."""
     independent: bool = False
-    """Whether a simulation was integrated in independent coordinates (mbsd/dynamics/embedding)."""
+    """Whether a simulation was integrated in independent coordinates (mbsd/dynamics/independent)."""

@@ -14,9 +14,10 @@ from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.shown import shown
 from mbsd.base.users_function import described
 from mbsd.dynamics.batch.designs import Built, Designs, designs_of
-from mbsd.dynamics.batch.simulate_many import Simulations, asked_for, checked_measures, quantities_of, simulations
-from mbsd.dynamics.batch.single_run import Asked
+from mbsd.dynamics.batch.simulate_many import Simulations, checked_measures, quantities_of, simulations
 from mbsd.dynamics.measures.kinds import Measure
+from mbsd.dynamics.runs.run import Request
+from mbsd.dynamics.simulate import request_for
 from mbsd.mechanism import Mechanism
 from mbsd.model.mechanism import Model, connections
 from mbsd.studies.numbers_alone import MoreThanNumbers, differences
@@ -97,9 +98,9 @@ class Simulated:
         if isinstance(measures, Mapping) and _starts(m):
             quantities_of(Built([m], FEW), measures)
 
-    def _request(self, m: Model) -> Asked:
+    def _request(self, m: Model) -> Request:
         times = None if self.times is None else np.array(self.times)
-        return asked_for(
+        return request_for(
             m, self.duration, self.steps, times, self.method, self.tolerance, self.step, self.formulation, self.options
         )
 

@@ -16,6 +16,7 @@ import numpy as np
 from mbsd.base.arguments import checked
 from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError, ModelWarning
+from mbsd.base.quantity import counted
 from mbsd.base.shown import shown
 from mbsd.base.warn import warn
 from mbsd.dealing.connection import connected
@@ -122,7 +123,7 @@ def study(
                 if store is not None:
                     store.flush()
     if points and all(result.values is None for result in results.values()):
-        warn(f"study: all {len(points)} points failed, the first for: {results[0].reason}", ModelWarning)
+        warn(f"study: all of {counted(len(points), 'point')} failed, the first for: {results[0].reason}", ModelWarning)
     frame = table_of(points, [results[number] for number in range(len(points))], _index_of(grid))
     if isinstance(measure, Simulated):
         frame.attrs[WAY] = _way(build, measure, points)

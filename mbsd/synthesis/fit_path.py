@@ -36,7 +36,7 @@ class SynthesisError(MechanismError):
 
 @dataclass(frozen=True, eq=False)
 class PathFit:
-    """What :func:`fit_path` found. Lengths in m, times in s, angles in rad."""
+    """Result of :func:`fit_path`. Lengths in m, times in s, angles in rad."""
 
     mechanism: Any
     """The fitted Mechanism."""
@@ -241,7 +241,7 @@ def _grid(m: Model, duration: float | None, steps: int) -> np.ndarray:
 
 
 def _returns(m: Model, grid: np.ndarray) -> bool:
-    """Whether the motion is whole periods of the drivers."""
+    """Return True if the motion is whole periods of the drivers."""
     from mbsd.kinematics.period import common_period
 
     common = common_period(m.drivers.values())

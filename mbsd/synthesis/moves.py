@@ -32,7 +32,7 @@ Span = tuple[float | None, int, Any]
 
 @dataclass
 class Tried:
-    """What one set of numbers gives."""
+    """The result of one set of numbers."""
 
     value: float
     slope: np.ndarray

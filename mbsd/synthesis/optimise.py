@@ -33,7 +33,7 @@ HELD = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Optimum:
-    """What :func:`optimise` found."""
+    """Result of :func:`optimise`."""
 
     mechanism: Any
     """The Mechanism with the best numbers."""
@@ -252,7 +252,7 @@ class _Search:
 
 
 def _size(condition: Condition, value: float) -> float:
-    """What a condition is measured by."""
+    """Return the size by which a condition is measured."""
     ends = [abs(end) for end in (condition.low, condition.high) if np.isfinite(end)]
     return max([*ends, abs(value) * 1e-3]) or 1.0
 

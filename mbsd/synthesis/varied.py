@@ -1,4 +1,4 @@
-"""What a fit varies: names of lengths and places with their bounds, as one vector of numbers."""
+"""Variables of a fit: names of lengths and positions with their bounds, as one vector of numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an optimisation asks for, checked before anything runs: numbers with bounds, an objective, conditions."""
+"""Requests to an optimisation, checked before anything runs: numbers with bounds, an objective, conditions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What change() and files need of a kind: its params are the arguments of the function that adds one, by name."""
+"""A check of kinds for change() and files: params are the arguments of the function that adds one, by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What :func:`mbsd.tolerances` found: numbers of the result, and a row for each dimension."""
+"""Outcome of :func:`mbsd.tolerances`: numbers of the result, and a row for each dimension."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ class Tolerances:
 
     @property
     def curved(self) -> bool:
-        """Whether first derivatives miss the standard deviation, so that shares and the worst case by them mislead."""
+        """True if first derivatives miss the standard deviation, so that shares and the worst case by them mislead."""
         return self.halving.again
 
     @property

@@ -1,4 +1,4 @@
-"""What part of all machines has been evaluated, whatever they are evaluated for."""
+"""Progress: the part of all mechanisms that has been evaluated."""
 
 from __future__ import annotations
 

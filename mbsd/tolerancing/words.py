@@ -1,4 +1,4 @@
-"""What was found, in lines of text."""
+"""The outcome in lines of text."""
 
 from __future__ import annotations
 

@@ -8,14 +8,13 @@ from pathlib import Path
 
 import msgspec
 
-from shared.stage.console import say, warn
+from shared.contract.quantity import counted
+from shared.stage.console import warn
 from shared.stage.errors import UserError
-from shared.stage.face import to_run
 from shared.stage.memory import remembered
 from shared.stage.paths import (
-    MECHANISMS,
     Out,
-    in_workshop,
+    all_mechanisms,
     mechanism_file,
     mechanism_names,
     out_root,
@@ -39,19 +38,18 @@ def run(names: bool = False, as_json: bool = False) -> None:
     Results that are older than the files or results that they were made of are named apart. No author's code is run, so
     of parts it is not known.
 
-    ``names``: names alone, of variants as well; ``as_json``: all of it for other programs.
+    ``names``: names alone, of variants as well; ``as_json``: all of it for other programs. Raises UserError if there
+    are none, but for other programs.
     """
     if names:
-        print(*_all_names(), sep="\n")
+        for name in _all_names():
+            print(name)
         return
     if as_json:
         print(msgspec.json.encode([_entry(name) for name in _all_names()]).decode())
         return
-    if not mechanism_names():
-        where = MECHANISMS if in_workshop() else "mechanisms/"
-        say("list", f"there are no mechanisms in {where}; {to_run('new', 'excavator')} makes one")
     with remembered():
-        for name in mechanism_names():
+        for name in all_mechanisms():
             print(f"{name.replace('_', '-'):<24} {_title(name)}\n{'':<24} {_freedom(name)}{_made_words(name)}")
             for variant in variants_in(mechanism_file(name)):
                 print(f"{'':<24} {name}-{variant}: ".replace("_", "-") + _made_words(f"{name}-{variant}"))
@@ -122,7 +120,7 @@ def _freedom(name: str) -> str:
         dof = msgspec.json.decode(Out(name).motion.read_bytes(), type=_Solved).diagnostics.dof
     except (OSError, msgspec.DecodeError):
         return ""
-    return f"{dof} degree{'' if dof == 1 else 's'} of freedom; "
+    return f"{counted(dof, 'degree')} of freedom; "
 
 
 def _made_words(name: str) -> str:

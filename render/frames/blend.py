@@ -9,6 +9,7 @@ from pathlib import Path
 
 from render.film.inputs import named, stage_key
 from render.presets import Preset
+from shared.contract.quantity import counted
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -58,7 +59,7 @@ def save(name: str, preset: Preset, show: str = "") -> Path:
         for part in out.folder.glob(".*.part.blend*"):
             part.unlink(missing_ok=True)
     stage.done()
-    say("scene", f"{out.name}: {target}: {len(job.states)} frames, {target.stat().st_size / 1e6:.1f} MB")
+    say("scene", f"{out.name}: {target}: {counted(len(job.states), 'frame')}, {target.stat().st_size / 1e6:.1f} MB")
     return target
 
 

@@ -11,6 +11,7 @@ from render.gallery.posters import small_poster, strip
 from render.report import description
 from render.report.facts import facts
 from shared.contract import read_motion, read_parts
+from shared.contract.quantity import counted
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -55,5 +56,5 @@ def run(folder: Path = FOLDER) -> int:
         older.unlink()
     write_bytes(folder / "README.md", page(entries, in_workshop()).encode())
     size = max(map(len, posters.values())) / 1000
-    say("gallery", f"{len(entries)} mechanisms in {folder / 'README.md'}, pictures up to {size:.0f} kB")
+    say("gallery", f"{counted(len(entries), 'mechanism')} in {folder / 'README.md'}, pictures up to {size:.0f} kB")
     return int(len(entries) < len(names))

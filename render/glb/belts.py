@@ -2,7 +2,7 @@
 
 A round belt is a loop that lies still against its line of centres, and marks that are moved and turned along it. A
 chain is its links, each a roller, a pin and two plates that are moved and turned so that they reach to the next. All
-marks are one mesh, and so are all inner and all outer links.
+marks are one mesh, and so are all inner and all outer links. What an event releases shrinks to nothing there.
 """
 
 from __future__ import annotations
@@ -36,7 +36,9 @@ def add_belt(
     if belt.chain:
         ahead = np.roll(places, -1, axis=1) - places
         links = _links(document, paints, belt, ahead, left)
-        return _units(document, animation, links, f"{belt.name} link", places, ahead)
+        return _leaving(
+            animation, belt, moments, _units(document, animation, links, f"{belt.name} link", places, ahead)
+        )
     loop, *marks = belt.specs
     shape = _cut(tube(_flat(belt), loop.radius), left)
     if not len(shape[2]):
@@ -50,7 +52,17 @@ def add_belt(
     half = np.array([[-step, 0.0, 0.0], [step, 0.0, 0.0]])
     shape = _cut(tube(half, marks[0].radius), left)
     mark = tube_mesh(document, paints, marks[0], f"{belt.name} mark", [shape])
-    return [node, *_units(document, animation, [mark], f"{belt.name} mark", places, ends[1] - ends[0])]
+    marks_of = _units(document, animation, [mark], f"{belt.name} mark", places, ends[1] - ends[0])
+    return _leaving(animation, belt, moments, [node, *marks_of])
+
+
+def _leaving(animation: Animation, belt: Belt, moments: Sequence[Moment], nodes: list[int]) -> list[int]:
+    """Shrink the nodes of a belt to nothing from its release on, if it has one; returns them."""
+    if belt.until < math.inf:
+        size = np.array([[float(at.time <= belt.until)] * 3 for at in moments])
+        for node in nodes:
+            animation.add(node, "scale", size)
+    return nodes
 
 
 def _cut(shape: Tube, left: float) -> Tube:

@@ -7,6 +7,7 @@ from pathlib import Path
 from render import FRAME_SOURCES
 from render.plots.asked import spectra_asked
 from shared.contract import Motion, read_motion
+from shared.contract.quantity import counted
 from shared.contract.skeleton import read_skeleton
 from shared.stage.console import say
 from shared.stage.errors import UserError
@@ -53,7 +54,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     for older in set(out.plots.glob("*.png")) - set(outputs.values()):
         older.unlink()
     stage.done(plots=names, asked=[*spectra_asked(out.name, spectra), every])
-    say("plots", f"{out.name}: {len(outputs)} plots in {out.plots}")
+    say("plots", f"{out.name}: {counted(len(outputs), 'plot')} in {out.plots}")
 
 
 def is_fresh(name: str, spectra: str = "", every: bool = False) -> bool:

@@ -10,6 +10,7 @@ from pathlib import Path
 from render.plots import READ
 from render.plots.asked import spectra_asked
 from shared.contract import Motion, read_motion
+from shared.contract.quantity import counted
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -60,4 +61,4 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
         older.unlink()
     stage.outputs.extend(outputs.values())
     stage.done()
-    say("compare", f"{owner}: {len(outputs)} plots of {len(motions)} variants in {out.compare}")
+    say("compare", f"{owner}: {counted(len(outputs), 'plot')} of {counted(len(motions), 'variant')} in {out.compare}")

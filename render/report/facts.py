@@ -33,7 +33,7 @@ def facts(motion: Motion, parts: Parts | None, clearance: Clearance | None) -> l
     moving = sum(body.mass for body in motion.bodies.values())
     if parts is not None:
         pieces = sum(len(body.pieces) for body in parts.bodies.values())
-        out.append(f"{written(moving, 'kg')} moving, {pieces} pieces")
+        out.append(f"{written(moving, 'kg')} moving, {counted(pieces, 'piece')}")
     if clearance is not None and clearance.pairs:
         out.append(f"parts stay {written(min(pair.gap for pair in clearance.pairs), 'm')} apart")
     return out

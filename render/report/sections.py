@@ -19,7 +19,7 @@ def motion_section(motion: Motion) -> list[str]:
     diagnostics, span = motion.diagnostics, motion.time[-1] - motion.time[0]
     drivers = listed(list(motion.drivers)) if motion.drivers else ""
     moved = f"driven by {drivers}" if drivers else "moved by forces alone"
-    times = f"{len(motion.time)} times over {moment(span)}"
+    times = f"{counted(len(motion.time), 'time')} over {moment(span)}"
     kind = "simulation" if motion.analysis == "simulation" else "sweep"
     repeats = f"; it repeats after {moment(motion.period)}" if motion.period else ""
     lines = [
@@ -150,7 +150,8 @@ def mass_section(motion: Motion, parts: Parts | None) -> list[str]:
     lines = [f"All that moves weighs {written(total, 'kg')}."]
     if parts is not None and "ground" in parts.bodies:
         pieces = sum(len(body.pieces) for body in parts.bodies.values())
-        lines[0] += f" The frame weighs {written(parts.bodies['ground'].mass.mass, 'kg')}; there are {pieces} pieces."
+        frame = written(parts.bodies["ground"].mass.mass, "kg")
+        lines[0] += f" The frame weighs {frame}; there {'is' if pieces == 1 else 'are'} {counted(pieces, 'piece')}."
     if parts is not None and parts.without_solids:
         lines[0] += f" Without solids: {', '.join(parts.without_solids)}."
     lines.append("")

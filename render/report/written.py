@@ -9,7 +9,7 @@ import numpy as np
 
 from render.magnitudes import floors
 from shared.contract import Motion
-from shared.contract.quantity import MINUS, figures, written
+from shared.contract.quantity import MINUS, counted, figures, written
 
 __all__ = ["Amounts", "counted", "degrees", "first_peak", "listed", "moment", "speed", "table", "turning", "written"]
 
@@ -52,11 +52,6 @@ def moment(t: float) -> str:
 def listed(words: Sequence[str]) -> str:
     """``a, b and c``."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-
-
-def counted(count: int, noun: str) -> str:
-    """``1 event``, ``no events``, ``3 events``."""
-    return f"{'no' if count == 0 else count} {noun}{'s' * (count != 1)}"
 
 
 def first_peak(values: np.ndarray) -> int:

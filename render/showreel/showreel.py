@@ -14,11 +14,12 @@ from render.presets import Preset
 from render.report import description
 from render.showreel.card import Title
 from render.showreel.join import Entry, join
+from shared.contract.quantity import counted
 from shared.contract.shot import read_shot
 from shared.stage.console import duration, say, warn
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
-from shared.stage.paths import Out, known_name, mechanism_file, mechanism_names, out_root, variants_in
+from shared.stage.paths import Out, all_mechanisms, known_name, mechanism_file, out_root, variants_in
 from shared.stage.stages import is_recorded
 
 NAME = "showreel"
@@ -54,7 +55,7 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
         say("showreel", f"left out, since they have no film of {preset.name}: {', '.join(missing)}")
     target = named(out_root() / "films" / f"{NAME}-{preset.name}.mp4", show)
     home = out_root() / f".{NAME}"
-    say("showreel", f"{len(films)} films of {preset}, each under its title")
+    say("showreel", f"{counted(len(films), 'film')} of {preset}, each under its title")
     try:
         with scratch_folder(home) as scratch:
             entries = [
@@ -70,8 +71,8 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
     words = ", subtitles beside it" if target.with_suffix(".srt").is_file() else ""
     say(
         NAME,
-        f"{target}: {duration(seconds)}, {copied} films copied as they are, {len(films) - copied} encoded again, "
-        f"{target.stat().st_size / 1e6:.1f} MB{words}",
+        f"{target}: {duration(seconds)}, {counted(copied, 'film')} copied as they are, {len(films) - copied} "
+        f"encoded again, {target.stat().st_size / 1e6:.1f} MB{words}",
     )
     return target
 
@@ -109,7 +110,7 @@ def title_of(name: str) -> Title:
 
 def _all_names() -> list[str]:
     names = []
-    for owner in mechanism_names():
+    for owner in all_mechanisms():
         variants = variants_in(mechanism_file(owner))
         names += [owner, *(f"{owner}-{variant}" for variant in variants)]
     return names

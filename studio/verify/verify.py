@@ -19,6 +19,7 @@ from render.film.inputs import named
 from render.frames.film import wav_of, write_sound
 from render.frames.store import FrameIndex, FrameStore
 from render.presets import Preset
+from shared.contract.quantity import counted
 from shared.stage.console import fail, say
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -101,9 +102,9 @@ def _of_parts(out: Out, again: Path) -> Finding:
     findings = [files.compared(name, here / name, there / name) for name in names]
     wrong = [finding for finding in findings if finding.verdict != "same"]
     if wrong:
-        detail = f"{len(wrong)} of {len(findings)} files, such as {wrong[0].what} {wrong[0].detail}"
+        detail = f"{len(wrong)} of {counted(len(findings), 'file')}, such as {wrong[0].what} {wrong[0].detail}"
         return Finding("solids (STL, STEP)", "differs", detail)
-    return Finding("solids (parts.json, STL, STEP)", "same", f"{len(findings) + 1} files")
+    return Finding("solids (parts.json, STL, STEP)", "same", counted(len(findings) + 1, "file"))
 
 
 def _stage(root: Path, module: str, *arguments: str) -> None:

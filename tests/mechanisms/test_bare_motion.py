@@ -212,7 +212,7 @@ def test_impacts_without_rows_of_their_own_are_told(
     _Author(monkeypatch, build, motion=lambda m, p: m.simulate(0.25, steps=20))
     bare_solution("arm")
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("solve: warning: arm: 1 impacts, the first 'floor' at 0.19")
+    assert line.startswith("solve: warning: arm: 1 impact, the first 'floor' at 0.19")
     _Author(monkeypatch, build, DURATION=0.25)
     bare_solution("arm")
     assert capsys.readouterr().err == ""

@@ -153,9 +153,10 @@ def test_the_table_says_what_was_missed() -> None:
         Row("A03", "mbsd", "1", "tolerance 1", 0.001, 1e-6, {"angle (rad)": 1e-6}),
         Row("A03", "peer", "2", "step 1", 0.002, 1.0, {"angle (rad)": 1.0}, within_limits=False),
     ]
-    text = table.text(rows, [Bar("A03", 50.0, 2.0, "peer", "step 1", met=False)])
-    assert "| A03 | 50x | 2x | peer | step 1 | **no** |" in text
-    assert "| A03 | peer | 2 | 2 ms | 2 | angle (rad) 1.0e+00; **beyond the limits** | step 1 |" in text
+    bars = table.bars_table(rows, [Bar("A03", 50.0, 2.0, "peer", "step 1", met=False)])
+    assert "| A03 | 1 ms | 50x | 2x | peer | step 1 | **no** |" in bars
+    every = table.rows_table(rows)
+    assert "| A03 | peer | 2 | 2 ms | 2 | angle (rad) 1.0e+00; **beyond the limits** | step 1 |" in every
 
 
 @pytest.mark.parametrize("links", [1, 5])

@@ -214,7 +214,7 @@ def test_a_kind_of_ones_own_is_checked_in_an_empty_environment(empty: Path, tmp_
     assert _run(empty / "bin" / "python", code, tmp_path, NUMBA_DISABLE_JIT="1")[0] == "agrees"
 
 
-def _compiled_before(folder: Path, sources: Path) -> None:
+def _compiled_before(folder: Path, sources: Path, python: Path) -> None:
     """The kernels that the runs below need, from where this clone keeps them."""
     code = README_BLOCK + SIMULATED + COUNTED + FOLDERS
     (told,) = (line for line in _run(sys.executable, code, ROOT) if line.startswith("folders "))
@@ -224,7 +224,7 @@ def _compiled_before(folder: Path, sources: Path) -> None:
 
 @pytest.mark.slow
 def test_a_wheel_with_kernels_compiles_nothing_and_writes_nothing(empty: Path, tmp_path: Path) -> None:
-    wheel = build_with_kernels(ROOT, tmp_path / "dist", _compiled_before)
+    wheel = build_with_kernels(ROOT, tmp_path / "dist", fill=_compiled_before)
     version = f"cp{sys.version_info.major}{sys.version_info.minor}"
     assert wheel.name.startswith(f"mbsd-{mbsd.__version__}-{version}-{version}-")
     with zipfile.ZipFile(wheel) as archive:

@@ -88,7 +88,7 @@ def test_films_of_older_versions_are_left_out(
     showreel.run(TINY)
     said = capsys.readouterr()
     assert "pendulum-tiny.mp4 is left out, being of an older version: it is of an older data.json" in said.err
-    assert "1 films of" in said.out
+    assert "1 film of" in said.out
     with pytest.raises(UserError, match="films that are asked for are older"):
         showreel.run(TINY, "pendulum")
     monkeypatch.setattr(freshness, "current_names", lambda names: {"pendulum"})

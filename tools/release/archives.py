@@ -38,16 +38,17 @@ def git(root: Path, *words: str) -> str:
     return done.stdout
 
 
-def built(sources: Path, out: Path, time: int, **environment: str) -> list[Path]:
-    """Return the archives that ``tools.wheel`` of the clone itself makes, as of ``time`` (s since 1970).
+def built(sources: Path, out: Path, time: int, pythons: Sequence[str] = (), **environment: str) -> list[Path]:
+    """Build the archives by ``tools.wheel`` of the clone itself, as of ``time`` (s since 1970).
 
-    ``UMASK`` in ``environment`` is the mask of the process, in octal.
+    ``pythons``: versions of Python for which there is a wheel with compiled kernels, too. ``UMASK`` in ``environment``
+    is the mask of the process, in octal.
     """
     mask = environment.pop("UMASK", None)
     kept = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "MBSD_", "NUMBA_"))}
     variables = kept | {"SOURCE_DATE_EPOCH": str(time), "PYTHONDONTWRITEBYTECODE": "1"} | environment
     done = subprocess.run(
-        [sys.executable, "-m", "tools.wheel", "--out", str(out)],
+        [sys.executable, "-m", "tools.wheel", "--out", str(out), *(["--kernels", *pythons] if pythons else [])],
         cwd=sources,
         env=variables,
         umask=int(mask, 8) if mask else -1,

@@ -58,7 +58,7 @@ def wanted_version(root: Path) -> str:
 
 
 def notes(changelog: str, version: str) -> str:
-    """Return the section of a version up to its history, under a title. Raises UserError where it is missing or empty."""
+    """Return the section of a version up to its history, under a title. Raises UserError if there is none."""
     match = re.search(rf"(?ms)^## \[?{re.escape(version)}\b[^\n]*\n(.*?)(?=^## |\Z)", changelog)
     if not match:
         raise UserError(f"CHANGELOG.md has no section '## {version}'; write what a user notices")

@@ -22,7 +22,7 @@ CLOSE = 1e-9
 
 
 class StartTangents:
-    """Those of a mechanism ``m`` made ``ready``."""
+    """Tangents of the start of a mechanism ``m`` made ``ready``."""
 
     def __init__(self, m: Model, ready: PreparedDynamics) -> None:
         packed = ready.packed
@@ -110,6 +110,6 @@ class StartTangents:
 
     @staticmethod
     def _inverse(matrix: np.ndarray, kept: list[int], rows: int) -> np.ndarray | None:
-        """That of J and what is held; None where they leave something open, or joints repeat others."""
+        """Return the inverse of J and what is held; None where they leave something open, or joints repeat others."""
         whole = len(kept) == matrix.shape[1] == len(matrix) and kept[:rows] == list(range(rows))
         return np.linalg.inv(matrix) if whole else None

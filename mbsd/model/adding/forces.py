@@ -1,4 +1,4 @@
-"""What adding a force checks, and the entry it makes. Forces in N, torques in N m, counter-clockwise positive."""
+"""Adding a force: its checks, and its entry. Forces in N, torques in N m, counter-clockwise positive."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class Function(WithFunctions, Motion):
 
     @property
     def given_derivatives(self) -> bool:
-        """Whether the user gave them."""
+        """True if the user gave them."""
         return self.df is not None
 
     def over(self, first: float, last: float) -> Motion:

@@ -40,7 +40,7 @@ def _moving(m: Any, joint: Any) -> str:
 
 
 def _turns(angle: np.ndarray) -> bool:
-    """Whether an angle (T,) goes one way, by a turn at least."""
+    """Return True if an angle (T,) goes one way, by a turn at least."""
     steps = np.diff(angle)
     one_way = bool((steps >= 0).all() or (steps <= 0).all())
     return one_way and abs(angle[-1] - angle[0]) >= 2 * math.pi * (1 - WHOLE)

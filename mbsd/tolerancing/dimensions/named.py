@@ -39,7 +39,7 @@ SIZES = ("length", "radius", "diameter", "bore")
 
 
 def dimensions_of(m: Model, sizes: Any) -> list[Dimension]:
-    """Those of a mechanism. Pins whose play follows the reaction are still :class:`LoosePlay` here.
+    """Return the dimensions of a mechanism; pins whose play follows the reaction are still :class:`LoosePlay`.
 
     Raises ModelError for names that do not exist and tolerances that cannot be.
     """
@@ -76,7 +76,7 @@ def _least_step(m: Model, packed: Packed, size: Size) -> float:
 
 
 def numbers_of(function: str, nominal: Mapping[str, float], sizes: Any) -> list[Dimension]:
-    """Those of a function with ``nominal`` values of its arguments. Raises ModelError."""
+    """Return the dimensions of a function with ``nominal`` values of its arguments. Raises ModelError."""
     if not isinstance(sizes, Mapping) or not sizes:
         raise ModelError(f"{function}: tolerances: sizes are {shown(sizes)}; give names and tolerances: {{'a': 5e-5}}")
     out: list[Dimension] = []
@@ -158,7 +158,7 @@ def _part(m: Model, name: Any, key: str, value: Any) -> Dimension:
 
 
 def _single(value: Any) -> bool:
-    """Whether it is a finite number."""
+    """Return True if it is a finite number."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 

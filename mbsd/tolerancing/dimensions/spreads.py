@@ -156,7 +156,7 @@ class Triangular(Spread):
 
 
 def spread_of(what: str, given: Any) -> Spread:
-    """What is given of a dimension, as a spread: a bare tolerance is :class:`Normal`. Raises ModelError."""
+    """Return the spread that is given of a dimension: a bare tolerance is :class:`Normal`. Raises ModelError."""
     if isinstance(given, Spread):
         return given
     if isinstance(given, str):

@@ -42,7 +42,7 @@ class Answers:
 
 
 class Machines(Protocol):
-    """What evaluates rows of deviations (n, columns) of a mechanism, or of a function."""
+    """An evaluator of rows of deviations (n, columns) of a mechanism, or of a function."""
 
     at_once: int
     """Rows that it takes at most."""

@@ -56,6 +56,6 @@ def what_shrinks(scale: Scale) -> str:
     running = Fit().running
     return (
         f"what a parts.py gives in millimetres, clearances too, shrinks with the machine: Fit(running="
-        f"{running / scale.ratio:.3g}) leaves {running:g} mm at {scale}; without a parts.py pins and fits are chosen "
-        "for the scale"
+        f"{running / scale.ratio:.3g}) leaves {running:g} mm at {scale}, and fit_at_scale(pin) of mechanisms.automatic "
+        "chooses for any scale; without a parts.py pins and fits are chosen for the scale"
     )

@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING
 
 from shared.contract import Motion, Parts, Provenance, read_motion, read_parts
 from shared.contract.clearance import Clearance, PairClearance, Proof, write_clearance
+from shared.contract.quantity import counted
 from shared.shapes.units import metres, mm
 from shared.stage.console import Shown, say
 from shared.stage.errors import UserError
@@ -89,7 +90,7 @@ def run(name: str, scale: str = "") -> None:
         raise UserError(f"{error}; {what_shrinks(at)}") from error
     write_clearance(out.clearance, checked)
     stage.done()
-    say("clearance", _summary(checked, out.title))
+    say("clearance", _summary(checked, out.title) + _parted(parts, motion))
 
 
 def is_fresh(name: str) -> bool:
@@ -150,7 +151,8 @@ def check(
     refused: list[tuple[Sweep, Least]] = []
     apart, error = 0, 0.0
     shown = Shown("clearance", name, len(pieces) * (len(pieces) - 1) // 2, "pairs of pieces looked at")
-    alike = {frozenset(pair) for pair in parts.may_touch} | {frozenset((piece.body,)) for piece in pieces}
+    alike = {frozenset(pair) for pair in (*parts.may_touch, *parted_bodies(parts, motion))}
+    alike |= {frozenset((piece.body,)) for piece in pieces}
     for first, second in combinations(pieces, 2):
         shown.advance()
         names = frozenset(((first.body, first.name), (second.body, second.name)))
@@ -194,6 +196,19 @@ def check(
         may_touch=parts.may_touch,
         pieces_may_touch=parts.pieces_may_touch,
     )
+
+
+def parted_bodies(parts: Parts, motion: Motion) -> list[tuple[str, str]]:
+    """Return pairs of bodies that an event parts by releasing their pin, guide or rod, which their solids could not."""
+    released = {name: joint for name, joint in motion.joints.items() if joint.released is not None}
+    rods = [(name, joint.bodies[1]) for name, joint in released.items() if name in parts.bodies]
+    return rods + [joint.bodies for name, joint in released.items() if joint.pair and name not in parts.bodies]
+
+
+def _parted(parts: Parts, motion: Motion) -> str:
+    """Return words on the bodies that are not compared because an event parts them; empty if there are none."""
+    pairs = ", ".join(" and ".join(pair) for pair in parted_bodies(parts, motion))
+    return f"; not compared, as an event parts them: {pairs}" if pairs else ""
 
 
 def _turn(
@@ -322,7 +337,7 @@ def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str
 
 def _summary(clearance: Clearance, title: str) -> str:
     count = len(clearance.pairs) + clearance.apart
-    text = f"{title}: {count} pairs of pieces, none touch"
+    text = f"{title}: {counted(count, 'pair')} of pieces, none touch"
     if clearance.pairs:
         nearest = clearance.pairs[0]
         when = "at every angle" if nearest.time is None else f"at t={nearest.time:.3g} s"

@@ -32,7 +32,7 @@ from shared.cluster.address import address
 from shared.contract import Parts, Provenance, write_parts
 from shared.contract.materials import MATERIALS
 from shared.contract.mount import Kind
-from shared.contract.quantity import written
+from shared.contract.quantity import counted, written
 from shared.stage.console import Shown, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
@@ -348,6 +348,6 @@ def _summary(name: str, document: Parts, count: int) -> str:
     moving = sum(body.mass.mass for key, body in document.bodies.items() if key != "ground")
     triangles = sum(piece.triangles for piece in pieces)
     return (
-        f"{name}: {len(pieces)} solids of {len(document.bodies)} bodies, {written(moving, 'kg')} moving, "
-        f"{triangles} triangles, {count} files written"
+        f"{name}: {counted(len(pieces), 'solid')} of {counted(len(document.bodies), 'body')}, {written(moving, 'kg')} "
+        f"moving, {counted(triangles, 'triangle')}, {counted(count, 'file')} written"
     )

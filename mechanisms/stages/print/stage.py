@@ -11,6 +11,7 @@ import re
 from typing import TYPE_CHECKING
 
 from shared.contract import read_parts
+from shared.contract.quantity import counted
 from shared.stage.console import say, warn
 from shared.stage.errors import UserError
 from shared.stage.face import said
@@ -147,11 +148,10 @@ def _tell_thin(name: str, made: list[Made]) -> None:
 
 def _summary(name: str, files: dict[str, bytes], made: list[Made], bought: list[Bought], bed: Bed) -> str:
     def count(suffix: str, word: str) -> str:
-        number = sum(file.endswith(suffix) for file in files)
-        return f"{number} {word}{'' if number == 1 else 's'}"
+        return counted(sum(file.endswith(suffix) for file in files), word)
 
     laid = sum(len(part.plates) for part in made)
     return (
-        f"{name}: {laid} pieces on {count('.3mf', 'plate')} of {bed[0]:g} x {bed[1]:g} mm, "
-        f"{count('.dxf', 'outline')} to cut, {sum(len(item.names) for item in bought)} pieces to buy"
+        f"{name}: {counted(laid, 'piece')} on {count('.3mf', 'plate')} of {bed[0]:g} x {bed[1]:g} mm, "
+        f"{count('.dxf', 'outline')} to cut, {counted(sum(len(item.names) for item in bought), 'piece')} to buy"
     )

@@ -37,10 +37,11 @@ def to_motion(
     """
     import mbsd
     from mbsd.drawing.inks import on_dark
+    from mbsd.results.releases import release_times
 
     notes = list(solution.notes)
     solution = solution.only(solution.is_defined) if notes else solution
-    inks = body_colours(solution.mechanism, parts)
+    inks, released = body_colours(solution.mechanism, parts), release_times(solution)
     m, stats, energy = solution.mechanism, solution.stats, solution.energy
     bodies = {
         name: contract.BodyMotion(
@@ -73,6 +74,7 @@ def to_motion(
                 look=joint.kind.look,  # pyright: ignore[reportArgumentType]
                 acts=_acts(solution.joint(name).acts) if joint.kind.touching else None,
                 shape=shape_of(joint),
+                released=released.get(name),
             )
             for name, joint in m.joints.items()
         },

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from mechanisms.stages.loading import loading, variants
 from mechanisms.stages.loading.author_functions import refuse_arguments
+from shared.contract.quantity import counted
 from shared.stage import console
 from shared.stage.errors import UserError
 from shared.stage.paths import owner_of, shown_file
@@ -91,7 +92,7 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
 
         return refined_sweep(m.sweep(duration, _steps_of(m, duration)))
     if duration is None:
-        freedoms = "1 degree of freedom is" if free == 1 else f"{free} degrees of freedom are"
+        freedoms = f"{counted(free, 'degree')} of freedom {'is' if free == 1 else 'are'}"
         raise UserError(
             f"{name}: {freedoms} not driven, so forces move it and the motion is simulated, but how long is not said; "
             f"write DURATION = 2.0 (seconds) beside build() in {_file(name)}, or add a driver, "
@@ -140,9 +141,9 @@ def _tell_blurred_impacts(name: str, solution: Solution) -> bool:
     if lost:
         console.warn(
             "solve",
-            f"{name}: {len(lost)} impacts, the first '{lost[0].name}' at {lost[0].time:.6g} s, have no rows right "
-            "before and after them and are smoothed in plots and films; write m.simulate(..., event_rows=True) in "
-            "motion()",
+            f"{name}: {counted(len(lost), 'impact')}, the first '{lost[0].name}' at {lost[0].time:.6g} s, without rows "
+            "right before and after, shown as something smooth in plots and films; write m.simulate(..., "
+            "event_rows=True) in motion()",
         )
     return bool(lost)
 
@@ -156,7 +157,7 @@ def _tell_long_steps(name: str, module: Any, solution: Solution) -> None:
         own = "motion()" if hasattr(module, "motion") else "STEPS"
         chosen = hasattr(module, "motion") or variants.constant(name, module, "STEPS") is not None
         remedy = f"leave out {own}, so that rows are added there, or ask for more steps" if chosen else "end it earlier"
-        steps = "1 step is" if len(long) == 1 else f"{len(long)} steps are"
+        steps = f"{counted(len(long), 'step')} {'is' if len(long) == 1 else 'are'}"
         console.warn(
             "solve",
             f"{name}: {steps} too long for what moves fast within, first at t = {solution.t[long[0]]:.6g} s: plots and "

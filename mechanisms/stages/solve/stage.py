@@ -11,7 +11,7 @@ from mechanisms.stages.loading.recording import recording
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.body_colours import main_material
 from shared import contract
-from shared.contract.quantity import written
+from shared.contract.quantity import counted, written
 from shared.contract.skeleton import write_skeleton
 from shared.stage import console
 from shared.stage.files import sources_hash
@@ -131,8 +131,8 @@ def _summary(solution: Solution) -> str:
         peaks.append(f"{name} up to {written(peak if peak > least else 0.0, 'N m' if angular else 'N')}")
     return ", ".join(
         [
-            f"{len(solution.t)} times over {solution.t[-1] - solution.t[0]:.4g} s",
-            f"{solution.mobility.dof} degree{'s' * (solution.mobility.dof != 1)} of freedom",
+            f"{counted(len(solution.t), 'time')} over {solution.t[-1] - solution.t[0]:.4g} s",
+            f"{counted(solution.mobility.dof, 'degree')} of freedom",
             f"closed to {solution.stats.position_residual:.0e} m",
             *peaks,
         ]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from mechanisms.stages.loading import loading
 from mechanisms.stages.study.grid import grid_of
+from shared.contract.quantity import counted
 from shared.stage import console
 from shared.stage.errors import UserError
 from shared.stage.paths import Out, known_name
@@ -55,7 +56,7 @@ def run(name: str, words: str) -> None:
         raise UserError(str(error)) from error
     for line in _summary(name, table, list(grid)):
         console.say("study", line)
-    console.say("study", f"{name}: {save}: {len(table)} points")
+    console.say("study", f"{name}: {save}: {counted(len(table), 'point')}")
     if len(table) and all(isinstance(reason, str) for reason in table["reason"]):
         failed = "its one point" if len(table) == 1 else f"all {len(table)} points"
         first = "" if len(table) == 1 else ", the first"

@@ -35,8 +35,13 @@ def build(scene: Any, spec: TubeSpec, radius: float) -> Any:
 
 
 def vertices(path: list[Point], radius: float) -> np.ndarray:
-    """Vertices (points * SIDES, 3), float32, of the tube along ``path``; rings turn with the path and no more."""
+    """Vertices (points * SIDES, 3), float32, of the tube along ``path``; rings turn with the path and no more.
+
+    All are at one point if ``path`` is: there is no tube.
+    """
     line = np.asarray(path)
+    if not np.ptp(line, axis=0).any():
+        return np.repeat(line, SIDES, axis=0).astype(np.float32)
     along = np.gradient(line, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     across = np.empty_like(line)

@@ -5,6 +5,7 @@ the path of shared/contract/belt_path.py (phi is the direction of the line of ce
 spread over the belt. Where the motion has a period, the way of the belt in it is rounded to a whole number of their
 distances, so that the film loops without a jump; of a chain whose length is a whole number of its pitch nothing is
 rounded. Its inner and outer plates take turns, unless it has an odd number of links or moves on by one in a period.
+A belt that an event releases is gone from then on: its tubes shrink to a point.
 """
 
 from __future__ import annotations
@@ -57,6 +58,8 @@ class Belt:
 
     alike: bool
     """Whether all links of a chain have the same plates; else every other link's lie inside its neighbours'."""
+    until: float = math.inf
+    """Time (s) of the event that releases it."""
 
     @property
     def specs(self) -> list[TubeSpec]:
@@ -76,6 +79,8 @@ class Belt:
     def paths(self, poses: Poses, at: Moment) -> list[list[Point]]:
         """Path of each tube at that moment."""
         place, every = self.run(poses, at)
+        if at.time > self.until:
+            return [[(*place.origin, self.z)] * spec.points for spec in self.specs]
         if not self.chain:
             reach = LONG * self.radius * np.linspace(-1.0, 1.0, MARK_POINTS)
             return [place.points(self.closed), *(place.points(s + reach) for s in every)]
@@ -169,6 +174,7 @@ def belts(motion: Motion, held: Mapping[str, Held]) -> Iterator[Belt]:
             name, shape, path, own.z, own.radius, count, chain, (float(line[0]), float(line[-1])),
             float(theta[0] - line[0]), _pace(gone, path.length / count),
             alike=count % 2 == 1 or round(gone * count / path.length) % 2 == 1,
+            until=math.inf if joint.released is None else joint.released,
         )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from render.plots.horizon import Horizon, horizon
 from render.plots.pages.rates import draw
 from render.plots.style import INK, PARTS, QUIET, page, rows
 from shared.contract import EventMark, Motion
-from shared.contract.quantity import written
+from shared.contract.quantity import counted, written
 
 BALANCED = 2e-3
 """The elastic energy is known at the samples alone; its rate is this good, relative to the largest power."""
@@ -86,8 +86,8 @@ def statement(motion: Motion) -> str:
     if not impacts:
         return text
     taken = -sum(event.energy for event in impacts)
-    count = f"{len(impacts)} impacts that take" if len(impacts) > 1 else "an impact that takes"
-    return f"{text}, but for {count} {written(taken, 'J')} at once"
+    takes = "takes" if len(impacts) == 1 else "take"
+    return f"{text}, but for {counted(len(impacts), 'impact')} that {takes} {written(taken, 'J')} at once"
 
 
 def _tolerance(motion: Motion, given: np.ndarray, rate: np.ndarray) -> float:

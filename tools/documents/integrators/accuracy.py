@@ -16,7 +16,7 @@ import mbsd.dynamics.integrators
 from mbsd import Mechanism, SimulationError
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.runs.to_end import integrate
+from mbsd.dynamics.runs.motion import integrate
 from mbsd.dynamics.state import ACCEPTED
 from tools.documents.integrators.mechanisms import four_bar, pendulum, pendulum_angle, stiff_four_bar
 

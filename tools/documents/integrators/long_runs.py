@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsd import Mechanism
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.runs.to_end import integrate
+from mbsd.dynamics.runs.motion import integrate
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.dynamics.state import EVALUATIONS
 from tools.documents.integrators.mechanisms import four_bar, pendulum

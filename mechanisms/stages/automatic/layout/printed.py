@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.extents import Lengths
 from mechanisms.stages.automatic.layout.sizes import LEAST_LINK, OVERALL, PIN, STANDARD, Sizes, of_pin, standard
+from mechanisms.stages.loading.wished_scale import wished_scale
 from shared.shapes.fit import Fit
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
@@ -49,6 +50,17 @@ def printed_fit(pin: float) -> Fit:
     return Fit(
         min(max(0.2 * size, RUNNING), 0.6), max(Fit.press * size, PRESS), max(0.4 * size, AXIAL), Fit.seat * size
     )
+
+
+def fit_at_scale(pin: float) -> Fit:
+    """Return the clearances for a parts.py with pins of this diameter: ``Fit()``, or in a model at a scale what its
+    printer needs. All in mm of the machine.
+    """
+    scale = wished_scale()
+    if scale is None:
+        return Fit()
+    fit = printed_fit(pin * scale.ratio)
+    return Fit(*(clearance / scale.ratio for clearance in (fit.running, fit.press, fit.axial, fit.seat)))
 
 
 def _too_short(name: str, shortest: float, link: str, own: float, scale: Scale) -> str:

@@ -23,10 +23,9 @@ from mbsd.results.solution import Solution
 from mbsd.testing.kinds import force_kinds
 from tests.dynamics.many_models import air, crowded, door, pendulum, press
 from tools.hunt.solving.mixed_rows import quantity_names
-from tools.models import genevas, releases, repeated_joints, rough_contacts, sticking, stops, user_events
-from tools.models.crossing_curves import coaster
+from tools.models import guided, releases, repeated_joints, rough_contacts, sticking, stops, user_events
 from tools.models.engines import UP, petrol, slider_crank
-from tools.models.loose_gears import loose_gears
+from tools.models.guided import coaster, loose_gears
 from tools.models.random_linkages import linkage
 
 STEPS = 20
@@ -240,10 +239,10 @@ EVENTS: dict[str, Case] = {
     "chain": Case(releases.chain, 1.2, {"spring": {"stiffness": [0.0, 2.0, 4.0]}}),
     "crossing curve with events": Case(partial(coaster, events=True), 2.0, {"tie": dict([TIE])}, reactive=False),
     "crossing curve with a stop": Case(partial(coaster, stop=True), 2.0, {"tie": dict([TIE])}, reactive=False),
-    "geneva turning": Case(partial(genevas.free, 6), 2.0, GENEVA, options={"formulation": "independent"}),
-    "geneva swinging": Case(genevas.swinging, 2.0, GENEVA, options={"formulation": "independent"}),
-    "genevas": Case(genevas.two, 2.0, GENEVA, options={"formulation": "independent"}),
-    "geneva in reference": Case(partial(genevas.free, 6), 2.0, GENEVA, options={"formulation": "reference"}),
+    "geneva turning": Case(partial(guided.free_geneva, 6), 2.0, GENEVA, options={"formulation": "independent"}),
+    "geneva swinging": Case(guided.swinging_geneva, 2.0, GENEVA, options={"formulation": "independent"}),
+    "genevas": Case(guided.heavy_pair_of_genevas, 2.0, GENEVA, options={"formulation": "independent"}),
+    "geneva in reference": Case(partial(guided.free_geneva, 6), 2.0, GENEVA, options={"formulation": "reference"}),
     "cranks swing": Case(repeated_joints.cranks, 2.0, {"spring": dict([SPRING])}),
     "cranks turn": Case(partial(repeated_joints.cranks, 12.0), 1.5, {"coupler": {"mass": [0.5, 1.0, 2.0]}}, 1e-8, 1e-6),
     "cranks with stops": Case(partial(repeated_joints.cranks, stops=True), 1.5, {"spring": {"stiffness": [2.0, 9.0]}}),

@@ -121,8 +121,8 @@ class Entry:
 def page(entries: Sequence[Entry], own: bool = False) -> str:
     """Return the whole page, in the order of the names; ``own``: of the machines of a user's own folder."""
     first = [
-        "Every mechanism of `mechanisms/` as it comes out of its short file: `make run-<name>` makes the film,",
-        "the parts and the numbers of one, `make gallery` this page.",
+        "Every mechanism of `mechanisms/`, each from one short file. `mbsd run <name>` makes the film, the parts and",
+        "the numbers of one; `make gallery` makes this page.",
     ]
     lines = ["# Gallery", "", *([f"`{to_run('gallery')}` makes this page."] if own else first)]
     for entry in entries:
@@ -130,9 +130,7 @@ def page(entries: Sequence[Entry], own: bool = False) -> str:
         title = title[:1].upper() + title[1:]
         lines += ["", f"## {title}", "", f"![{title}]({entry.name}.jpg)", ""]
         lines += [entry.said, ""] if entry.said else []
-        page_of = (
-            f"`{to_run('view', entry.name)}`" if own else f"[the page](../view.md): `{to_run('view', entry.name)}`"
-        )
+        page_of = f"`{to_run('view', entry.name)}`" if own else f"[the page](../view.md): `mbsd view {entry.name}`"
         lines += [f"{' · '.join(entry.facts)} · [{entry.file.rpartition('/')[2]}]({entry.file}) · {page_of}"]
     return "\n".join(lines) + "\n"
 

@@ -97,7 +97,7 @@ def _progress(what: str) -> Callable[[float], None]:
 
 
 def _shown(given: Any) -> str:
-    from mbsd.base.shown import shown
+    from mbsd.base.names import shown
 
     return shown(given)
 

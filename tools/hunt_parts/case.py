@@ -112,7 +112,7 @@ def parts_of(m: Mechanism, solution: Solution, solids: bool = True, engraved: bo
 
 
 def _planned(made: Automatic) -> str:
-    """What is to be built, in words. Raises UserError."""
+    """Return what is to be built, in words. Raises UserError."""
     if made.along is not None:
         made.along.refuse()
         count = len(made.along.shafts), len(made.along.cylinders), len(made.along.machine.links)

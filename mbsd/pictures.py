@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import base64
+import html
 import io
 import os
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mbsd.base.errors import ModelError
@@ -12,6 +15,7 @@ from mbsd.base.errors import ModelError
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
 
 DPI = 150
 
@@ -83,3 +87,39 @@ class Svg:
 
     def _repr_svg_(self) -> str:
         return self.text
+
+
+@dataclass(frozen=True)
+class Animation:
+    """A file that was written; a notebook shows it."""
+
+    path: Path
+    pictures: int
+    """Drawn; an MP4 repeats those of a short round."""
+    seconds: float
+    """On the screen, once through."""
+    rate: float
+    """Seconds of the motion in a second on the screen."""
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, object]:
+        code = base64.b64encode(self.path.read_bytes()).decode()
+        if self.path.suffix.lower() == ".gif":
+            return {"text/html": f'<img src="data:image/gif;base64,{code}">'}
+        return {"text/html": f'<video controls loop autoplay muted src="data:video/mp4;base64,{code}"></video>'}
+
+
+class View:
+    """A page that a notebook shows where it stands; ``html`` is the page."""
+
+    def __init__(self, page: str, height: int) -> None:
+        self.html, self._height = page, height
+
+    def _repr_html_(self) -> str:
+        inside = html.escape(self.html)
+        return (
+            f'<iframe srcdoc="{inside}" sandbox="allow-scripts" style="width:100%;height:{self._height}px;border:1px '
+            'solid #9aa5b355;border-radius:8px" title="the mechanism in motion"></iframe>'
+        )
+
+    def __repr__(self) -> str:
+        return f"<View, {len(self.html) / 1e3:.0f} kB of HTML>"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -29,3 +30,10 @@ def end_if_unwanted() -> None:
     unwanted = getattr(_OWN, "unwanted", None)
     if unwanted is not None and unwanted():
         raise Stopped
+
+
+def cores() -> int:
+    """Cores that this process may use, which a container or taskset may have made fewer."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -12,7 +12,7 @@ import numpy as np
 
 from mbsd.base.arguments import several_numbers
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.adding.events import checked_event
 from mbsd.model.body import Body, Marker
 from mbsd.model.contacts.discs import rigid_discs

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from mbsd.dynamics.batch.simulate_many import Simulations
     from mbsd.dynamics.measures.kinds import Measure
     from mbsd.kinematics.batch import Batch
-    from mbsd.pictures.picture import Picture, Svg
+    from mbsd.pictures import Picture, Svg
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
 

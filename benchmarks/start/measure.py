@@ -40,7 +40,7 @@ def measured() -> int:
     """Measure, show, and write the table."""
     with tempfile.TemporaryDirectory() as folder:
         rows = [("`python -m mbsd compile`", "empty", _compile(folder))]
-        rows.append(("first simulation, pendulum", "in the wheel, `make wheel KERNELS=1`", _from_wheel(folder)))
+        rows.append(("first simulation, pendulum", "in the wheel", _from_wheel(folder)))
     for name, what in FIRST.items():
         with tempfile.TemporaryDirectory() as folder:
             rows.append((what, "empty", _run(name, folder)))

@@ -27,8 +27,7 @@ from mbsd.arrays.start_state import AnyModel, copied
 from mbsd.arrays.states import own_states
 from mbsd.base.codes import CONSTANT
 from mbsd.base.errors import MobilityError, ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.kinematics.limits.closed_contacts import refuse_pushing
 from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.adding.forces import Amount, add_force, amount_given

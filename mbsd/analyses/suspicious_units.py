@@ -14,7 +14,7 @@ import numpy as np
 from mbsd.analyses.finding import Finding
 from mbsd.analyses.suspicious_forces import plays, pressures, springs, welds
 from mbsd.base.errors import ModelWarning
-from mbsd.base.warn import warn
+from mbsd.base.warning import warn
 from mbsd.model.body import Body, Marker
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model

@@ -12,7 +12,7 @@ import numpy as np
 
 from mbsd.arrays.reactions import marker_axes, marker_places
 from mbsd.base.errors import ModelError, ModelWarning
-from mbsd.base.warn import warn
+from mbsd.base.warning import warn
 from mbsd.model.cams.profile import hermite
 from mbsd.model.chamber import Chamber
 

@@ -14,8 +14,8 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
+from mbsd.base.names import shown
 from mbsd.base.quantity import written
-from mbsd.base.shown import shown
 from mbsd.base.users_function import law_of
 from mbsd.model.laws import Motion
 

@@ -35,7 +35,7 @@ from numba.extending import intrinsic
 
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.kept import Kept
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.base.users_function import described
 from mbsd.compiling import interrupts
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import AssemblyError, ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
 from mbsd.results.releases import released_rows

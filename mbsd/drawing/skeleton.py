@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.carriers import GROUND, at_place, on_body
 from mbsd.drawing.inks import body_inks
@@ -28,7 +28,7 @@ from mbsd.drawing.symbols.wheels import rim_of, ring_gear
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
-from mbsd.pictures.picture import Picture
+from mbsd.pictures import Picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

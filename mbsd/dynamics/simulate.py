@@ -25,8 +25,8 @@ from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.states import states_of, without_states
 from mbsd.base.errors import InitialConditionWarning, ModelError, SimulationError
 from mbsd.base.names import no_such
-from mbsd.base.progress import users_progress
-from mbsd.base.warn import warn
+from mbsd.base.users_function import users_progress
+from mbsd.base.warning import warn
 from mbsd.compiling.interrupts import kept
 from mbsd.dynamics.change_points import near_singular, with_efforts_beside
 from mbsd.dynamics.events.driver import EventSteps
@@ -47,8 +47,8 @@ from mbsd.model.event import Event
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
 from mbsd.results.jump_rows import Asked, jumps_of
+from mbsd.results.measured import check_states
 from mbsd.results.solution import Solution
-from mbsd.results.states import check_states
 from mbsd.results.views import Stats
 
 Progress = Callable[[float], None] | None

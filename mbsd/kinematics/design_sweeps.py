@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError
+from mbsd.base.running import cores
 from mbsd.equations.system import System
 from mbsd.kinematics.groups.blocks import BLOCK
 from mbsd.kinematics.groups.carrying.columns import COS

@@ -12,8 +12,8 @@ from typing import Any, Protocol
 
 from mbsd.base.arguments import CHECKS, SMALLEST, finite_number, number_pair
 from mbsd.base.errors import ModelError
+from mbsd.base.names import shown
 from mbsd.base.pickled import with_copied_fields
-from mbsd.base.shown import shown
 
 __all__ = ["Body", "Marker", "finite_number", "number_pair"]
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
+from mbsd.base.names import shown
 from mbsd.base.pickled import WithFunctions
-from mbsd.base.shown import shown
 from mbsd.model.body import Body, Marker
 
 

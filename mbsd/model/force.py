@@ -26,8 +26,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from mbsd.base.arguments import adding
 from mbsd.base.codes import MOST_STATES, TURN
-from mbsd.base.derived import adding
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
@@ -256,7 +256,7 @@ class Force(WithFunctions):
     laws: Mapping[str, Motion | Curve] = field(default_factory=dict)
     """Laws of time and characteristic curves by the names of its method's arguments."""
     derived: frozenset[str] = frozenset()
-    """Params that nobody gave, found from the others; see mbsd/base/derived.py."""
+    """Params that nobody gave, found from the others; see mbsd/base/arguments.py."""
 
     @property
     def given(self) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from mbsd.base.derived import adding
+from mbsd.base.arguments import adding
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
@@ -174,7 +174,7 @@ class Joint(WithFunctions):
     """Numbers of this joint by the names of its method's arguments, plain data (SI)."""
     motion: Motion | None = None
     derived: frozenset[str] = frozenset()
-    """Params that nobody gave, found from the others; see mbsd/base/derived.py."""
+    """Params that nobody gave, found from the others; see mbsd/base/arguments.py."""
 
     @property
     def given(self) -> dict[str, Any]:

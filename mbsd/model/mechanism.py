@@ -11,9 +11,8 @@ from typing import Any
 
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError
-from mbsd.base.names import Named, Suggesting, names_in, no_such
+from mbsd.base.names import Named, Suggesting, names_in, no_such, shown
 from mbsd.base.pickled import with_copied_fields
-from mbsd.base.shown import shown
 from mbsd.model.body import Body, Marker, rod_inertia
 from mbsd.model.event import Event
 from mbsd.model.force import Force

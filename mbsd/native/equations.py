@@ -29,8 +29,7 @@ from mbsd.dynamics.state import State, output_for
 from mbsd.equations.assembly import tabulate_all
 from mbsd.equations.interactions.switching import SWITCHING
 from mbsd.model.mechanism import Model
-from mbsd.native.functions import functions_at
-from mbsd.native.machine_code import MachineCode
+from mbsd.native.machine_code import MachineCode, functions_at
 from mbsd.native.memory import Memory, memory_of
 from mbsd.native.table import WORD, leaves, number
 

@@ -20,8 +20,7 @@ from functools import partial
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.model.body import Marker, rod_inertia
 from mbsd.model.change import BAR, BODY, change, given, given_body
 from mbsd.model.joint import Joint

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, runtime_checkable
 
 from mbsd.base.errors import ModelError
 from mbsd.model.mechanism import Model
-from mbsd.pictures.animation import Animation
-from mbsd.pictures.picture import Picture
-from mbsd.pictures.view import View
+from mbsd.pictures import Animation, Picture, View
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

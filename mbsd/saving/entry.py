@@ -7,8 +7,7 @@ from typing import Any, TypeVar
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 
 T = TypeVar("T")
 

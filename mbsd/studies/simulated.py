@@ -11,7 +11,7 @@ import numpy as np
 
 from mbsd.base.arguments import checked
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.base.users_function import described
 from mbsd.dynamics.batch.designs import Built, Designs, designs_of
 from mbsd.dynamics.batch.simulate_many import Simulations, checked_measures, quantities_of, simulations

@@ -14,11 +14,11 @@ from uuid import uuid4
 import numpy as np
 
 from mbsd.base.arguments import checked
-from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError, ModelWarning
+from mbsd.base.names import shown
 from mbsd.base.quantity import counted
-from mbsd.base.shown import shown
-from mbsd.base.warn import warn
+from mbsd.base.running import cores
+from mbsd.base.warning import warn
 from mbsd.dealing.connection import connected
 from mbsd.dependencies.recorder import Recorder
 from mbsd.mechanism import Mechanism

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mbsd.base.errors import ModelError
-from mbsd.base.warn import warn
+from mbsd.base.warning import warn
 from mbsd.dealing.voice import Voice
 from mbsd.studies.progress import duration
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.base.users_function import described
 from mbsd.dependencies.inputs import Inputs
 from mbsd.dependencies.installed import is_installed

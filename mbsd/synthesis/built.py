@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.base.users_function import described, named_parameters
 from mbsd.model.mechanism import Model
 

@@ -15,9 +15,8 @@ import numpy as np
 
 from mbsd.base.arguments import checked, finite_number, positive_number, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.names import no_such
-from mbsd.base.progress import users_progress
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
+from mbsd.base.users_function import users_progress
 from mbsd.model.mechanism import Model
 from mbsd.synthesis.moves import Moves, Tried
 from mbsd.synthesis.wishes import Bounds, Condition, bounds_of, conditions_of

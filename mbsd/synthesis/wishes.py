@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.mechanism import Model
 
 FORM = "give names and bounds: {'spring.stiffness': (10.0, 500.0)}"

@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, cycloidal, harmonic, polynomial
-from mbsd.base.quiet import quiet
+from mbsd.base.warning import quiet
 from mbsd.measures import final, largest, samples
 from mbsd.numbers.names import number_named, with_values
 from tests.dynamics.many_models import STEPS, door, press

@@ -15,7 +15,7 @@ from mbsd.drawing.topology.svg_text import d, tag
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
-from mbsd.pictures.picture import Svg
+from mbsd.pictures import Svg
 from mbsd.results.mobility import Mobility
 
 MOST_NODES = 600

@@ -14,13 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mbsd.base.arguments import whole_number
-from mbsd.base.cores import cores
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.names import no_such
-from mbsd.base.progress import users_progress
-from mbsd.base.quiet import quiet
-from mbsd.base.shown import shown
-from mbsd.base.users_function import described, refuse_other_arguments
+from mbsd.base.names import no_such, shown
+from mbsd.base.running import cores
+from mbsd.base.users_function import described, refuse_other_arguments, users_progress
+from mbsd.base.warning import quiet
 from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.early import all_outputs, plan_of
 from mbsd.dynamics.batch.loop import Measures, Work

@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MechanismError
-from mbsd.base.stopping import stops_when
+from mbsd.base.running import stops_when
 from mbsd.base.users_function import described
 from mbsd.dynamics.batch.block import content
 from mbsd.dynamics.batch.designs import Built

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.errors import ModelError, ModelWarning, SimulationError
-from mbsd.base.warn import warn
+from mbsd.base.warning import warn
 from mbsd.compiling.callback import Callback
 from mbsd.compiling.jit import Often
 from mbsd.dynamics.events.arrays import (

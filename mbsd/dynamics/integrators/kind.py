@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 
 if TYPE_CHECKING:
     from mbsd.dynamics.reference.arrays import Dynamics

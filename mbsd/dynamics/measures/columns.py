@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.dynamics.measures.kinds import Measure
 
 

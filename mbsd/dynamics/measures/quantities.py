@@ -19,8 +19,8 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.model.mechanism import Model
 from mbsd.results.columns import FRAME
-from mbsd.results.moved_frame import moved_frame
 from mbsd.results.solution import Solution
+from mbsd.results.views import moved_frame
 
 ACCELERATIONS = ("ax", "ay", "alpha")
 TURNS = ("theta", "omega")

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from mbsd.base.errors import SimulationError
-from mbsd.base.stopping import end_if_unwanted
+from mbsd.base.running import end_if_unwanted
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.runs.diagnosis import Growth, diagnosis, growth_of, refusal, runaway
 from mbsd.dynamics.runs.run import Run

@@ -22,7 +22,7 @@ import numpy as np
 from mbsd.analyses.modes import Mode
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.mechanism import Mechanism
 from mbsd.model.laws.constant_rate import constant_rate
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError, ModelWarning
-from mbsd.base.shown import shown
-from mbsd.base.warn import warn
+from mbsd.base.names import shown
+from mbsd.base.warning import warn
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind
 from mbsd.model.laws import Motion

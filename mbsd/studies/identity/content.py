@@ -23,7 +23,7 @@ import numpy as np
 
 import mbsd
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.dependencies.imported import file_of, resolved
 from mbsd.dependencies.installed import is_installed
 from mbsd.studies.identity.references import instructions, references

@@ -20,7 +20,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number, positive_number, several_numbers, switch
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.tolerancing.dimensions.standards import GENERAL, GRADES, general_tolerance, standard_tolerance
 
 Tolerance = float | Sequence[float] | str

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.model.mechanism import Model
 from mbsd.tolerancing.dimensions.named import numbers_of

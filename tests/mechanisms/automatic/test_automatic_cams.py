@@ -10,8 +10,7 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mbsd.cams import Lift, flat_cam, roller_cam
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.cams.cams import Cam
-from mechanisms.stages.automatic.cams.geneva import GenevaDrive
+from mechanisms.stages.automatic.cams import Cam, GenevaDrive
 from shared.stage.errors import UserError
 from tools.models.guided import geneva
 

@@ -25,7 +25,7 @@ from matplotlib import pyplot
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from mbsd.pictures.picture import Picture, Svg
+from mbsd.pictures import Picture, Svg
 from shared.stage.paths import ROOT
 from tools.documents.figures import pages
 from tools.documents.figures.dark import dark, name_of

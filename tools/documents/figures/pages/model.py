@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 from mbsd import Mechanism
-from mbsd.pictures.picture import Picture, Svg
+from mbsd.pictures import Picture, Svg
 
 
 def pictures(page: SimpleNamespace) -> dict[str, Picture | Svg]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mbsd.base.errors import ModelError
+from mbsd.dynamics.prepare.mass_ratio import USUAL
 from mbsd.dynamics.repeated import Course
 
 
@@ -13,6 +14,12 @@ def refuse(first: Course) -> None:
     if names:
         raise ModelError(
             f"{packed.name}: derivatives of simulations with states of forces ('{names[0]}') are not known"
+        )
+    if first.masses_apart:
+        raise ModelError(
+            f"{packed.name}: derivatives of simulations where inertias of joined bodies are more than {USUAL:.0e} times "
+            "apart are not known: differences of forces lose what the light bodies feel. Give light bodies the mass "
+            "and inertia 0, hold the heavy one by ground, or ask for the motion alone"
         )
     if first.remembers:
         raise ModelError(

@@ -15,7 +15,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import SimulationError
 from mbsd.derivatives.asked import OfBodies
-from mbsd.derivatives.driven.sweeps import displaced
+from mbsd.derivatives.driven.sweeps import displaced, extent
 from mbsd.derivatives.driven.tangents import Tangent, has_kinks
 from mbsd.derivatives.free.free_tangents import FreeTangents
 from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, unshared, ways_of
@@ -51,6 +51,12 @@ from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number
 from mbsd.results.solution import Solution
+
+FAR, ALLOWED = 1e-5, 4.0
+"""A variant's motion is this far from the motion itself, in sizes and rad, where its usual step takes it farther than so
+many times this: near a toggle, and after long, a small change of a number is a large one of the motion."""
+SOME = 5
+"""Looks at the motion for one that tells how far that is."""
 
 
 class SimulationTangents:
@@ -96,14 +102,29 @@ class SimulationTangents:
         """Estimate of the largest error of the tangents, as part of the largest."""
         self.tangents = [] if made is None else [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
         """By number; none where ``slopes`` say all that was asked for."""
+        if self.tangents:
+            self._variants = [
+                self._nearer(own, tangent.q) for own, tangent in zip(self.variants, self.tangents, strict=True)
+            ]
 
     @property
     def variants(self) -> list[Variants]:
         """The mechanism with other values of each number."""
         if self._variants is None:
-            step = TINY * (KINKED if has_kinks(self.terms) else 1.0)
-            self._variants = [self.variation.of(number, SECOND, step) for number in self._numbers]
+            made = [self.variation.of(number, SECOND, self._step) for number in self._numbers]
+            still = np.zeros_like(self.terms.inertia)
+            self._variants = [self._nearer(own, own.begun(still)[0]) for own in made]
         return self._variants
+
+    @property
+    def _step(self) -> float:
+        """Step of a number, as part of its size."""
+        return TINY * (KINKED if has_kinks(self.terms) else 1.0)
+
+    def _nearer(self, variants: Variants, q: np.ndarray) -> Variants:
+        """Return variants that are not too far, where places change by q (..., 3 nb) with their number."""
+        far = extent(self.terms, q) * abs(variants.step)
+        return variants if far <= ALLOWED * FAR else self.variation.of(variants.number, SECOND, self._step * FAR / far)
 
     # -- ways to the tangents --------------------------------------------------------------------------------------
 
@@ -114,10 +135,14 @@ class SimulationTangents:
         if self._first.q is None or ready is None or coordinates is None or has_kinks(self.terms):
             raise NotSmooth
         asked, arrays = self._of_bodies, coordinates.copied(self._runs.tolerance)
+        begins = self._sides is None
         if self._sides is None:
-            both = BothSides(ready, coordinates, arrays)
-            self._sides, self._near = both.of(self.m, self.variation, self._numbers, asked is None), both.near
+            self._both = BothSides(ready, coordinates, arrays, self.variation)
+            self._sides, self._near = self._both.of(self.m, self._numbers, asked is None), self._both.near
         independent = IndependentTangents(ready, coordinates, arrays, self._sides)
+        if begins:
+            first, some = self._first, slice(None, None, SOME)
+            self._come_nearer(independent, independent.reaches_alone(first.t[some], first.q[some], first.v[some]))
         line = independent.carry(self._first, nodes_of(edges, self._met))
 
         def finish() -> Tangents | None:
@@ -130,7 +155,10 @@ class SimulationTangents:
                 return independent.at(self.terms, along, compact, rows, line, self._variants)
             self.t, self.solve = out.t, out.solve
             there = out if len(needed) == len(out.t) else out.take(needed)
-            motions, weights = independent.motions(there, self.m.traces, line, asked.accelerations)
+            also = self.m.traces, line.at(there.t), asked.accelerations
+            motions, weights = independent.motions(there, *also)
+            if self._come_nearer(independent, independent.reaches(motions)):
+                motions, weights = independent.motions(there, *also)
             itself = independent.motion(out, self.m.traces)
             for label, of in asked.by_label.items():
                 self.values[label] = of(itself)[0]
@@ -138,6 +166,13 @@ class SimulationTangents:
             return None
 
         return line.errors, finish
+
+    def _come_nearer(self, independent: IndependentTangents, reaches: list[float]) -> bool:
+        """Take other sides of numbers that reach too far; True if some did."""
+        far = {p: reach for p, reach in enumerate(reaches) if reach > ALLOWED * FAR}
+        for p, reach in far.items():
+            independent.every[p] = self._both.nearer(p, TINY * FAR / reach, self.m.traces)
+        return bool(far)
 
     def _between_looks(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
         """The same of a smooth motion in reference coordinates. Raises NotSmooth."""

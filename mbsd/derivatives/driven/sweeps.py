@@ -44,7 +44,7 @@ class SweepTangents:
         for number in numbers:
             variants = variation.of(number, step=usual)
             tangent_of = tangent(self.terms, self.along, inverse, variants)
-            far = _extent(self.terms, tangent_of.q) * variants.step
+            far = extent(self.terms, tangent_of.q) * variants.step
             if far > FAR:  # near a toggle a small change of a length is a large one of the pose
                 variants = variation.of(number, step=usual * FAR / far)
             if sol.states is not None:
@@ -115,6 +115,6 @@ def displaced(
     )
 
 
-def _extent(terms: Terms, q: np.ndarray) -> float:
-    """Largest part of q (T, 3 nb), in sizes and rad."""
-    return float(np.abs(q[:, 3:] / terms.packed.column_scale()).max(initial=0.0))
+def extent(terms: Terms, q: np.ndarray) -> float:
+    """Return the largest part of q (..., 3 nb), in sizes and rad."""
+    return float(np.abs(q[..., 3:] / terms.packed.column_scale()).max(initial=0.0))

@@ -3,7 +3,9 @@
     J q' = -Phi',   q'_held = given'             held: the given coordinates that the joints leave free
     J v' = -(J v - nu)',   P v' = (given - P v)'
 
-(...)' is the change with the number, and along q'. Source: Haug 1989, ch. 3.
+(...)' is the change with the number at the held motion, and along q'. Places and speeds are linear in most numbers, so
+that one value beside a number tells the first; the second is a central difference, as near a toggle q' is large and
+turns fast. Source: Haug 1989, ch. 3.
 """
 
 from __future__ import annotations
@@ -19,6 +21,8 @@ from mbsd.model.mechanism import Model
 
 CLOSE = 1e-9
 """Sizes and rad by which a held coordinate may differ from what is given."""
+ALONG = 1e-5
+"""How far differences along q' go, in sizes and rad."""
 
 
 class StartTangents:
@@ -26,7 +30,7 @@ class StartTangents:
 
     def __init__(self, m: Model, ready: PreparedDynamics) -> None:
         packed = ready.packed
-        self.packed = packed
+        self.m, self.packed = m, packed
         self.none = np.zeros_like(ready.initial.q), np.zeros_like(ready.initial.q)
         """What changes nothing."""
         self.q, self.v, self.drive = ready.initial.q, ready.initial.v, drive_at(packed, ready.start)
@@ -83,9 +87,15 @@ class StartTangents:
             return q, v
         if self.speeds is None:  # the least kinetic energy decides as well
             return None
-        there = self.q + away * q
-        rate, given = self._evaluated(packed, there)[1], self._left(m, packed, there)
-        v[3:] = self.speeds @ np.concatenate([(self.rate - rate) / away, (given - self.given)[self.kept] / away])
+        rate, given = self._evaluated(packed, self.q)[1], self._left(m, packed, self.q)
+        rate, given = (rate - self.rate) / away, (given - self.given) / away
+        far = float(np.abs(q[3:] / self.packed.column_scale()).max(initial=0.0))
+        if far > 0.0:
+            step = ALONG / far
+            (_, fast), (_, slow) = (self._evaluated(self.packed, self.q + sign * step * q) for sign in (1.0, -1.0))
+            more, less = (self._left(self.m, self.packed, self.q + sign * step * q) for sign in (1.0, -1.0))
+            rate, given = rate + (fast - slow) / (2.0 * step), given + (more - less) / (2.0 * step)
+        v[3:] = self.speeds @ np.concatenate([-rate, given[self.kept]])
         return q, v
 
     def _evaluated(self, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -29,7 +29,7 @@ from mbsd.derivatives.numbers.near_numbers import Near
 from mbsd.derivatives.numbers.straight_variants import variants_beside
 from mbsd.derivatives.numbers.terms import Along
 from mbsd.derivatives.numbers.variants import KINKED, SECOND, TINY, Variants, Variation, models_of
-from mbsd.derivatives.refused_motions import refuse
+from mbsd.derivatives.refused_motions import refuse, refuse_parted
 from mbsd.derivatives.smooth.independent_tangents import IndependentTangents, suits
 from mbsd.derivatives.smooth.sides import BothSides, Sides
 from mbsd.derivatives.smooth.smooth_motion import (
@@ -53,8 +53,8 @@ from mbsd.numbers.names import Number
 from mbsd.results.solution import Solution
 
 FAR, ALLOWED = 1e-5, 4.0
-"""A variant's motion is this far from the motion itself, in sizes and rad, where its usual step takes it farther than so
-many times this: near a toggle, and after long, a small change of a number is a large one of the motion."""
+"""A variant's motion is this far from the motion itself, in sizes and rad, where its usual step takes it farther than
+so many times this: near a toggle, and after long, a small change of a number is a large one of the motion."""
 SOME = 5
 """Looks at the motion for one that tells how far that is."""
 
@@ -103,6 +103,8 @@ class SimulationTangents:
         self.tangents = [] if made is None else [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
         """By number; none where ``slopes`` say all that was asked for."""
         if self.tangents:
+            for own, tangent in zip(self.variants, self.tangents, strict=True):
+                refuse_parted(self.terms, self.along, own, tangent.q)
             self._variants = [
                 self._nearer(own, tangent.q) for own, tangent in zip(self.variants, self.tangents, strict=True)
             ]
@@ -142,6 +144,7 @@ class SimulationTangents:
         independent = IndependentTangents(ready, coordinates, arrays, self._sides)
         if begins:
             first, some = self._first, slice(None, None, SOME)
+            assert first.q is not None
             self._come_nearer(independent, independent.reaches_alone(first.t[some], first.q[some], first.v[some]))
         line = independent.carry(self._first, nodes_of(edges, self._met))
 

@@ -34,7 +34,7 @@ from mbsd.kinematics.groups.groups import KIND
 from mbsd.model.body import Marker
 
 FASTEST = 5.0
-"""Rate of a body for one unit of a coordinate beyond which differences in coordinates go too far: near a dead centre."""
+"""Rate of a body for one unit of a coordinate beyond which differences go too far: near a dead centre."""
 
 
 def suits(ready: PreparedDynamics | None) -> Embedded | None:
@@ -126,7 +126,7 @@ class IndependentTangents:
     def motions(
         self, along: Outputs, traces: Mapping[str, Marker], y: np.ndarray, accelerations: bool
     ) -> tuple[Motions, np.ndarray]:
-        """The motion along tangents y (R, 2 f, P) at R times, on all K sides of all numbers, and weights (P, K) of these.
+        """Return the motion along tangents y (R, 2 f, P) at R times, on K sides of all numbers, and weights (P, K).
 
         With ``traces``, and with ``accelerations`` if these are asked for. Raises NotSmooth.
         """

@@ -15,8 +15,14 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.equations.assembly import residual_and_jacobian
-from mbsd.kinematics.pose.initial import drive_at, given_coordinates, given_velocities, nearest_turn
-from mbsd.kinematics.pose.mobility import independent_rows
+from mbsd.kinematics.pose.held_values import held_values, is_choice, places_of
+from mbsd.kinematics.pose.initial import (
+    drive_at,
+    given_coordinates,
+    given_velocities,
+    nearest_turn,
+    velocity_places,
+)
 from mbsd.model.mechanism import Model
 
 CLOSE = 1e-9
@@ -46,23 +52,22 @@ class StartTangents:
         self.values = np.array([value for _, value in given_coordinates(m, packed)])
         self.wanted = np.array([c for c, _ in given_coordinates(m, packed)], np.int64)
         scale, size = packed.row_scale()[:, None], packed.column_scale()
-        units = np.zeros((len(self.wanted), packed.coordinates))
-        units[np.arange(len(self.wanted)), self.wanted - 3] = 1.0
-        kept = independent_rows(np.vstack([jac * scale * size, units]))
-        self.held = np.array([k - len(jac) for k in kept if k >= len(jac)], np.int64)
-        self.places = self._inverse(np.vstack([jac, units[self.held]]), kept, len(jac))
-        at = self.wanted[self.held]
+        units = np.eye(packed.coordinates)[self.wanted - 3]
+        kept, self.held = held_values(jac * scale * size, units, places_of(self.wanted.tolist()))
+        self.places = self._inverse(jac, kept, self.held @ units)
         target = np.array(
-            [nearest_turn(self.q, int(c), float(self.values[k])) for c, k in zip(at, self.held, strict=True)]
+            [nearest_turn(self.q, int(c), float(value)) for c, value in zip(self.wanted, self.values, strict=True)]
         )
-        if (np.abs(self.q[at] - target) > CLOSE * size[at - 3]).any():
+        off = np.abs(self.q[self.wanted] - target) / size[self.wanted - 3]
+        if off[self.held.any(axis=0)].max(initial=0.0) > CLOSE:
             self.places = None
         self.speeds = None
         if not self.still:
             rows, self.given = self._given(m, packed, self.q), self._left(m, packed, self.q)
-            kept = independent_rows(np.vstack([jac * scale * size, rows * size]))
-            self.kept = np.array([k - len(jac) for k in kept if k >= len(jac)], np.int64)
-            self.speeds = self._inverse(np.vstack([jac, rows[self.kept]]), kept, len(jac))
+            kept, self.kept = held_values(jac * scale * size, rows * size, velocity_places(m))
+            off = np.abs(self.given[self.kept.any(axis=0)]).max(initial=0.0)
+            if is_choice(self.kept) or off <= CLOSE * np.abs(self.v).max(initial=0.0):
+                self.speeds = self._inverse(jac, kept, self.kept @ rows)
 
     def of(
         self, m: Model, packed: Packed | None, away: float, moved: bool, heavier: bool
@@ -82,7 +87,7 @@ class StartTangents:
             residual_and_jacobian(packed.system, self.q, self.drive, packed.ws)
             phi = packed.ws.phi
             values = np.array([value for _, value in given_coordinates(m, packed)])
-            q[3:] = self.places @ np.concatenate([(self.phi - phi) / away, (values - self.values)[self.held] / away])
+            q[3:] = self.places @ np.concatenate([(self.phi - phi) / away, self.held @ (values - self.values) / away])
         if self.still and not m.velocities:
             return q, v
         if self.speeds is None:  # the least kinetic energy decides as well
@@ -95,7 +100,7 @@ class StartTangents:
             (_, fast), (_, slow) = (self._evaluated(self.packed, self.q + sign * step * q) for sign in (1.0, -1.0))
             more, less = (self._left(self.m, self.packed, self.q + sign * step * q) for sign in (1.0, -1.0))
             rate, given = rate + (fast - slow) / (2.0 * step), given + (more - less) / (2.0 * step)
-        v[3:] = self.speeds @ np.concatenate([-rate, given[self.kept]])
+        v[3:] = self.speeds @ np.concatenate([-rate, self.kept @ given])
         return q, v
 
     def _evaluated(self, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -119,7 +124,10 @@ class StartTangents:
         return values - [sum(factor * self.v[c] for c, factor in factors.items()) for factors in entries]
 
     @staticmethod
-    def _inverse(matrix: np.ndarray, kept: list[int], rows: int) -> np.ndarray | None:
-        """That of J and what is held; None where they leave something open, or joints repeat others."""
-        whole = len(kept) == matrix.shape[1] == len(matrix) and kept[:rows] == list(range(rows))
-        return np.linalg.inv(matrix) if whole else None
+    def _inverse(jac: np.ndarray, kept: list[int], held: np.ndarray) -> np.ndarray | None:
+        """That of J (m, n) and what is ``held``; None where they leave something open, or joints repeat others.
+
+        ``kept``: rows of J that do not.
+        """
+        whole = len(kept) == len(jac) == jac.shape[1] - len(held)
+        return np.linalg.inv(np.vstack([jac, held])) if whole else None

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import marker_places
 from mbsd.base.errors import ModelError
+from mbsd.derivatives.driven.tangents import fits_alone
 from mbsd.derivatives.numbers.terms import Along, Terms
-from mbsd.derivatives.numbers.variants import Variants
+from mbsd.derivatives.numbers.variants import Variant, Variants
 from mbsd.dynamics.prepare.mass_ratio import USUAL
 from mbsd.dynamics.repeated import Course
 from mbsd.equations.constraints.relative import AT
@@ -21,11 +24,11 @@ KEPT = 1e-4
 def refuse_parted(terms: Terms, along: Along, variants: Variants, q: np.ndarray) -> None:
     """Raise ModelError for a number that takes wheels apart which must mesh; q (T, 3 nb): how places change with it."""
     first = terms.packed
-    for k, joint in enumerate(first.specials.joints):
+    for k, (constraint, joint) in enumerate(zip(first.specials.names, first.specials.joints, strict=True)):
         if joint.kind.kept is None:
             continue
-        free = first.system.numbers[int(first.system.special[k, AT]) + WRAPS] != 0.0
-        rows = slice(0, 1 if joint.kind.name == "gear_pair" and free else None)  # else nothing holds centres later
+        wraps = constraint == "gear" and first.system.numbers[int(first.system.special[k, AT]) + WRAPS] != 0.0
+        rows = slice(0, 1 if wraps else None)  # of gears whose centres nothing holds apart, the start
         slope = np.zeros(len(along.t[rows]))
         for weight, variant in zip(variants.weights, variants.variants, strict=True):
             there = along.q[rows] + variant.offset * variants.step * q[rows]
@@ -37,6 +40,19 @@ def refuse_parted(terms: Terms, along: Along, variants: Variants, q: np.ndarray)
                 "number that moves all of them, as an argument of a function that builds the mechanism: "
                 "optimise(..., build=)"
             )
+
+
+def refuse_opened(along: Along, variants: Variants, q: np.ndarray, closed: list[int]) -> None:
+    """Raise ModelError for a number that opens rows which are ``closed``; q (T, 3 nb): how places change with it."""
+
+    def residuals(variant: Variant) -> np.ndarray:
+        packed = variant.terms.packed
+        moved = replace(along, q=along.q + variant.offset * variants.step * q)
+        return (variant.terms.rows(moved)[0] * packed.row_scale())[:, closed]
+
+    if np.abs(variants.slope(residuals)).max(initial=0.0) * variants.size > KEPT:
+        name = variants.variants[0].terms.packed.name
+        raise ModelError(fits_alone(name, variants.number.name))
 
 
 def _kept_length(packed: Packed, k: int, q: np.ndarray) -> np.ndarray:

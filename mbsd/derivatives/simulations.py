@@ -29,7 +29,7 @@ from mbsd.derivatives.numbers.near_numbers import Near
 from mbsd.derivatives.numbers.straight_variants import variants_beside
 from mbsd.derivatives.numbers.terms import Along
 from mbsd.derivatives.numbers.variants import KINKED, SECOND, TINY, Variants, Variation, models_of
-from mbsd.derivatives.refused_motions import refuse, refuse_parted
+from mbsd.derivatives.refused_motions import refuse, refuse_opened, refuse_parted
 from mbsd.derivatives.smooth.independent_tangents import IndependentTangents, suits
 from mbsd.derivatives.smooth.sides import BothSides, Sides
 from mbsd.derivatives.smooth.smooth_motion import (
@@ -74,9 +74,13 @@ class SimulationTangents:
         self.values: dict[str, np.ndarray] = {}
         self.slopes: dict[str, np.ndarray] = {}
         self._ready: PreparedDynamics | None = None
-        self.redundant, self.ends = False, None
+        self.ends = None
         first = runs.course(looked_at(grid))
         refuse(first)
+        self.repeated: set[int] = {*first.dropped}
+        """Rows of joints that repeat others."""
+        self.closed = {*range(len(first.packed.ws.phi))}
+        """Rows that hold all along."""
         span = float(grid[0]), float(grid[-1])
         self.span = span
         self.terms = terms_along(runs, first)
@@ -105,6 +109,8 @@ class SimulationTangents:
         if self.tangents:
             for own, tangent in zip(self.variants, self.tangents, strict=True):
                 refuse_parted(self.terms, self.along, own, tangent.q)
+                if self.repeated:
+                    refuse_opened(self.along, own, tangent.q, sorted(self.closed | self.repeated))
             self._variants = [
                 self._nearer(own, tangent.q) for own, tangent in zip(self.variants, self.tangents, strict=True)
             ]
@@ -206,7 +212,7 @@ class SimulationTangents:
         def finish() -> Tangents:
             assert whole.solution is not None
             self._take(rows_of(unwatched(whole.solution, self.m), rows), needed)
-            if self.redundant:
+            if self.repeated:
                 made.lam[:] = np.nan  # joints that repeat others share their loads in many ways
             if needed[-1] < len(rows) - 1:
                 self.ends = None
@@ -325,7 +331,8 @@ class SimulationTangents:
         jac = packed.spread(self.terms.rows(along.take(slice(k, k + 1)))[2])[0]
         scaled = jac * packed.row_scale()[:, None] * packed.column_scale()
         independent = rows[np.sort(np.array(independent_rows(scaled[rows]), np.int64))]
-        self.redundant = self.redundant or len(independent) < len(rows)
+        self.repeated |= {*rows.tolist()} - {*independent.tolist()}
+        self.closed &= {*rows.tolist()}
         return independent
 
     def ready(self) -> PreparedDynamics:

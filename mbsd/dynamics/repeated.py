@@ -45,6 +45,8 @@ class Course:
     """(T, 3 nb), where it moves smoothly."""
     masses_apart: bool = False
     """Whether several freedoms join masses so far apart that one solution of the equations of motion is too coarse."""
+    dropped: tuple[int, ...] = ()
+    """Rows of joints that repeat others."""
 
 
 @dataclass
@@ -89,7 +91,7 @@ class Repeated:
         sol = self._simulated(times, ready)
         v, a = (part.reshape(len(sol.t), -1) for part in (sol.v, sol.a))
         apart = _are_apart(ready)
-        return Course(sol.packed, sol.t, v, a, sol.stats.steps, sol.approached is not None, masses_apart=apart)
+        return Course(sol.packed, sol.t, v, a, sol.stats.steps, sol.approached is not None, None, apart, ready.dropped)
 
     def closer(self, times: np.ndarray) -> Course:
         """The same at other times, of a motion that is smooth."""
@@ -105,7 +107,7 @@ class Repeated:
         if recording.independent:
             self.ready, self.run, self.recording = ready, run, recording
         looked_at = q if recording.independent else None
-        return Course(shown, out.t, v, a, recording.steps, False, looked_at, _are_apart(ready))
+        return Course(shown, out.t, v, a, recording.steps, False, looked_at, _are_apart(ready), ready.dropped)
 
     def recorded(self, rows: np.ndarray) -> Outputs:
         """Some rows of the course that was looked at last, of a motion that is smooth."""

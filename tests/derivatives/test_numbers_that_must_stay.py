@@ -1,4 +1,4 @@
-"""Numbers that would take wheels out of mesh are refused, wherever the machine stands."""
+"""Numbers that would take wheels out of mesh or open joints are refused, wherever the machine stands."""
 
 from __future__ import annotations
 
@@ -72,3 +72,25 @@ def test_other_numbers_have_derivatives(kind: str) -> None:
     m.torsion_spring("spring", m.ground, m.bodies["first"], stiffness=1.0)
     numbers = ["first.inertia", "second.mass", "spring.stiffness", "first.start.angle"]
     assert np.isfinite(m.sensitivities("first.theta", numbers, 0.2, 4)["first.theta"]).all()
+
+
+def carried(free: bool) -> Mechanism:
+    """A plate on three equal bars, of which one repeats what the others do."""
+    m = Mechanism("plate")
+    plate = m.body("plate", mass=2.0, inertia=0.05)
+    for k, (x, y) in enumerate([(0.0, 0.0), (0.2, 0.1), (0.5, 0.2)]):
+        bar = m.bar(f"bar{k}", 0.4, mass=0.5)
+        m.revolute(f"foot{k}", m.ground.at(x, y), bar.start)
+        m.revolute(f"head{k}", plate.at(x, y), bar.end)
+        m.start_near(**{f"bar{k}": -50})
+    m.start_near(plate=(0.4 * math.cos(math.radians(-50)), 0.4 * math.sin(math.radians(-50)), 0))
+    if not free:
+        m.drive_angle("motor", m.bodies["bar0"], constant_rate(1.0, math.radians(-50)))
+    return m
+
+
+@pytest.mark.parametrize("free", [True, False])
+def test_a_place_of_a_joint_that_repeats_others_is_refused(free: bool) -> None:
+    with pytest.raises(ModelError, match=r"no derivative by 'head1.y': joints repeat others"):
+        carried(free).sensitivities("plate.y", "head1.y", 0.2, 4)
+    assert np.isfinite(carried(free).sensitivities("plate.y", "plate.mass", 0.2, 4)["plate.y"]).all()

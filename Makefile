@@ -106,7 +106,7 @@ export MBSD_MAKE := $(shell echo $$PPID)
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow lint format bench bench-start bench-live bench-film hunt hunt-parts hunt-imports torture check-numbers keep-numbers record-numbers check-events record-events schema docs docs-site site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
+.PHONY: help install libraries check list run-all all overnight status stop view-all view-engines gallery showreel fetch new import test-fast test test-slow test-all lint format bench bench-start bench-live bench-film hunt hunt-parts hunt-imports torture check-numbers keep-numbers record-numbers check-events record-events schema docs docs-site site study-engines study-run-up readme-loop integrators wheel release lock clean clean-all always
 
 help: ## this list
 	@echo "make <target>, with PRESET=draft|preview|production|final on every picture target (preview by default)."
@@ -207,7 +207,7 @@ site: install ## a wall of all machines in motion and a page for each, for any w
 	@$(MBSD) site
 
 view-engines: install ## pages used in Firefox and Safari's engine: a small four-bar, or ONLY=four_bar,pendulum
-	@$(PYTHON) -m tools.engines --name="$$ONLY"
+	@$(PYTHON) -m tools.browsers --name="$$ONLY"
 
 gallery: libraries ## posters of all mechanisms and the page that shows them: docs/gallery/
 	@$(MBSD) gallery
@@ -270,6 +270,11 @@ test-slow: install ## the slow ones: all stages of the rest of the gallery, larg
 	$(ALL_KERNELS)
 	@$(PYTHON) -m pytest -m slow $(PYTEST)
 
+test-all: install ## every test once, as CI runs them: quick ones first, then the longest
+	$(PROGRAMS_OF_TESTS)
+	$(ALL_KERNELS)
+	@$(PYTHON) -m pytest $(PYTEST)
+
 lint: install ## formatting, ruff, pyright, import rules
 	@.venv/bin/ruff format --check .
 	@.venv/bin/ruff check .
@@ -328,17 +333,15 @@ hunt-imports: install ## N damaged files of other programs (1000), each imported
 
 torture: install ## N nights of postage stamps (20), killed and damaged meanwhile; SEED=1: out/torture.json
 	$(ALL_KERNELS)
-	@$(PYTHON) -m tools.torture --n "$${N:-20}" --seed "$$SEED" --only="$$ONLY"
+	@$(PYTHON) -m tests.studio.night.torture --n "$${N:-20}" --seed "$$SEED" --only="$$ONLY"
 
 schema: install ## write docs/schema/ from shared/contract/ and the solver's joints and laws
 	@$(PYTHON) -m tools.schema
 	@$(PYTHON) -m mbsd.saving.schema docs/schema/model.schema.json
 
-docs: install ## docs/theory.md and the map of rooms from docstrings, pictures, the lecture's outputs, the site
-	@$(PYTHON) tools/theory.py
-	@$(PYTHON) tools/rooms.py
-	@$(PYTHON) -m tools.figures
-	@$(PYTHON) -m tools.lecture
+docs: install ## the pictures of docs/, the lecture's outputs, the site
+	@$(PYTHON) -m tools.documents figures
+	@$(PYTHON) -m tools.documents lecture
 	@$(PYTHON) -m tools.site
 
 docs-site: install ## the documents and all names of mbsd as pages, with a search, to read without a network: out/docs/
@@ -346,23 +349,23 @@ docs-site: install ## the documents and all names of mbsd as pages, with a searc
 
 study-engines: install ## which bank angle suits which V engine: out/engines/ and the tables of docs/engines.md
 	$(ALL_KERNELS)
-	@$(PYTHON) -m tools.engine_layouts
+	@$(PYTHON) -m tools.documents bank-angles
 
 study-run-up: install ## engines on mounts run through resonance, 120 simulations on all cores: out/engines/run_up.csv, .svg
 	$(ALL_KERNELS)
-	@$(PYTHON) -m tools.engine_run_up
+	@$(PYTHON) -m tools.documents run-up
 
 readme-loop: libraries ## the loop at the top of README.md, filmed by the page in Chromium: docs/readme_loop.webp
 	@$(MBSD) view four_bar
-	@$(PYTHON) -m tools.readme_loop
+	@$(PYTHON) -m tools.documents readme-loop
 
 integrators: install ## measure the integrators again, for docs/integrators.md: order, cost, 10 000 periods (5 minutes)
 	$(ALL_KERNELS)
-	@$(PYTHON) -m tools.integrators
-	@$(PYTHON) -m tools.figures integrators
+	@$(PYTHON) -m tools.documents integrators
+	@$(PYTHON) -m tools.documents figures integrators
 
-wheel: install ## mbsd with all rooms as sdist and wheel: dist/; KERNELS=1: a wheel with compiled kernels, too
-	@$(PYTHON) -m tools.wheel $${KERNELS:+--kernels}
+wheel: install ## sdist and wheels with compiled kernels: dist/; KERNELS="3.11 3.12 3.13 3.14", KERNELS=none
+	@case "$$KERNELS" in none) $(PYTHON) -m tools.wheel ;; *) $(PYTHON) -m tools.wheel --kernels $$KERNELS ;; esac
 
 release: install ## what must hold before a tag, looked at in a clean clone: archives, hashes, NOTES.md in dist/
 	@$(PYTHON) -m tools.release

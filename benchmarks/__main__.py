@@ -1,4 +1,4 @@
-"""``make bench``: every code on every problem, the tables of docs/benchmarks.md, and out/bench.json.
+"""``make bench``: every code on every problem, the table of docs/benchmarks.md, out/bench.md and out/bench.json.
 
 python -m benchmarks                  all of it
 python -m benchmarks calls            the calls as users make them alone, only shown
@@ -20,32 +20,23 @@ python -m benchmarks tune [names]     the sweeps for the best settings, of some 
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
 import sys
 
-from benchmarks import rows, table
-from benchmarks.batch import measure as batch
+from benchmarks import batch, clearance, derivatives, engines, rows, synthesis, table, tolerances
 from benchmarks.calls import measure as calls
-from benchmarks.clearance import measure as clearance
-from benchmarks.derivatives import measure as derivatives
 from benchmarks.dynamics import measure as dynamics
 from benchmarks.dynamics import scaling
 from benchmarks.dynamics.settings import tune_all
-from benchmarks.engines import measure as engines
 from benchmarks.film import measure as film
 from benchmarks.film import timing
 from benchmarks.four_bar import STEPS
+from benchmarks.harness import keep_quicker, printed_by
 from benchmarks.machines import measure as machines
 from benchmarks.rows import Bar, Row
 from benchmarks.simulations import measure as simulations
 from benchmarks.start import measure as start
-from benchmarks.synthesis import measure as synthesis
-from benchmarks.tolerances import measure as tolerances
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
-from shared.stage.paths import ROOT
 
 CODES = ("mbsd", "numpy", "exudyn", "pylinkage")
 ROUNDS = 8
@@ -103,8 +94,7 @@ def _all() -> int:
     best: dict[str, Row] = {}
     for turn in range(ROUNDS):
         for code in CODES:
-            row = _measure(code)
-            best[code] = min(best.get(code, row), row, key=lambda r: r.seconds)
+            keep_quicker(best, code, Row(**printed_by("benchmarks.four_bar.measure", code, what=code)))
         say("bench", f"round {turn + 1} of {ROUNDS} done")
     chosen = [best[code] for code in CODES]
     rows.show(chosen, STEPS)
@@ -136,7 +126,7 @@ def _all() -> int:
     table.write(everything, bars)
     for line in missed:
         say("bench", f"missed: {line}")
-    say("bench", "out/bench.json and the tables of docs/benchmarks.md written")
+    say("bench", "out/bench.md, out/bench.json and the table of docs/benchmarks.md written")
     return _tell(bars) or (1 if missed else 0)
 
 
@@ -144,18 +134,6 @@ def _tell(bars: list[Bar]) -> int:
     for bar in bars:
         say("bench", f"{'met' if bar.met else 'missed'}: {bar}")
     return 0 if all(bar.met for bar in bars) else 1
-
-
-def _measure(code: str) -> Row:
-    """One code in a process of its own, on one thread."""
-    single = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    run = subprocess.run(
-        [sys.executable, "-m", "benchmarks.four_bar.measure", code],
-        cwd=ROOT, env=os.environ | single, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    if run.returncode:
-        raise UserError(f"bench: {code} failed: {(run.stderr.strip().splitlines() or ['no message'])[-1]}")
-    return Row(**json.loads(run.stdout.strip().splitlines()[-1]))
 
 
 if __name__ == "__main__":

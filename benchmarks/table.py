@@ -1,4 +1,4 @@
-"""The tables of docs/benchmarks.md, written between its two markers from the rows of the last run."""
+"""The tables of the last run: what was asked for in docs/benchmarks.md, every row in out/bench.md."""
 
 from __future__ import annotations
 
@@ -7,30 +7,35 @@ from collections.abc import Sequence
 
 from benchmarks.rows import Bar, Row
 from shared.stage.files import write_bytes
-from shared.stage.paths import ROOT
+from shared.stage.paths import out_root
+from tools.documents.pages import DOCS, replaced
 
-PAGE = ROOT / "docs" / "benchmarks.md"
+PAGE = DOCS / "benchmarks.md"
 BEGIN, END = "<!-- rows of make bench -->", "<!-- end of rows -->"
 
 
 def write(rows: Sequence[Row], bars: Sequence[Bar]) -> None:
-    """Replace the tables in the page."""
-    page = PAGE.read_text()
-    before, _, rest = page.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    write_bytes(PAGE, f"{before}{BEGIN}\n{text(rows, bars)}\n{END}{after}".encode())
+    """Replace the table in the page, and write out/bench.md."""
+    write_bytes(PAGE, replaced(PAGE.read_text(), BEGIN, END, bars_table(rows, bars)).encode())
+    write_bytes(out_root() / "bench.md", f"# Every row of the last run\n\n{rows_table(rows)}\n".encode())
 
 
-def text(rows: Sequence[Row], bars: Sequence[Bar]) -> str:
-    """What was asked for, then all rows; films are left to their own section."""
-    lines = ["| problem | asked for | reached | against | its settings | met |", "|---|---|---|---|---|---|"]
+def bars_table(rows: Sequence[Row], bars: Sequence[Bar]) -> str:
+    """Return what was asked for and reached, with the time of mbsd where a problem has one such row."""
+    lines = ["| problem | mbsd | asked for | reached | against | its settings | met |", "|---|--:|---|---|---|---|---|"]
     for bar in bars:
         wanted = f"at most {bar.wanted:g}" if bar.most else f"{bar.wanted:g}x"
-        times = "" if bar.most else "x"
+        reached = f"{bar.reached:.3g}{'' if bar.most else 'x'}"
         met = "yes" if bar.met else "**no**"
-        lines.append(f"| {bar.problem} | {wanted} | {bar.reached:.3g}{times} | {bar.peer} | {bar.settings} | {met} |")
-    lines += [
-        "",
+        own = [_time(row) for row in rows if row.code == "mbsd" and row.problem == bar.problem]
+        cells = (bar.problem, own[0] if len(own) == 1 else "", wanted, reached, bar.peer, bar.settings, met)
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def rows_table(rows: Sequence[Row]) -> str:
+    """Return every code on every problem; films are left to their own section."""
+    lines = [
         "| problem | code | version | time | times mbsd | errors | settings |",
         "|---|---|---|---|---|---|---|",
     ]
@@ -45,6 +50,10 @@ def text(rows: Sequence[Row], bars: Sequence[Bar]) -> str:
         known = "" if math.isnan(row.error) else f"{row.error:.1e}"
         errors = ", ".join(f"{name} {value:.1e}" for name, value in row.errors.items()) or known
         errors += "" if row.within_limits else "; **beyond the limits**"
-        time = f"{row.seconds * 1000:.3g} ms"
-        lines.append(f"| {row.problem} | {row.code} | {row.version} | {time} | {ratio} | {errors} | {row.settings} |")
+        cells = (row.problem, row.code, row.version, _time(row), ratio, errors, row.settings)
+        lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
+
+
+def _time(row: Row) -> str:
+    return f"{row.seconds * 1000:.3g} ms"

@@ -45,16 +45,14 @@ if TYPE_CHECKING:
     from mbsd.model.event import Event, Happening, angle_reaches, distance_reaches, speed_reaches
     from mbsd.model.laws import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
     from mbsd.model.laws.curve import Curve, curve
-    from mbsd.pictures.animation import Animation
-    from mbsd.pictures.picture import Picture, Svg
-    from mbsd.results.contacts import ContactView
+    from mbsd.pictures import Animation, Picture, Svg
     from mbsd.results.force_view import ForceView
     from mbsd.results.friction import FrictionView
     from mbsd.results.gas import GasView
     from mbsd.results.hydraulics import HydraulicView
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
-    from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Stats
+    from mbsd.results.views import ContactView, DriverView, EnergyView, FrameView, JointView, Stats
     from mbsd.studies.simulated import Simulated, simulated
     from mbsd.studies.study import study
     from mbsd.synthesis.fit_path import PathFit, SynthesisError, fit_path
@@ -152,11 +150,11 @@ _LATER = {
     "ActuatedMotion": "mbsd.analyses.efforts",
     "Balance": "mbsd.balancing.balance",
     "BalanceShaft": "mbsd.balancing.means",
-    "Animation": "mbsd.pictures.animation",
+    "Animation": "mbsd.pictures",
     "Batch": "mbsd.kinematics.batch",
     "Body": "mbsd.mechanism",
     "Counterweight": "mbsd.balancing.means",
-    "ContactView": "mbsd.results.contacts",
+    "ContactView": "mbsd.results.views",
     "Curve": "mbsd.model.laws.curve",
     "DriverView": "mbsd.results.views",
     "EnergyView": "mbsd.results.views",
@@ -182,11 +180,11 @@ _LATER = {
     "Motion": "mbsd.model.laws",
     "Optimum": "mbsd.synthesis.optimise",
     "PathFit": "mbsd.synthesis.fit_path",
-    "Picture": "mbsd.pictures.picture",
+    "Picture": "mbsd.pictures",
     "Sensitivities": "mbsd.derivatives.sensitivities",
     "Solution": "mbsd.results.solution",
     "Stats": "mbsd.results.views",
-    "Svg": "mbsd.pictures.picture",
+    "Svg": "mbsd.pictures",
     "SynthesisError": "mbsd.synthesis.fit_path",
     "Clearance": "mbsd.tolerancing.dimensions.clearance",
     "Normal": "mbsd.tolerancing.dimensions.spreads",

@@ -102,7 +102,21 @@ def _surfaces() -> None:
     m.simulate(0.01, steps=4)
 
 
+def _events() -> None:
+    """Contacts, stops, friction that sticks, and all integrators behind one name."""
+    from mbsd import Mechanism
+
+    m = Mechanism("ball")
+    ball, rod = m.body("ball", mass=0.2, inertia=1e-5), m.bar("rod", 1.0, mass=1.0)
+    m.rigid_contact("floor", m.ground.origin, ball.origin, radius=0.01, friction=0.3)
+    m.revolute("A", m.ground.at(0, 0), rod.start)
+    m.friction("dry", "A", 0.1, radius=0.1, sticks=True)
+    m.start_near(ball=(0.0, 0.02, 0.0), rod=0.0)
+    m.simulate(0.1, steps=4)
+
+
 PARTS: dict[str, Callable[[], None]] = {
+    "events": _events,
     "reference": _reference,
     "newton": _newton,
     "independent": _independent,

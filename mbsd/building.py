@@ -1,4 +1,4 @@
-"""What a mechanism is made of, by name: joints, drivers, forces, contacts, traced points, starts, events.
+"""Building a mechanism by name: joints, drivers, forces, contacts, traced points, starts, events.
 
 Each method of a joint, driver, force or contact stands in the file of its kind; a line here makes it a method.
 """
@@ -12,7 +12,7 @@ import numpy as np
 
 from mbsd.base.arguments import several_numbers
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.adding.events import checked_event
 from mbsd.model.body import Body, Marker
 from mbsd.model.contacts.discs import rigid_discs

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mbsd.base.arguments import checked_methods
+from mbsd.base.quantity import counted
 from mbsd.building import Building
 from mbsd.model.adding.forces import Amount
 from mbsd.model.body import Body, Marker
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from mbsd.dynamics.batch.simulate_many import Simulations
     from mbsd.dynamics.measures.kinds import Measure
     from mbsd.kinematics.batch import Batch
-    from mbsd.pictures.picture import Picture, Svg
+    from mbsd.pictures import Picture, Svg
     from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
 
@@ -64,7 +65,7 @@ class Mechanism(Building):
 
     def mobility(self) -> Mobility:
         """Degrees of freedom, nominal and by rank, and redundant joints; does not need drivers."""
-        from mbsd.dynamics.mobility import mobility
+        from mbsd.dynamics.prepare.large import mobility
 
         return mobility(self)
 
@@ -197,13 +198,13 @@ class Mechanism(Building):
         Simulations that fail have a reason there. Raises ModelError for what cannot be asked.
         """
         from mbsd.analyses.suspicious_units import tell
-        from mbsd.dynamics.batch.simulate_many import simulate_many
+        from mbsd.dynamics.batch.designs import designs_of
+        from mbsd.dynamics.batch.simulate_many import simulations
+        from mbsd.dynamics.simulate import request_for
 
         tell(self)
-        return simulate_many(
-            self, duration, vary, start, moving, measure, steps, times, method, tolerance, step, formulation, threads,
-            progress, options,
-        )  # fmt: skip
+        asked = request_for(self, duration, steps, times, method, tolerance, step, formulation, options)
+        return simulations(designs_of(self, vary, start, moving), measure, asked, threads, progress)
 
     def sensitivities(
         self,
@@ -316,7 +317,7 @@ class Mechanism(Building):
 
     @property
     def drawer(self) -> SkeletonDrawer:
-        """What draws its solutions, for :meth:`mbsd.results.solution.Solution.draw`, ``animate`` and ``view``."""
+        """The drawer of its solutions, for :meth:`mbsd.results.solution.Solution.draw`, ``animate`` and ``view``."""
         from mbsd.drawing.of_solution import SkeletonDrawer
 
         return SkeletonDrawer()
@@ -341,4 +342,5 @@ class Mechanism(Building):
 
     def __repr__(self) -> str:
         bodies, joints, drivers = len(self.bodies) - 1, len(self.joints), len(self.drivers)
-        return f"<Mechanism {self.name}: {bodies} bodies, {joints} joints, {drivers} drivers>"
+        said = ", ".join([counted(bodies, "body"), counted(joints, "joint"), counted(drivers, "driver")])
+        return f"<Mechanism {self.name}: {said}>"

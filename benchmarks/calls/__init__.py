@@ -7,6 +7,10 @@ its motion at 1000 times or more; error: the largest drift of its energy (J).
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 
 from benchmarks.four_bar import exact, worst
@@ -18,6 +22,16 @@ BARS = {SWEEP: 2e-3, CHANGED: 1e-3, SIMULATION: 1e-3}
 """s that our calls take at most."""
 STEPS = 360
 LENGTH, MASS, GRAVITY, DURATION, OUTPUTS = 1.0, 1.0, 9.81, 10.0, 1000
+
+
+@dataclass(frozen=True)
+class Call:
+    """``call`` is timed; ``error`` of what it returned is not."""
+
+    problem: str
+    settings: str
+    call: Callable[[], Any]
+    error: Callable[[Any], float]
 
 
 def rocker_error(crank: np.ndarray, rocker: np.ndarray) -> float:

@@ -23,11 +23,11 @@ from benchmarks.calls import (
     SIMULATION,
     STEPS,
     SWEEP,
+    Call,
     energy_drift,
     rocker_error,
 )
-from benchmarks.calls.call import Call
-from benchmarks.four_bar.exudyn_model import four_bar
+from benchmarks.four_bar.exudyn_code import four_bar
 
 sys.exudynFast = True  # type: ignore[attr-defined]  # the build without range checks
 import exudyn as exu  # noqa: E402

@@ -15,10 +15,10 @@ from benchmarks.calls import (
     SIMULATION,
     STEPS,
     SWEEP,
+    Call,
     energy_drift,
     rocker_error,
 )
-from benchmarks.calls.call import Call
 from benchmarks.four_bar.mbsd_code import model
 from mbsd.results.solution import Solution
 

@@ -8,8 +8,7 @@ import mujoco
 import numpy as np
 from mujoco.rollout import rollout
 
-from benchmarks.calls import DURATION, GRAVITY, LENGTH, MASS, OUTPUTS, SIMULATION, energy_drift
-from benchmarks.calls.call import Call
+from benchmarks.calls import DURATION, GRAVITY, LENGTH, MASS, OUTPUTS, SIMULATION, Call, energy_drift
 
 VERSION = mujoco.__version__
 INERTIA = MASS * LENGTH**2 / 12

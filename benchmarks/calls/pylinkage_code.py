@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.calls import CHANGED, STEPS, SWEEP, rocker_error
-from benchmarks.calls.call import Call
+from benchmarks.calls import CHANGED, STEPS, SWEEP, Call, rocker_error
 from benchmarks.four_bar import COUPLER, CRANK, GROUND, ROCKER, exact
 
 warnings.filterwarnings("ignore")

@@ -71,7 +71,7 @@ def _ratio(task: Callable[..., Any], what: str) -> float:
 
 
 def _row(workers: int, tasks: int, largest: int) -> str:
-    with _cluster([[sys.executable, "-m", "benchmarks.cluster.simulated", "ADDRESS", str(workers)]]) as (
+    with _cluster([[sys.executable, "-m", "benchmarks.cluster.work", "ADDRESS", str(workers)]]) as (
         where,
         process,
     ):

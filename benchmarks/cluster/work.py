@@ -1,7 +1,9 @@
-"""Tasks in the place of frames."""
+"""Tasks in the place of frames; ``python -m benchmarks.cluster.work ADDRESS COUNT`` runs workers in one process."""
 
 from __future__ import annotations
 
+import asyncio
+import sys
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -28,3 +30,16 @@ def burning(files: Mapping[str, Path], common: str, order: float) -> bytes:
     while time.thread_time() < end:
         sum(range(2000))
     return b"done"
+
+
+async def main(address: str, count: int) -> None:
+    """Run workers until the process is ended."""
+    from distributed import Worker
+
+    workers = [Worker(address, nthreads=1, name=f"simulated-{number}", dashboard=False) for number in range(count)]
+    await asyncio.gather(*workers)
+    await asyncio.gather(*(worker.finished() for worker in workers))
+
+
+if __name__ == "__main__":
+    asyncio.run(main(sys.argv[1], int(sys.argv[2])))

@@ -16,7 +16,7 @@ import numpy as np
 
 from benchmarks.dynamics.cases import Case
 from benchmarks.dynamics.pins import GROUND, Record
-from benchmarks.dynamics.stepping import steps_of
+from benchmarks.dynamics.settings import steps_of
 
 sys.exudynFast = True  # type: ignore[attr-defined]  # the build without range checks
 import exudyn as exu  # noqa: E402

@@ -12,11 +12,12 @@ import numpy as np
 import mbsd
 from benchmarks.dynamics.cases import Case
 from benchmarks.dynamics.pins import GROUND, Pinned, Record
-from benchmarks.dynamics.stepping import tolerances
+from benchmarks.dynamics.settings import tolerances
+from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.runs.motion import in_reference, independent_steps, integrate
 from mbsd.dynamics.runs.run import Run
-from mbsd.dynamics.runs.to_end import in_reference, independent_steps, integrate
 from mbsd.dynamics.simulate import integrator_named
 
 VERSION = mbsd.__version__
@@ -53,17 +54,25 @@ def ready(case: Case) -> PreparedDynamics:
     return prepare_dynamics(mechanism(case.model, case.name.replace(" ", "_")), 0.0, case.duration)
 
 
+def started(
+    prepared: PreparedDynamics, method: Integrator, tolerance: float, times: np.ndarray
+) -> tuple[Callable[[], Any], Any]:
+    """Return a run from the start that is ready to be timed, and the outputs that it fills at ``times`` (s)."""
+    duration = float(times[-1])
+    state, out = prepared.begun(times)
+    run = Run(prepared, method, tolerance, duration, duration, {})
+    independent = independent_steps(run, state)
+    to_end = independent.to_end if independent else partial(in_reference, run)
+    return lambda: to_end(state, out), out
+
+
 def prepare(case: Case, settings: dict[str, Any]) -> tuple[Callable[[], Callable[[], Any]], Callable[[], Record]]:
     """``fresh`` gives a run that starts anew, whose making is not timed; ``record`` what it computes."""
     prepared, method = ready(case), integrator_named(case.name, settings["method"])
     ends = np.array([0.0, case.duration])
 
     def fresh() -> Callable[[], Any]:
-        state, out = prepared.begun(ends)
-        run = Run(prepared, method, settings["tolerance"], case.duration, case.duration, {})
-        independent = independent_steps(run, state)
-        to_end = independent.to_end if independent else partial(in_reference, run)
-        return lambda: to_end(state, out)
+        return started(prepared, method, settings["tolerance"], ends)[0]
 
     def record() -> Record:
         times = np.linspace(0.0, case.duration, SAMPLES + 1)

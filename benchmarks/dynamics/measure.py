@@ -1,19 +1,26 @@
-"""Rows of the dynamics problems: every code at its stored settings, in turn, one process a run, several rounds."""
+"""Rows of the dynamics problems: every code at its stored settings, in turn, one process a run, several rounds.
+
+python -m benchmarks.dynamics.measure CODE CASE times one code on one problem. It prints seconds (the best of several
+runs), errors by name, and whether they are within the limits, as JSON.
+"""
 
 from __future__ import annotations
 
-import subprocess
+import importlib
+import json
 import sys
 
 from benchmarks.dynamics import CODES
 from benchmarks.dynamics.cases import BESIDE_PEERS, case
-from benchmarks.dynamics.settings import found_in, load, words
+from benchmarks.dynamics.settings import load, words
+from benchmarks.harness import best_of, bind_to_one_core, keep_quicker, printed_by
 from benchmarks.rows import Bar, Row
 from shared.stage.console import say
-from shared.stage.errors import UserError
-from shared.stage.paths import ROOT
 
 ROUNDS = 3
+LONGEST = 1.0
+"""s: no new run is begun after this."""
+MOST_RUNS = 400
 
 
 def measured() -> tuple[list[Row], list[Bar]]:
@@ -26,8 +33,7 @@ def measured() -> tuple[list[Row], list[Bar]]:
         for _ in range(ROUNDS):
             for code in CODES:
                 if code in chosen.get(name, {}):
-                    row = _once(code, name, words(chosen[name][code]["settings"]))
-                    best[code] = min(best.get(code, row), row, key=lambda r: r.seconds)
+                    keep_quicker(best, code, _once(code, name, words(chosen[name][code]["settings"])))
         rows += best.values()
         if "mbsd" in best:
             bars.append(_bar(name, best))
@@ -36,24 +42,10 @@ def measured() -> tuple[list[Row], list[Bar]]:
 
 
 def _once(code: str, name: str, settings: str) -> Row:
-    run = subprocess.run(
-        [sys.executable, "-m", "benchmarks.dynamics.once", code, name],
-        cwd=ROOT, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    if run.returncode:
-        raise UserError(f"bench: {code} on {name} failed: {(run.stderr.strip().splitlines() or ['no message'])[-1]}")
-    record = found_in(run.stdout)
-    main = list(case(name).limits)[-1]
-    return Row(
-        name,
-        code,
-        record["version"],
-        settings,
-        record["seconds"],
-        record["errors"][main],
-        record["errors"],
-        record["met"],
-    )
+    record = printed_by("benchmarks.dynamics.measure", code, name, what=f"{code} on {name}")
+    errors = record["errors"]
+    error = errors[list(case(name).limits)[-1]]
+    return Row(name, code, record["version"], settings, record["seconds"], error, errors, record["met"])
 
 
 def _bar(name: str, best: dict[str, Row]) -> Bar:
@@ -65,3 +57,18 @@ def _bar(name: str, best: dict[str, Row]) -> Bar:
     peer = min(peers, key=lambda row: row.seconds)
     ratio = peer.seconds / ours.seconds
     return Bar(name, wanted, ratio, peer.code, peer.settings, ours.within_limits and ratio >= wanted)
+
+
+def main(code: str, name: str) -> None:
+    """Print the result of one code on one problem at its stored settings."""
+    bind_to_one_core()
+    module = importlib.import_module(f"benchmarks.dynamics.{code}_code")
+    problem, settings = case(name), load()[name][code]["settings"]
+    fresh, record = module.prepare(problem, settings)
+    errors = problem.errors(record())  # compiles and warms the cache too
+    seconds, _ = best_of(fresh, MOST_RUNS, LONGEST)
+    print(json.dumps({"version": module.VERSION, "seconds": seconds, "errors": errors, "met": problem.met(errors)}))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -14,9 +14,8 @@ import mujoco
 import numpy as np
 
 from benchmarks.dynamics.cases import Case
-from benchmarks.dynamics.pins import GROUND, Pin, Record
-from benchmarks.dynamics.spanning_tree import spanning_tree
-from benchmarks.dynamics.stepping import steps_of
+from benchmarks.dynamics.pins import GROUND, Pin, Record, spanning_tree
+from benchmarks.dynamics.settings import steps_of
 
 VERSION = mujoco.__version__
 SAMPLES = 1000

@@ -60,7 +60,7 @@ class Pinned:
 
 @dataclass(frozen=True)
 class Record:
-    """What a code found: times (n,), poses and velocities of all centres of mass (n, bodies, 3)."""
+    """Motion computed by a code: times (n,), poses and velocities of all centres of mass (n, bodies, 3)."""
 
     times: np.ndarray
     poses: np.ndarray
@@ -94,3 +94,20 @@ def _place(model: Pinned, body: int, point: Point) -> np.ndarray:
     x, y, angle = model.solids[body].pose
     c, s = np.cos(angle), np.sin(angle)
     return np.array([x + c * point[0] - s * point[1], y + s * point[0] + c * point[1]])
+
+
+def spanning_tree(model: Pinned) -> tuple[dict[int, tuple[int, Pin]], list[Pin]]:
+    """Return the parent of each body and the pin between them, parents first; and the pins that close loops."""
+    parents: dict[int, tuple[int, Pin]] = {}
+    waiting = list(model.pins)
+    reached = [GROUND]
+    for body in reached:
+        for pin in list(waiting):
+            if body not in (pin.i, pin.j):
+                continue
+            child = pin.j if body == pin.i else pin.i
+            if child != GROUND and child not in parents:
+                parents[child] = body, pin
+                reached.append(child)
+                waiting.remove(pin)
+    return parents, waiting

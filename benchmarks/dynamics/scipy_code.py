@@ -14,7 +14,7 @@ from scipy import integrate
 from benchmarks.dynamics.cases import Case
 from benchmarks.dynamics.equations import SingularPose, equations
 from benchmarks.dynamics.pins import Record
-from benchmarks.dynamics.stepping import steps_of, tolerances
+from benchmarks.dynamics.settings import steps_of, tolerances
 
 VERSION = scipy.__version__
 MOST_STEPS = 20_000

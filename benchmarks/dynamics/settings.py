@@ -1,8 +1,9 @@
-"""The best settings of every code on every problem, settings.json, and the sweep that finds them."""
+"""The best settings of every code on every problem, settings.json, ladders of settings, and the sweep over them."""
 
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -11,6 +12,7 @@ from typing import Any
 
 from benchmarks.dynamics import CODES
 from benchmarks.dynamics.cases import BESIDE_PEERS
+from benchmarks.harness import found_in
 from shared.stage.console import say
 from shared.stage.errors import UserError
 
@@ -57,11 +59,6 @@ def write(kept: dict[str, dict[str, dict[str, Any]]]) -> None:
     FILE.write_text("{\n" + ",\n".join(blocks) + "\n}\n")
 
 
-def found_in(printed: str) -> dict[str, Any]:
-    """The JSON object among what a code printed: Exudyn says hello when it ends."""
-    return json.loads(next(line for line in printed.splitlines() if line.startswith("{")))
-
-
 def _sweep(code: str, name: str) -> dict[str, Any]:
     command = [sys.executable, "-m", "benchmarks.dynamics.tune", code, name]
     try:
@@ -71,3 +68,15 @@ def _sweep(code: str, name: str) -> dict[str, Any]:
     if done.returncode:
         raise UserError(f"bench: the sweep of {code} on {name} failed, see above")
     return found_in(done.stdout)
+
+
+def steps_of(first: int, last: int, ratio: float = 1.15) -> list[int]:
+    """Return numbers of steps from ``first`` to ``last``, in even ratios."""
+    count = round(math.log(last / first) / math.log(ratio))
+    return [round(first * ratio**k) for k in range(count + 1)]
+
+
+def tolerances(first: float, last: float, per_decade: int = 3) -> list[float]:
+    """Return tolerances from loose to tight, in even ratios."""
+    count = round(math.log10(first / last) * per_decade)
+    return [float(f"{first * 10 ** (-k / per_decade):.2g}") for k in range(count + 1)]

@@ -20,7 +20,7 @@ from benchmarks.dynamics.dae import Dae
 from benchmarks.dynamics.equations import equations
 from benchmarks.dynamics.pins import Record
 from benchmarks.dynamics.scipy_code import angle
-from benchmarks.dynamics.stepping import tolerances
+from benchmarks.dynamics.settings import tolerances
 
 VERSION = f"{metadata.version('scikit-sundae')}"
 MOST_STEPS = 20_000

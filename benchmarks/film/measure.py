@@ -23,6 +23,7 @@ from shared.stage.console import duration, say
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT, Out, mechanism_names
+from tools.documents.pages import between, replaced
 
 PAGE = ROOT / "docs" / "benchmarks.md"
 BEGIN, END = "<!-- rows of make bench-film -->", "<!-- end of bench-film -->"
@@ -68,7 +69,7 @@ def plain(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
 
 
 def resumed(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
-    """What is left after a SIGKILL at half of the pictures, against the whole."""
+    """Time the rest of a run after a SIGKILL at half of the pictures, against the whole."""
     cut = Film(name, preset, frames, folder)
     seconds, _ = _whole(name, preset, frames)
     cut.run_half()
@@ -133,14 +134,11 @@ def _at_most(problem: str, wanted: float, reached: float, peer: str, settings: s
 def _write(bars: Sequence[Bar]) -> None:
     """Rows measured now; those of other problems stay as they are."""
     page = PAGE.read_text()
-    before, _, rest = page.partition(BEGIN)
-    old, _, after = rest.partition(END)
-    rows = {line.split("|")[1].strip(): line for line in old.strip().splitlines()[2:]}
+    rows = {line.split("|")[1].strip(): line for line in between(page, BEGIN, END).strip().splitlines()[2:]}
     for bar in bars:
         wanted = f"at most {bar.wanted:g}" if bar.most else f"{bar.wanted:g}x"
         reached = f"{bar.reached:.3g}{'' if bar.most else 'x'}"
         met = "yes" if bar.met else "**no**"
         rows[bar.problem] = f"| {bar.problem} | {wanted} | {reached} | {bar.peer} | {bar.settings} | {met} |"
     lines = ["| what | asked for | reached | against | settings | met |", "|---|---|---|---|---|---|", *rows.values()]
-    table = "\n".join(lines)
-    write_bytes(PAGE, f"{before}{BEGIN}\n{table}\n{END}{after}".encode())
+    write_bytes(PAGE, replaced(page, BEGIN, END, "\n".join(lines)).encode())

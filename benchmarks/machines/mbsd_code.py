@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 import mbsd
 from benchmarks import four_bar, machines
+from benchmarks.dynamics.mbsd_code import started
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.runs.run import Run
-from mbsd.dynamics.runs.to_end import in_reference, independent_steps
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.march import kinematics_at
 from mbsd.kinematics.prepare import prepare as prepared
@@ -108,10 +106,7 @@ def _falling() -> tuple[Callable[[], Callable[[], Any]], Callable[[Any], float]]
     ends = np.array([0.0, machines.DURATION])
 
     def fresh() -> Callable[[], Any]:
-        state, out = ready.begun(ends)
-        run = Run(ready, method, TOLERANCE, machines.DURATION, machines.DURATION, {})
-        independent = independent_steps(run, state)
-        to_end = independent.to_end if independent else partial(in_reference, run)
-        return lambda: (to_end(state, out), out)
+        to_end, out = started(ready, method, TOLERANCE, ends)
+        return lambda: (to_end(), out)
 
     return fresh, lambda result: abs(float(result[1].y[-1, 0, 4]) - machines.height(machines.DURATION))

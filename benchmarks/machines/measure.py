@@ -7,20 +7,13 @@ from __future__ import annotations
 
 import importlib
 import json
-import os
-import subprocess
 import sys
-import time
 from dataclasses import asdict
 
-for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(threads, "1")
-
-from benchmarks import machines  # noqa: E402
-from benchmarks.rows import Bar, Row  # noqa: E402
-from shared.stage.console import say  # noqa: E402
-from shared.stage.errors import UserError  # noqa: E402
-from shared.stage.paths import ROOT  # noqa: E402
+from benchmarks import machines
+from benchmarks.harness import best_of, bind_to_one_core, keep_quicker, printed_by
+from benchmarks.rows import Bar, Row
+from shared.stage.console import say
 
 ROUNDS = 3
 LONGEST = 1.0
@@ -36,8 +29,8 @@ def measured() -> tuple[list[Row], list[Bar]]:
         best: dict[str, Row] = {}
         for _ in range(ROUNDS):
             for code in machines.CODES:
-                row = _once(code, number)
-                best[code] = min(best.get(code, row), row, key=lambda r: r.seconds)
+                words = "benchmarks.machines.measure", code, str(number)
+                keep_quicker(best, code, Row(**printed_by(*words, what=f"{code} on {problem}")))
         rows += best.values()
         ours = best.pop("mbsd")
         peer = min(best.values(), key=lambda row: row.seconds)
@@ -49,36 +42,14 @@ def measured() -> tuple[list[Row], list[Bar]]:
     return rows, bars
 
 
-def _once(code: str, number: int) -> Row:
-    run = subprocess.run(
-        [sys.executable, "-m", "benchmarks.machines.measure", code, str(number)],
-        cwd=ROOT, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    if run.returncode:
-        raise UserError(
-            f"bench: {code} on {machines.PROBLEMS[number]} failed: "
-            f"{(run.stderr.strip().splitlines() or ['no message'])[-1]}"
-        )
-    return Row(**json.loads(next(line for line in run.stdout.splitlines() if line.startswith("{"))))
-
-
 def main(code: str, number: int) -> None:
     """Print the row."""
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+    bind_to_one_core()
     problem = machines.PROBLEMS[number]
     module = importlib.import_module(f"benchmarks.machines.{code}_code")
     fresh, error = module.prepare(problem)
-    result = fresh()()  # compiles, allocates, warms the cache
-    wrong = error(result)
-    best, begun = float("inf"), time.perf_counter()
-    for _ in range(MOST_RUNS):
-        run = fresh()
-        started = time.perf_counter()
-        run()
-        best = min(best, time.perf_counter() - started)
-        if time.perf_counter() - begun > LONGEST:
-            break
+    wrong = error(fresh()())  # compiles, allocates, warms the cache
+    best, _ = best_of(fresh, MOST_RUNS, LONGEST)
     row = Row(
         problem, code, module.VERSION, module.settings(problem), best, wrong,
         within_limits=wrong <= machines.LIMITS[problem],

@@ -17,6 +17,7 @@ from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT
+from tools.documents.pages import replaced
 from tools.wheel.archives import build_with_kernels
 
 PAGE = ROOT / "docs" / "benchmarks.md"
@@ -39,7 +40,7 @@ def measured() -> int:
     """Measure, show, and write the table."""
     with tempfile.TemporaryDirectory() as folder:
         rows = [("`python -m mbsd compile`", "empty", _compile(folder))]
-        rows.append(("first simulation, pendulum", "in the wheel, `make wheel KERNELS=1`", _from_wheel(folder)))
+        rows.append(("first simulation, pendulum", "in the wheel", _from_wheel(folder)))
     for name, what in FIRST.items():
         with tempfile.TemporaryDirectory() as folder:
             rows.append((what, "empty", _run(name, folder)))
@@ -49,11 +50,7 @@ def measured() -> int:
     for what, kernels, seconds in rows:
         lines.append(f"| {what} | {kernels} | {_told(seconds)} |")
         say("bench-start", f"{what}: {_told(seconds)}")
-    page = PAGE.read_text()
-    before, _, rest = page.partition(BEGIN)
-    _, _, after = rest.partition(END)
-    text = "\n".join(lines)
-    write_bytes(PAGE, f"{before}{BEGIN}\n{text}\n{END}{after}".encode())
+    write_bytes(PAGE, replaced(PAGE.read_text(), BEGIN, END, "\n".join(lines)).encode())
     return 0
 
 

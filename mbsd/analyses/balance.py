@@ -51,7 +51,7 @@ class Balance:
     largest: float
 
     def balanced(self, part: float, stiffness: np.ndarray) -> bool:
-        """Whether no more than this part of the largest load is left, or rounding."""
+        """True if no more than this part of the largest load is left, or rounding."""
         noise = NOISE * float(np.abs(stiffness).max(initial=0.0))
         return bool(np.abs(self.slope).max(initial=0.0) <= part * self.largest + noise)
 

@@ -27,8 +27,7 @@ from mbsd.arrays.start_state import AnyModel, copied
 from mbsd.arrays.states import own_states
 from mbsd.base.codes import CONSTANT
 from mbsd.base.errors import MobilityError, ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.kinematics.limits.closed_contacts import refuse_pushing
 from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.adding.forces import Amount, add_force, amount_given
@@ -73,7 +72,7 @@ def with_efforts(m: AnyModel, efforts: Mapping[str, Amount | None]) -> AnyModel:
             driver = out.drivers.pop(name)
             if effort is not None:
                 kind, params = _actuator_of(m, driver)
-                _put(out, kind, name, driver.i, driver.j, params, effort)
+                _add_effort(out, kind, name, driver.i, driver.j, params, effort)
         elif name in m.forces:
             force = out.forces.pop(name)
             if effort is not None:
@@ -83,13 +82,13 @@ def with_efforts(m: AnyModel, efforts: Mapping[str, Amount | None]) -> AnyModel:
                         "take an effort"
                     )
                 params = {key: value for key, value in force.params.items() if key != force.kind.effort}
-                _put(out, force.kind, name, force.i, force.j, params, effort)
+                _add_effort(out, force.kind, name, force.i, force.j, params, effort)
         else:
             raise ModelError(f"{m.name}: {no_such('driver or force', name, [*m.drivers, *m.forces])}")
     return out
 
 
-def _put(m: Model, kind: ForceKind, name: str, i, j, params: Mapping, effort: Amount) -> None:
+def _add_effort(m: Model, kind: ForceKind, name: str, i, j, params: Mapping, effort: Amount) -> None:
     own, laws = amount_given(m, name, kind.effort, effort)
     add_force(m, kind, name, i, j, {**params, **own}, laws, same_body=True)
 

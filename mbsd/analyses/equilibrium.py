@@ -50,7 +50,7 @@ class Equilibrium:
 
     @property
     def stable(self) -> bool:
-        """Whether it comes back after every small disturbance."""
+        """True if the mechanism comes back after every small disturbance."""
         return self.stability in ("stable", "fixed")
 
     @property
@@ -71,11 +71,11 @@ class Equilibrium:
         return _single(self.solution.joint(name))
 
     def driver(self, name: str) -> DriverView:
-        """What a driver holds, and the effort it takes."""
+        """Return the value that a driver holds, and its effort."""
         return _single(self.solution.driver(name))
 
     def force(self, name: str) -> ForceView:
-        """What a force does in this pose, at rest; see :meth:`mbsd.results.solution.Solution.force`."""
+        """Return a force in this pose, at rest; see :meth:`mbsd.results.solution.Solution.force`."""
         return _single(self.solution.force(name))
 
     @property

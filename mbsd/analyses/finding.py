@@ -1,4 +1,4 @@
-"""What a check of a model says: one suspicious thing."""
+"""Finding of a check of a model: one suspicious thing."""
 
 from __future__ import annotations
 

@@ -12,8 +12,7 @@ from mbsd.analyses.state_space import Linearisation
 from mbsd.analyses.state_space import linearise as linearise_start
 from mbsd.arrays.start_state import copied, started_at
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.model.mechanism import Model, names_given
 from mbsd.results.solution import Solution
 

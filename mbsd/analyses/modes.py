@@ -25,7 +25,7 @@ from mbsd.base.names import no_such
 
 
 class Linear(Protocol):
-    """What modes follow from: a linear state space; see :class:`mbsd.analyses.state_space.Linearisation`."""
+    """Linear state space from which modes follow; see :class:`mbsd.analyses.state_space.Linearisation`."""
 
     @property
     def model(self) -> Any:

@@ -1,4 +1,4 @@
-"""Whether the links close at the start and teeth reach each other, said as findings instead of errors."""
+"""Checks that links close at the start and teeth reach each other, as findings instead of errors."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mbsd.analyses.finding import Finding
 from mbsd.arrays.force_phases import relative_poses
 from mbsd.arrays.packing import pack
 from mbsd.base.errors import MechanismError
-from mbsd.dynamics.mobility import mobility
+from mbsd.dynamics.prepare.large import mobility
 from mbsd.kinematics.pose.close import assemble
 from mbsd.model.mechanism import Model
 from mbsd.model.teeth import with_radii
@@ -21,7 +21,7 @@ REMEDY = "Look at lengths and places of what it names; m.draw() shows the rough 
 
 
 def start_problems(m: Model) -> Iterator[Finding]:
-    """What keeps ``m`` from being assembled: links that cannot close, gears apart, a rack on the other side."""
+    """Yield what keeps ``m`` from being assembled: links that cannot close, gears apart, a rack on the other side."""
     try:
         mobility(m)
     except MechanismError as error:

@@ -29,9 +29,9 @@ from mbsd.arrays.loads import SHARP
 from mbsd.arrays.states import columns_of, ones_of, without_states
 from mbsd.base.errors import MobilityError, ModelError, SingularPoseError
 from mbsd.base.names import no_such
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.kinematics.limits.closed_contacts import refuse_closed
 from mbsd.model.mechanism import Model

@@ -1,4 +1,4 @@
-"""What is allowed but looks as if it was not meant, with its remedy: a mixed-up unit, a start that says two things.
+"""Suspicious values that are allowed, with a remedy: a mixed-up unit, a start that contradicts itself.
 
 Only what is off by more than machines ever are counts: sizes a hundredfold apart, masses 1e5 apart, an inertia whose
 radius of gyration is 20 sizes, marker angles of whole degrees beyond a turn. Silence proves nothing.
@@ -14,7 +14,7 @@ import numpy as np
 from mbsd.analyses.finding import Finding
 from mbsd.analyses.suspicious_forces import plays, pressures, springs, welds
 from mbsd.base.errors import ModelWarning
-from mbsd.base.warn import warn
+from mbsd.base.warning import warn
 from mbsd.model.body import Body, Marker
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model

@@ -1,6 +1,6 @@
 """How fast contacts by penalty approached when they began, along a motion: what their damping may depend on.
 
-A simulation notes it at each accepted step (mbsd/dynamics/prepare/approaches.py). A driven motion is known at its
+A simulation notes it at each accepted step (mbsd/dynamics/prepare/prepared.py). A driven motion is known at its
 outputs alone; there the depth between two outputs is the cubic through both with their rates, and the approach is its
 slope where it begins to be above zero.
 """
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def remembers(loads: Loads) -> bool:
-    """Whether any contact asks for the speed at which it began."""
+    """Return True if any contact asks for the speed at which it began."""
     return bool(loads.switch[0, REMEMBERS])
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from mbsd.arrays.reactions import marker_axes, marker_places
 from mbsd.base.errors import ModelError, ModelWarning
-from mbsd.base.warn import warn
+from mbsd.base.warning import warn
 from mbsd.model.cams.profile import hermite
 from mbsd.model.chamber import Chamber
 
@@ -55,7 +55,7 @@ class Placed:
 
 
 def chambers(packed: Packed) -> Iterator[Placed]:
-    """Those of all forces, in their order. Raises ModelError where a cylinder is not known."""
+    """Return the chambers of all forces, in their order. Raises ModelError where a cylinder is unknown."""
     for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
         if force.kind.chamber is not None:
             chamber = force.kind.chamber(force, packed.masses)

@@ -1,4 +1,4 @@
-"""What laws of drivers must be before anything is solved: finite, positive where they are distances, with f' and f''
+"""Checks of drivers' laws before anything is solved: finite, positive where they are distances, with f' and f''
 that are the derivatives of f.
 
 A sweep takes f, f' and f'' as the law gives them. Where its author gave the derivatives, they are compared with f once,
@@ -14,8 +14,8 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
+from mbsd.base.names import shown
 from mbsd.base.quantity import written
-from mbsd.base.shown import shown
 from mbsd.base.users_function import law_of
 from mbsd.model.laws import Motion
 

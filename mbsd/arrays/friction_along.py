@@ -57,7 +57,7 @@ def with_friction(
     compact: np.ndarray,
     solve: Callable[[np.ndarray], tuple[np.ndarray, ...]],
 ) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-    """What ``solve`` gives under the friction that belongs to its multipliers, and that friction (T, 3 nb).
+    """Return the result of ``solve`` under the friction that belongs to its multipliers, and that friction (T, 3 nb).
 
     motion: t (T,), q and v (T, 3 nb); compact J (T, m, 6). ``solve`` takes friction (T, 3 nb) and gives multipliers
     (T, m) first. Raises SimulationError where joints jam.
@@ -90,7 +90,7 @@ def with_friction(
 
 
 def jam(packed: Packed, normal: np.ndarray) -> str:
-    """What an error says where friction and the reactions that it raises find no balance.
+    """Return the error text where friction and the reactions that it raises find no balance.
 
     It names the joint with the largest of ``normal`` (f,), in N, the last that were tried; where none of them is
     finite, all joints with friction.

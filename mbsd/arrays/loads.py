@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+import numba
 import numpy as np
+from numba.core.dispatcher import Dispatcher
 
 from mbsd.arrays.directory import ForceRows, directory, slice_of
 from mbsd.arrays.states import first_holding
-from mbsd.arrays.user_forces import law_address, pack_user_forces
 from mbsd.base.kept import Kept
+from mbsd.compiling.callback import Callback
 from mbsd.equations.interactions import call
 from mbsd.equations.interactions.law import RESULTS, STATE, address_of, switches
 from mbsd.equations.interactions.switching import APPROACHED, REMEMBERS, SIZE, SWITCHING, WIDTH
@@ -19,7 +21,9 @@ from mbsd.equations.joint_friction import BY_RATE, GUIDE, PIN
 from mbsd.equations.loads import Loads
 
 if TYPE_CHECKING:
+    from mbsd.arrays.directory import ForceRows
     from mbsd.arrays.packing import Packed
+    from mbsd.model.force import Force
 
 
 COLUMNS = 9
@@ -124,3 +128,38 @@ def _friction(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.ndarray, 
             given = (p["coefficient"], p["static"], p["stribeck"], p["viscous"], slip_speed, p["preload"])
             numbers.append((*given, p["radius"] if shape == PIN else p["length"], BY_RATE))
     return np.array(rows, np.int64).reshape(-1, 7), np.array(numbers, float).reshape(-1, 8)
+
+
+def pack_user_forces(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the table (u, 3), the bodies (b,) and their centres of mass (b, 2) in the author's frames, for Loads."""
+    own = [each for each in forces if each.user]
+    rows = [(_callback(packed, each.force).address, each.user_body.start, len(each.user_body)) for each in own]
+    which = np.array([packed.body_names.index(name) for each in own for name in each.force.params["bodies"]], np.int64)
+    return np.array(rows, np.int64).reshape(-1, 3), which, packed.com[which].reshape(-1, 2)
+
+
+def _callback(packed: Packed, force: Force) -> Callback:
+    """Made once for each packed mechanism, which keeps it alive."""
+    count = len(force.params["bodies"])
+    return packed.specials.callback(
+        f"{packed.name}: force '{force.name}'",
+        lambda what: Callback(force.params["function"], (3 * count, 3 * count), 3 * count, what),
+    )
+
+
+def law_address(packed: Packed, force: Force) -> int:
+    """Where the law of a spring is, a function of its value and rate; see mbsd/model/forces/spring_law.py."""
+    law = force.params["law"]
+    return packed.specials.callback(
+        f"{packed.name}: force '{force.name}'", lambda what: Callback(_timed(law), (1, 1), 1, what)
+    ).address
+
+
+_TIMED: Kept[Dispatcher] = Kept()
+
+
+def _timed(law: Callable) -> Callable:
+    def timed(t, value, rate):
+        return law(value, rate)
+
+    return _TIMED.get(law, lambda: numba.njit(timed)) if isinstance(law, Dispatcher) else timed

@@ -113,7 +113,7 @@ def widened(packed: Packed, part: np.ndarray, states: np.ndarray | None = None) 
 
 
 def own_states(forces: Sequence[Force], name: str) -> slice:
-    """Which of all states are those of the force ``name``."""
+    """Return which of all states belong to the force ``name``."""
     at = 0
     for force in forces:
         count = len(holding_names(force))

@@ -18,7 +18,7 @@ SMALLEST_SIZE = 1e-12
 
 
 class Arrays(NamedTuple):
-    """What of a mechanism is arrays; see mbsd.arrays.packing.Packed."""
+    """The arrays of a mechanism; see mbsd.arrays.packing.Packed."""
 
     system: System
     ws: Workspace
@@ -32,7 +32,7 @@ class Arrays(NamedTuple):
 
 @dataclass(frozen=True)
 class Parts:
-    """What the arrays are made of."""
+    """The parts of a model that the arrays are made of."""
 
     numbers: list[float]
     """Gravity; mass, inertia and com of each body; x, y and angle of each marker; offsets, lengths, extents."""
@@ -109,7 +109,7 @@ def _driven(*tables: np.ndarray) -> np.ndarray:
 
 
 def _directed(marker_body: np.ndarray, *first_markers: np.ndarray) -> np.ndarray:
-    """Those of the first markers of slots, coordinates, relative poses and forces that are on moving bodies."""
+    """Return first markers of slots, coordinates, relative poses and forces that are on moving bodies."""
     first = np.concatenate(first_markers)
     return np.unique(first[marker_body[first] > 0])
 

@@ -20,7 +20,7 @@ from numba.core.dispatcher import Dispatcher
 from mbsd.base.arguments import LARGEST
 from mbsd.base.errors import ModelError
 from mbsd.base.kept import Kept
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.compiling.callback import Callback, WrongValue
 
 COMPLEX_STEP = 1e-30
@@ -72,7 +72,7 @@ def _as_it_is(function: Callable) -> Callable:
 
 
 def _takes_complex(function: Callable, size: float) -> bool:
-    """Whether complex steps work and agree with differences wherever the function can be evaluated."""
+    """Return True if complex steps work and agree with differences wherever the function can be evaluated."""
     agreed = 0
     for trial in TRIALS:
         try:

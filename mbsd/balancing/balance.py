@@ -58,7 +58,7 @@ class Shaft:
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """What was found, and what it brings: ``before`` and ``after`` by quantity, root mean square or peak (N, N m)."""
+    """Weights and shafts that balance a mechanism; ``before`` and ``after`` by quantity, RMS or peak (N, N m)."""
 
     weights: tuple[Weight, ...]
     shafts: tuple[Shaft, ...]
@@ -130,7 +130,7 @@ def balance(
     ]
     given = {name: _given(sol, name, place, z0) for name in wanted}
     rate = _rate(sol, wanted)
-    added = {name: np.stack([effect.of(name, rate) for effect in effects], axis=2) for name in wanted}
+    added = {name: np.stack([effect.on(name, rate) for effect in effects], axis=2) for name in wanted}
     if "torque" in wanted:
         added["torque"] = added["torque"] - added["torque"].mean(axis=0)
     shares = _shares(sol.t)

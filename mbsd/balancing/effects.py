@@ -1,4 +1,4 @@
-"""What a counterweight or a balance shaft does along a known motion, per unit of what is sought of it.
+"""Effects of a counterweight or a balance shaft along a known motion, per unit of its design variable.
 
 A mass m at r (cos a, sin a) about a marker of its body: with u = m (cos a, sin a), R the body's turn and index 0 for
 the marker, its force of inertia, its moment about p0 and the power that moves it are linear in u and |u| = m:
@@ -32,8 +32,8 @@ class Effect:
     couple: np.ndarray
     power: np.ndarray
 
-    def of(self, quantity: str, rate: np.ndarray) -> np.ndarray:
-        """That of a quantity; a driver's torque is power by its ``rate`` (T,)."""
+    def on(self, quantity: str, rate: np.ndarray) -> np.ndarray:
+        """Return the effect on a quantity; a driver's torque is power divided by its ``rate`` (T,)."""
         return self.power / rate[:, None, None] if quantity == "torque" else getattr(self, quantity)
 
 

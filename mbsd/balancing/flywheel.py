@@ -22,7 +22,7 @@ from mbsd.base.errors import ModelError
 
 @dataclass(frozen=True)
 class Flywheel:
-    """What the crank needs besides what it has."""
+    """Inertia that a crank needs besides its own."""
 
     inertia: float
     """kg m^2 on the driven body."""

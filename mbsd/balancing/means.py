@@ -1,4 +1,4 @@
-"""What may be added to a machine so that it shakes less: counterweights on its bodies, balance shafts beside them."""
+"""Means against shaking: counterweights on the bodies of a mechanism, balance shafts beside them."""
 
 from __future__ import annotations
 

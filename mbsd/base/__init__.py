@@ -1,3 +1,3 @@
-"""What every room may use: errors, checked arguments, words for messages, codes, files written whole. It imports
+"""Foundations of every room: errors, checked arguments, words for messages, codes, files written whole. It imports
 none.
 """

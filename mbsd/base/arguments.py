@@ -4,6 +4,12 @@ A public function is checked by the annotations of its parameters before it runs
 ``bool`` True or False, ``int`` whole numbers, ``str`` text; ``| None`` allows None. What other annotations mean, the
 function checks. Text is never read as a number, nor True as 1. Raises ModelError with the mechanism or function, the
 argument and the value.
+
+Values of arguments that were left out, derived by the function that adds an entry.
+
+An argument that is None by default is found from the others: static friction from friction, the inertia of a bar from
+its mass and length. What comes of it stands in the params like a number that was given, but it is none: it is found
+anew when another argument changes, and no file holds it.
 """
 
 from __future__ import annotations
@@ -19,10 +25,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.progress import from_user
-from mbsd.base.shown import shown
-from mbsd.base.users_function import described
+from mbsd.base.names import no_such, shown
+from mbsd.base.users_function import described, from_user
 
 F = TypeVar("F", bound=Callable[..., Any])
 C = TypeVar("C", bound=type)
@@ -108,7 +112,7 @@ def number_array(what: str, value: object, finite: bool = True) -> np.ndarray:
 
 
 def _entries(value: Any, at: str = "", level: int = 0) -> Iterator[tuple[str, Any]]:
-    """What lies within nested lists and arrays, with its place; finite floats are passed over."""
+    """Yield entries of nested lists and arrays with their positions; finite floats are passed over."""
     if isinstance(value, np.ndarray) and (value.ndim == 0 or value.dtype.kind in "fiu"):
         yield from () if value.ndim else [(at, value.item())]
     elif level < 4 and isinstance(value, list | tuple | np.ndarray):
@@ -292,7 +296,7 @@ def in_order(name: str, signature: inspect.Signature) -> str:
 
 
 def _word(given: object) -> str:
-    """What a value given without a name says about the name that is missing."""
+    """Return the words about a missing name that a value given without one stands for."""
     name = getattr(given, "name", given)
     return name if isinstance(name, str) and name.isidentifier() else "name"
 
@@ -303,3 +307,30 @@ def checked_methods(cls: C) -> C:
         if not name.startswith("_") and not isinstance(inspect.getattr_static(cls, name), staticmethod):
             setattr(cls, name, checked(member))
     return cls
+
+
+def adding(function: F) -> F:
+    """``function(m, name, ...)``, which adds a joint, driver, force or contact, with its arguments checked.
+
+    What it enters knows which of its params are ``derived``.
+    """
+    made = checked(function)
+    signature = inspect.signature(function)
+    optional = {p.name for p in signature.parameters.values() if p.default is None}
+    if not optional:
+        return made
+
+    @functools.wraps(made)
+    def inner(*given: Any, **named: Any) -> Any:
+        added = made(*given, **named)
+        bound = signature.bind(*given, **named).arguments
+        left_out = {key for key in optional if bound.get(key) is None}
+        m, name = bound["m"], bound["name"]
+        for table in (m.joints, m.drivers, m.forces, m.contacts):
+            if name in table:
+                entry = table[name]
+                derived = frozenset(key for key in left_out if entry.params.get(key) is not None)
+                object.__setattr__(entry, "derived", derived)
+        return added
+
+    return inner  # pyright: ignore[reportReturnType]

@@ -1,4 +1,4 @@
-"""What can go wrong, each with the mechanism, the place, the number and the remedy in its message."""
+"""Errors: each message names the mechanism, the position, the number and the remedy."""
 
 from __future__ import annotations
 

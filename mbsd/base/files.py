@@ -14,7 +14,7 @@ from glob import escape
 from pathlib import Path
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 
 try:
     import fcntl

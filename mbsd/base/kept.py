@@ -23,7 +23,7 @@ class Kept(Generic[T]):
         self._changing = threading.Lock()
 
     def get(self, key: Hashable, find: Callable[[], T]) -> T:
-        """What ``find`` returned for this key before, or returns now; what it raises is not kept."""
+        """Return what ``find`` returned for this key before, or returns now; errors are not kept."""
         with self._changing:
             if key in self._results:
                 return self._results[key]

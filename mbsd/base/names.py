@@ -5,12 +5,12 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from typing import Any, Generic, NoReturn, TypeVar
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
 
 Value = TypeVar("Value")
 
@@ -93,3 +93,20 @@ class Suggesting:
         if not meant and len(public) <= LISTED:
             hint = f"; it has: {', '.join(public)}"
         raise AttributeError(f"{kind.__name__} has no attribute '{name}'{hint}")
+
+
+LONGEST = 80
+"""Characters."""
+
+_short = reprlib.Repr()
+_short.maxlevel, _short.maxlist, _short.maxtuple, _short.maxdict, _short.maxset = 3, 6, 6, 4, 4
+_short.maxarray, _short.maxstring, _short.maxother = 6, 60, 60
+
+
+def shown(value: object) -> str:
+    """``repr(value)``, cut where it is long; the type alone where that fails, as of a number of 5000 digits."""
+    try:
+        text = " ".join(_short.repr(value).split())
+    except Exception:
+        return f"a {type(value).__name__}"
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."

@@ -15,8 +15,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import Named
-from mbsd.base.shown import shown
+from mbsd.base.names import Named, shown
 
 OWN = "mbsd."
 ATOMS = {float, int, str, bool, type(None), complex, bytes}

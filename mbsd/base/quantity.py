@@ -1,7 +1,7 @@
 """Numbers with units as people write them: engineering prefixes, few digits, a true minus sign, no exponents.
 
-shared/contract/quantity.py and render/view/page/src/data/numbers.js follow the same rules; the cases in
-tests/shared/quantities.json hold all three to the same answers.
+render/view/page/src/data/numbers.js follows the same rules; the cases in tests/shared/quantities.json hold both to the
+same answers.
 """
 
 from __future__ import annotations
@@ -63,6 +63,12 @@ def figures(value: float, digits: int = DIGITS) -> str:
     return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
 
 
+def counted(count: int, noun: str) -> str:
+    """A number of things with their noun: ``1 impact``, ``3 bodies``, ``no drivers``."""
+    several = f"{noun[:-1]}ies" if noun.endswith("y") else f"{noun}s"
+    return f"{count or 'no'} {noun if count == 1 else several}"
+
+
 def live(values: Iterable[float], unit: str, digits: int = DIGITS) -> Callable[[float], str]:
     """Writes numbers of a series with one prefix and as many decimals as its largest needs: they stand still."""
     top = max((abs(float(value)) for value in values), default=0.0)
@@ -82,7 +88,7 @@ def live(values: Iterable[float], unit: str, digits: int = DIGITS) -> Callable[[
 
 
 def labelled(words: str, unit: str) -> str:
-    """What an axis says: ``force / kN``, ``velocity / (m/s)``, ``order`` of numbers without a unit (ISO 80000-1)."""
+    """Return the label of an axis: ``force / kN``, ``velocity / (m/s)``, ``order`` without a unit (ISO 80000-1)."""
     if unit in ("", "1"):
         return words
     return f"{words} / ({unit})" if set(unit) & set("/ ") else f"{words} / {unit}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import inspect
 import warnings
 from collections.abc import Callable
@@ -10,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import MechanismError, ModelError, ModelWarning
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 
 
 def value_at(function: Callable[[float], Any], t: float, what: str) -> float:
@@ -36,7 +38,7 @@ def value_at(function: Callable[[float], Any], t: float, what: str) -> float:
 
 
 class law_of:
-    """What a law does wrong within ``with law_of(what)`` gets ``what`` before its text: mechanism, driver or force."""
+    """Put ``what``, a mechanism, driver or force, before the text of an error that a law raises within this context."""
 
     def __init__(self, what: str) -> None:
         self.what = what
@@ -81,3 +83,41 @@ def described(error: BaseException) -> str:
     """Type and text of what a function raised, on one line."""
     said = " ".join(str(error).split())
     return f"{type(error).__name__}: {said}" if said else type(error).__name__
+
+
+FROM_USER = "mbsd_from_user"
+"""Attribute of what such a function raised: it is no error of a computation."""
+
+
+def users_progress(what: str, function: Any, wanted: str, count: int = 1) -> Callable[..., None] | None:
+    """``function``, which gets ``count`` arguments, as it is to be called; None stays None.
+
+    ``what`` names mechanism and argument, ``wanted`` says which arguments. Raises ModelError for what is no
+    function, or one that takes another number of arguments, as far as its signature says.
+    """
+    if function is None:
+        return None
+    if not callable(function):
+        raise ModelError(f"{what} is {shown(function)}; it must be a function of {wanted}")
+    try:
+        inspect.signature(function).bind(*[None] * count)
+    except ValueError:  # compiled functions may not say what they take
+        pass
+    except TypeError as error:
+        raise ModelError(f"{what} must be a function of {wanted}: {error}") from None
+
+    @functools.wraps(function, updated=())
+    def called(*given: Any) -> None:
+        try:
+            function(*given)
+        except Exception as error:
+            with contextlib.suppress(AttributeError):
+                setattr(error, FROM_USER, True)
+            raise
+
+    return called
+
+
+def from_user(error: BaseException) -> bool:
+    """Return True if a function of :func:`users_progress` raised it."""
+    return getattr(error, FROM_USER, False)

@@ -35,7 +35,7 @@ from numba.extending import intrinsic
 
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.kept import Kept
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.base.users_function import described
 from mbsd.compiling import interrupts
 
@@ -47,11 +47,11 @@ OF_NUMBERS = ArithmeticError, ValueError
 
 
 class WrongValue(Exception):
-    """What a user's function gave is not what is wanted; the text goes on after "the user's function"."""
+    """A user's function gave a wrong value; the text goes on after "the user's function"."""
 
 
 def as_numbers(values: Any, count: int) -> np.ndarray:
-    """What a user's function gave, in a row or in rows, as (count,) numbers. Raises WrongValue for anything else."""
+    """Return what a user's function gave, in a row or in rows, as (count,) numbers. Raises WrongValue otherwise."""
     wanted = "a number" if count == 1 else f"{count} numbers"
     try:
         array = np.atleast_1d(np.asarray(values))
@@ -103,17 +103,17 @@ class Callback:
 
     @staticmethod
     def is_machine_code(function: object) -> bool:
-        """Whether a function is compiled with numba."""
+        """Return True if a function is compiled with numba."""
         return isinstance(function, CFunc | Dispatcher)
 
     @property
     def compiled(self) -> bool:
-        """Whether it is machine code, of which several threads may call copies."""
+        """True if it is machine code, of which several threads may call copies."""
         return self.is_machine_code(self.function)
 
     @property
     def failed(self) -> bool:
-        """Whether it failed since the last check, as far as is known."""
+        """True if it failed since the last check, as far as is known."""
         return bool(self._failure[0])
 
     def check(self) -> None:
@@ -139,7 +139,7 @@ class Callback:
         raise ModelError(f"{at} fails: {described(error)}") from error
 
     def _values(self, t: float, inputs: np.ndarray) -> np.ndarray:
-        """What the function gives, checked; called from Python."""
+        """Return the checked values of the function, called from Python."""
         arguments, at = [], 0
         for length in self.parts:
             arguments.append(float(inputs[at]) if length == 1 else inputs[at : at + length])

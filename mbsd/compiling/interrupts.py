@@ -19,7 +19,7 @@ _pending = threading.Event()
 
 
 def taken() -> bool:
-    """Whether Ctrl-C came in a function that a kernel called, since it was last asked."""
+    """Return True if Ctrl-C came in a function that a kernel called, since it was last asked."""
     came = _pending.is_set()
     if came:
         _pending.clear()

@@ -39,7 +39,7 @@ class _ArrayModel(ArrayModel):
         return tuple(self._models[k].get_argument_type() for k in self._passed)
 
     def as_argument(self, builder: Any, value: Any) -> Any:
-        """What is handed over."""
+        """Return the address that is handed over."""
         return tuple(self._models[k].as_argument(builder, self.get(builder, value, k)) for k in self._passed)
 
     def from_argument(self, builder: Any, value: Any) -> Any:

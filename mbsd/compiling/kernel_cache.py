@@ -29,7 +29,7 @@ from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
 
-from mbsd.compiling.alternatives import kernel_for
+from mbsd.compiling.alternatives import files_added, kernel_for
 from mbsd.compiling.kernel_files import KernelFiles
 from mbsd.compiling.kernel_library import Apart
 from mbsd.compiling.lazy_kernel import cell_of
@@ -170,7 +170,7 @@ class _Locator(_CacheLocator):
         return self._path
 
     def get_source_stamp(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """What the code is made of."""
+        """Return the hash of all that the code is made of."""
         return self._stamp
 
     def get_disambiguator(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
@@ -221,7 +221,7 @@ class _Results(CompileResultCacheImpl):
     _locator_classes = [_Locator, *CompileResultCacheImpl._locator_classes[-2:]]  # numba's for notebooks and archives
 
     def reduce(self, cres: Any) -> Any:
-        """What is written."""
+        """Return what is written."""
         library = cres.library
         called = {name: (*_place(call.dispatcher), call.arguments) for name, call in library.calls.items()}
         cells = [(*_place(cell.dispatcher), cell.arguments, cell.returns) for cell in library.cells.values()]
@@ -256,7 +256,7 @@ def _place(dispatcher: Any) -> tuple[str, str]:
 
 
 def _at(module: str, function: str) -> Any:
-    """What stands at the place that ``_place`` tells."""
+    """Return the kernel at the module and name that ``_place`` gives."""
     return getattr(importlib.import_module(module), function)
 
 
@@ -271,6 +271,11 @@ class _Files(FunctionCache):
         super().__init__(py_func)
         locator = self._impl.locator
         self._cache_file = KernelFiles(locator.get_cache_path(), self._impl.filename_base, locator.get_source_stamp())
+
+    def _index_key(self, sig: Any, codegen: Any) -> Any:
+        """Return what code of a signature is found by: kernels of classes that were added belong to it."""
+        added = files_added(getattr(sig, "args", sig))  # a signature when it is saved, types when it is looked for
+        return super()._index_key(sig, codegen) + ((tuple(map(made_of, added)),) if added else ())
 
 
 @contextmanager

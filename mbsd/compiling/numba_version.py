@@ -1,4 +1,4 @@
-"""Which numba the kernels are made for: its inner parts are used, which change from one version to the next."""
+"""The version of numba that kernels are made for: its inner parts are used, which change between versions."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ MADE_FOR = SHIPPED / "made_for.json"
 
 
 def here() -> dict[str, str]:
-    """What compiled code depends on beside its sources."""
+    """Return what compiled code depends on beside its sources."""
     return {
         "Python": platform.python_version().rpartition(".")[0],
         "numba": numba.__version__,

@@ -61,7 +61,7 @@ def certificates(where: str, voice: Voice) -> tuple[str, str, str] | None:
 
 
 def _security(where: str, voice: Voice) -> Security | None:
-    """What a client needs to speak TLS; None where no certificates are given."""
+    """Return the TLS settings of a client; None where no certificates are given."""
     files = certificates(where, voice)
     if files is None:
         return None

@@ -36,7 +36,7 @@ DEATHS = 4
 
 
 class Part(NamedTuple):
-    """What a worker made of a group of orders."""
+    """Results of a worker for a group of orders."""
 
     results: list[tuple[Any, Any]]
     """Keys and results, each key once."""
@@ -138,7 +138,7 @@ class Deal:
         if self.trust is None:
             hand.fit = True
         else:
-            self.pool.ask(hand.name, self.trust.asked, lambda answer: self._events.put((hand, None, answer)))
+            self.pool.ask(hand.name, self.trust.request, lambda answer: self._events.put((hand, None, answer)))
 
     def _mourn(self, hand: Hand, weight: int) -> None:
         """A worker has gone; what it had goes to others, in smaller groups where that may have been the reason."""
@@ -206,7 +206,7 @@ class Deal:
                 self._send(hand, keys)
 
     def _is_first_alone(self) -> bool:
-        """Whether others wait for the first order: what it needs is compiled once, and they load it."""
+        """True while other orders wait for the first one, whose process compiles the kernels that they load."""
         nothing_done = len(self._left) == len(self.orders)
         away = any(hand.groups and not hand.stalled for hand in self.hands.values())
         return self.manner.first_alone and nothing_done and away
@@ -221,7 +221,7 @@ class Deal:
         hand.lacks = []
         orders = [(key, self.orders[key]) for key in keys]
         group = Group(keys, frozenset(sent))
-        hand.take(group)
+        hand.assign(group)
         then, most = partial(self._come, hand, group), len(keys) * self.kind.most + AROUND
         group.release = self.pool.submit(hand.name, self.kind.task, (*self.kind.given, orders, sent), most, then)
 
@@ -263,7 +263,7 @@ class Deal:
         return Part(results, note, hand.name)
 
     def _judge(self, hand: Hand, answer: Any) -> None:
-        """Whether a worker is as we are."""
+        """Admit a worker whose identity equals ours, else report the difference."""
         if self.hands.get(hand.name) is not hand or self.trust is None:
             return  # it has gone meanwhile
         try:
@@ -309,7 +309,7 @@ class Deal:
             self._requeue(group.keys)
 
     def _requeue(self, keys: Sequence[Key]) -> None:
-        """Those that are neither done nor with another worker, in front."""
+        """Put keys back in front that are neither finished nor with another worker."""
         if not self._left.intersection(keys):
             return
         away = {key for hand in self.hands.values() if not hand.stalled for group in hand.groups for key in group.keys}
@@ -326,5 +326,5 @@ class Deal:
 
 
 def _is_death(answer: Any) -> bool:
-    """Whether a process ended instead of answering, or was to end by exit()."""
+    """True if a process ended instead of answering, or called exit()."""
     return isinstance(answer, BrokenExecutor | SystemExit | KeyboardInterrupt)

@@ -51,7 +51,7 @@ class Hand:
     """That it had when it was looked at last, those of other coordinators included."""
 
     def is_ready(self) -> bool:
-        """Whether it can get another group."""
+        """True if the worker can get another group."""
         ahead = self.manner.ahead if math.isfinite(self.each) else 1
         able = self.fit and not self.aside and not self.stalled and time.monotonic() >= self.resting
         return able and len(self.groups) < ahead * self.threads
@@ -62,7 +62,7 @@ class Hand:
             return 1
         return max(1, min(fair, self.manner.largest, int(self.manner.target / max(self.each, 1e-6))))
 
-    def take(self, group: Group) -> None:
+    def assign(self, group: Group) -> None:
         """Count a group as given to it."""
         if not self.groups:
             self.began = time.monotonic()
@@ -98,7 +98,7 @@ class Hand:
         return bool(self.aside)
 
     def is_overdue(self) -> bool:
-        """Whether it has been silent for much longer than its group should take."""
+        """True if the worker has been silent for much longer than its group should take."""
         if not self.groups or self.stalled:
             return False
         silent, manner = time.monotonic() - self.began, self.manner

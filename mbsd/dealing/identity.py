@@ -1,4 +1,4 @@
-"""What a machine works with. Machines with the same identity give the same results, as far as their processors do."""
+"""Versions and sources of a computer. Equal identities give equal results, as far as the processors do."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ SHOWN = 3
 
 
 class Trust(NamedTuple):
-    """What workers must work with to be given anything."""
+    """The identity that workers must have to get orders."""
 
     ours: Mapping[str, str]
     """Versions and sources of this machine by name."""
-    asked: Callable[[], bytes]
+    request: Callable[[], bytes]
     """What a worker runs to say the same of itself, as JSON."""
 
 
@@ -37,13 +37,13 @@ def asker(module: str, function: str, *arguments: Any) -> Callable[[], bytes]:
     A worker with other sources understands it as well, as it travels itself and not by its name.
     """
 
-    def asked() -> bytes:
+    def state() -> bytes:
         import importlib
         import json
 
         return json.dumps(getattr(importlib.import_module(module), function)(*arguments)).encode()
 
-    return asked
+    return state
 
 
 def differences(theirs: Mapping[str, str], ours: Mapping[str, str]) -> str:

@@ -79,7 +79,7 @@ class Processes(Here):
         self._ended: list[Any] = []
 
     def there(self) -> Mapping[str, int]:
-        """Those that run, and new ones for those that ended."""
+        """Return the running processes, with new ones for those that ended."""
         while len(self._running) < self._count:
             self._started += 1
             self._running[f"process {self._started}"] = self._start()
@@ -127,7 +127,7 @@ class Dask(Here):
         self.where = getattr(client.scheduler, "address", "")
 
     def there(self) -> Mapping[str, int] | None:
-        """Those that the scheduler knows."""
+        """Return the workers that the scheduler knows."""
         self._refuse_gone()
         try:
             workers = workers_of(self.client)
@@ -145,7 +145,7 @@ class Dask(Here):
     def ask(self, name: str, asked: Callable[[], bytes], then: Then) -> None:
         """Outside of what it has to do."""
         client = self.client
-        beside(lambda: then(_outcome(lambda: client.run(asked, workers=[name], on_error="return").get(name))))
+        run_aside(lambda: then(_outcome(lambda: client.run(asked, workers=[name], on_error="return").get(name))))
 
     def submit(self, name: str, task: Task, arguments: tuple[Any, ...], most: int, then: Then) -> Callable[[], object]:
         """Bound to this worker."""
@@ -157,7 +157,7 @@ class Dask(Here):
             if self.client.status != "running":
                 raise Gone from error
             raise
-        future.add_done_callback(lambda _: beside(lambda: then(_outcome(lambda: self._fetched(future, most)))))
+        future.add_done_callback(lambda _: run_aside(lambda: then(_outcome(lambda: self._fetched(future, most)))))
 
         def call_back() -> None:
             with suppress(Exception):  # the scheduler has gone, and the future with it
@@ -180,8 +180,8 @@ class Dask(Here):
             raise Gone
 
 
-def beside(function: Callable[[], None]) -> None:
-    """In a thread of its own that holds up neither the answers of other workers nor the end of the program."""
+def run_aside(function: Callable[[], None]) -> None:
+    """Run in a thread of its own that holds up neither the answers of other workers nor the end of the program."""
     with suppress(RuntimeError):  # the program ends
         threading.Thread(target=function, daemon=True).start()
 

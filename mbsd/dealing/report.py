@@ -1,4 +1,4 @@
-"""What a worker made of a group of orders, as bytes, and the checks of those that came.
+"""Results of a worker for a group of orders, as bytes, and the checks of received ones.
 
 Dask would send Python's pickles, whose reading runs whatever the sender put into them. So a task returns bytes: the
 length of a header (4 bytes, big-endian), the header in JSON, and the results one after the other.
@@ -119,7 +119,7 @@ def _decoded(answer: Any) -> Report:
 
 
 def _is_entry(entry: Any) -> bool:
-    """Whether this is a key with a length."""
+    """True if this is a key with a length."""
     return (
         isinstance(entry, list)
         and len(entry) == 2

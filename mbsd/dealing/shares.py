@@ -1,4 +1,4 @@
-"""Which orders a worker gets next: those that nobody has, and towards the end copies of what others would do later."""
+"""The orders a worker gets next: those that nobody has, towards the end copies of orders that others hold."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said of workers, and the error with which a deal ends; studies and stages have words of their own."""
+"""Messages about workers, and the error that ends a deal; studies and stages each give their own words."""
 
 from __future__ import annotations
 

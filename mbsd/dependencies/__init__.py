@@ -1,1 +1,1 @@
-"""What a user's code depends on, recorded while it runs, and hashed: modules, files, folders, variables, packages."""
+"""Inputs of a user's code, recorded while it runs, and hashed: modules, files, folders, variables, packages."""

@@ -96,7 +96,7 @@ def content_of(file: Path) -> bytes:
 
 @lru_cache(maxsize=8192)  # fewer than a project has modules would keep none: they come in the same order each time
 def named_modules(source: bytes, package: str) -> list[str]:
-    """What the import statements of Python source name, packages above them included; none where it does not parse."""
+    """Return the modules that Python source imports, with the packages above them; none where it does not parse."""
     names: set[str] = set()
     try:
         tree = parsed(source)

@@ -26,7 +26,7 @@ CHANGED = "changed meanwhile"
 
 @dataclass(kw_only=True)
 class Inputs:
-    """What each input holds, by its name; a state is a short text."""
+    """State of each input by its name; a state is a short text."""
 
     modules: dict[str, str] = field(default_factory=dict)
     """Python files that were loaded as modules."""
@@ -92,15 +92,15 @@ class Places:
         return self.root / name
 
     def is_program(self, file: str) -> bool:
-        """Whether a source file belongs to the program, through which the user's code acts."""
+        """True if a source file belongs to the program, through which the user's code acts."""
         raise NotImplementedError
 
     def acts_for_itself(self, file: str) -> bool:
-        """Whether what a source file of the program reads is its own affair, whoever called it."""
+        """True if reads of this file of the program never count as the user's, whoever called it."""
         return False
 
     def observed(self, names: Any) -> Inputs | None:
-        """What the inputs with these names, from :meth:`Inputs.names`, hold now; None if ``names`` is no such thing."""
+        """Return the present states of inputs named by :meth:`Inputs.names`; None if ``names`` is malformed."""
         if not isinstance(names, dict) or set(names) != set(asdict(Inputs())):
             return None
         if not all(isinstance(listed, list) and all(isinstance(n, str) for n in listed) for listed in names.values()):
@@ -108,7 +108,7 @@ class Places:
         return Inputs(**{kind: {name: self.state(kind, name) for name in names[kind]} for kind in names})
 
     def state(self, kind: str, name: str) -> str:
-        """What one input holds now."""
+        """Return the present state of one input."""
         states: dict[str, Callable[[str], str]] = {
             "modules": self.module_state,
             "files": self.file_state,

@@ -1,4 +1,4 @@
-"""Which files belong to the interpreter or to installed packages; of these the versions count, not the content."""
+"""Files of the interpreter and of installed packages: their versions count, not their content."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SYSTEM = tuple(f"/{top}/" for top in ("proc", "sys", "dev", "usr", "bin", "sbin"
 
 
 def is_installed(place: str) -> bool:
-    """Whether a file belongs to the interpreter or to an installed package."""
+    """True if a file belongs to the interpreter or to an installed package."""
     return place.startswith(PACKAGES) or place.startswith(STANDARD_LIBRARY)
 
 

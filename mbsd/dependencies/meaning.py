@@ -1,4 +1,4 @@
-"""What Python source means, as a hash: its syntax tree without places and docstrings.
+"""Hash of the meaning of Python source: its syntax tree without positions and docstrings.
 
 Comments, blank lines, line breaks and quotation marks do not count; every number, text, operator and name does. Where
 source looks at itself (``__doc__``, inspect, line numbers), everything counts: :func:`looks_at_itself`.
@@ -38,7 +38,7 @@ def parsed(source: bytes) -> ast.Module:
 
 
 def looks_at_itself(source: bytes) -> bool:
-    """Whether code may depend on docstrings, comments or lines, its own or those of modules that it knows."""
+    """True if code may depend on docstrings, comments or lines, its own or those of modules that it knows."""
     return any(word.encode() in source for word in REFLECTIVE)
 
 

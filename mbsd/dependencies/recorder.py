@@ -33,7 +33,7 @@ class Recorder:
         self._own = threading.local()
 
     def inputs(self, every_module: bool = False) -> Inputs:
-        """What was read so far, and what was loaded: every module, or those that ``sys.modules`` does not know."""
+        """Return the inputs read and the modules loaded so far: all, or those that ``sys.modules`` does not know."""
         known = set() if every_module else {getattr(module, "__file__", None) for module in list(sys.modules.values())}
         modules = {name: state for name, state in self.modules.items() if str(self.places.path_of(name)) not in known}
         return Inputs(
@@ -76,7 +76,7 @@ class Recorder:
         if not top and name not in self.packages:
             self.packages[name] = self.places.package_state(name)
 
-    def made(self, path: Any) -> None:
+    def leave_out(self, path: Any) -> None:
         """Leave out from now on what the run itself writes."""
         place = absolute(path)
         if place:
@@ -85,13 +85,13 @@ class Recorder:
     def renamed(self, source: Any, target: Any) -> None:
         """Leave out a file under its new name, too, if the run has made it."""
         if absolute(source) in self._made:
-            self.made(target)
+            self.leave_out(target)
 
     def written(self, path: Any) -> None:
         """Leave out a file that is opened for writing, unless it was read before."""
         place = absolute(path)
         if place and self.places.name_of(place) not in self.files:
-            self.made(path)
+            self.leave_out(path)
 
     def variable(self, name: Any, value: str | None) -> None:
         """Count a variable of the environment, unless the run itself has set it."""
@@ -156,7 +156,7 @@ def _opened(recorder: Recorder, path: Any, mode: Any, flags: Any) -> None:
 
 
 def _asked_for(recorder: Recorder, path: Any) -> None:
-    """Whether a folder is there is asked of so many that it says nothing."""
+    """Record that a path was looked up; lookups of folders are too many to mean anything."""
     place = absolute(path)
     if place is not None and not os.path.isdir(place):
         recorder.read(path)
@@ -177,10 +177,10 @@ EVENTS: dict[str, Callable[..., None]] = {
     "stat": _asked_for,
     "os.listdir": lambda recorder, path: recorder.listed(path if path is not None else "."),
     "os.scandir": lambda recorder, path: recorder.listed(path if path is not None else "."),
-    "os.mkdir": lambda recorder, path, *_: recorder.made(path),
+    "os.mkdir": lambda recorder, path, *_: recorder.leave_out(path),
     "os.rename": lambda recorder, source, target, *_: recorder.renamed(source, target),
-    "tempfile.mkdtemp": lambda recorder, path: recorder.made(path),
-    "tempfile.mkstemp": lambda recorder, path: recorder.made(path),
+    "tempfile.mkdtemp": lambda recorder, path: recorder.leave_out(path),
+    "tempfile.mkstemp": lambda recorder, path: recorder.leave_out(path),
     "sqlite3.connect": lambda recorder, path: recorder.read(path),
     "ctypes.dlopen": lambda recorder, path: recorder.read(path) if os.sep in str(path) else None,
     "subprocess.Popen": _started,

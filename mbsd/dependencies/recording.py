@@ -131,9 +131,9 @@ class _WatchedEnvironment(type(os.environ)):
         try:
             value = super().__getitem__(key)
         except KeyError:
-            self._asked(key, None)
+            self._note(key, None)
             raise
-        self._asked(key, value)
+        self._note(key, value)
         return value
 
     def __setitem__(self, key: Any, value: str) -> None:
@@ -141,7 +141,7 @@ class _WatchedEnvironment(type(os.environ)):
             recorder.set_variable(key)
         super().__setitem__(key, value)
 
-    def _asked(self, key: Any, value: str | None) -> None:
+    def _note(self, key: Any, value: str | None) -> None:
         frame: FrameType | None = sys._getframe(2)
         while frame is not None and frame.f_code.co_filename in ("<frozen os>", "<frozen _collections_abc>"):
             frame = frame.f_back

@@ -1,4 +1,4 @@
-"""What is to be differentiated: quantities by name, measures, functions of a solution."""
+"""Requests for derivatives: quantities by name, measures, functions of a solution."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.base.users_function import described
 from mbsd.derivatives.solution_rows import rows_of
 from mbsd.dynamics.measures.kinds import Measure
@@ -28,7 +28,7 @@ def wanted(m: Model, of: Any, sol: Solution) -> dict[str, Callable[[Solution], n
 
 
 def labelled(m: Model, of: Any) -> dict[str, Any]:
-    """What is asked for by label: quantities by name, measures, functions. Raises ModelError for anything else."""
+    """Return requests by label: quantities by name, measures, functions. Raises ModelError for anything else."""
     given, of = of, _labelled(of)
     if not isinstance(of, Mapping) or not of:
         raise ModelError(
@@ -45,7 +45,7 @@ def labelled(m: Model, of: Any) -> dict[str, Any]:
 
 
 def _labelled(of: Any) -> Any:
-    """What is asked for, by labels: names are their own, a measure alone has that of its quantity."""
+    """Return requests by label: names are their own, a measure alone has that of its quantity."""
     if isinstance(of, Measure):
         return {of.quantity: of}
     of = [of] if isinstance(of, str) or callable(of) else of
@@ -60,7 +60,7 @@ OfMotions = Callable[[Motions], np.ndarray]
 
 @dataclass
 class OfBodies:
-    """What is asked for, where that is how bodies and traced points move."""
+    """Requests for the motion of bodies and traced points alone."""
 
     by_label: dict[str, OfMotions]
     accelerations: bool
@@ -68,7 +68,7 @@ class OfBodies:
 
 
 def of_bodies(m: Model, of: Any) -> OfBodies | None:
-    """What is asked for; None where anything asks for more than how bodies move."""
+    """Return the requests; None where anything asks for more than how bodies move."""
     of = _labelled(of)
     if not isinstance(of, Mapping) or not of:
         return None
@@ -130,12 +130,12 @@ def needed(of: Any, t: np.ndarray) -> np.ndarray:
 
 
 def needs_models(of: Any) -> bool:
-    """Whether a function of the user may ask the mechanism of a solution."""
+    """Return True if a function of the user may ask the mechanism of a solution."""
     return any(callable(each) for each in _each(of))
 
 
 def needs_reactions(m: Model, of: Any) -> bool:
-    """Whether anything may ask for the reactions of joints."""
+    """Return True if anything may ask for the reactions of joints."""
     given = _each(of)
     names = [[each] if isinstance(each, str) else getattr(each, "quantities", [""]) for each in given]
     things = {name.rpartition(".")[0] for own in names for name in own}

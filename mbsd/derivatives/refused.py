@@ -1,4 +1,4 @@
-"""What is asked of derivatives, checked before a motion is solved: quantities by name, functions, times of measures."""
+"""Checks of requests before a motion is solved: quantities by name, functions, times of measures."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.quiet import quiet
 from mbsd.base.users_function import refuse_other_arguments
+from mbsd.base.warning import quiet
 from mbsd.derivatives.asked import reads_bodies, reads_forces
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.dynamics.measures.quantities import quantity_named

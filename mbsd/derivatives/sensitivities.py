@@ -17,7 +17,7 @@ from mbsd.derivatives.free.indexing import watched
 from mbsd.derivatives.refused import refuse_unfit
 from mbsd.derivatives.simulations import SimulationTangents
 from mbsd.derivatives.with_model import with_model
-from mbsd.dynamics.mobility import mobility
+from mbsd.dynamics.prepare.large import mobility
 from mbsd.dynamics.repeated import Repeated
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times
@@ -48,11 +48,11 @@ class Tangents(Protocol):
         ...
 
     def weights(self, k: int) -> np.ndarray:
-        """What these count in a derivative by number k."""
+        """Return weights of these in a derivative by number k."""
         ...
 
     def models(self, k: int, number: Number) -> list[Callable[[], Model]]:
-        """What makes the mechanisms of these."""
+        """Return the function that makes the mechanisms of these."""
         ...
 
 
@@ -179,7 +179,7 @@ def sensitivities(
 
 
 def moves_freely(m: Model) -> bool:
-    """Whether drivers leave a freedom, so that forces decide the motion."""
+    """Return True if drivers leave a freedom, so that forces decide the motion."""
     rows = sum(joint.kind.rows for joint in m.joints.values())
     if 3 * (len(m.bodies) - 1) - rows > len(m.drivers):  # joints that repeat others leave more freedoms, never fewer
         return True

@@ -251,7 +251,7 @@ class SimulationTangents:
         return self.variants[k].weights / self.variants[k].step
 
     def models(self, k: int, number: Number) -> list[Callable[[], Model]]:
-        """What makes the mechanisms of :meth:`moved`."""
+        """Return the function that makes the mechanisms of :meth:`moved`."""
         return models_of(self.m, number, self.variants[k])
 
     # -- nodes -----------------------------------------------------------------------------------------------------

@@ -110,7 +110,7 @@ class Canvas:
         self.shape(centre + radius * self.unit * np.stack([np.cos(turn), np.sin(turn)], axis=1), **look)
 
     def band(self, outer: Point, inner: Point, colour: str) -> None:
-        """What lies between two closed outlines (m)."""
+        """Fill the area between two closed outlines (m)."""
         from matplotlib.colors import to_rgba
         from matplotlib.patches import PathPatch
         from matplotlib.path import Path

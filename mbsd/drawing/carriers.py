@@ -1,4 +1,4 @@
-"""What carries a stroke of the skeleton through a motion; each symbol says it of what it draws.
+"""Carriers of strokes of the skeleton through a motion; each symbol names those of its strokes.
 
 ground    it stays where it is
 body      it moves with a body's frame
@@ -36,14 +36,14 @@ class Frames:
     def __init__(self, tracks: Tracks, step: int) -> None:
         self._pose = tracks.pose(step)
 
-    def of(self, body: str) -> tuple[np.ndarray, float]:
+    def frame(self, body: str) -> tuple[np.ndarray, float]:
         """Place (2,) and angle of a body's frame (m, rad)."""
         x, y, theta = self._pose.frames[body]
         return np.array([x, y]), theta
 
     def place(self, end: End) -> np.ndarray:
         """(2,) in the world (m)."""
-        return self._pose.of(end.body, end.x, end.y)
+        return self._pose.point(end.body, end.x, end.y)
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Carrier:
         if points is None or self.kind == "ground":
             return np.zeros((0, 2)) if points is None else points
         if self.kind == "body":
-            (a, first), (b, last) = start.of(self.ends[0].body), now.of(self.ends[0].body)
+            (a, first), (b, last) = start.frame(self.ends[0].body), now.frame(self.ends[0].body)
             return b + (points - a) @ _turn(last - first)
         if self.kind == "place":
             return points + now.place(self.ends[0]) - start.place(self.ends[0])
@@ -91,7 +91,7 @@ def along_line(i: Marker, j: Marker) -> Carrier:
     return Carrier("line", (_end(i), _end(j)))
 
 
-def beside(i: Marker, j: Marker) -> Carrier | None:
+def along_axes(i: Marker, j: Marker) -> Carrier | None:
     """The place of marker j, for what is drawn there along the axes of marker i; None where these turn otherwise."""
     if i.body is j.body:
         return on_body(i.body.name)

@@ -70,7 +70,7 @@ def offsets(clearance: float, size: np.ndarray, directions: int, distances: Sequ
 
 
 def _cost(box: np.ndarray, points: np.ndarray, boxes: np.ndarray, frame) -> float:
-    """What a box (x0, y0, x1, y1) covers: drawn points, other names, the edge of the axes."""
+    """Return the cost of a box (x0, y0, x1, y1) by what it covers: drawn points, other names, the axes' edge."""
     inside = (points[:, 0] > box[0]) & (points[:, 0] < box[2]) & (points[:, 1] > box[1]) & (points[:, 1] < box[3])
     over = (boxes[:, 0] < box[2]) & (boxes[:, 2] > box[0]) & (boxes[:, 1] < box[3]) & (boxes[:, 3] > box[1])
     outside = box[0] < frame.x0 or box[1] < frame.y0 or box[2] > frame.x1 or box[3] > frame.y1

@@ -10,9 +10,7 @@ from mbsd.drawing.animation.animate import animate
 from mbsd.drawing.pose import pose_of
 from mbsd.drawing.skeleton import draw
 from mbsd.drawing.view.page import view
-from mbsd.pictures.animation import Animation
-from mbsd.pictures.picture import Picture
-from mbsd.pictures.view import View
+from mbsd.pictures import Animation, Picture, View
 from mbsd.results.solution import Solution
 
 if TYPE_CHECKING:

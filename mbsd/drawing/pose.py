@@ -11,9 +11,10 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import AssemblyError, ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model
+from mbsd.results.releases import released_rows
 
 if TYPE_CHECKING:
     from mbsd.model.force import Force
@@ -45,9 +46,9 @@ class Pose:
 
     def place(self, marker: Marker) -> np.ndarray:
         """(2,) of a marker in the world (m)."""
-        return self.of(marker.body.name, marker.x, marker.y)
+        return self.point(marker.body.name, marker.x, marker.y)
 
-    def of(self, body: str, x: float, y: float) -> np.ndarray:
+    def point(self, body: str, x: float, y: float) -> np.ndarray:
         """(2,) of a point of a body (m)."""
         x0, y0, theta = self.frames[body]
         c, s = math.cos(theta), math.sin(theta)
@@ -124,7 +125,7 @@ def tracks_of(sol: Solution) -> Tracks:
     """Tracks of a whole solution."""
     m = sol.mechanism
     views = {name: sol.body(name) for name in m.bodies}
-    travel, aside, released = {}, {}, _released(sol)
+    travel, aside, released = {}, {}, released_rows(sol)
     for name, joint in _markers_of(m).items():
         first, second = views[joint.i.body.name], views[joint.j.body.name]
         gap = _path(second, joint.j) - _path(first, joint.i)
@@ -137,16 +138,6 @@ def tracks_of(sol: Solution) -> Tracks:
     points = {name: sol.point(name) for name in m.traces}
     paths = {name: np.stack([view.x, view.y], axis=1) for name, view in points.items()}
     return Tracks(sol.t, views, paths, travel, aside, released)
-
-
-def _released(sol: Solution) -> dict[str, np.ndarray]:
-    """(T,) of each joint and driver that an event releases: whether that has happened."""
-    if sol.held is None:
-        return {}
-    count = len(sol.packed.joints) - sol.packed.contacts
-    joints = zip(sol.packed.joints[:count], sol.packed.first_row, strict=False)
-    gone = {joint.name: ~sol.held[:, first] for joint, first in joints}
-    return {name: since for name, since in gone.items() if since.any()}
 
 
 def _markers_of(m: Model) -> dict[str, Joint | Force]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsd.base.arguments import switch
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.drawing.canvas import Canvas
 from mbsd.drawing.carriers import GROUND, at_place, on_body
 from mbsd.drawing.inks import body_inks
@@ -28,7 +28,7 @@ from mbsd.drawing.symbols.wheels import rim_of, ring_gear
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
-from mbsd.pictures.picture import Picture
+from mbsd.pictures import Picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -175,15 +175,15 @@ def _points(m: Model, pose: Pose, name: str) -> np.ndarray:
     out += [pose.place(marker) for marker in m.traces.values() if marker.body.name == name]
     length = m.bodies[name].length
     if length is not None:
-        out += [pose.of(name, 0.0, 0.0), pose.of(name, length, 0.0)]
+        out += [pose.point(name, 0.0, 0.0), pose.point(name, length, 0.0)]
     jointed = any(name in joint.bodies for joint in m.joints.values())
     if name != "ground" and (not out or not jointed or _alone(out)):
-        out.append(pose.of(name, *m.bodies[name].com))
+        out.append(pose.point(name, *m.bodies[name].com))
     return np.array(out).reshape(-1, 2)
 
 
 def _alone(points: list[np.ndarray]) -> bool:
-    """Whether all are one place: then a body hangs on it by its centre of mass."""
+    """True if all points are one place: then a line joins it to the body's centre of mass."""
     return float(np.ptp(points, axis=0).max()) == 0.0
 
 
@@ -207,7 +207,7 @@ def _link(canvas: Canvas, m: Model, pose: Pose, name: str, points: np.ndarray, e
         canvas.shape(rounded(points, 0.95 * canvas.unit), edge=edge, fill=edge, width=1.5, order=2, alpha=0.16)
     if body.mass > 0:
         with canvas.on(at_place(body.at(*body.com))):
-            _centre_of_mass(canvas, pose.of(name, *body.com))
+            _centre_of_mass(canvas, pose.point(name, *body.com))
     if frames:
         _frame(canvas, pose, name, 1.9)
 
@@ -225,9 +225,9 @@ def _centre_of_mass(canvas: Canvas, centre: np.ndarray) -> None:
 
 def _frame(canvas: Canvas, pose: Pose, name: str, length: float) -> None:
     """A body's axes: x red, y green."""
-    origin = pose.of(name, 0.0, 0.0)
+    origin = pose.point(name, 0.0, 0.0)
     for tip, ink in (((1.0, 0.0), AXIS_X), ((0.0, 1.0), AXIS_Y)):
-        end = origin + length * canvas.unit * (pose.of(name, *tip) - origin)
+        end = origin + length * canvas.unit * (pose.point(name, *tip) - origin)
         canvas.line([origin, end], ink, 1.3, order=6)
 
 

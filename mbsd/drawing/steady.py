@@ -1,4 +1,4 @@
-"""What is the same in all pictures of a motion: extent, size of symbols, sides of ground's signs, turns of springs."""
+"""Constants of all pictures of a motion: extent, size of symbols, sides of ground's signs, turns of springs."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Steady:
 
 
 def steady_of(m: Model, poses: Sequence[Pose], colours: dict[str, str], recorder: type[Canvas]) -> Steady:
-    """What stays the same in these poses; ``recorder`` is a canvas that needs no axes."""
+    """Return the constants of these poses; ``recorder`` is a canvas that needs no axes."""
     low, high, unit = measure_all(m, poses)
     sides = steady_sides(m, poses, unit)
     turns: dict[str, list[int]] = {}

@@ -97,7 +97,7 @@ class Recorder(Canvas):
         self._keep(np.asarray(points, float), True, edge, fill, alpha, width, order)
 
     def band(self, outer: Point, inner: Point, colour: str) -> None:
-        """What lies between two outlines (m), kept as one outline with a seam, and both edges."""
+        """Keep the area between two outlines (m) as one outline with a seam, and both edges."""
         seam = np.vstack([outer, outer[:1], inner[::-1], inner[-1:]])
         self._keep(seam, True, colour, colour, 0.12, 0.0, 1.69)
         for outline in (outer, inner):

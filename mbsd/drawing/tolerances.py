@@ -12,7 +12,7 @@ import numpy as np
 from mbsd.base.errors import ModelError
 from mbsd.drawing.literal import literal
 from mbsd.drawing.look import FAINT, INK, PALETTE, QUIET, WRONG
-from mbsd.pictures.picture import Picture
+from mbsd.pictures import Picture
 
 MOST_BARS = 12
 """Dimensions that are shown; the rest is one bar."""

@@ -14,13 +14,19 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.states import without_states
-from mbsd.dynamics.between import Between
-from mbsd.dynamics.follow import follow, resumed
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.runs.recording import Recording
-from mbsd.dynamics.runs.run import Run
-from mbsd.dynamics.simulate import integrator_named, refuse_impossible, simulate, solution, warn_of_start
+from mbsd.dynamics.runs.run import Recording, Run
+from mbsd.dynamics.simulate import (
+    Between,
+    follow,
+    integrator_named,
+    refuse_impossible,
+    resumed,
+    simulate,
+    solution,
+    warn_of_start,
+)
 from mbsd.dynamics.state import Output
 from mbsd.model.mechanism import Model
 from mbsd.results.solution import Solution
@@ -40,7 +46,7 @@ class Course:
     steps: int
     """Steps of the integrator."""
     remembers: bool
-    """Whether contacts remember how fast they were approached."""
+    """True if contacts remember how fast they were approached."""
     q: np.ndarray | None = None
     """(T, 3 nb), where it moves smoothly."""
     masses_apart: bool = False
@@ -101,7 +107,7 @@ class Repeated:
     def _smooth(self, ready: PreparedDynamics, times: np.ndarray) -> Course:
         duration = self.span[1] - self.span[0]
         run = Run(ready, self.method, self.tolerance, float(np.diff(self.grid).max()), duration, {})
-        recording = follow(ready, run, times, [], event_rows=True, progress=None)
+        recording = follow(run, times, [], event_rows=True, progress=None)
         shown, out = without_states(ready.packed), recording.out
         q, v, a = (part[:, : 3 * len(shown.body_names)] for part in (out.y[:, 0], out.y[:, 1], out.a))
         if recording.independent:
@@ -117,10 +123,10 @@ class Repeated:
         assert recording is not None
         warn_of_start(ready)
         own = replace(recording, out=Output(*(part[rows] for part in recording.out)), held=recording.held[rows])
-        refuse_impossible(ready, own)
+        refuse_impossible(ready.packed, own.out.t, own.out.y)
 
         def at(times: np.ndarray) -> Solution:
-            return solution(self.m, ready, resumed(ready, run, own, times, []))
+            return solution(self.m, ready, resumed(run, own, times, []))
 
         anew = partial(simulate, self.m, None, 1, self.grid, "dop853", self.tolerance, None, None, {})
         traces, planes = dict(self.m.traces), planes_of(self.m.bodies.values())

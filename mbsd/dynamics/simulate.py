@@ -1,47 +1,215 @@
-"""Forward dynamics from start to end, as a Solution."""
+"""Forward dynamics from start to end, as a Solution, which can be asked for other times.
+
+A run is followed to its end, with or without events, and gone on with from the last point known before a time. A
+solution that was pickled is simulated once more when it is asked for such a time.
+"""
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 import mbsd.dynamics.integrators
-from mbsd.arrays.chambers import check_pistons
+from mbsd.arrays.chambers import check_pistons, phase_changes
 from mbsd.arrays.curve_branches import tabulate_along
 from mbsd.arrays.friction_along import friction_along
 from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.states import states_of, without_states
 from mbsd.base.errors import InitialConditionWarning, ModelError, SimulationError
 from mbsd.base.names import no_such
-from mbsd.base.progress import users_progress
-from mbsd.base.warn import warn
-from mbsd.dynamics.between import Between
+from mbsd.base.users_function import users_progress
+from mbsd.base.warning import warn
+from mbsd.compiling.interrupts import kept
 from mbsd.dynamics.change_points import near_singular, with_efforts_beside
-from mbsd.dynamics.follow import follow, resumed
+from mbsd.dynamics.events.driver import EventSteps
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
-from mbsd.dynamics.phase_rows import with_phase_changes
-from mbsd.dynamics.prepare.dependent import refuse_opened
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.reference.multipliers import multipliers_along
-from mbsd.dynamics.rows.joint_sticks import standing
-from mbsd.dynamics.runs.recording import Recording
-from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Run
-from mbsd.dynamics.start.large import MANY_COORDINATES
+from mbsd.dynamics.prepare.refusals import refuse_opened
+from mbsd.dynamics.reference.multipliers import fill_multipliers, least_norm, multipliers_along
+from mbsd.dynamics.runs.motion import to_end
+from mbsd.dynamics.runs.run import AUTO, FORMULATIONS, INDEPENDENT, Recording, Request, Run, Snapshot, run_of
+from mbsd.dynamics.runs.steps import step_to
+from mbsd.dynamics.state import ACCEPTED, NEXT, TIME, WORK, Output, State
+from mbsd.dynamics.switches import standing
 from mbsd.equations.left_over import leave
 from mbsd.kinematics.limits.joints import refuse_passed
 from mbsd.kinematics.multipliers import JACOBIAN_NUMBERS
+from mbsd.model.event import Event
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
+from mbsd.results.jump_rows import Asked, jumps_of
+from mbsd.results.measured import check_states
 from mbsd.results.solution import Solution
-from mbsd.results.states import check_states
 from mbsd.results.views import Stats
 
+Progress = Callable[[float], None] | None
+
+
+def follow(run: Run, times: np.ndarray, events: list[Event], event_rows: bool, progress: Progress) -> Recording:
+    """Simulate from the consistent start to the last of ``times`` (s)."""
+    ready = run.ready
+    with kept():
+        state, out = ready.begun(times)
+        ready.approaches.forget()
+        if run.formulation == INDEPENDENT or not (events or ready.is_switched):
+            begun = Snapshot(state.y.copy(), float(state.clock[TIME]), float(state.clock[WORK]))
+            independent = to_end(run, state, out, progress)
+            plain = _plain(ready, state, out)
+            return replace(plain, snapshots=[begun], approaches=ready.approaches.copy(), independent=independent)
+        met = EventSteps(ready, run, state, out, events, event_rows)
+        met.begin()
+        met.to(float(times[-1]), progress)
+        return recording_of(met, event_rows)
+
+
+def _plain(ready: PreparedDynamics, state: State, out: Output) -> Recording:
+    """Return the recording of steps without events."""
+    held = ready.switches.held()[None].repeat(len(out.t), axis=0)
+    return Recording(out, held, int(state.count[ACCEPTED]))
+
+
+def recording_of(met: EventSteps, event_rows: bool = False) -> Recording:
+    """Return the recording of steps with events that have ended, with rows at events if asked for."""
+    written = int(met.state.count[NEXT])
+    out, held = Output(*(part[:written] for part in met.out)), met.held[:written]
+    rows = met.rows if event_rows else met.rows[-1:] if met.ended else []
+    if rows:
+        parts = [np.stack(column) for column in zip(*(row[:-1] for row in rows), strict=True)]
+        both = [np.concatenate([a, b]) for a, b in zip(out, parts, strict=True)]
+        order = np.argsort(both[0], kind="stable")
+        out = Output(*(part[order] for part in both))
+        held = np.concatenate([held, np.stack([row[-1] for row in rows])])[order]
+    return Recording(
+        out, held, int(met.state.count[ACCEPTED]), met.happenings, met.snapshots, met.ready.approaches.copy()
+    )
+
+
+def resumed(
+    run: Run, recording: Recording, times: np.ndarray, events: list[Event], passes_singular: bool = False
+) -> Recording:
+    """Return the motion at other times (T,), rising and within the recording: each from the last point known before it.
+
+    ``passes_singular``: take the steps that pass singular poses at once, where the run was in independent coordinates.
+    """
+    t, began = recording.out.t, np.array([snapshot.time for snapshot in recording.snapshots])
+    which = np.maximum(np.searchsorted(began, times, side="right") - 1, 0)
+    outputs = np.searchsorted(t, times, side="right") - 1
+    outputs[(outputs >= 0) & (t[outputs] <= began[which])] = -1
+    cuts = np.flatnonzero((np.diff(which) != 0) | (np.diff(outputs) != 0)) + 1
+    at = [0, *cuts]
+    pieces = [
+        _gone_on(run, recording, recording.snapshots[s], k, part, events, passes_singular)
+        for s, k, part in zip(which[at].tolist(), outputs[at].tolist(), np.split(times, cuts), strict=True)
+    ]
+    out = Output(*(np.concatenate(parts) for parts in zip(*(piece.out for piece in pieces), strict=True)))
+    held = np.concatenate([piece.held for piece in pieces])
+    return Recording(out, held, sum(piece.steps for piece in pieces), approaches=recording.approaches)
+
+
+def _gone_on(
+    run: Run, recording: Recording, snapshot: Snapshot, k: int, times: np.ndarray, events: list[Event],
+    passes_singular: bool,
+) -> Recording:  # fmt: skip
+    """Return the motion at ``times`` (s) from output k of a recording on, or from a snapshot where k is negative."""
+    ready, known = run.ready, recording.out
+
+    def begun() -> tuple[State, Output]:
+        state, out = ready.begun(times)
+        state.clock[TIME], state.clock[WORK] = (snapshot.time, snapshot.work) if k < 0 else (known.t[k], known.work[k])
+        state.y[...] = snapshot.y if k < 0 else known.y[k]
+        return state, out
+
+    state, out = begun()
+    if recording.approaches is not None:
+        recording.approaches.recall(float(state.clock[TIME]))
+    if events or ready.is_switched:
+        met = EventSteps(ready, run, state, out, events)
+        met.resume(snapshot, float(state.clock[WORK]))
+        met.to(float(times[-1]))
+        return recording_of(met)
+    if not (passes_singular and recording.independent):
+        try:
+            step_to(run, state, out, float(times[-1]))
+            return _plain(ready, state, out)
+        except SimulationError:  # near a singular pose, which independent coordinates pass
+            state, out = begun()
+    if to_end(run.passing, state, out):
+        fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
+    return _plain(ready, state, out)
+
+
+class Between:
+    """Called with rising times (T,), it gives the motion there."""
+
+    def __init__(
+        self, at: Callable[[np.ndarray], Solution] | None, anew: Callable[[], Solution], last: np.ndarray
+    ) -> None:
+        """``anew`` simulates it again, to the same pose ``last`` (3 nb,) at its end."""
+        self.at, self.anew, self.last = at, anew, last
+
+    def __call__(self, times: np.ndarray) -> Solution:
+        """Raises ModelError where the mechanism was changed before it was pickled, and does not move so any more."""
+        if self.at is None:
+            again = self.anew()
+            assert isinstance(again.between, Between)
+            if not np.array_equal(again.between.last, self.last):
+                raise ModelError(
+                    f"{again.mechanism.name}: the mechanism was changed after this simulation, so its motion at other "
+                    "times is lost; simulate again"
+                )
+            self.at = again.between.at
+        assert self.at is not None
+        return self.at(times)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the run, which holds compiled functions of this process."""
+        return self.__dict__ | {"at": None}
+
+
+def with_phase_changes(
+    ready: PreparedDynamics,
+    run: Run,
+    recording: Recording,
+    events: list[Event],
+    grid: np.ndarray,
+    asked: Asked | None,
+) -> tuple[Recording, Asked | None]:
+    """The recording with rows beside each change of phase, and what was asked for with them.
+
+    ``grid`` (T,): output times (s); ``asked``: what was, with those beside jumps at known times.
+    """
+    out = recording.out
+
+    def motion(times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        y = resumed(run, recording, times, events).out.y
+        return y[:, 0], y[:, 1]
+
+    changes = phase_changes(ready.packed, out.t, (out.y[:, 0], out.y[:, 1], out.a), motion)
+    if not changes:
+        return recording, asked
+    known = ready.stops.jumps
+    rows = [*zip(known.before.tolist(), known.after.tolist(), known.names, strict=True)]
+    asked = jumps_of([*rows, *((a, b, (name,)) for a, b, name in changes)]).among(grid)
+    new = asked.solved[~np.isin(asked.solved, out.t) & (asked.solved < out.t[-1])]
+    kept = ~np.isin(out.t, np.setdiff1d(grid, asked.solved))
+    more = resumed(run, recording, new, events)
+    parts = zip(out, more.out, strict=True)
+    both = [np.concatenate([first[kept], second]) for first, second in parts]
+    held = np.concatenate([recording.held[kept], more.held])
+    order = np.argsort(both[0], kind="stable")
+    return replace(recording, out=Output(*(part[order] for part in both)), held=held[order]), asked
+
+
+PART = "the part done, 0 .. 1"
 LEAST_TOLERANCE = 1e-16
 MOST_STEPS = 1e12
 
@@ -61,28 +229,49 @@ def simulate(
     ready: PreparedDynamics | None = None,
 ) -> Solution:
     """See :meth:`mbsd.mechanism.Mechanism.simulate`; ``ready``: what an earlier run has prepared over the same span."""
+    request = request_for(m, duration, steps, times, method, tolerance, step, formulation, options)
+    return simulated(m, request, users_progress(f"{m.name}: progress", progress, PART), event_rows, ready)
+
+
+def request_for(
+    m: Model,
+    duration: float | None,
+    steps: int,
+    times: Sequence[float] | np.ndarray | None,
+    method: str,
+    tolerance: float,
+    step: float | None,
+    formulation: str,
+    options: Mapping[str, float],
+) -> Request:
+    """Return how a mechanism is simulated. Raises ModelError for what cannot be asked."""
     integrator = integrator_named(m.name, method)
     integrator.numbers(m.name, options)
     grid = output_times(m, duration, steps, times)
     refuse_bad_steps(m, grid, tolerance, step)
-    progress = users_progress(f"{m.name}: progress", progress, "the part done, 0 .. 1")
     refuse_formulation(m, formulation, integrator)
+    return Request(grid, integrator, tolerance, step, formulation, options)
+
+
+def simulated(
+    m: Model,
+    request: Request,
+    progress: Progress = None,
+    event_rows: bool = False,
+    ready: PreparedDynamics | None = None,
+) -> Solution:
+    """Simulate as requested."""
+    grid, events = request.times, list(m.events.values())
     ready = ready or prepare_dynamics(m, float(grid[0]), float(grid[-1]), contacts=True)
     warn_of_start(ready)
-    longest = step or float((grid[1:] - grid[:-1]).max())
-    run = Run(ready, integrator, tolerance, longest, float(grid[-1] - grid[0]), options, formulation)
-    events = list(m.events.values())
-    if formulation == INDEPENDENT and (events or ready.switches.contacts or ready.sticks):
-        raise ModelError(
-            f"{m.name}: formulation='independent' does not know events, contacts, limits and joints that stick"
-        )
+    run = run_of(m, request, ready)
     check_pistons(ready.packed, grid[:1], ready.initial.q[None], tell=False)
     asked = ready.stops.jumps.among(grid) if event_rows and ready.stops.jumps else None
-    recording = follow(ready, run, grid if asked is None else asked.solved, events, event_rows, progress)
+    recording = follow(run, grid if asked is None else asked.solved, events, event_rows, progress)
 
     def at(times: np.ndarray) -> Solution:
         try:
-            sol = solution(m, ready, resumed(ready, run, recording, times, events))
+            sol = solution(m, ready, resumed(run, recording, times, events))
         except SimulationError:
             if clear.all():
                 raise
@@ -90,12 +279,15 @@ def simulate(
         return with_efforts_beside(ready, sol, near_singular(sol), beside, span)
 
     def beside(times: np.ndarray) -> Solution:
-        return solution(m, ready, resumed(ready, run, recording.only(clear), times, events, True))
+        return solution(m, ready, resumed(run, recording.only(clear), times, events, True))
 
-    refuse_impossible(ready, recording)
+    refuse_impossible(ready.packed, recording.out.t, recording.out.y)
     if event_rows:
         recording, asked = with_phase_changes(ready, run, recording, events, grid, asked)
-    anew = partial(simulate, m, None, 1, grid, method, tolerance, step, None, options, event_rows, formulation)
+    method, tolerance, step = request.integrator.name, request.tolerance, request.step
+    anew = partial(
+        simulate, m, None, 1, grid, method, tolerance, step, None, request.options, event_rows, request.formulation
+    )
     span = float(recording.out.t[0]), float(recording.out.t[-1])
     sol = solution(m, ready, recording, Between(at, anew, recording.out.y[-1, 0]))
     is_near = near_singular(sol)
@@ -113,12 +305,12 @@ def warn_of_start(ready: PreparedDynamics) -> None:
         )
 
 
-def refuse_impossible(ready: PreparedDynamics, recording: Recording) -> None:
-    """Raise an error where outputs pass limits of joints or of cylinders, or states of forces what they can be."""
-    poses = np.ascontiguousarray(recording.out.y[:, 0])
-    refuse_passed(ready.packed, recording.out.t, poses)
-    check_pistons(ready.packed, recording.out.t, poses)
-    check_states(ready.packed, recording.out.t, poses, states_of(ready.packed, recording.out.y[:, 1]))
+def refuse_impossible(packed: Packed, t: np.ndarray, y: np.ndarray) -> None:
+    """Raise an error where y (T, 2, 3 nb) at t (T,) (s) passes limits of joints or cylinders, or a state its bounds."""
+    poses = np.ascontiguousarray(y[:, 0])
+    refuse_passed(packed, t, poses)
+    check_pistons(packed, t, poses)
+    check_states(packed, t, poses, states_of(packed, y[:, 1]))
 
 
 def refuse_bad_steps(m: Model, grid: np.ndarray, tolerance: float, step: float | None) -> None:
@@ -191,7 +383,7 @@ def solution(
                 packed, ready.dynamics, motion, compact, bend, None if approached is None else approached[at]
             )
         refuse_opened(ready, out.t[at], phi * held)
-        lam[at] = _least_norm(ready, compact, out.lam[at], held)
+        lam[at] = least_norm(packed, compact, out.lam[at], held) if ready.shares_loads else out.lam[at]
         wrench[at] = wrenches(packed, compact, q[at], lam[at])
         loads = loads_along(
             packed, ready.dynamics.loads, ready.dynamics.laws, out.t[at], q[at], v[at],
@@ -247,19 +439,3 @@ def _add_friction(
     """Add to out (T, 3 nb) that of the joints whose friction no multipliers hold, as long as they are not released."""
     for loads, at in standing(ready.dynamics.loads, held):
         out[at] += friction_along(ready.packed, loads, q[at], v[at], compact[at], lam[at])
-
-
-def _least_norm(ready: PreparedDynamics, compact: np.ndarray, lam: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """Where joints are redundant the loads share in many ways; the multipliers of least norm are taken.
-
-    In large mechanisms one set of joints carries all instead: the others' multipliers are zero.
-    """
-    if not ready.mobility.redundant_rows or ready.packed.coordinates > MANY_COORDINATES:
-        return lam
-    if len(ready.dynamics.loads.friction):
-        return lam  # friction came from these
-    packed, out = ready.packed, lam.copy()
-    joints = slice(0, packed.contact_rows)
-    for k, j in enumerate(packed.spread(compact * held[..., None])[:, joints]):
-        out[k, joints] = np.linalg.lstsq(j.T, j.T @ lam[k, joints], rcond=1e-9)[0] * held[k, joints]
-    return out

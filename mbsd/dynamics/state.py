@@ -1,4 +1,7 @@
-"""What integrators work on: the running state, the results at output times, and the tolerances."""
+"""State, outputs and settings of a run, as integrators read and write them.
+
+n: entries of a row of the state, in the plane three for each body; see formulation.py.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mbsd.compiling.jit import inlined, shared
-from mbsd.dynamics.reference.acceleration import accelerate, derivative
-from mbsd.dynamics.reference.projection import bring_back
 
 REACHED, PAUSED, STEP_TOO_SMALL, NOT_FINITE, NO_CONVERGENCE, CHOOSE, UNCLEAR = 0, 1, 2, 3, 4, 5, 6
 """What ``advance`` returns: the end was reached, the allowed steps were used, or why it cannot go on.
@@ -26,13 +27,13 @@ class State(NamedTuple):
     """Where a run stands; enough to go on from, so a copy is a point to return to."""
 
     y: Any
-    """(2, 3 nb) coordinates and velocities."""
+    """(2, n) coordinates and velocities."""
     dy: Any
-    """(2, 3 nb) their derivative; valid once STARTED."""
+    """(2, n) their derivative; valid once STARTED."""
     lam: Any
     """(m,)"""
     memory: Any
-    """(2, 3 nb) what a method itself remembers from step to step; a restart makes it anew."""
+    """(2, n) what a method itself remembers from step to step; a restart makes it anew."""
     clock: Any
     """(8,) time (s), next step (s), work of loads and drivers so far (J), their power (W), last error."""
     count: Any
@@ -45,9 +46,9 @@ class Output(NamedTuple):
     t: Any
     """(T,) s, rising."""
     y: Any
-    """(T, 2, 3 nb)"""
+    """(T, 2, n)"""
     a: Any
-    """(T, 3 nb)"""
+    """(T, n)"""
     lam: Any
     """(T, m); (0, m) where neither multipliers nor accelerations are asked for."""
     work: Any
@@ -57,14 +58,14 @@ class Output(NamedTuple):
 
 
 class Settings(NamedTuple):
-    """What steers the steps."""
+    """Tolerances and lengths of steps."""
 
     absolute: Any
-    """(2, 3 nb) absolute tolerance of coordinates and velocities."""
+    """(2, n) absolute tolerance of coordinates and velocities."""
     relative: float
     """Relative tolerance of velocities and of x and y."""
     growing: Any
-    """(2, 3 nb) the same for each entry; 0 for angles, which are no less exact after many turns."""
+    """(2, n) the same for each entry; 0 for angles, which are no less exact after many turns."""
     longest: float
     """s"""
     smallest: float
@@ -76,19 +77,19 @@ class Settings(NamedTuple):
 
 
 def start_state(y: np.ndarray, rows: int, time: float) -> State:
-    """A run that begins at a consistent y (2, 3 nb)."""
+    """Return a run that begins at a consistent y (2, n)."""
     state = State(y.copy(), np.zeros_like(y), np.zeros(rows), np.zeros_like(y), np.zeros(8), np.zeros(8, np.int64))
     state.clock[TIME] = time
     return state
 
 
 def copied(state: State) -> State:
-    """A point to return to."""
+    """Return a copy, to return to."""
     return State(*(part.copy() for part in state))
 
 
 def output_for(times: np.ndarray, coordinates: int, rows: int) -> Output:
-    """Room for the results at ``times``."""
+    """Return room for the results at ``times``."""
     count = len(times)
     return Output(
         np.ascontiguousarray(times, float),
@@ -98,21 +99,6 @@ def output_for(times: np.ndarray, coordinates: int, rows: int) -> Output:
         np.zeros(count),
         np.zeros(count),
     )
-
-
-@shared
-def record(dyn, scratch, out, k, work):
-    """Write output k from scratch.state, projected first."""
-    state = scratch.state
-    t = out.t[k]
-    bring_back(dyn, scratch, t, state, 2)
-    for c in range(state.shape[1]):
-        out.y[k, 0, c] = state[0, c]
-        out.y[k, 1, c] = state[1, c]
-    out.work[k] = work
-    if out.lam.shape[0] > 0:
-        accelerate(dyn, scratch, t, state, out.a[k], out.lam[k])
-        out.margin[k] = scratch.report[0]
 
 
 @shared
@@ -132,17 +118,8 @@ def record_here(scratch, state, out):
 
 
 @inlined
-def begin(dyn, scratch, state):
-    """Make dy valid at a start or restart."""
-    if state.count[STARTED] == 0:
-        state.clock[POWER] = derivative(dyn, scratch, state.clock[TIME], state.y, state.dy, state.lam)
-        state.count[EVALUATIONS] += 1
-        state.count[STARTED] = 1
-
-
-@inlined
 def fixed_step(state, out, settings, end):
-    """The next step (s) of a method with a fixed one, and where it ends: equal steps up to the next output or end."""
+    """Return the next step (s) of a method with a fixed one, and its end: equal steps up to the next output or end."""
     t = state.clock[TIME]
     target = end
     if state.count[NEXT] < out.t.shape[0] and out.t[state.count[NEXT]] < end:

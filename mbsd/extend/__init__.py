@@ -1,4 +1,4 @@
-"""What joints, drivers, forces and contacts of one's own are made of; docs/extending.md shows some.
+"""Names for joints, drivers, forces and contacts of your own; docs/extending.md shows some.
 
 Rooms below may move; these names stay. What integrators need is in :mod:`mbsd.extend.integrators`, because it loads the
 compiler; :mod:`mbsd.testing` checks a kind.

@@ -1,4 +1,4 @@
-"""What an integrator of one's own works with; docs/extending.md shows one. Importing this loads the compiler.
+"""Names for an integrator of your own; docs/extending.md shows one. Importing this loads the compiler.
 
 derivative, project     rates of a state, and a state closed onto the constraints
 close_step              the same at the end of a step of fixed length, and whether it closes
@@ -9,14 +9,14 @@ kernel, apart, internal, inlined    how its functions are compiled
 """
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel
+from mbsd.dynamics.formulation import begin_run as begin
+from mbsd.dynamics.formulation import close_step, derivative, project
+from mbsd.dynamics.formulation import record_output as record
+from mbsd.dynamics.integrators.full_matrix import differentiate, factor_full, solve_full, too_large
 from mbsd.dynamics.integrators.kind import Integrator, Option, without_sliding
 from mbsd.dynamics.integrators.kind import register as register_integrator
 from mbsd.dynamics.integrators.others.outside import PULL, STAGES, Rates, Stepper, advance_with, tolerances
 from mbsd.dynamics.integrators.step_size import allowed, first_step
-from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
-from mbsd.dynamics.reference.projection import close_step, project
-from mbsd.dynamics.reference.tangents import differentiate, too_large
 from mbsd.dynamics.state import (
     ACCEPTED,
     ERROR,
@@ -35,9 +35,7 @@ from mbsd.dynamics.state import (
     Output,
     Settings,
     State,
-    begin,
     fixed_step,
-    record,
     record_here,
 )
 

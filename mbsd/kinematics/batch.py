@@ -10,8 +10,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.arguments import number_array, whole_number
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.doubted_designs import FINER, settle
 from mbsd.kinematics.prepare import prepare

@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError
+from mbsd.base.running import cores
 from mbsd.equations.system import System
 from mbsd.kinematics.groups.blocks import BLOCK
 from mbsd.kinematics.groups.carrying.columns import COS
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
-from mbsd.kinematics.groups.designs import place_designs
+from mbsd.kinematics.groups.designs import Placed, Scratch, Wanted, place_designs
 from mbsd.kinematics.groups.groups import DRIVEN, Groups
 from mbsd.kinematics.groups.kinds.driven import OFFSET, SENSE
 from mbsd.kinematics.groups.plan import plan_groups
@@ -47,7 +47,7 @@ class Push(NamedTuple):
 
 
 class Moved(NamedTuple):
-    """What one parameter changes."""
+    """The change that one parameter makes."""
 
     markers: Sequence[tuple[int, int]] = ()
     """Marker and axis."""
@@ -74,7 +74,7 @@ class Batch:
 
 
 def in_closed_form(ready: Prepared) -> bool:
-    """Whether a mechanism is made of driven bodies and dyads without a redundant joint."""
+    """Return True if a mechanism is made of driven bodies and dyads without a redundant joint."""
     groups = ready.groups
     return groups is not None and not ready.mobility.redundant_rows and not (groups.kind >= BLOCK).any()
 
@@ -203,10 +203,10 @@ class DesignSweeps:
         """Fill rows of results with the poses of designs with ``numbers`` (n, g, 14); angles go on from ``start``."""
         place = np.zeros((len(self.packed.body_names), 7))
         place[0, COS] = 1.0
-        roots, last = np.zeros((len(self.groups.kind), 2)), np.zeros(len(self.turned))
+        scratch = Scratch(place, np.zeros((1, 1)), np.zeros((len(self.groups.kind), 2)), np.zeros(len(self.turned)))
         place_designs(
-            self.groups.group, rows_of(self.groups.kind, numbers), start, self.driven[steps], every, place,
-            np.zeros((1, 1)), roots, last, self.bodies, arms, self.turned, out, out_angles, status,
+            self.groups.group, rows_of(self.groups.kind, numbers), start, self.driven[steps], every,
+            Wanted(self.bodies, arms, self.turned), Placed(out, out_angles, status), scratch,
         )  # fmt: skip
 
     def _numbers(self, values: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""What is said of a motion that the links cannot make: a toggle, a jump to the other assembly, a joint that opens."""
+"""Errors of a motion that the links cannot make: a toggle, a jump to the other assembly, a joint that opens."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def refused(
 
 
 def driver_values(packed: Packed, drive: np.ndarray) -> str:
-    """What the drivers are at, in words."""
+    """Return the values of the drivers in words."""
     parts = []
     for k, driver in enumerate(packed.drivers):
         value = float(drive[k + 1, 0])

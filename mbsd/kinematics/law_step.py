@@ -1,4 +1,4 @@
-"""Whether the step of a driver's law from one time to the next can be followed."""
+"""Steps of drivers' laws from one time to the next: which of them can be followed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ JUMP = 0.25
 
 @inlined
 def jumps(law, before, h, stride):
-    """Whether a law's value (3,) is further than ``stride`` from that h seconds before, or not where its rates lead."""
+    """Return True if a law's value (3,) is over ``stride`` from that h seconds before, or not where its rates lead."""
     step = law[0] - before[0]
     gap = step - h * (0.5 * (law[1] + before[1]) - h / 12.0 * (law[2] - before[2]))
     if not (abs(step) <= stride and h * abs(law[1]) <= stride and h * abs(before[1]) <= stride):

@@ -15,7 +15,7 @@ from mbsd.kinematics.elimination import Elimination, plan
 from mbsd.kinematics.groups.carrying.columns import COS
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, OPEN, SOLVED
 from mbsd.kinematics.groups.groups import Groups
-from mbsd.kinematics.groups.solve import SOLVED_CLOSE, solve_groups
+from mbsd.kinematics.groups.solve import SOLVED_CLOSE, Poses, solve_groups
 from mbsd.kinematics.pose.mobility import best_rows
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.sample_jacobians import sample_jacobians
@@ -109,16 +109,18 @@ def _closed_form(
     """
     n3, size, blocks = len(ready.q0), ready.packed.size, ready.blocks
     bodies = n3 // 3
-    body, rate, turn, point = np.zeros((bodies, 7)), np.zeros((bodies, 6)), np.zeros((bodies, 2)), np.zeros((4, 8))
-    body[0, COS] = turn[0, 0] = 1.0
-    before = np.zeros((len(groups.kind), 3))
+    poses = Poses(
+        np.zeros((bodies, 7)), np.zeros((bodies, 6)), np.zeros((bodies, 2)), np.zeros((4, 8)),
+        np.zeros((len(groups.kind), 3)),
+    )  # fmt: skip
+    poses.body[0, COS] = poses.turn[0, 0] = 1.0
     q, v, a = (np.zeros((len(steps.times), n3)) for _ in range(3))
     determinant = np.zeros((len(blocks.head), len(steps.times), 1))
     first = 0
     while True:
         status, index, part = solve_groups(
-            groups, blocks, ready.q0, steps.times, steps.drives, steps.stride, ZERO_LENGTH * size * size, first,
-            q, v, a, determinant, body, rate, turn, point, before,
+            groups, blocks, ready.q0, newton.DrivenMotion(steps.times, steps.drives, steps.stride, q, v, a),
+            determinant, poses, ZERO_LENGTH * size * size, first,
         )  # fmt: skip
         ready.packed.specials.check()
         if status in (SOLVED, SOLVED_CLOSE):
@@ -149,7 +151,7 @@ def _ends_close(determinant: np.ndarray) -> bool:
 
 
 def _all_close(ready: Prepared, steps: Steps, q: np.ndarray) -> bool:
-    """Whether joints that repeat others, which the groups leave out, hold at all poses q (T, 3 nb)."""
+    """Return True if joints that repeat others, which the groups leave out, hold at all poses q (T, 3 nb)."""
     packed = ready.packed
     if ready.proved or not ready.mobility.redundant_rows:
         return True
@@ -173,8 +175,8 @@ def _newton(
     while first < len(steps.times):
         q, v, a, residual, determinant = arrays
         status, index = newton.sweep(
-            packed.system, sequence, factors, packed.ws, packed.size, steps.times, steps.drives, steps.stride,
-            q, v, a, residual, determinant, first, chosen,
+            packed.system, sequence, factors, packed.ws, packed.size,
+            newton.DrivenMotion(steps.times, steps.drives, steps.stride, q, v, a), residual, determinant, first, chosen,
         )  # fmt: skip
         packed.specials.check()
         if status == newton.DONE:

@@ -23,6 +23,8 @@ Source: Haug 1989, ch. 4 (Newton-Raphson); Hairer, Norsett, Wanner, Solving ODEs
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from mbsd.compiling.jit import inlined, kernel
@@ -46,6 +48,21 @@ SHRINKS = 0.1
 """A determinant that falls to this part of its last value, or heads for it, may vanish in between."""
 
 DONE, NO_CONTRACTION, BRANCH_DOUBT, SINGULAR = 0, 1, 2, 3
+
+
+class DrivenMotion(NamedTuple):
+    """A motion of which one row after the other is solved."""
+
+    times: Any
+    """(T,) s"""
+    drives: Any
+    """(T, motions + 1, 3) laws of drivers with two derivatives."""
+    stride: Any
+    """(motions + 1,) how far each law may go in a step."""
+    q: Any
+    """(T, 3 nb), and so are v and a."""
+    v: Any
+    a: Any
 
 
 @inlined
@@ -106,16 +123,18 @@ def _unexplained(q, v, a, k, h, per_metre):
 
 
 @kernel
-def sweep(system, seq, fac, ws, size, times, drives, stride, q, v, a, residual, determinant, start, chosen):
-    """Solve positions, velocities and accelerations at ``times[start:]``; rows before ``start`` are known.
+def sweep(system, seq, fac, ws, size, motion, residual, determinant, start, chosen):
+    """Solve positions, velocities and accelerations of ``motion`` from row ``start`` on; rows before are known.
 
-    The rows of J in ``seq`` are those chosen for times from ``chosen`` on.
-
-    times (T,), drives (T, motions + 1, 3), stride (motions + 1,) how far each law may go in a step; q, v, a (T, 3 nb),
-    residual (T,) largest |Phi| and determinant (T, d) of each block of J are filled. With ``start`` 0, q[0] must hold
-    the assembled pose. ``size`` is the mechanism's length (m).
-    Returns (status, index): DONE and T, or why and at which index the step was refused.
+    The rows of J in ``seq`` are those chosen for times from row ``chosen`` on. residual (T,) largest |Phi| and
+    determinant (T, d) of each block of J are filled, too. With ``start`` 0, q[0] must hold the assembled pose. ``size``
+    is the mechanism's length (m). Returns (status, index): DONE and T, or why and at which index the step was refused.
     """
+    times = motion.times
+    drives = motion.drives
+    q = motion.q
+    v = motion.v
+    a = motion.a
     n3 = q.shape[1]
     per_metre = 1.0 / size
     pose = ws.pose
@@ -125,8 +144,8 @@ def sweep(system, seq, fac, ws, size, times, drives, stride, q, v, a, residual, 
         h = 0.0
         if k > 0:
             h = times[k] - times[k - 1]
-            for motion in range(1, drives.shape[1]):
-                if jumps(drives[k, motion], drives[k - 1, motion], h, stride[motion]):
+            for law in range(1, drives.shape[1]):
+                if jumps(drives[k, law], drives[k - 1, law], h, motion.stride[law]):
                     return BRANCH_DOUBT, k
             _predict(q, v, a, times, k, times[k], pose)
         else:

@@ -10,7 +10,7 @@ LONGEST_STRETCH = 4.0
 
 @inlined
 def quintic_factors(t, k, time):
-    """What the data of poses k - 1 and k - 2 count at ``time``: q apart, v and a of the last, v and a of the other.
+    """Return weights of the data of poses k - 1 and k - 2 at ``time``: q apart, v and a of the last, of the other.
 
     With s = ahead / h the quintic is linear in the six data, so its five factors are found once for all coordinates.
     """

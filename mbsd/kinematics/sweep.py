@@ -15,8 +15,8 @@ from mbsd.arrays.law_jumps import jump_times, reach_beside
 from mbsd.arrays.laws import compiled_laws
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError, ModelWarning
-from mbsd.base.shown import shown
-from mbsd.base.warn import warn
+from mbsd.base.names import shown
+from mbsd.base.warning import warn
 from mbsd.kinematics.change_points.sides import determinant_of, sides_of
 from mbsd.kinematics.limits.closed_contacts import refuse_passed_contacts
 from mbsd.kinematics.limits.curve_jumps import refuse_jumps
@@ -30,9 +30,9 @@ from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times
 from mbsd.results.jump_rows import Asked, jumps_of
+from mbsd.results.measured import check_states
 from mbsd.results.returned import returned
 from mbsd.results.solution import Beside, Solution
-from mbsd.results.states import check_states
 from mbsd.results.views import Stats
 
 

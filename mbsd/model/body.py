@@ -12,8 +12,8 @@ from typing import Any, Protocol
 
 from mbsd.base.arguments import CHECKS, SMALLEST, finite_number, number_pair
 from mbsd.base.errors import ModelError
+from mbsd.base.names import shown
 from mbsd.base.pickled import with_copied_fields
-from mbsd.base.shown import shown
 
 __all__ = ["Body", "Marker", "finite_number", "number_pair"]
 
@@ -106,7 +106,7 @@ class Body:
             self.__dict__["inertia"] = rod_inertia(self.mass, self.length)
 
     def _checked(self, name: str, value: object) -> object:
-        """What may be set. Raises ModelError for what no body has."""
+        """Return the numbers that may be set. Raises ModelError for what no body has."""
         what = f"{self.owner}: {name} of body '{self.name}'" if name in ("mass", "inertia", "com") else name
         if name == "com":
             return number_pair(f"{what} (m)", value)
@@ -170,7 +170,7 @@ class Body:
 
     @property
     def mechanism(self) -> Owner | None:
-        """That this body was made for."""
+        """The mechanism of this body."""
         return self.__dict__.get("_mechanism")
 
     @property

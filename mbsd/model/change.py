@@ -99,7 +99,7 @@ def _change(m: Model, table: dict[str, Any], name: str, values: Mapping[str, Any
 
 
 def _of_body_alone(m: Model, entry: Any, name: str, values: Mapping[str, Any]) -> bool:
-    """Whether a body has the name of an entry, and takes values that the entry does not know."""
+    """Return True if a body has the name of an entry, and takes values that the entry does not know."""
     body = m.bodies.get(name)
     return (
         body is not None
@@ -117,7 +117,7 @@ def _own(entry: Joint | Force) -> list[str]:
 
 
 def takes(m: Model, name: str, key: str) -> bool:
-    """Whether :func:`change` takes an argument ``key`` of what has this name."""
+    """Return True if :func:`change` takes an argument ``key`` of what has this name."""
     for table in connections(m):
         if name in table:
             entry: Any = table[name]
@@ -128,7 +128,7 @@ def takes(m: Model, name: str, key: str) -> bool:
 
 
 def values_of(m: Model, name: str) -> dict[str, Any] | None:
-    """What :func:`change` takes for a name, with its values, derived ones too; None if there is no such name."""
+    """Return what :func:`change` takes for a name, with its values, derived ones too; None if the name is unknown."""
     for table in connections(m):
         if name in table:
             entry: Any = table[name]

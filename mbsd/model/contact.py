@@ -1,4 +1,4 @@
-"""What a unilateral contact is made of, and the registry that one test walks through.
+"""Unilateral contacts: their data, and the registry of kinds.
 
 The first constraint is the gap g >= 0; a second one, if there is one, is the way s that the bodies slide on each
 other. While the contact is closed, g = 0 is a row of J with the normal force N >= 0; while it sticks, s is one too.
@@ -26,7 +26,7 @@ class ContactKind(JointKind):
 
     @property
     def of_angle(self) -> bool:
-        """Whether its gap is an angle (rad) and what pushes it open a torque (N m)."""
+        """True if its gap is an angle (rad) and what pushes it open a torque (N m)."""
         return SPECIALS[self.constraints[0]].unit == "rad"
 
 

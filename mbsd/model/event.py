@@ -9,8 +9,8 @@ from typing import Any
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
+from mbsd.base.names import shown
 from mbsd.base.pickled import WithFunctions
-from mbsd.base.shown import shown
 from mbsd.model.body import Body, Marker
 
 
@@ -33,11 +33,11 @@ class Event(WithFunctions):
 
     @property
     def acts(self) -> bool:
-        """Whether it changes the motion."""
+        """True if it changes the motion."""
         return self.action is not None or bool(self.releases)
 
     def value_at(self, moment: Any) -> Any:
-        """What the function gives at a moment of a simulation."""
+        """Return the value of the function at a moment of a simulation."""
         if self.frames and not isinstance(self.value, Reaching):
             return self.value(moment.t, *moment.numbers(self.frames))
         return self.value(moment.t, moment)

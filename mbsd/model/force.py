@@ -1,4 +1,4 @@
-"""What a force is made of, and the registry that one test walks through.
+"""Forces: their data, and the registry of kinds.
 
 A force is one scalar element or several, and the magnitude of an element is a sum of terms. An element measures a
 scalar x of two markers and acts along it, so that a positive magnitude F makes x grow:
@@ -26,8 +26,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from mbsd.base.arguments import adding
 from mbsd.base.codes import MOST_STATES, TURN
-from mbsd.base.derived import adding
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
@@ -218,11 +218,11 @@ class ForceKind(ByName):
         return made
 
     def drives(self, force: Force) -> bool:
-        """Whether it may move a mechanism in place of drivers: a given torque or push, or a motor."""
+        """Return True if it may move a mechanism in place of drivers: a given torque or push, or a motor."""
         return bool(self.effort) or self.motor in force.laws
 
     def places(self, force: Force) -> tuple[Marker, ...]:
-        """Those of its markers that are places where it acts, and not a direction or a body alone."""
+        """Its markers at which it acts, not those that give a direction or a body alone."""
         turning = [element.kind == TURN for element in self.elements(force)]
         return (force.j,) if self.outside or (turning and all(turning)) else (force.i, force.j)
 
@@ -256,7 +256,7 @@ class Force(WithFunctions):
     laws: Mapping[str, Motion | Curve] = field(default_factory=dict)
     """Laws of time and characteristic curves by the names of its method's arguments."""
     derived: frozenset[str] = frozenset()
-    """Params that nobody gave, found from the others; see mbsd/base/derived.py."""
+    """Params that nobody gave, found from the others; see mbsd/base/arguments.py."""
 
     @property
     def given(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What a joint or driver is made of, and the registry that one test walks through.
+"""Joints and drivers: their data, and the registry of kinds.
 
 A kind names its constraints in the order of its rows. It must bring an example, so that none escapes the test.
 """
@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from mbsd.base.derived import adding
+from mbsd.base.arguments import adding
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
@@ -117,7 +117,7 @@ class JointKind(ByName):
 
     @property
     def slides(self) -> bool:
-        """Whether marker j moves along the x axis of marker i."""
+        """True if marker j moves along the x axis of marker i."""
         return self.pair in ("guide", "slot")
 
     @property
@@ -127,7 +127,7 @@ class JointKind(ByName):
 
     @property
     def angular(self) -> bool:
-        """Whether a driver of this kind imposes an angle."""
+        """True if a driver of this kind imposes an angle."""
         return self.units[1] == "rad"
 
     @property
@@ -176,7 +176,7 @@ class Joint(WithFunctions):
     """Numbers of this joint by the names of its method's arguments, plain data (SI)."""
     motion: Motion | None = None
     derived: frozenset[str] = frozenset()
-    """Params that nobody gave, found from the others; see mbsd/base/derived.py."""
+    """Params that nobody gave, found from the others; see mbsd/base/arguments.py."""
 
     @property
     def given(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What pictures of solids draw for a joint, driver, force or contact beside the parts of its bodies.
+"""Looks: what pictures of solids draw for a joint, driver, force or contact beside the parts of its bodies.
 
 band        a belt or chain round both wheels
 roller      a roller about marker j that is pressed on one side: a cam's

@@ -1,4 +1,4 @@
-"""What a mechanism holds: named bodies, joints, drivers, traces and rough starts; bodies and shared checks."""
+"""The model of a mechanism: named bodies, joints, drivers, traces and rough starts; bodies and shared checks."""
 
 from __future__ import annotations
 
@@ -11,9 +11,8 @@ from typing import Any
 
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError
-from mbsd.base.names import Named, Suggesting, names_in, no_such
+from mbsd.base.names import Named, Suggesting, names_in, no_such, shown
 from mbsd.base.pickled import with_copied_fields
-from mbsd.base.shown import shown
 from mbsd.model.body import Body, Marker, rod_inertia
 from mbsd.model.event import Event
 from mbsd.model.force import Force
@@ -41,7 +40,7 @@ class StartVelocity:
 
 @dataclass(eq=False)
 class Model(Suggesting):
-    """What a mechanism holds, and the checks that all its methods share. See :class:`mbsd.mechanism.Mechanism`."""
+    """The model of a mechanism, and checks that all its methods share. See :class:`mbsd.mechanism.Mechanism`."""
 
     name: str
     gravity: tuple[float, float] | None = STANDARD_GRAVITY
@@ -218,7 +217,7 @@ SHORTEST = 1e-12
 
 
 def connections(m: Model) -> tuple[Mapping[str, object], ...]:
-    """What shares one set of names: whatever connects two bodies."""
+    """Entries that share one set of names: all that connect two bodies."""
     return m.joints, m.drivers, m.forces, m.contacts
 
 

@@ -136,7 +136,7 @@ class OilCylinder:
             return a, at_b - self.drop((-self.area_b * rate - leak) / way)
 
         def beyond(leak: float) -> float:
-            """What would leak at the pressures that this leak leaves, less the leak: it falls as the leak grows."""
+            """Return the flow at the pressures that a leak leaves, less the leak: it falls as the leak grows."""
             a, b = pressures(leak)
             return self.leakage * (a - b) - leak
 

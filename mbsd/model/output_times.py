@@ -11,7 +11,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number, number_array, whole_number
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 
 if TYPE_CHECKING:
     from mbsd.model.mechanism import Model

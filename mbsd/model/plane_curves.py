@@ -107,7 +107,7 @@ def curve_numbers(
 
 
 def _passes_itself(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> bool:
-    """Whether another part of a curve is so close by that the nearest node of a point may not lead to its foot.
+    """Return True if another part of a curve is so close by that the nearest node of a point may not lead to its foot.
 
     Looked for as the kernel does (find_foot), from places at ``distance`` (m, left) of the curve.
     """
@@ -137,7 +137,7 @@ def _wrong_nodes(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, dis
     row = np.arange(len(place))
 
     def elsewhere(node: np.ndarray) -> np.ndarray:
-        """Whether nodes (n, k) belong to another part than the places: the way there is far longer than the chord."""
+        """Return True if nodes (n, k) belong to another part: the arc to them is far longer than the chord."""
         along = np.abs(way[node] - gone)
         along = np.minimum(along, way[-1] - along) if closed else along
         return along > ROUNDABOUT * np.hypot(*np.moveaxis(nodes[node] - on, -1, 0))
@@ -160,7 +160,7 @@ def _wrong_nodes(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, dis
 
 
 def disc_numbers(params: Mapping[str, Any], follows: bool) -> list[np.ndarray]:
-    """Those of the constraints `curve` and `curve_rolling` of a disc on a curve: ``points``, ``closed``, ``radius``.
+    """Return the numbers of the constraints `curve` and `curve_rolling` of a disc: ``points``, ``closed``, ``radius``.
 
     ``follows``: it never leaves its branch of a curve that crosses itself; a contact is with the nearest branch.
     """

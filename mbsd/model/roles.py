@@ -1,4 +1,4 @@
-"""What the arguments of a function that adds a joint, driver, force or contact are, by their types.
+"""Roles of the arguments of a function that adds a joint, driver, force or contact, by their types.
 
 Marker                   one of the two markers
 Body | str               a body of one of them, or its name; with None one that may be left out
@@ -25,7 +25,7 @@ from mbsd.model.mechanism import Model
 
 
 class Role(Enum):
-    """What an argument is."""
+    """The role of an argument."""
 
     MARKER, BODY, OPTIONAL_BODY, LAW, AMOUNT, CURVE, VALUE = range(7)
 
@@ -45,7 +45,7 @@ class Argument(NamedTuple):
 
 @lru_cache(maxsize=512)
 def arguments(add: Callable[..., Any]) -> tuple[Argument, ...]:
-    """Those of ``add(m, name, ...)`` after the mechanism and the name, or of a law's function."""
+    """Return arguments of ``add(m, name, ...)`` after the mechanism and the name, or of a law's function."""
     known = types_of(add)
     return tuple(
         Argument(p.name, _role(known[p.name]), known[p.name], p.default is p.empty, p.kind is p.VAR_POSITIONAL)

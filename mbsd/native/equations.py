@@ -19,18 +19,17 @@ import numpy as np
 from numba import typeof
 
 from mbsd.base.errors import ModelError
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.integrators.dop853 import DOP853
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.runs.run import REFERENCE, Run
-from mbsd.dynamics.state import State
+from mbsd.dynamics.state import State, output_for
 from mbsd.equations.assembly import tabulate_all
 from mbsd.equations.interactions.switching import SWITCHING
 from mbsd.model.mechanism import Model
-from mbsd.native.functions import functions_at
-from mbsd.native.machine_code import MachineCode
+from mbsd.native.machine_code import MachineCode, functions_at
 from mbsd.native.memory import Memory, memory_of
 from mbsd.native.table import WORD, leaves, number
 
@@ -66,9 +65,10 @@ class NativeEquations:
         self.jacobian_at = np.zeros((1, len(self.state.lam), 6))
         self.no_rows = np.zeros((1, len(self.state.lam)))
         y, ws = self.state.y, scratch.ws
+        nowhere = output_for(np.zeros(0), y.shape[1], len(self.state.lam))
         self.arguments: dict[str, tuple[Any, tuple[Any, ...]]] = {
             "advance": (
-                DOP853.advance, (dynamics, scratch, self.state, self.run.nowhere, self.run.settings, end, MANY_STEPS)
+                DOP853.advance, (dynamics, scratch, self.state, nowhere, self.run.settings, end, MANY_STEPS)
             ),
             "derivative": (derivative, (dynamics, scratch, start, y, self.state.dy, self.state.lam)),
             "project": (project, (dynamics, scratch, start, y, 2)),
@@ -84,17 +84,17 @@ class NativeEquations:
 
     @property
     def switches(self) -> bool:
-        """Whether contacts by penalty begin and end."""
+        """True if contacts by penalty begin and end."""
         return bool(self.ready.dynamics.loads.switch[0, SWITCHING])
 
     @property
     def exchange(self) -> bool:
-        """Whether rates follow from the state alone: damping by restitution also needs the speed of the approach."""
+        """True if rates follow from the state alone: damping by restitution also needs the speed of the approach."""
         return not self.ready.approaches
 
     @property
     def left_out(self) -> list[str]:
-        """What programs without Python do not get, by name."""
+        """Names of what programs without Python do not get."""
         out = []
         if self.ready.mobility.redundant_rows:
             out.append("reactions of redundant joints as they are shared least: one set of joints carries all")

@@ -7,17 +7,24 @@ LLVM makes position-independent code of it. Cells become constants that hold the
 
 from __future__ import annotations
 
+import importlib
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import llvmlite.binding as llvm
+import numpy as np
 from numba.core import types
 
+from mbsd.arrays.directory import directory
+from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError
 from mbsd.compiling.jit import kernel
 from mbsd.compiling.lazy_kernel import COMPILE
+from mbsd.equations.interactions import call
+from mbsd.equations.loads import Loads
+from mbsd.model.joint import SPECIALS
 from mbsd.native.table import reader
 
 TABLE = types.CPointer(types.int64)
@@ -166,3 +173,20 @@ def _stand_ins(module: Any) -> str:
         if value.is_declaration and OF_PYTHON.fullmatch(value.name)
     ]
     return "\n".join(lines) + "\n" if lines else ""
+
+
+FORCE, APPLY = 4, 5
+"""Columns of Loads.interaction with addresses."""
+
+
+def functions_at(packed: Packed, loads: Loads) -> Iterator[tuple[np.ndarray, tuple[int, ...], str, Any]]:
+    """Array, entry, name and function (numba's CFunc) of each address that is not a user's."""
+    for k, name in enumerate(packed.specials.names):
+        equation = SPECIALS[name].equation
+        made = importlib.import_module(f"mbsd.equations.relative.{equation}").residual
+        yield packed.system.address, (k,), f"relative_{equation}", made
+    for rows in directory(packed).values():
+        for interaction, row in zip(rows.interactions, rows.interaction, strict=True):
+            made = importlib.import_module(f"mbsd.equations.interactions.{interaction.function}").force
+            yield loads.interaction, (row, FORCE), f"interaction_{interaction.function}", made
+            yield loads.interaction, (row, APPLY), "apply_interactions", call._apply()  # pyright: ignore[reportPrivateUsage]

@@ -1,4 +1,4 @@
-"""What a program without Python may read and set of a mechanism: names, units, and where each number is.
+"""Quantities that a program without Python may read and set: names, units, and where each number is.
 
 states       coordinates and speeds of each body's centre of mass, states of forces, and the work of forces
 inputs       a force and a torque on each body, constant forces of the model, rates of drivers that turn steadily

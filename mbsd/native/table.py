@@ -33,7 +33,7 @@ def words(value: Any) -> int:
 
 
 def reader(kind: Any) -> Any:
-    """What kernels call to read a value of numba's type ``kind`` from a table (pointer to int64)."""
+    """Return the function by which kernels read a value of numba's type ``kind`` from a table (pointer to int64)."""
 
     @intrinsic
     def read(typing, table):  # pyright: ignore[reportUnusedParameter]

@@ -20,8 +20,7 @@ from functools import partial
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.model.body import Marker, rod_inertia
 from mbsd.model.change import BAR, BODY, change, given, given_body
 from mbsd.model.joint import Joint
@@ -238,7 +237,7 @@ def _with_inner(path: str, value: Any, new: float) -> Any:
 
 
 def _arguments(m: Model, whole: str) -> dict[str, Any]:
-    """What ``change`` takes, with all values that are known, derived ones, too."""
+    """Return the arguments that ``change`` takes, with all values that are known, derived ones, too."""
     out: dict[str, Any] = {}
     if whole in m.bodies:
         body = m.bodies[whole]

@@ -60,7 +60,7 @@ def _forces(m: Model, saved: SavedModel) -> list[Force] | None:
 
 
 def unchanged(table: Mapping[str, Any], saved: SavedModel) -> bool:
-    """Whether a table of the model holds what it held."""
+    """Return True if a table of the model holds what it held."""
     before = saved.before(table)
     return len(table) == len(before) and all(map(is_, table.values(), before.values()))
 

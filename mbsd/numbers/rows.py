@@ -13,7 +13,7 @@ import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.change import takes, values_of
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import START, Number, number_in, numbers_within, twin_of, with_values

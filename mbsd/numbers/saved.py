@@ -23,7 +23,7 @@ class SavedModel:
         self.traces = dict(m.traces)
 
     def before(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
-        """What one of the tables of the model held; nothing of another model."""
+        """Return what one of the tables of the model held; nothing of another model."""
         own = self._before.get(id(table))
         return own[1] if own is not None and own[0] is table else {}
 

@@ -30,7 +30,7 @@ ROUNDING = 1e-9
 
 
 def acting(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> Wrench:
-    """What joint, driver or contact number ``k`` does to its second body, at the place where it acts.
+    """Return the wrench of joint, driver or contact number ``k`` on its second body, at the point where it acts.
 
     q (T, nb, 3) poses, wrench (T, joints, 3) as a solution has them: N and N m about the second marker.
     """
@@ -51,7 +51,7 @@ def acting(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> Wrench:
 
 
 def actions(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> list[Action]:
-    """What joint, driver or contact number ``k`` does to its first and to its second body."""
+    """Return the wrenches of joint, driver or contact number ``k`` on its first and its second body."""
     joint, on = packed.joints[k], acting(packed, q, wrench, k)
     first = np.stack([on.x, on.y], axis=1)
     if "distance" in joint.kind.constraints:  # along the line between the markers, so at either
@@ -64,7 +64,7 @@ def actions(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> list[A
 
 
 def felt(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> Action:
-    """What joint, driver or contact number ``k`` does to the body that moves: the first where the second is ground."""
+    """Return the wrench of joint, driver or contact ``k`` on its moving body: the first if the second is ground."""
     on, (first, second) = acting(packed, q, wrench, k), packed.joints[k].bodies
     body, sign = (first, -1.0) if second == "ground" else (second, 1.0)
     return Action(on.x, on.y, sign * on.fx, sign * on.fy, sign * on.torque, body)

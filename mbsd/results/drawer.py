@@ -1,4 +1,4 @@
-"""What a solution asks to be drawn; whoever made the mechanism brings it."""
+"""Requests of a solution to be drawn; whoever made the mechanism brings the drawer."""
 
 from __future__ import annotations
 
@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, runtime_checkable
 
 from mbsd.base.errors import ModelError
 from mbsd.model.mechanism import Model
-from mbsd.pictures.animation import Animation
-from mbsd.pictures.picture import Picture
-from mbsd.pictures.view import View
+from mbsd.pictures import Animation, Picture, View
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,12 +51,12 @@ class HasDrawer(Protocol):
 
     @property
     def drawer(self) -> Drawer[Any]:
-        """What draws them."""
+        """The drawer of solutions."""
         ...
 
 
 def drawer_of(mechanism: Model) -> Drawer[Any]:
-    """What draws the solutions of a mechanism. Raises ModelError where it brings nothing that does."""
+    """Return the drawer of a mechanism's solutions. Raises ModelError where it brings none."""
     if not isinstance(mechanism, HasDrawer):
         kind = type(mechanism).__name__
         raise ModelError(f"{mechanism.name}: solutions of a {kind} are not drawn; build an mbsd.Mechanism")

@@ -1,4 +1,4 @@
-"""What a force did along a motion, as a user asks for it: wrenches, points of action, what it measures, power.
+"""Results of a force along a motion: wrenches, points of action, what it measures, power.
 
 effort > 0 makes the measured value grow: it pushes points apart, turns the second body counter-clockwise,
 pushes along the axis, opens the gap;  power = effort * rate where the force is nothing but its effort
@@ -21,7 +21,7 @@ UNITS: Mapping[str, str] = {"length": "m", "angle": "rad", "coordinate": "m", "g
 
 @dataclass(frozen=True)
 class Action(Wrench):
-    """What a force does to one body."""
+    """The action of a force on one body."""
 
     body: str
 
@@ -60,14 +60,14 @@ class ForceView(Suggesting):
     """Whether it acts on several bodies, none of which is the second."""
 
     def on(self, body: str) -> Action:
-        """What it does to the body of this name. Raises ModelError for one that does not feel it."""
+        """Return its action on the body of this name. Raises ModelError for one that does not feel it."""
         if body not in self.bodies:
             raise ModelError(f"force '{self.name}' does not act on '{body}'; it acts on: {', '.join(self.bodies)}")
         return self._action(self.bodies.index(body))
 
     @property
     def second(self) -> Action:
-        """What it does to the second body. Raises ModelError for one without."""
+        """Its action on the second body. Raises ModelError for one without."""
         if self.several:
             raise ModelError(
                 f"force '{self.name}' ({self.kind}) acts on {', '.join(self.bodies)} and has no second body; "

@@ -2,6 +2,15 @@
 
 The wrenches are the generalised forces of the compiled loops themselves, moved from the centres of mass to the points
 of action. A pair of bodies feels the same force with opposite signs at one point, or on one line.
+
+Potential energy of the forces that have one: springs, elastic curves, gas, attraction, contacts, a turning frame.
+
+    LINEAR      a (x - b)^2 / 2
+    POWER       -a (x + b)^(c + 1) / (c + 1);   for c = -1  -a log(x + b)
+    LAW_VALUE   -a int law dx
+
+x: what the element measures (see forces/kind.py). Constants and laws of time and of rates do work instead.
+Interactions bring their own.
 """
 
 from __future__ import annotations
@@ -15,24 +24,26 @@ from mbsd.arrays.approaches import stretches
 from mbsd.arrays.directory import directory, slice_of
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
 from mbsd.arrays.states import own_states, widened, with_states
-from mbsd.base.codes import AXIS, LINE, PUSH, TURN
+from mbsd.base.codes import AXIS, LAW_VALUE, LINE, LINEAR, POTENTIAL_TERMS, POWER, PUSH, TURN
 from mbsd.equations.loads import tabulate_loads
-from mbsd.model.force import Element
-from mbsd.results.energy import potential_of
+from mbsd.model.force import Element, Force, Term
+from mbsd.model.laws.curve import Curve
 from mbsd.results.force_view import ForceView
 from mbsd.results.friction import friction_view
 from mbsd.results.gas import gas_view
 from mbsd.results.hydraulics import hydraulic_view
 from mbsd.results.measured import measured
 from mbsd.results.moved import Moved
-from mbsd.results.surface import foot_of
+from mbsd.results.surface import depths, foot_of
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
     from mbsd.model.body import Marker
     from mbsd.model.force import Force
+
 
 MEASURES = {LINE: "length", TURN: "angle", AXIS: "coordinate"}
 
@@ -126,12 +137,12 @@ def _way(moved: Moved, force: Force, i: int, j: int) -> _Way | None:
 
 
 def _touches(force: Force) -> bool:
-    """Whether it acts where surfaces touch."""
+    """Return True if it acts where surfaces touch."""
     return force.kind.surface is not None or force.kind.journal is not None
 
 
 def _elements(packed: Packed, force: Force) -> tuple[Element, ...]:
-    """Those of a force; a friction has that along which its joint moves."""
+    """Return the elements of a force; a friction has that along which its joint moves."""
     if force.kind.along is not None:
         return (force.kind.along(force),)
     if not force.kind.of_reactions:
@@ -204,3 +215,33 @@ def _wrench(load: np.ndarray, q: np.ndarray, b: int, point: np.ndarray) -> np.nd
     arm = point - q[:, 3 * b : 3 * b + 2]
     out[:, 2] -= arm[:, 0] * out[:, 1] - arm[:, 1] * out[:, 0]
     return out
+
+
+def potential_of(packed: Packed, force: Force, q: np.ndarray) -> np.ndarray:
+    """(T,) potential energy (J) of one force along poses q (T, 3 nb)."""
+    i, j = packed.markers_of(force)
+    out = np.zeros(len(q))
+    for element in force.kind.elements(force):
+        terms = [term for term in element.terms if term.kind in POTENTIAL_TERMS]
+        if terms:
+            x = measured(packed, element, i, j, q)
+            out += sum(_term(force, term, x) for term in terms)
+    if force.kind.potential is not None:
+        out += force.kind.potential(force, packed.masses, q)
+    if force.kind.depth_potential is not None:
+        out += force.kind.depth_potential(force, depths(packed, force, q)).sum(axis=0)
+    return out
+
+
+def _term(force: Force, term: Term, x: np.ndarray) -> np.ndarray:
+    if term.kind == LINEAR:
+        return 0.5 * term.a * (x - term.b) ** 2
+    if term.kind == POWER:
+        if term.c == -1.0:
+            return -term.a * np.log(x + term.b)
+        return -term.a * (x + term.b) ** (term.c + 1.0) / (term.c + 1.0)
+    assert term.kind == LAW_VALUE
+    assert term.law is not None
+    law = force.laws[term.law]
+    assert isinstance(law, Curve), "laws of a length or an angle are curves"
+    return -term.a * law.integral(x)

@@ -51,7 +51,7 @@ class GasView(ForceView):
         return None if self.indicated_work is None or self.displaced is None else self.indicated_work / self.displaced
 
     def columns(self, title: str) -> dict[str, np.ndarray]:
-        """Those of a force, with pressure and volume."""
+        """Return the columns of a force, with pressure and volume."""
         out = super().columns(title)
         return out | {f"{title}.pressure [Pa]": self.pressure, f"{title}.volume [m^3]": self.volume}
 

@@ -23,7 +23,7 @@ from mbsd.results.moved import Moved
 
 @dataclass(frozen=True, kw_only=True)
 class HydraulicView(ForceView):
-    """What a hydraulic cylinder did, (T,) arrays. Chamber A is that of the whole piston; pressures are absolute."""
+    """Results of a hydraulic cylinder, (T,) arrays. Chamber A is that of the whole piston; pressures are absolute."""
 
     pressure_a: np.ndarray
     """Pa"""
@@ -54,7 +54,7 @@ class HydraulicView(ForceView):
     """What the oil gives to the piston (W), before friction, stops and the atmosphere."""
 
     def columns(self, title: str) -> dict[str, np.ndarray]:
-        """Those of a force, with pressures, flows, the valve and the power of the supply."""
+        """Return the columns of a force, with pressures, flows, the valve and the power of the supply."""
         return super().columns(title) | {
             f"{title}.pressure_a [Pa]": self.pressure_a,
             f"{title}.pressure_b [Pa]": self.pressure_b,

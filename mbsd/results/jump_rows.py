@@ -56,7 +56,7 @@ class Jumps:
         return Asked(times, labels, extra.astype(bool), tuple(jumps))
 
     def _apart(self, least: float) -> list[tuple[float, float, tuple[str, ...]]]:
-        """Those nearer to each other than ``least`` (s) are one."""
+        """Merge times nearer to each other than ``least`` (s)."""
         out: list[tuple[float, float, tuple[str, ...]]] = []
         for before, after, names in zip(self.before.tolist(), self.after.tolist(), self.names, strict=True):
             if out and before - out[-1][1] < least:
@@ -115,7 +115,7 @@ class Asked:
 
 
 def _differ(values: np.ndarray, first: int, second: int, arm: float) -> bool:
-    """Whether two rows of values (T, n, 3), forces or accelerations and torques or turning, are apart.
+    """Return which rows of values (T, n, 3), forces or accelerations and torques or turning, are apart.
 
     ``arm`` makes one of the other; what is nothing beside the other is rounding.
     """

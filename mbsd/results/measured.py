@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
+from mbsd.arrays.states import own_states
 from mbsd.base.codes import AXIS, LINE, TURN
 from mbsd.model.force import Element
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
 
 
 def measured(packed: Packed, element: Element, i: int, j: int, q: np.ndarray) -> np.ndarray:
@@ -33,3 +39,12 @@ def measured_rate(packed: Packed, element: Element, i: int, j: int, q: np.ndarra
     gap = marker_places(packed, q, j) - marker_places(packed, q, i)
     length = np.hypot(gap[:, 0], gap[:, 1])
     return np.divide((gap * speed).sum(axis=1), length, out=np.zeros_like(length), where=length > 0.0)
+
+
+def check_states(packed: Packed, t: np.ndarray, q: np.ndarray, states: np.ndarray) -> None:
+    """Let each force check its states (T, n) (SI) along poses q (T, 3 nb) at times (T,); raises ModelError."""
+    for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
+        if force.kind.states is not None:
+            assert force.kind.along is not None
+            value = measured(packed, force.kind.along(force), i, j, q)
+            force.kind.states.check(packed.name, force, t, value, states[:, own_states(packed.forces, force.name)])

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mbsd.base.quantity import counted
+
 
 @dataclass(frozen=True)
 class Mobility:
-    """What the joints leave free."""
+    """Freedoms that the joints leave."""
 
     nominal: int
     """By counting rows."""
@@ -23,8 +25,8 @@ class Mobility:
     """Bodies that can move."""
 
     def __str__(self) -> str:
-        text = f"{self.dof} degree{'s' * (self.dof != 1)} of freedom ({self.nominal} nominal)"
+        text = f"{counted(self.dof, 'degree')} of freedom ({self.nominal} nominal)"
         if self.redundant:
-            rows = f"{self.redundant_rows} redundant row{'s' * (self.redundant_rows != 1)}"
+            rows = counted(self.redundant_rows, "redundant row")
             text += f", {rows}, removable at {', '.join(self.redundant)}"
         return text + (", start pose singular" if self.singular else "")

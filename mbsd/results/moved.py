@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Moved:
-    """What a view is made from: a motion of T times, and what was found together with it."""
+    """The source of views: a motion of T times, and what was computed together with it."""
 
     packed: Packed
     t: np.ndarray

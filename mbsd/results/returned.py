@@ -1,4 +1,4 @@
-"""Whether a mechanism is back where it was, moving as it moved."""
+"""Returns of a mechanism to where it was, moving as it moved."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Ends = tuple[tuple[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.nda
 
 
 def returned(ends: Ends) -> bool:
-    """Whether poses, velocities and accelerations (nb, 3) of both ends are the same but for whole turns."""
+    """Return True if poses, velocities and accelerations (nb, 3) of both ends are the same but for whole turns."""
     first, last = ends
     for order, (start, end) in enumerate(zip(first, last, strict=True)):
         gap = end - start

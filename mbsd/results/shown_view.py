@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import html
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from html import escape
 from types import MappingProxyType
@@ -78,3 +79,23 @@ def _driven(name: str, angular: bool | None) -> str:
 
 def _numbers(array: np.ndarray) -> list[str]:
     return [f"{number + 0.0:.4g}" for number in (array[0], np.nanmin(array), np.nanmax(array), array[-1])]
+
+
+LEFT_OUT = (".ax [m/s^2]", ".ay [m/s^2]", ".vx [m/s]", ".vy [m/s]")
+"""Ends of the names of results that the table does not show."""
+
+
+def html_of(name: str, about: str, columns: Mapping[str, np.ndarray], moving: str) -> str:
+    """HTML: a mechanism's name, what is said ``about`` it, the HTML of its skeleton ``moving``, and its results."""
+    rows = [
+        (column, *(f"{end(values, initial=np.nan):.6g}" for end in (np.fmin.reduce, np.fmax.reduce)))
+        for column, values in columns.items()
+        if not column.endswith(LEFT_OUT)
+    ]
+    body = "".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    return (
+        f"<p><b>{html.escape(name)}</b>: {html.escape(about)}</p>{moving}"
+        "<details><summary>Least and largest values</summary>"
+        "<table><tr><th>quantity</th><th>min</th><th>max</th></tr>"
+        f"{body}</table></details>"
+    )

@@ -28,25 +28,31 @@ import numpy as np
 from mbsd.arrays.start_state import AnyModel
 from mbsd.base.arguments import finite_number, number_array, number_pair
 from mbsd.base.errors import ModelError
-from mbsd.base.names import Named, Suggesting, no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import Named, Suggesting, no_such, shown
+from mbsd.base.quantity import counted
 from mbsd.model.event import Happening
 from mbsd.results.acting import acting
 from mbsd.results.columns import columns
-from mbsd.results.contacts import ContactView, contact_view
 from mbsd.results.drawer import drawer_of
-from mbsd.results.energy import potential_of
 from mbsd.results.force_view import ForceView
-from mbsd.results.forces import force_view
+from mbsd.results.forces import force_view, potential_of
 from mbsd.results.friction import FrictionView, friction_view
-from mbsd.results.html import html_of
 from mbsd.results.moved import Moved
-from mbsd.results.moved_frame import moved_frame
 from mbsd.results.returned import returned
+from mbsd.results.shown_view import html_of
 from mbsd.results.vibration.crank import crank_of
 from mbsd.results.vibration.orders import Orders, orders
 from mbsd.results.vibration.shaking import Planes, PointView, Shaking, centre_of_mass, planes_of, shaking
-from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Stats
+from mbsd.results.views import (
+    ContactView,
+    DriverView,
+    EnergyView,
+    FrameView,
+    JointView,
+    Stats,
+    contact_view,
+    moved_frame,
+)
 
 if TYPE_CHECKING:
     import pandas
@@ -55,9 +61,7 @@ if TYPE_CHECKING:
     from mbsd.arrays.efforts_beside import Side
     from mbsd.arrays.packing import Packed
     from mbsd.model.body import Marker
-    from mbsd.pictures.animation import Animation
-    from mbsd.pictures.picture import Picture
-    from mbsd.pictures.view import View
+    from mbsd.pictures import Animation, Picture, View
     from mbsd.results.mobility import Mobility
 
 SHOWN = 40
@@ -211,7 +215,7 @@ class Solution(Suggesting, Generic[AnyModel]):
         return friction_view(self.packed, name, self.q, self.v, self.lam, self.held)
 
     def force(self, name: str) -> ForceView:
-        """What a force did: force, torque and point on each of its bodies, what it measures, its power.
+        """Return the results of a force: force, torque and point on each body, what it measures, its power.
 
         Of every force of ``m.forces``: springs, contacts by penalty, friction, functions of the user. A contact
         without give is ``contact(name)``, a joint ``joint(name)``. Raises ModelError where a user's function fails.
@@ -389,7 +393,7 @@ class Solution(Suggesting, Generic[AnyModel]):
 
     def __repr__(self) -> str:
         return (
-            f"<Solution {self.mechanism.name}: {len(self.t)} times, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
+            f"<Solution {self.mechanism.name}: {counted(len(self.t), 'time')}, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
             f"largest residual {self.stats.position_residual:.1e}{self._noted()}>"
         )
 
@@ -398,7 +402,7 @@ class Solution(Suggesting, Generic[AnyModel]):
 
     def _repr_html_(self) -> str:
         moving = self.view()._repr_html_() if len(self.mechanism.bodies) <= SHOWN and len(self.t) > 1 else ""
-        span = f"{len(self.t)} times from {self.t[0]:g} to {self.t[-1]:g} s"
+        span = f"{counted(len(self.t), 'time')} from {self.t[0]:g} to {self.t[-1]:g} s"
         about = f"{self.mobility}; {span}; largest residual {self.stats.position_residual:.1e}{self._noted()}"
         return html_of(self.mechanism.name, about, self.columns(), moving)
 

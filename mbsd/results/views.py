@@ -1,13 +1,23 @@
-"""What a solution gives of a frame, a joint, a driver and its energy, (T,) arrays in SI units; its residuals."""
+"""Views of a solution: a frame, a joint, a driver and energy, (T,) arrays in SI units; its residuals.
+
+The motion of a frame of a body, from that of its centre of mass.
+
+p = r + s,   p' = r' + omega s_perp,   p'' = r'' + alpha s_perp - omega^2 s;   s_perp = (-s_y, s_x)
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.base.errors import ModelError
+from mbsd.base.names import Suggesting
 from mbsd.results.shown_view import ShownView
+
+if TYPE_CHECKING:
+    from mbsd.arrays.packing import Packed
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,7 +58,7 @@ class Wrench(ShownView):
 
 @dataclass(frozen=True, repr=False)
 class JointView(Wrench):
-    """What a joint does to its second body, at its second marker."""
+    """The wrench of a joint on its second body, at its second marker."""
 
     acts: Wrench
     """The same at the place where it acts: beside the marker where wheels, cams or curves touch; the torque is that
@@ -125,4 +135,55 @@ class Stats:
     inserted_steps: int
     """Steps added between outputs to stay on the branch."""
     independent: bool = False
-    """Whether a simulation was integrated in independent coordinates (mbsd/dynamics/embedding)."""
+    """Whether a simulation was integrated in independent coordinates (mbsd/dynamics/independent)."""
+
+
+@dataclass(frozen=True)
+class ContactView(Suggesting):
+    """A contact, (T,) arrays: m and N, or rad and N m for stops of angles."""
+
+    gap: np.ndarray
+    rate: np.ndarray
+    """Rate of the gap, by s."""
+    normal: np.ndarray
+    """Force that pushes the gap open, never negative."""
+    friction: np.ndarray
+    """Force along the sliding way."""
+
+    @property
+    def closed(self) -> np.ndarray:
+        """(T,) where it pushes."""
+        return self.normal > 0.0
+
+
+def contact_view(packed: Packed, row: int, q: np.ndarray, v: np.ndarray, lam: np.ndarray) -> ContactView:
+    """View of the contact whose gap is ``row``; q, v (T, nb, 3), lam (T, m)."""
+    from mbsd.arrays.curve_branches import tabulate_along
+    from mbsd.arrays.reactions import times_compact
+
+    count, rows = len(lam), len(packed.ws.phi)
+    flat_q, flat_v = q.reshape(count, -1), v.reshape(count, -1)
+    phi, gamma, compact = np.zeros((count, rows)), np.zeros((count, rows)), np.zeros((count, rows, 6))
+    drives = np.zeros((count, len(packed.motions) + 1, 3))
+    tabulate_along(packed, drives, flat_q, flat_v, phi, compact, gamma)
+    joint = packed.joint_of_row(row)
+    friction = -lam[:, row + 1] if len(joint.kind.constraints) > 1 else np.zeros(count)
+    return ContactView(phi[:, row], times_compact(packed, compact, flat_v)[:, row], -lam[:, row], friction)
+
+
+def moved_frame(q: np.ndarray, v: np.ndarray, a: np.ndarray, local: np.ndarray, turned: float = 0.0) -> FrameView:
+    """From q, v, a (T, 3) of the centre of mass; ``local`` (2,) from there in body axes (m), ``turned`` by an angle."""
+    c, s = np.cos(q[:, 2]), np.sin(q[:, 2])
+    arm_x, arm_y = c * local[0] - s * local[1], s * local[0] + c * local[1]
+    omega, alpha = v[:, 2], a[:, 2]
+    return FrameView(
+        x=q[:, 0] + arm_x,
+        y=q[:, 1] + arm_y,
+        theta=q[:, 2] + turned,
+        vx=v[:, 0] - omega * arm_y,
+        vy=v[:, 1] + omega * arm_x,
+        omega=omega,
+        ax=a[:, 0] - alpha * arm_y - omega**2 * arm_x,
+        ay=a[:, 1] + alpha * arm_x - omega**2 * arm_y,
+        alpha=alpha,
+    )

@@ -19,8 +19,7 @@ from dataclasses import asdict, fields
 from typing import Any, TypeVar
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.model.body import Body, Marker
 from mbsd.model.change import given_body, law_name, with_markers
 from mbsd.model.contact import CONTACT_KINDS

@@ -7,8 +7,7 @@ from typing import Any, TypeVar
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 
 T = TypeVar("T")
 
@@ -36,7 +35,7 @@ class Entry:
         return None if value is None else _number(value, f"{self.where}.{key}")
 
     def is_null(self, key: str) -> bool:
-        """Whether a field that must be there is null."""
+        """Return True if a field that must be there is null."""
         return self._needed(key) is None
 
     def numbers(self, key: str, count: int) -> tuple[Any, ...]:
@@ -64,7 +63,7 @@ class Entry:
             yield name, table.entry(name)
 
     def within(self, read: Callable[[], T]) -> T:
-        """What ``read`` returns; its ModelError gets the place in the file."""
+        """Return what ``read`` returns; its ModelError gets the position in the file."""
         try:
             return read()
         except ModelError as error:

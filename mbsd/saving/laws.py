@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.base.users_function import described
 from mbsd.model.body import Body, Marker
 

@@ -142,7 +142,7 @@ def _register_all() -> None:
 
 
 def _parameters(function: Callable[..., Any]) -> dict[str, tuple[dict[str, Any], bool]]:
-    """What a method or law takes beside names, markers, bodies and laws: its schema, and whether it must be there."""
+    """Return schemas of what a method or law takes beside names, markers, bodies and laws, and which must be there."""
     out = {}
     for parameter in arguments(function):
         if parameter.role in (Role.VALUE, Role.AMOUNT):

@@ -1,4 +1,4 @@
-"""What a worker answers for a group of points, and whether it can be believed: JSON, which runs nothing when read."""
+"""Answers of workers for a group of points, and their checks: JSON, which runs nothing when read."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def own_result(_: int, content: bytes) -> Result:
 
 
 def inputs_of(note: bytes) -> Inputs:
-    """What results depend on: states by name, for each kind of input. Raises WrongAnswer for anything else."""
+    """Return the inputs of results: states by name, for each kind. Raises WrongAnswer for anything else."""
     states = _read(note)
     if not isinstance(states, dict) or set(states) != set(Inputs().states()):
         raise WrongAnswer("it does not say what its results depend on")

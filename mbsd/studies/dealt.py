@@ -44,7 +44,7 @@ Found = tuple[list[tuple[int, Result]], Inputs]
 
 @functools.cache
 def identity() -> dict[str, str]:
-    """What this machine computes with; found once in a process, so a worker reports what it was started with."""
+    """Return the identity of this computer; kept for the process, so a worker reports what it was started with."""
     return versions(PACKAGES) | {"mbsd": own_sources()[:12]}
 
 

@@ -43,7 +43,7 @@ def differences(mechanisms: Sequence[Mechanism]) -> Changes:
     """How the others differ from the first. Raises MoreThanNumbers where that is more than numbers, or nothing."""
     first = mechanisms[0]
     numbers = _Numbers(first)
-    values = np.array([numbers.of(m) for m in mechanisms])
+    values = np.array([numbers.values(m) for m in mechanisms])
     left = set(np.flatnonzero((values != values[0]).any(axis=0)).tolist())
     if not left:
         raise MoreThanNumbers("build makes the same mechanism at all points")
@@ -74,14 +74,14 @@ class _Numbers:
         self.fixed = np.frombuffer(content, np.uint8)[self.rest]
         self.parts = _parts(content)[1]
 
-    def of(self, m: Mechanism) -> np.ndarray:
+    def values(self, m: Mechanism) -> np.ndarray:
         """(N,) numbers of another. Raises MoreThanNumbers where it has other bytes besides."""
         content = np.frombuffer(_bytes(m), np.uint8)
         if len(content) != len(self.rest) or not np.array_equal(content[self.rest], self.fixed):
             raise MoreThanNumbers(OTHER)
         return content[self.at].reshape(-1, 8).view(">f8")[:, 0].astype(float)
 
-    def of_changed(self, m: Mechanism) -> np.ndarray:
+    def values_changed(self, m: Mechanism) -> np.ndarray:
         """(N,) the same of one that was changed, in which other things may be shared. Raises MoreThanNumbers."""
         values, rest = _parts(_bytes(m))
         if len(values) != len(self.at) // 8 or rest != self.parts:
@@ -137,9 +137,9 @@ def _moved(
         other = float(values[np.flatnonzero(values[:, place] != number.value)[0], place])
         try:
             work.change(number.name, **{number.key: other})
-            changed = numbers.of_changed(work)
+            changed = numbers.values_changed(work)
             work.change(number.name, **{number.key: number.value})
-            back = numbers.of_changed(work)
+            back = numbers.values_changed(work)
         except MechanismError:
             raise MoreThanNumbers(ELSEWHERE) from None
         if not np.array_equal(back, values[0]):
@@ -159,5 +159,5 @@ def _compare(first: Mechanism, changes: Changes, numbers: _Numbers, values: np.n
             designs.put_numbers(work, row)
         except MechanismError:
             continue  # that is its reason
-        if not np.array_equal(numbers.of_changed(work), values[row]):
+        if not np.array_equal(numbers.values_changed(work), values[row]):
             raise MoreThanNumbers(ELSEWHERE)

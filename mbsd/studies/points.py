@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sized
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.base.users_function import named_parameters
 
 MOST = 10_000_000

@@ -11,12 +11,13 @@ import numpy as np
 
 from mbsd.base.arguments import checked
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.base.users_function import described
 from mbsd.dynamics.batch.designs import Built, Designs, designs_of
-from mbsd.dynamics.batch.simulate_many import Simulations, asked_for, checked_measures, quantities_of, simulations
-from mbsd.dynamics.batch.single_run import Asked
+from mbsd.dynamics.batch.simulate_many import Simulations, checked_measures, quantities_of, simulations
 from mbsd.dynamics.measures.kinds import Measure
+from mbsd.dynamics.runs.run import Request
+from mbsd.dynamics.simulate import request_for
 from mbsd.mechanism import Mechanism
 from mbsd.model.mechanism import Model, connections
 from mbsd.studies.numbers_alone import MoreThanNumbers, differences
@@ -92,19 +93,19 @@ class Simulated:
 
     def refuse(self, m: Mechanism) -> None:
         """Raise ModelError where no mechanism like this one can be simulated and measured so."""
-        asked = self._asked(m)
+        asked = self._request(m)
         measures = checked_measures(m, self.measures, asked.times)
         if isinstance(measures, Mapping) and _starts(m):
             quantities_of(Built([m], FEW), measures)
 
-    def _asked(self, m: Model) -> Asked:
+    def _request(self, m: Model) -> Request:
         times = None if self.times is None else np.array(self.times)
-        return asked_for(
+        return request_for(
             m, self.duration, self.steps, times, self.method, self.tolerance, self.step, self.formulation, self.options
         )
 
     def _run(self, designs: Designs) -> Simulations:
-        return simulations(designs, self.measures, self._asked(designs.m), 1, None)
+        return simulations(designs, self.measures, self._request(designs.m), 1, None)
 
 
 def _designs(mechanisms: Sequence[Mechanism], fewest: int) -> Designs:
@@ -156,7 +157,7 @@ def simulated(
     formulation: str = "auto",
     **options: float,
 ) -> Simulated:
-    """What a study measures: ``study(build, grid, simulated({"end": final("door.theta")}, 4.0))``.
+    """Return a study's ``measure``: ``study(build, grid, simulated({"end": final("door.theta")}, 4.0))``.
 
     ``measures``: names to measures (mbsd.measures); the other arguments are those of
     :meth:`mbsd.mechanism.Mechanism.simulate`. Where ``build`` makes mechanisms that differ in numbers of forces alone,

@@ -107,7 +107,7 @@ class Store:
         )
 
     def _state(self, kind: str, name: str) -> str:
-        """What an input holds now; each is looked at once."""
+        """Return the present state of an input; each is looked at once."""
         if (kind, name) not in self._states:
             self._states[kind, name] = self._places.state(kind, name)
         return self._states[kind, name]

@@ -14,10 +14,11 @@ from uuid import uuid4
 import numpy as np
 
 from mbsd.base.arguments import checked
-from mbsd.base.cores import cores
 from mbsd.base.errors import ModelError, ModelWarning
-from mbsd.base.shown import shown
-from mbsd.base.warn import warn
+from mbsd.base.names import shown
+from mbsd.base.quantity import counted
+from mbsd.base.running import cores
+from mbsd.base.warning import warn
 from mbsd.dealing.connection import connected
 from mbsd.dependencies.recorder import Recorder
 from mbsd.mechanism import Mechanism
@@ -122,7 +123,7 @@ def study(
                 if store is not None:
                     store.flush()
     if points and all(result.values is None for result in results.values()):
-        warn(f"study: all {len(points)} points failed, the first for: {results[0].reason}", ModelWarning)
+        warn(f"study: all of {counted(len(points), 'point')} failed, the first for: {results[0].reason}", ModelWarning)
     frame = table_of(points, [results[number] for number in range(len(points))], _index_of(grid))
     if isinstance(measure, Simulated):
         frame.attrs[WAY] = _way(build, measure, points)
@@ -167,7 +168,7 @@ def _key_of(point: Point) -> str:
 
 
 def _store(folder: str | os.PathLike[str], content: Content, places: StudyPlaces) -> Store:
-    """What is kept of this build and measure, as their inputs are now."""
+    """Return the store of this build and measure with their present inputs."""
     key = hashlib.sha256(f"{own_sources()} {sys.version_info[:3]} {content.hexdigest()}".encode()).hexdigest()
     return Store(folder, key, places, loaded_inputs(content, places))
 

@@ -1,9 +1,9 @@
-"""What a study says of the workers that it has points for: warnings that point at the user's line, and ModelError."""
+"""Messages of a study about its workers: warnings that point at the user's line, and ModelError."""
 
 from __future__ import annotations
 
 from mbsd.base.errors import ModelError
-from mbsd.base.warn import warn
+from mbsd.base.warning import warn
 from mbsd.dealing.voice import Voice
 from mbsd.studies.progress import duration
 

@@ -1,4 +1,4 @@
-"""What a worker does: builds and measures a chunk of points, whatever goes wrong with one of them."""
+"""Work of one process: it builds and measures a chunk of points, whatever goes wrong with one of them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.base.users_function import described
 from mbsd.dependencies.inputs import Inputs
 from mbsd.dependencies.installed import is_installed
@@ -28,7 +28,7 @@ PASSING = (OSError, MemoryError)
 
 
 class Result(NamedTuple):
-    """What a point came to: numbers by name, or the reason why there are none."""
+    """Result of a point: numbers by name, or the reason why there are none."""
 
     values: dict[str, float | int | bool] | None
     reason: str | None = None
@@ -45,7 +45,7 @@ class Done(NamedTuple):
 
 
 class Order(NamedTuple):
-    """What a process gets of a study."""
+    """Points and functions of a study that a process gets."""
 
     functions: bytes
     """Build and measure."""

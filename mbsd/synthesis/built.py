@@ -1,4 +1,4 @@
-"""What a function of the author builds of numbers: looked at before it is called, and what it gives."""
+"""Functions of the author that build mechanisms of numbers: checks before and after a call."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.base.users_function import described, named_parameters
 from mbsd.model.mechanism import Model
 
@@ -28,7 +28,7 @@ def refuse_build(what: str, build: Any, names: Sequence[str]) -> None:
 
 
 def built(what: str, build: Callable[..., Any], values: Mapping[str, Any]) -> Model:
-    """What ``build`` returns. Raises ModelError for anything but a Mechanism, and for errors that are none of mbsd."""
+    """Return what ``build`` returns. Raises ModelError for anything but a Mechanism, and for errors not of mbsd."""
     try:
         made = build(**values)
     except MechanismError:

@@ -133,7 +133,7 @@ class Designs:
         return built(f"{self.m.name}: fit_path", self.build, values)
 
     def numbers(self, apart: np.ndarray) -> list[Number]:
-        """What varies, as numbers in the middle of their bounds, which are ``apart`` (k,)."""
+        """Return the numbers that vary, in the middle of their bounds, which are ``apart`` (k,)."""
         out, given = [], self.varied
         for name, part, single in given.columns():
             for k in range(part.start, part.stop):
@@ -180,7 +180,7 @@ class Designs:
         return np.array([*places, *rods])
 
     def _only_places(self, x: np.ndarray) -> bool:
-        """Whether the design x (k,) is the mechanism itself but for places and rods."""
+        """Return True if the design x (k,) is the mechanism itself but for places and rods."""
         own, other = self.ready.packed, pack(self.model(x))
         other.settle_laws(float(self.grids[True][0]), float(self.grids[True][-1]))
         return _numbers(own, self.grids[True]) == _numbers(other, self.grids[True]) and list(own.body_names) == list(

@@ -11,9 +11,8 @@ import numpy as np
 
 from mbsd.base.arguments import checked, finite_number, number_array, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.names import no_such
-from mbsd.base.progress import users_progress
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
+from mbsd.base.users_function import users_progress
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model, Start, new_name, own_body
 from mbsd.synthesis.built import refuse_build
@@ -36,7 +35,7 @@ class SynthesisError(MechanismError):
 
 @dataclass(frozen=True, eq=False)
 class PathFit:
-    """What :func:`fit_path` found. Lengths in m, times in s, angles in rad."""
+    """Result of :func:`fit_path`. Lengths in m, times in s, angles in rad."""
 
     mechanism: Any
     """The fitted Mechanism."""
@@ -241,7 +240,7 @@ def _grid(m: Model, duration: float | None, steps: int) -> np.ndarray:
 
 
 def _returns(m: Model, grid: np.ndarray) -> bool:
-    """Whether the motion is whole periods of the drivers."""
+    """Return True if the motion is whole periods of the drivers."""
     from mbsd.kinematics.period import common_period
 
     common = common_period(m.drivers.values())

@@ -15,9 +15,8 @@ import numpy as np
 
 from mbsd.base.arguments import checked, finite_number, positive_number, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.names import no_such
-from mbsd.base.progress import users_progress
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
+from mbsd.base.users_function import users_progress
 from mbsd.model.mechanism import Model
 from mbsd.synthesis.moves import Moves, Tried
 from mbsd.synthesis.wishes import Bounds, Condition, bounds_of, conditions_of
@@ -33,7 +32,7 @@ HELD = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Optimum:
-    """What :func:`optimise` found."""
+    """Result of :func:`optimise`."""
 
     mechanism: Any
     """The Mechanism with the best numbers."""
@@ -252,7 +251,7 @@ class _Search:
 
 
 def _size(condition: Condition, value: float) -> float:
-    """What a condition is measured by."""
+    """Return the size by which a condition is measured."""
     ends = [abs(end) for end in (condition.low, condition.high) if np.isfinite(end)]
     return max([*ends, abs(value) * 1e-3]) or 1.0
 

@@ -1,4 +1,4 @@
-"""What a design misses, as residuals with their slopes, for many designs at once.
+"""Residuals of designs with their slopes, for many designs at once.
 
 A point's place on the path is held while the slopes are taken, and the part of a slope along the path is left out, for
 the place follows along the path anyway (variable projection after Kaufman, BIT 15, 1975): sweeping the changed

@@ -163,7 +163,7 @@ class Search:
 
     @property
     def _quick(self) -> bool:
-        """Whether a design costs little: all are swept at once, and no function of the author builds them."""
+        """True if a design costs little: all are swept at once, and no function of the author builds them."""
         return self.designs.at_once and self.designs.build is None
 
     def _sequence(self, random: np.random.Generator) -> tuple[QMCEngine, int]:

@@ -1,4 +1,4 @@
-"""What a path should follow, and how far one is from it: for many paths at once, and as residuals for one."""
+"""Targets of paths, and distances from them: for many paths at once, and as residuals for one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a fit varies: names of lengths and places with their bounds, as one vector of numbers."""
+"""Variables of a fit: names of lengths and positions with their bounds, as one vector of numbers."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.model.mechanism import Model
 
 Value = float | tuple[float, ...]

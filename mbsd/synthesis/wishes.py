@@ -1,4 +1,4 @@
-"""What an optimisation asks for, checked before anything runs: numbers with bounds, an objective, conditions."""
+"""Requests to an optimisation, checked before anything runs: numbers with bounds, an objective, conditions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.mechanism import Model
 
 FORM = "give names and bounds: {'spring.stiffness': (10.0, 500.0)}"

@@ -21,9 +21,9 @@ from mbsd.equations.joint_friction import tabulate_friction
 from mbsd.equations.loads import tabulate_loads
 from mbsd.mechanism import Mechanism
 from mbsd.model.force import Element, Force, ForceKind
-from mbsd.results.energy import potential_of
+from mbsd.results.forces import potential_of
 from mbsd.testing.differences import compare, coordinate
-from mbsd.testing.kept import check_kept
+from mbsd.testing.kinds import check_kept
 
 SEEDS = range(3)
 STEP = 1e-6

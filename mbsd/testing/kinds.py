@@ -5,16 +5,21 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from types import ModuleType
+from typing import Any
 
 import mbsd.dynamics.integrators
 import mbsd.model.contacts
 import mbsd.model.drivers
 import mbsd.model.forces
 import mbsd.model.joints
+from mbsd.base.errors import ModelError
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
+from mbsd.mechanism import Mechanism
+from mbsd.model.change import given
 from mbsd.model.contact import CONTACT_KINDS, ContactKind
-from mbsd.model.force import FORCE_KINDS, ForceKind
-from mbsd.model.joint import KINDS, JointKind
+from mbsd.model.force import FORCE_KINDS, Force, ForceKind
+from mbsd.model.joint import KINDS, Joint, JointKind
+from mbsd.saving.document import build, document
 
 
 def _load(package: ModuleType) -> None:
@@ -45,3 +50,46 @@ def integrators() -> list[Integrator]:
     """Methods of simulate(), those whose package is not installed included."""
     _load(mbsd.dynamics.integrators)
     return list(INTEGRATORS.values())
+
+
+def check_kept(m: Mechanism) -> None:
+    """Change each number of what joins the bodies of ``m`` to what it is, then write the model and read it back.
+
+    Raises AssertionError where something else comes of it. Functions of the user are left out: no file holds them.
+    """
+    for table in ("joints", "drivers", "contacts", "forces"):
+        for name, old in list(getattr(m, table).items()):
+            kind = old.kind
+            if kind.add is None:
+                raise AssertionError(f"{kind.name}: decorate the function that adds one with @{kind.name.upper()}.adds")
+            if not kind.saved:
+                continue
+            for key, value in given(old).items():
+                _change(m, name, kind.name, key, value)
+            _compare(kind.name, "change()", old, getattr(m, table)[name])
+            try:
+                loaded = build(document(m), Mechanism)
+            except ModelError as error:
+                raise AssertionError(f"{kind.name}: the example cannot be saved: {error}") from error
+            _compare(kind.name, "a saved file", old, getattr(loaded, table)[name])
+
+
+def _change(m: Mechanism, name: str, kind: str, key: str, value: Any) -> None:
+    try:
+        m.change(name, **{key: value})
+    except (ModelError, TypeError) as error:
+        raise AssertionError(
+            f"{kind}: params hold '{key}', with which change() fails: {error}; keep the arguments of the function that "
+            "adds one under their names"
+        ) from error
+
+
+def _compare(kind: str, after: str, old: Joint | Force, new: Joint | Force) -> None:
+    if new.params != old.params or new.kind is not old.kind:
+        raise AssertionError(f"{kind}: after {after} params are {dict(new.params)} instead of {dict(old.params)}")
+    for side in "ij":
+        here, there = (
+            (marker.body.name, marker.x, marker.y, marker.angle) for marker in (getattr(old, side), getattr(new, side))
+        )
+        if here != there:
+            raise AssertionError(f"{kind}: after {after} marker {side} is {there} instead of {here}")

@@ -1,4 +1,4 @@
-"""What drivers impose on velocities, as kernels give it; in a file of its own, so that no edit beside compiles it."""
+"""Velocities that drivers impose, as kernels give them; in a file of its own, so that no edit beside compiles it."""
 
 from __future__ import annotations
 

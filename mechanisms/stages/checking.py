@@ -6,6 +6,7 @@ import msgspec
 
 from mbsd import MechanismError
 from mechanisms.stages.loading import loading
+from shared.contract.quantity import counted
 from shared.stage.console import say, warn
 from shared.stage.paths import known_name
 
@@ -32,7 +33,8 @@ def run(name: str, as_json: bool = False) -> int:
     for finding in everything:
         (say if finding.is_note else warn)("check", f"{name}: {finding}")
     joints, bodies = len(m.joints), len(m.bodies) - 1
-    looks = f"{len(findings)} things look odd" if len(findings) > 1 else "one looks odd" if findings else "nothing odd"
+    odd = counted(len(findings), "thing")
+    looks = f"{odd} {'looks' if len(findings) == 1 else 'look'} odd" if findings else "nothing odd"
     freedom = str(mobility).splitlines()[0] if mobility else "not assembled"
-    say("check", f"{name}: {bodies} bodies, {joints} joints, {freedom}; {looks}")
+    say("check", f"{name}: {counted(bodies, 'body')}, {counted(joints, 'joint')}, {freedom}; {looks}")
     return int(bool(findings))

@@ -8,14 +8,13 @@ from pathlib import Path
 
 import msgspec
 
-from shared.stage.console import say, warn
+from shared.contract.quantity import counted
+from shared.stage.console import warn
 from shared.stage.errors import UserError
-from shared.stage.face import to_run
 from shared.stage.memory import remembered
 from shared.stage.paths import (
-    MECHANISMS,
     Out,
-    in_workshop,
+    all_mechanisms,
     mechanism_file,
     mechanism_names,
     out_root,
@@ -39,19 +38,18 @@ def run(names: bool = False, as_json: bool = False) -> None:
     Results that are older than the files or results that they were made of are named apart. No author's code is run, so
     of parts it is not known.
 
-    ``names``: names alone, of variants as well; ``as_json``: all of it for other programs.
+    ``names``: names alone, of variants as well; ``as_json``: all of it for other programs. Raises UserError if there
+    are none, but for other programs.
     """
     if names:
-        print(*_all_names(), sep="\n")
+        for name in _all_names():
+            print(name)
         return
     if as_json:
         print(msgspec.json.encode([_entry(name) for name in _all_names()]).decode())
         return
-    if not mechanism_names():
-        where = MECHANISMS if in_workshop() else "mechanisms/"
-        say("list", f"there are no mechanisms in {where}; {to_run('new', 'excavator')} makes one")
     with remembered():
-        for name in mechanism_names():
+        for name in all_mechanisms():
             print(f"{name.replace('_', '-'):<24} {_title(name)}\n{'':<24} {_freedom(name)}{_made_words(name)}")
             for variant in variants_in(mechanism_file(name)):
                 print(f"{'':<24} {name}-{variant}: ".replace("_", "-") + _made_words(f"{name}-{variant}"))
@@ -72,8 +70,8 @@ def tell_current(names: Iterable[str]) -> None:
 
 def is_current(name: str) -> bool:
     """Return True if motion, parts and shot that are there follow from the author's files as they are."""
+    from mechanisms.stages import shot as shot
     from mechanisms.stages.parts import stage as parts
-    from mechanisms.stages.shot import stage as shot
     from mechanisms.stages.solve import stage as solve
 
     out = Out(name)
@@ -88,7 +86,7 @@ def is_current(name: str) -> bool:
 
 
 def _all_names() -> list[str]:
-    """Mechanisms, each followed by its variants."""
+    """Return mechanisms, each followed by its variants."""
     names = []
     for name in mechanism_names():
         names += [name, *(f"{name}-{variant}" for variant in variants_in(mechanism_file(name)))]
@@ -97,7 +95,7 @@ def _all_names() -> list[str]:
 
 def _entry(name: str) -> dict[str, object]:
     out = Out(name)
-    made = _made(out)
+    made = _products(out)
     return {
         "name": name,
         "title": _title(name),
@@ -109,7 +107,7 @@ def _entry(name: str) -> dict[str, object]:
 
 
 def _title(name: str) -> str:
-    """First line of mechanism.py's docstring, read without running the file."""
+    """Return the first line of mechanism.py's docstring, read without running the file."""
     try:
         docstring = ast.get_docstring(ast.parse(mechanism_file(name).read_bytes()))
     except SyntaxError as error:
@@ -122,19 +120,19 @@ def _freedom(name: str) -> str:
         dof = msgspec.json.decode(Out(name).motion.read_bytes(), type=_Solved).diagnostics.dof
     except (OSError, msgspec.DecodeError):
         return ""
-    return f"{dof} degree{'' if dof == 1 else 's'} of freedom; "
+    return f"{counted(dof, 'degree')} of freedom; "
 
 
 def _made_words(name: str) -> str:
     """``made: parts, motion; of an older version: poster``."""
     out = Out(name)
-    made = _made(out)
+    made = _products(out)
     older = _older(out, made)
     words = f"made: {', '.join(word for word in made if word not in older) or 'nothing yet'}"
     return f"{words}; of an older version: {', '.join(older)}" if older else words
 
 
-def _made(out: Out) -> dict[str, Path]:
+def _products(out: Out) -> dict[str, Path]:
     """Return what is there of a mechanism, with the file that stands for it."""
     files = {
         "parts": out.parts,
@@ -155,7 +153,7 @@ def _made(out: Out) -> dict[str, Path]:
 
 def _older(out: Out, made: Mapping[str, Path]) -> list[str]:
     """Return the results that are older than what they were made of."""
-    from mechanisms.stages.shot import stage as shot
+    from mechanisms.stages import shot as shot
     from mechanisms.stages.solve import stage as solve
 
     stale = set() if _is_fresh(solve.is_fresh, out) else {out.motion, out.skeleton, out.animation("", ".mp4")}

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from render.film.inputs import named, stage_key
 from render.presets import Preset
+from shared.contract.quantity import counted
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -29,7 +30,7 @@ USUAL_PLACES = (
 
 
 def save(name: str, preset: Preset, show: str = "") -> Path:
-    """The stage: out/<mechanism>/<mechanism>.blend with the motion once on its timeline."""
+    """Return the stage: out/<mechanism>/<mechanism>.blend with the motion once on its timeline."""
     out = Out(name)
     target = named(out.scene, show, preset.suffix)
     stage = Stage(out, target.stem.replace(out.name, "scene", 1), stage_key(out, preset, show), [target])
@@ -58,7 +59,7 @@ def save(name: str, preset: Preset, show: str = "") -> Path:
         for part in out.folder.glob(".*.part.blend*"):
             part.unlink(missing_ok=True)
     stage.done()
-    say("scene", f"{out.name}: {target}: {len(job.states)} frames, {target.stat().st_size / 1e6:.1f} MB")
+    say("scene", f"{out.name}: {target}: {counted(len(job.states), 'frame')}, {target.stat().st_size / 1e6:.1f} MB")
     return target
 
 
@@ -73,7 +74,7 @@ def open_in_blender(name: str, preset: Preset, show: str = "") -> None:
 
 
 def find_blender() -> str:
-    """An installed Blender: $BLENDER, the PATH, then the usual places of Linux and macOS."""
+    """Return an installed Blender: $BLENDER, the PATH, then the usual places of Linux and macOS."""
     named = os.environ.get("BLENDER")
     if named:
         if os.access(named, os.X_OK):

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from render.plots import READ
-from render.plots.asked import spectra_asked
+from render.plots import READ, spectra_asked
 from shared.contract import Motion, read_motion
+from shared.contract.quantity import counted
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -42,8 +42,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     if stage.is_fresh():
         say("compare", f"{owner}: nothing to do")
         return
-    from render.plots.pages.beside import figures
-    from render.plots.pages.beside_spectra import spectra_figure
+    from render.plots.pages.comparison import figures, spectra_figure
     from render.plots.quantities import refuse_unknown_in_all
 
     motions: dict[str, Motion] = {variant: read_motion(file) for variant, file in files.items()}
@@ -60,4 +59,4 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
         older.unlink()
     stage.outputs.extend(outputs.values())
     stage.done()
-    say("compare", f"{owner}: {len(outputs)} plots of {len(motions)} variants in {out.compare}")
+    say("compare", f"{owner}: {counted(len(outputs), 'plot')} of {counted(len(motions), 'variant')} in {out.compare}")

@@ -1,6 +1,6 @@
 """How far everything goes: strokes of sliders, ranges of rockers, turns of cranks, spans of points, flights of bodies.
 
-A joint whose reaction is exactly zero from an event of the user on, and was not before, has been released there.
+Bodies are held by joints until an event releases these.
 """
 
 from __future__ import annotations
@@ -111,15 +111,12 @@ def _flights(motion: Motion, amount: Amounts) -> list[str]:
 
 def releases(motion: Motion) -> dict[str, tuple[int, str]]:
     """Return the row from which on a joint is released, and the event that did it, by joint."""
-    time, out = np.asarray(motion.time), {}
-    for event in motion.events:
-        if event.what != "event":
-            continue
-        after = int(np.searchsorted(time, event.time, side="right"))
-        for name, joint in motion.joints.items():
-            effort = np.abs([joint.fx, joint.fy, joint.torque]).max(axis=0)
-            if name not in out and 0 < after < len(time) and effort[:after].any() and not effort[after:].any():
-                out[name] = after - 1, event.name
+    names = {event.time: event.name for event in motion.events if event.what == "event"}
+    out = {}
+    for name, joint in motion.joints.items():
+        row = joint.rows_held(motion.time)
+        if joint.released is not None and row < len(motion.time):
+            out[name] = row, names.get(joint.released, "a release")
     return out
 
 

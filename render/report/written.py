@@ -9,7 +9,7 @@ import numpy as np
 
 from render.magnitudes import floors
 from shared.contract import Motion
-from shared.contract.quantity import MINUS, figures, written
+from shared.contract.quantity import MINUS, counted, figures, written
 
 __all__ = ["Amounts", "counted", "degrees", "first_peak", "listed", "moment", "speed", "table", "turning", "written"]
 
@@ -40,7 +40,7 @@ def turning(value: float) -> str:
 
 
 def degrees(value: float) -> str:
-    """Degrees from radians."""
+    """Return degrees from radians."""
     return f"{math.degrees(value):.1f}°".replace("-", MINUS)
 
 
@@ -54,17 +54,12 @@ def listed(words: Sequence[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
-def counted(count: int, noun: str) -> str:
-    """``1 event``, ``no events``, ``3 events``."""
-    return f"{'no' if count == 0 else count} {noun}{'s' * (count != 1)}"
-
-
 def first_peak(values: np.ndarray) -> int:
-    """Where the largest value is; the first of several that are as large but for rounding."""
+    """Return where the largest value is; the first of several that are as large but for rounding."""
     return int(np.argmax(values >= values.max() - 1e-9 * abs(values.max())))
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Lines of a table; the first column is words, the others numbers."""
+    """Return lines of a table; the first column is words, the others numbers."""
     lines = [f"| {' | '.join(head)} |", f"|---|{'---:|' * (len(head) - 1)}"]
     return [*lines, *(f"| {' | '.join(row)} |" for row in rows)]

@@ -5,6 +5,8 @@ A body's x, y, theta place the frame its author drew it in, not its centre of ma
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 import msgspec
@@ -89,6 +91,15 @@ class JointMotion(Strict, kw_only=True):
     acts: Acts | None = None
     """Null where it acts at (x, y)."""
     shape: Shape | None = None
+    released: float | None = None
+    """Time (s) of the event that released it; null if it holds to the end."""
+
+    def rows_held(self, time: Sequence[float]) -> int:
+        """Return how many of the rows, at these times, it holds: of two at its release the first."""
+        if self.released is None:
+            return len(time)
+        at = bisect_right(time, self.released)
+        return at - 1 if at > 1 and time[at - 2] == time[at - 1] == self.released else at
 
 
 class DriverMotion(Strict, kw_only=True):

@@ -3,7 +3,8 @@
     p = second place - first place    l = |p|     u = p / l     n = u turned by a quarter, counter-clockwise
     theta = angle of p                omega = p' . n / l        alpha = (p'' . n - 2 l' omega) / l     l' = p' . u
 
-The rod's frame is at the first place. It has no mass here: in the model it is a constraint.
+The rod's frame is at the first place. It has no mass here: in the model it is a constraint. A rod that an event
+releases stays on the body of its first place as it is then.
 """
 
 from __future__ import annotations
@@ -21,6 +22,10 @@ def with_rods(motion: Motion, parts: Parts) -> Motion:
     if not rods:
         return motion
     made = {name: _moved(name, ends, parts.bodies[name].z, motion) for name, ends in rods.items()}
+    for name in set(rods) & set(motion.joints):
+        rows = motion.joints[name].rows_held(motion.time)
+        if 0 < rows < len(motion.time):
+            _leave(made[name], motion.bodies.get(rods[name][0].body), rows)
     return msgspec.structs.replace(motion, bodies=motion.bodies | made)
 
 
@@ -32,11 +37,14 @@ def _moved(name: str, ends: tuple[End, End], z: float, motion: Motion) -> BodyMo
     (place, rate, change), second = (_place(name, end, motion) for end in ends)
     way, way_rate, way_change = (b - a for a, b in zip((place, rate, change), second, strict=True))
     length = np.hypot(*way.T)
-    if length.min() < 1e-9:
-        at = motion.time[int(length.argmin())]
+    joint = motion.joints.get(name)
+    rows = len(length) if joint is None else joint.rows_held(motion.time)
+    if length[:rows].min() < 1e-9:
+        at = motion.time[int(length[:rows].argmin())]
         raise UserError(
             f"{motion.mechanism}: both ends of the rod '{name}' are on one place at t={at:.4g} s; join others"
         )
+    length = np.maximum(length, 1e-9)  # after a release the ends may meet
     along = way / length[:, None]
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)
     omega = (way_rate * across).sum(axis=1) / length
@@ -50,6 +58,17 @@ def _moved(name: str, ends: tuple[End, End], z: float, motion: Motion) -> BodyMo
     names = ("x", "y", "theta", "vx", "vy", "omega", "ax", "ay", "alpha")
     values = {key: column.tolist() for key, column in zip(names, series, strict=True)}
     return BodyMotion(**values, z=z, mass=0.0, com=(0.0, 0.0), inertia=0.0)
+
+
+def _leave(rod: BodyMotion, body: BodyMotion | None, rows: int) -> None:
+    """Have a rod turn with ``body``, which is ground if None, from the row after ``rows`` on."""
+    at = rod.theta[rows - 1]
+    count = len(rod.theta) - rows
+    if body is None:
+        rod.theta[rows:], rod.omega[rows:], rod.alpha[rows:] = [at] * count, [0.0] * count, [0.0] * count
+        return
+    rod.theta[rows:] = [at + angle - body.theta[rows - 1] for angle in body.theta[rows:]]
+    rod.omega[rows:], rod.alpha[rows:] = body.omega[rows:], body.alpha[rows:]
 
 
 def _place(name: str, end: End, motion: Motion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.memory import recalled
 from shared.stage.scale import Scale
 from shared.stage.suggestions import did_you_mean
@@ -55,6 +56,7 @@ RESERVED = {
     "gallery": "out/gallery holds the gallery",
     "docs": "out/docs holds the pages of the documents",
     "engines": "out/engines holds the tables of engine layouts",
+    "browsers": "out/browsers holds what was seen of pages in browsers",
     "hunt_parts": "out/hunt_parts holds the cases of hunts",
 }
 """Names that no mechanism can have, and why: results of it and of others would be in one folder."""
@@ -185,6 +187,16 @@ def mechanism_names() -> list[str]:
     a function ``build``, and that folder itself.
     """
     return [name for name in _names() if NAME.fullmatch(name) and name not in RESERVED]
+
+
+def all_mechanisms() -> list[str]:
+    """Return :func:`mechanism_names`. Raises UserError saying where none are and how to make one."""
+    names, unfit = mechanism_names(), unfit_names()
+    if not names:
+        where = MECHANISMS if in_workshop() else "mechanisms/"
+        left = "".join(f"; {name!r} is left out, because that cannot name a mechanism: {unfit[name]}" for name in unfit)
+        raise UserError(f"there are no mechanisms in {where}; {to_run('new', 'excavator')} makes one{left}")
+    return names
 
 
 def unfit_names() -> dict[str, str]:

@@ -201,4 +201,6 @@ def versions(*packages: str) -> dict[str, str]:
 def contract_sources(*more: str) -> list[Path]:
     """Files that say what data.json and parts.json hold, and ``more`` of ``shared/contract`` by name: for keys."""
     names = ("__init__", "base", "loads", "motion", "mount", "parts", *more)
-    return [ROOT / "shared" / "stage" / "jsonfile.py", *(ROOT / "shared" / "contract" / f"{name}.py" for name in names)]
+    others = [ROOT / "mbsd" / "base" / "quantity.py"] if "quantity" in more else []
+    files = [ROOT / "shared" / "contract" / f"{name}.py" for name in names]
+    return [ROOT / "shared" / "stage" / "jsonfile.py", *files, *others]

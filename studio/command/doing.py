@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from shared.stage.console import fail
-from shared.stage.paths import mechanism_names
+from shared.stage.paths import all_mechanisms
 from shared.stage.scale import scale_of
 from shared.system.missing import missing_libraries, sentence
 from studio.command import stages
@@ -48,7 +48,7 @@ def at_scale(command: Command, name: str, said: Mapping[str, str], run: Run) -> 
 def gallery(command: Command, _: str, said: Mapping[str, str], run: Run) -> int:
     """A poster of every machine and the page of them; one that fails is left out, and makes the exit code 1."""
     bad = 0
-    for name in mechanism_names():
+    for name in all_mechanisms():
         chain = (*stages.MOTION, stages.CLEARANCE, stages.SHOT, stages.POSTER)
         code = run.all_of(stage.words(name, {**said, "aspect": "16:9"}) for stage in chain)
         if code >= 128:

@@ -8,7 +8,7 @@ import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from shared.stage.errors import UserError
 from shared.stage.face import is_of_make
@@ -56,6 +56,25 @@ class Parser(argparse.ArgumentParser):
         super().error(message)
 
 
+class Once(argparse.Action):
+    """Joins the values of an option that is given several times, or refuses it where it takes one."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: str | Sequence[Any] | None,
+        option_string: str | None = None,
+    ) -> None:
+        """Keep the value; print an error and exit with 2 if the option has another already and takes one."""
+        given = namespace.__dict__.setdefault("given", {}).setdefault(self.dest, [])
+        option = OPTIONS[self.dest.replace("_", "-")]
+        given.append(values)
+        if not option.joint and len(set(given)) > 1:
+            parser.error(f"--{option.name} takes one value, and has {' and '.join(given)}")
+        setattr(namespace, self.dest, option.joint.join(given) if option.joint else values)
+
+
 def parser(make: bool = False) -> argparse.ArgumentParser:
     """Return the whole command line; with ``make`` the defaults are the variables that the Makefile exports."""
     top = Parser(
@@ -89,7 +108,7 @@ def _add(commands: argparse._SubParsersAction[Parser], command: Command, make: b
             choices = f": {', '.join(option.choices)}" if option.choices else ""
             usual = command.defaults.get(name, option.default)
             text = f"{option.help}{choices}" + (f"; {usual} if not given" if usual else "")
-            sub.add_argument(f"--{name}", default=default, metavar=option.metavar, help=text)
+            sub.add_argument(f"--{name}", default=default, metavar=option.metavar, help=text, action=Once)
     if command.of == "machine" and "json" not in command.options:
         sub.add_argument("--json", action="store_true", help="what was done, for other programs; words go to stderr")
     planned = make and bool(os.environ.get("PLAN"))

@@ -32,6 +32,8 @@ class Option:
     """Whether it is said without a value."""
     valued: bool = False
     """Whether a stage takes this flag as ``=1``."""
+    joint: str = ""
+    """What joins several values, each given by the option once more; empty if it takes one."""
 
     @property
     def variable(self) -> str:
@@ -44,7 +46,7 @@ OPTIONS: dict[str, Option] = {
     for option in (
         Option("preset", "quality of pictures", default="preview", choices=tuple(PRESETS), kept=True),
         Option("aspect", f"shape of the picture; {WIDE} if not given", choices=tuple(ASPECTS), kept=True),
-        Option("show", "arrows and words in the picture: reactions,velocities,title", kept=True),
+        Option("show", "arrows and words in the picture: reactions,velocities,title", kept=True, joint=","),
         Option("sound", "of the film; on if not given", choices=("on", "off"), kept=True),
         Option(
             "story",
@@ -52,14 +54,14 @@ OPTIONS: dict[str, Option] = {
             choices=("loop", "explain", "compare"),
         ),
         Option("loop", "seconds of a silent film with captions that ends as it begins: 12", "S"),
-        Option("spectra", "spectra to plot: 'shaking force,motor'", kept=True),
+        Option("spectra", "spectra to plot: 'shaking force,motor'", kept=True, joint=","),
         Option("bed", "size of a plate in mm; 220x220 if not given", "WxH", kept=True),
         Option("scale", "of a model: 1:20, 1/20, 0.05 or 2:1; the machine itself if not given", "1:N", kept=True),
         Option("gap", "what pieces keep apart on a plate in mm; 5 if not given", "MM", kept=True),
         Option("frame", "number of the frame, from 0", "N", default="0"),
-        Option("frames", "numbers of frames: 0,30", "N,N"),
-        Option("view", "what is shown: reactions,velocities; all if not given"),
-        Option("only", "these alone, commas between them; all if not given", "NAMES"),
+        Option("frames", "numbers of frames: 0,30", "N,N", joint=","),
+        Option("view", "what is shown: reactions,velocities; all if not given", joint=","),
+        Option("only", "these alone, commas between them; all if not given", "NAMES", joint=","),
         Option("watts", "power of this machine while it renders (W), to tell the energy", "W", kept=True),
         Option(
             "anyway",
@@ -71,7 +73,7 @@ OPTIONS: dict[str, Option] = {
         Option("as", "its name here; that of the file if not given", "NAME"),
         Option("format", "of the file", default="csv", choices=(*FORMATS, *SCENES)),
         Option("time", "of the pose in a drawing or assembly (s)", "S", default="0"),
-        Option("over", "what a study varies: 'crank=0.03:0.05:5; speed=6,12'", "GRID"),
+        Option("over", "what a study varies: 'crank=0.03:0.05:5; speed=6,12', or each by itself", "GRID", joint="; "),
         Option("single", "one file in place of a folder", flag=True),
         Option("port", "of 127.0.0.1; any free one if not given", "N"),
         Option("limit", "seconds that solving may take; 30 if not given", "S"),

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from shared.stage.lineage import VARIABLE
 from shared.stage.paths import ROOT
 from shared.stage.signals import Stopped, terminable
-from studio.command.table import STAGE_HELP
+from studio.command.plan import plan_line
 
 GRACE = 20.0
 """Seconds that a stage has to clean up when the command is stopped."""
@@ -81,22 +81,6 @@ class Run:
         own = {VARIABLE: os.environ.get(VARIABLE) or str(os.getpid())}
         paths = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH", ""))))
         return {**os.environ, **self.environment, **own, "PYTHONPATH": paths}
-
-
-def plan_line(words: Sequence[str]) -> str:
-    """Return one line on a stage for ``--plan``: its name, its options and what it makes.
-
-    ``words`` is the command line of the stage, ``python -m ROOM NAME ...``.
-    """
-    room, *rest = words[2:]
-    if room == "studio.night":
-        rest = [{"run": "all", "start": "overnight"}.get(rest[0], rest[0]), *rest[1:]]
-    elif room not in ("mechanisms", "render"):
-        rest = [room.rpartition(".")[2], *rest]
-    shown = [word for word in rest if word not in ("--", "--or-none") and not word.startswith("--python=")]
-    operands = [word for word in shown[1:] if not word.startswith("-")]
-    text = STAGE_HELP.get(rest[0], "").replace("<name>", operands[0] if operands else "<name>")
-    return f"{' '.join(shown):<34}  {text}".rstrip()
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:

@@ -10,6 +10,8 @@ import msgspec
 from shared.stage.errors import UserError
 
 FILE = "mbsd.toml"
+LARGEST = 16_384
+"""Bytes of the file, at most: tomllib takes minutes for a key of a hundred thousand parts."""
 
 
 class Settings(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, rename="kebab"):
@@ -45,11 +47,14 @@ def read(folder: Path) -> Settings:
     """The settings of a folder; those of an empty file where there is none. Raises UserError for one that is unfit."""
     file = folder / FILE
     try:
-        content = file.read_bytes()
+        with file.open("rb") as stream:
+            content = stream.read(LARGEST + 1)
     except FileNotFoundError:
         return Settings()
     except OSError as error:
         raise UserError(f"{file} cannot be read: {error.strerror}") from error
+    if len(content) > LARGEST:
+        raise UserError(f"{file} is larger than {LARGEST // 1024} kB; {_known()}")
     try:
         settings = msgspec.toml.decode(content.removeprefix(codecs.BOM_UTF8), type=Settings)
     except RecursionError as error:

@@ -144,11 +144,3 @@ COMMANDS: dict[str, Command] = {
     )
 }  # fmt: skip
 """In the order of ``make help``."""
-
-STAGE_HELP: dict[str, str] = {
-    **{command.stages[-1].name: command.help for command in COMMANDS.values()},
-    **{name: command.help for name, command in COMMANDS.items()},
-    "shot": "the description of the film, checked: out/<name>/shot.json",
-    "plots": COMMANDS["plot"].help,
-}
-"""One line for each stage and command, by its name, for ``--plan``."""

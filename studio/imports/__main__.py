@@ -8,6 +8,7 @@ from pathlib import Path
 
 from mechanisms.stages import checking
 from mechanisms.stages.new.new import file_of, mark_folder, refuse_unfit
+from shared.contract.quantity import counted
 from shared.stage.console import run_cli, say, warn
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -39,7 +40,7 @@ def main() -> int:
     problem = difference(sketch, try_out(text, name))
     write_bytes(file, text.encode())
     mark_folder()
-    say("import", f"{shown_file(name)}: {counted(sketch)} from {sketch.program}; {to_run('live', name)} shows it")
+    say("import", f"{shown_file(name)}: {contents(sketch)} from {sketch.program}; {to_run('live', name)} shows it")
     for words in sketch.left_out:
         warn("import", f"left out: {words}")
     if problem:
@@ -55,14 +56,14 @@ def named(source: str) -> str:
     return name if NAME.fullmatch(name) and len(name) < 60 else "imported"
 
 
-def counted(sketch: Sketch) -> str:
+def contents(sketch: Sketch) -> str:
     """``3 links, 4 joints and 1 motor``."""
     counts = (
         (len(sketch.links), "link"),
         (len(sketch.joints), "joint"),
         (len(sketch.motors) + len(sketch.pushes) + len(sketch.rams), "motor"),
     )
-    first, second, third = (f"{count} {word}{'' if count == 1 else 's'}" for count, word in counts)
+    first, second, third = (counted(count, word) for count, word in counts)
     return f"{first}, {second} and {third}"
 
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
+from shared.contract.quantity import counted
 from shared.stage.errors import UserError
 from studio.imports.limits import check_count, check_length
 from studio.imports.sketch import GROUND, Motor, Place, Sketch
@@ -171,7 +172,7 @@ def _links(lines: list[_Line], pins: list[_Pin], sketch: Sketch) -> list[_Link]:
         links.append(merged)
         check_count(links, "links")
     if astray:
-        sketch.left_out.append(f"{astray} lines that do not run from pin to pin")
+        sketch.left_out.append(f"{counted(astray, 'line')} not from pin to pin")
     return links
 
 

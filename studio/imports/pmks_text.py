@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
+from shared.contract.quantity import counted
 from shared.stage.errors import UserError
 from studio.imports.limits import check_count, check_length, parsed_json
 from studio.imports.sketch import GROUND, Motor, Place, Sketch, Slide
@@ -86,7 +87,9 @@ def _drive(sketch: Sketch, label: str, joint: _Joint, links: list[str], speed: f
         first, second = sorted(links, key=lambda link: link != GROUND)
         sketch.motors.append(Motor("motor", first, second, speed))
     elif joint.kind == "R":
-        sketch.left_out.append(f"input {label}: {len(links)} links meet there, so it does not say which of them turns")
+        sketch.left_out.append(
+            f"input {label}: {counted(len(links), 'link')} meet there, so it does not say which of them turns"
+        )
     else:
         sketch.left_out.append(f"input {label}: only pins are driven here; m.drive_coordinate drives a slider")
 
@@ -139,6 +142,7 @@ def _of_json(text: str) -> tuple[list[_Joint], int, float]:
     for number, joint in enumerate(joints, 1):
         if joint.kind not in TAKEN or not joint.links:
             raise UserError(
-                f"joint {number} is of kind {joint.kind[:20]!r} with {len(joint.links)} links; kinds are R, P, RP, G"
+                f"joint {number} is of kind {joint.kind[:20]!r} with {counted(len(joint.links), 'link')}; "
+                "kinds are R, P, RP, G"
             )
     return joints, int(data.get("DrivingIndex") or 0), float(data.get("InputSpeed") or SPEED)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import time
 
+from shared.contract.quantity import counted
 from shared.stage.console import duration
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -32,7 +33,7 @@ def run(asked: Options) -> int:
             log.fail(f"mechanisms/{word} is not the name of a mechanism; rename the folder: {NAME_RULE}")
         board = Board(asked.names, fresh_steps(asked))
         work = sum(board.outcome(name) != "done" for name in asked.names)
-        log.say(f"{len(asked.names)} mechanisms at {asked.preset}, something to do for {work}")
+        log.say(f"{counted(len(asked.names), 'mechanism')} at {asked.preset}, something to do for {work}")
         at_work = Coordinator(asked, night, log, board)
         try:
             refuse_before_start(asked, tuple(name for name in asked.names if board.outcome(name) != "done"))

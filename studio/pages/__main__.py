@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from shared.stage.console import run_cli
-from shared.stage.paths import known_name, mechanism_names
+from shared.stage.paths import all_mechanisms, known_name
 from studio.pages import making
 
 
@@ -17,7 +17,7 @@ def main() -> int:
     parser.add_argument("--only", default="", help="these mechanisms: four_bar,pendulum; all if not given")
     parser.add_argument("--fresh", action="store_true", help="print the names whose page has nothing to do")
     asked = parser.parse_args()
-    names = [known_name(name) for name in asked.only.split(",")] if asked.only else mechanism_names()
+    names = [known_name(name) for name in asked.only.split(",")] if asked.only else all_mechanisms()
     if asked.fresh:
         return making.tell_fresh(names)
     return making.run(names)

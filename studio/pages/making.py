@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from render.view import pictures
 from shared.stage.console import progress, say, warn
 from shared.stage.errors import UserError
-from shared.stage.face import to_run
 from shared.stage.paths import ROOT, Out
 from shared.system import missing
 
@@ -22,12 +21,7 @@ WIDTH = 120
 
 
 def run(names: Sequence[str]) -> int:
-    """Make what is missing of pages and pictures; 1 if anything could not be made. A call goes on from the last one.
-
-    Raises UserError where there is no mechanism.
-    """
-    if not names:
-        raise UserError(f"there are no mechanisms here; {to_run('new', 'excavator')} makes one")
+    """Make what is missing of pages and pictures; 1 if anything could not be made. A call goes on from the last one."""
     browser = pictures.chromium()
     version = pictures.version_of(browser) if browser else ""
     current = _current(names)
@@ -55,8 +49,8 @@ def run(names: Sequence[str]) -> int:
 
 def tell_fresh(names: Sequence[str]) -> int:
     """Print the names whose page has nothing to do; mechanism.py of each is run for its parameters."""
+    from mechanisms.stages import shot as shot
     from mechanisms.stages.parts import stage as parts
-    from mechanisms.stages.shot import stage as shot
     from mechanisms.stages.solve import stage as solve
     from render import view
     from shared.stage.memory import remembered
@@ -101,7 +95,7 @@ def _made(name: str, is_current: bool, browser: str | None, version: str) -> str
     try:
         stage = pictures.stage_of(out, version)
         if not stage.is_fresh():
-            pictures.take(out, browser)
+            pictures.take_picture(out, browser)
             stage.done()
     except UserError as error:
         return f"picture: {error}"

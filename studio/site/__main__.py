@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from shared.stage.console import run_cli
-from shared.stage.paths import known_name, mechanism_names
+from shared.stage.paths import all_mechanisms, known_name
 from studio.site import making
 
 
@@ -16,7 +16,7 @@ def main() -> int:
     )
     parser.add_argument("--only", default="", help="these machines: four_bar,pendulum; all if not given")
     asked = parser.parse_args()
-    names = [known_name(name) for name in asked.only.split(",")] if asked.only else mechanism_names()
+    names = [known_name(name) for name in asked.only.split(",")] if asked.only else all_mechanisms()
     return making.run(names)
 
 

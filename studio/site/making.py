@@ -14,7 +14,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from render.freshness import Freshness
-from render.gallery.posters import small_poster
+from render.gallery import small_poster
+from shared.contract.quantity import counted
 from shared.stage import locks
 from shared.stage.console import progress, say, warn
 from shared.stage.errors import Busy, UserError
@@ -82,8 +83,7 @@ def _run(names: Sequence[str], folder: Path) -> int:
     _write_pages(entries, folder)
     _remove_others(folder, {entry.name for entry in entries})
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6
-    machines = f"{len(entries)} machine{'' if len(entries) == 1 else 's'}"
-    say("site", f"{machines}, {size:.0f} MB: {(folder / 'index.html').as_uri()}")
+    say("site", f"{counted(len(entries), 'machine')}, {size:.0f} MB: {(folder / 'index.html').as_uri()}")
     return int(len(entries) < len(names))
 
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from html import escape
 
+from shared.contract.quantity import counted
 from studio.site.entries import Entry
 from studio.site.loops import HEIGHT, WIDTH
 
@@ -36,7 +37,7 @@ def wall(title: str, entries: Sequence[Entry], filters: Sequence[str]) -> str:
         f'<button type="button" aria-pressed="false" data-purpose="{escape(purpose)}">{escape(purpose)}</button>'
         for purpose in filters
     )
-    said = f"{len(entries)} machines in motion, with their forces, parts and numbers to move"
+    said = f"{counted(len(entries), 'machine')} in motion, with their forces, parts and numbers to move"
     head = HEAD.format(title=escape(title), said=escape(said), root="")
     return f"""{head}<header>
 <h1>{escape(title)}</h1>
@@ -47,7 +48,7 @@ def wall(title: str, entries: Sequence[Entry], filters: Sequence[str]) -> str:
 <div class="filters" role="group" aria-label="What a machine does">
 {buttons}
 </div>
-<p class="count" role="status">{len(entries)} machines</p>
+<p class="count" role="status">{counted(len(entries), "machine")}</p>
 <ul class="wall">
 {tiles}
 </ul>

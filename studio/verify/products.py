@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from shared.contract.quantity import counted
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from shared.stage.stages import Stage, outdated_by
@@ -33,9 +34,9 @@ def of_print(out: Out, scratch: Path, again: Again) -> list[Finding]:
     findings = [files.compared(name, here / name, there / name) for name in names if not name.startswith(".")]
     wrong = [finding for finding in findings if finding.verdict != "same"]
     if wrong:
-        said = f"{len(wrong)} of {len(findings)} files, such as {wrong[0].what} {wrong[0].detail}"
+        said = f"{len(wrong)} of {counted(len(findings), 'file')}, such as {wrong[0].what} {wrong[0].detail}"
         return [Finding(what, "differs", said)]
-    return [Finding(what, "same", f"{len(findings)} files")]
+    return [Finding(what, "same", counted(len(findings), "file"))]
 
 
 def of_exports(out: Out, scratch: Path, again: Again) -> list[Finding]:

@@ -14,11 +14,12 @@ from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
-from render.blender.scratch import scratch_folder
+from render.blender.process import scratch_folder
 from render.film.inputs import named
 from render.frames.film import wav_of, write_sound
 from render.frames.store import FrameIndex, FrameStore
 from render.presets import Preset
+from shared.contract.quantity import counted
 from shared.stage.console import fail, say
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
@@ -65,7 +66,7 @@ def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -
     again_in = partial(_stage, root)
     findings += [*(products.of_print(out, made, again_in) if solids else []), *products.of_exports(out, made, again_in)]
     if index is None or not solids:
-        hint = f"{to_run('film', out.name)} {preset.asked} first"
+        hint = f"{to_run('film', out.name)} {preset.request} first"
         return [*findings, Finding("frames and film", "missing", f"none of {preset.name} are there; {hint}")]
     return [*findings, *_of_pictures(out, preset, index, wanted, show, scratch)]
 
@@ -101,9 +102,9 @@ def _of_parts(out: Out, again: Path) -> Finding:
     findings = [files.compared(name, here / name, there / name) for name in names]
     wrong = [finding for finding in findings if finding.verdict != "same"]
     if wrong:
-        detail = f"{len(wrong)} of {len(findings)} files, such as {wrong[0].what} {wrong[0].detail}"
+        detail = f"{len(wrong)} of {counted(len(findings), 'file')}, such as {wrong[0].what} {wrong[0].detail}"
         return Finding("solids (STL, STEP)", "differs", detail)
-    return Finding("solids (parts.json, STL, STEP)", "same", f"{len(findings) + 1} files")
+    return Finding("solids (parts.json, STL, STEP)", "same", counted(len(findings) + 1, "file"))
 
 
 def _stage(root: Path, module: str, *arguments: str) -> None:

@@ -8,7 +8,7 @@ import pickle
 import numpy as np
 
 import mbsd
-from benchmarks.derivatives.measure import linkage
+from benchmarks.derivatives import linkage
 from mbsd.measures import final, samples
 
 ASKED = {"x": "b.x", "path": "P.vy", "end": final("a.theta"), "kinetic": "kinetic", "some": samples("b.y", [0.1, 0.2])}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mbsd
-from benchmarks.derivatives.measure import linkage
+from benchmarks.derivatives import linkage
 from mbsd.derivatives import simulations
 from mbsd.derivatives.numbers.straight_variants import variants_beside
 from mbsd.derivatives.numbers.variants import SECOND, TINY, Variants

@@ -38,7 +38,7 @@ def test_the_topology_names_all_and_marks_the_redundant() -> None:
     assert {
         *m.bodies,
         *m.joints,
-        "1 degree of freedom (0 nominal), 1 redundant row, removable at F; no driver",
+        "1 degree of freedom (0 nominal), 1 redundant row, removable at F; no drivers",
     } <= shown
     assert [e.text for e in ET.fromstring(text).iter() if e.text and "redundant" in e.text][1:] == [
         "revolute, redundant"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, SimulationError, constant_rate, polynomial
-from mbsd.measures import final, largest
+from mbsd.measures import final
 from mbsd.model.adding.restitution import MODELS
 from mbsd.results.force_view import ForceView
 from tools.models.clearance_slider_crank import CRANK, RADIUS, ROD, TURN, reference, slider_crank
@@ -206,22 +206,6 @@ def test_rows_of_many_that_press_a_journal_in_have_the_reason_of_single_ones() -
     assert deep.good.tolist() == [True, False]
 
 
-def test_many_simulations_are_those_that_one_makes() -> None:
-    m = slider_crank(0.5e-3)
-    grid = {"B": {"clearance": [0.1e-3, 0.3e-3]}}
-    many = m.simulate_many(0.3 * TURN, grid, measure={"x": final("slider.x"), "most": largest("B.effort")})
-    for k, clearance in enumerate(grid["B"]["clearance"]):
-        alone = slider_crank(clearance).simulate(0.3 * TURN)
-        assert many["x"][k] == pytest.approx(alone.body("slider").x[-1], abs=1e-9)
-        assert many["most"][k] == pytest.approx(normal(alone.force("B")).max(), rel=1e-6)
-    plain = slider_crank(0.5e-3, modulus=None, stiffness=6.6e10)
-    fast = plain.simulate_many(0.3 * TURN, grid, measure={"x": final("slider.x")})
-    for k, clearance in enumerate(grid["B"]["clearance"]):
-        alone = slider_crank(clearance, modulus=None, stiffness=6.6e10).simulate(0.3 * TURN)
-        assert fast["x"][k] == pytest.approx(alone.body("slider").x[-1], abs=1e-9)
-    assert "in the compiled loop" in fast.way
-
-
 def test_damping_runs_with_other_integrators_and_restitution_says_that_it_does_not() -> None:
     m = slider_crank(0.5e-3, restitution=None, damping=0.2)
     here, there = (m.simulate(0.1 * TURN, method=method).body("slider").x for method in ("dop853", "radau"))
@@ -302,14 +286,6 @@ def test_play_in_every_pin_keeps_the_links_together_and_takes_energy() -> None:
     lost = sol.energy.total[0] - sol.energy.total
     assert lost[-1] > 0.0
     assert np.diff(sol.energy.total).max() < 1e-9 * sol.energy.total[0]
-
-
-def test_many_starts_are_those_that_one_makes() -> None:
-    many = hanging().simulate_many(0.05, start={"bar": [-60.0, 0.0]}, measure={"y": final("bar.y")})
-    for k, angle in enumerate((-60.0, 0.0)):
-        m = hanging()
-        m.start_near(bar=angle)
-        assert many["y"][k] == pytest.approx(m.simulate(0.05).body("bar").y[-1], abs=1e-9)
 
 
 def test_drivers_on_both_sides_of_a_play_move_as_they_are_said_to() -> None:

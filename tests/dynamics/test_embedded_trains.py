@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, harmonic
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.runs.embed import embedded_at_start
+from mbsd.dynamics.runs.embedding import embedded_at_start
 from mbsd.kinematics.groups.blocks import TRAIN
 from mbsd.kinematics.groups.groups import KIND
 from tests.dynamics.test_embedding import agree, both

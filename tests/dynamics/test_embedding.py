@@ -10,12 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.multipliers import fill_multipliers
-from mbsd.dynamics.runs import independent_steps
-from mbsd.dynamics.runs.embed import embed, embedded_at_start
-from mbsd.dynamics.runs.to_end import integrate
+from mbsd.dynamics.runs import motion
+from mbsd.dynamics.runs.embedding import embed, embedded_at_start
+from mbsd.dynamics.runs.motion import integrate
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.registry import NAMES
@@ -186,7 +187,7 @@ def test_multipliers_of_outputs_are_those_of_reference_coordinates_to_the_last_d
     method = integrator_named(m.name, "dop853")
     _, out = integrate(ready, method, np.linspace(0.0, 0.4, 9), 1e-8, 0.05, formulation="independent")
     fill_multipliers(ready.packed, ready.dynamics, out.t, out.y, out.lam, out.margin)
-    scratch, lam = ready.scratch(method), np.zeros_like(out.lam[0])
+    scratch, lam = Run(ready, method, 1e-8, 0.05, 0.4, {}).scratch, np.zeros_like(out.lam[0])
     for k, t in enumerate(out.t):
         derivative(ready.dynamics, scratch, float(t), out.y[k], np.zeros_like(out.y[k]), lam)
         np.testing.assert_array_equal(out.lam[k], lam)
@@ -211,13 +212,13 @@ def double_rocker() -> Mechanism:
 
 def test_coordinates_change_where_others_are_better(monkeypatch: pytest.MonkeyPatch) -> None:
     taken = []
-    original = independent_steps.IndependentSteps._take
+    original = motion.IndependentSteps._take
 
     def watched(self, made, *rest) -> None:
         taken.append(made.coordinates[0].body)
         original(self, made, *rest)
 
-    monkeypatch.setattr(independent_steps.IndependentSteps, "_take", watched)
+    monkeypatch.setattr(motion.IndependentSteps, "_take", watched)
     independent, reference = both(double_rocker(), 2.0, tolerance=1e-11)
     agree(independent, reference, close=1e-5)
     assert len(set(taken)) > 1, "no other coordinate was taken"

@@ -53,18 +53,6 @@ def test_a_bar_that_keeps_its_speed_in_free_flight_lets_go_once(
     np.testing.assert_allclose(sol.body("arm").theta[-1], fall(level) + level * (2.0 - when), atol=10.0 * near)
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-7, 1e-10])
-def test_the_loop_over_many_lets_go_as_single_simulations_do(tolerance: float) -> None:
-    m, masses = falling_arm(-3.0), [0.5, 1.0, 1.7]
-    many = m.simulate_many(
-        2.0, vary={"arm": {"mass": masses}}, measure={"x": final("arm.x")}, steps=50, tolerance=tolerance
-    )
-    assert "all of 3" in str(many.way)
-    for mass, x in zip(masses, many["x"], strict=True):
-        m.change("arm", mass=mass)
-        np.testing.assert_allclose(x, m.simulate(2.0, steps=50, tolerance=tolerance).body("arm").x[-1], atol=1e-9)
-
-
 @numba.njit
 def brake(t: float, q: np.ndarray, v: np.ndarray) -> tuple[float, float, float]:
     """Slows from 2 to 3 s, and speeds up from 3 to 5 s, by 1 rad/s^2."""

@@ -11,13 +11,13 @@ from mbsd import Mechanism, ModelError, SimulationError, constant_rate, polynomi
 from mbsd.arrays.friction_along import normals_along
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import pack
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.equations.joint_friction import X, tabulate_friction
 from mbsd.testing.forces import motion
 from tools.models.rough import pusher
-from tools.models.slider_cranks import slider_crank
+from tools.models.sticking import slider_crank
 
 G = 9.80665
 

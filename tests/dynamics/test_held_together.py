@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, polynomial
-from mbsd.measures import samples
 from mbsd.results.solution import Solution
 from tools.models.random_rough import five_bar_with_stops, level_chain, shaken_box, striker
 from tools.models.rough import pusher
@@ -101,19 +100,3 @@ def test_a_five_bar_at_its_stops_moves_as_with_friction_by_the_rate(seed: int) -
         apart.append(max(np.abs(sticking.body(name).theta - beside.body(name).theta).max() for name in "abcd"))
     assert apart[1] < 1e-3
     assert apart[1] < 0.5 * apart[0]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("machines", [five_bar_with_stops, striker, shaken_box, level_chain])
-def test_the_compiled_loop_holds_what_single_simulations_hold(machines: Machines) -> None:
-    for seed in range(24):
-        m, body = machines(Random(seed))
-        times = np.linspace(0.0, 0.8, STEPS + 1)
-        measure = {part: samples(f"{body}.{part}", times.tolist()) for part in ("x", "theta")}
-        mass = m.bodies[body].mass
-        many = m.simulate_many(vary={body: {"mass": [mass]}}, measure=measure, times=times, tolerance=1e-9, threads=1)
-        sol = m.simulate(times=times, tolerance=1e-9)
-        assert many.reason[0] is None
-        assert many.alone[0] is None, many.way
-        for part in measure:
-            np.testing.assert_allclose(many[part][0], getattr(sol.body(body), part), atol=1e-6, err_msg=str(seed))

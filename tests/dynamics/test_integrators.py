@@ -12,7 +12,8 @@ import pytest
 from mbsd import Mechanism, ModelError, SimulationError
 from mbsd.dynamics.integrators.kind import INTEGRATORS, register
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
-from mbsd.dynamics.runs.to_end import integrate
+from mbsd.dynamics.runs.motion import integrate
+from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, TIME, output_for, start_state
 from mbsd.testing import check_integrator, integrators
 from mbsd.testing.integrators import (
@@ -101,11 +102,11 @@ def test_a_run_in_two_parts_is_the_run_in_one(name: str) -> None:
     whole, out = integrate(ready, method, times, 1e-7, 2e-3, formulation="reference")
     state = start_state(np.stack([ready.initial.q, ready.initial.v]), len(ready.packed.ws.phi), 0.0)
     parts = output_for(times, len(ready.initial.q), len(ready.packed.ws.phi))
-    scratch, settings = ready.scratch(method), ready.settings(method, 1e-7, 2e-3, 1.0, {})
-    assert method.advance(ready.dynamics, scratch, state, parts, settings, 0.5, 3) == PAUSED
+    run, again = (Run(ready, method, 1e-7, 2e-3, 1.0, {}) for _ in range(2))
+    assert method.advance(ready.dynamics, run.scratch, state, parts, run.settings, 0.5, 3) == PAUSED
     assert 0.0 < state.clock[TIME] < 0.5
     for end in (0.5, 1.0):
-        assert method.advance(ready.dynamics, ready.scratch(method), state, parts, settings, end, 10**6) == REACHED
+        assert method.advance(ready.dynamics, again.scratch, state, parts, run.settings, end, 10**6) == REACHED
         assert state.clock[TIME] == end
     assert state.count[NEXT] == len(times)
     near = 1e-5 if method.order else 2e-4  # from half time on, methods that choose their order take other steps

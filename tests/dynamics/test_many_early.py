@@ -145,7 +145,7 @@ def _steps(monkeypatch: pytest.MonkeyPatch):
 
     def noted(*arguments):
         run_rows(*arguments)
-        taken.append(arguments[-3].copy())
+        taken.append(arguments[-1].steps.copy())
 
     monkeypatch.setattr(loop, "run_rows", noted)
 

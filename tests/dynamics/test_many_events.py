@@ -1,78 +1,37 @@
-"""Events of the user in the compiled loop over simulations: what single simulations of the same rows give."""
+"""Events, contacts and cylinders in many simulations: reasons of rows that fail, and what is kept between rows."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numba
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, ModelError, angle_reaches, distance_reaches, speed_reaches
-from mbsd.dynamics.measures.quantities import quantity_named
-from mbsd.measures import final, first, integral, largest, samples
-from mbsd.results.columns import columns
-from mbsd.results.solution import Solution
-from tools.models.user_events import ball, crank, halved, height, rubbing, swing
+from mbsd import Mechanism, ModelError, SimulationError, angle_reaches, distance_reaches, speed_reaches
+from mbsd.arrays.packing import pack
+from mbsd.base.errors import MechanismError
+from mbsd.dynamics.batch import worker
+from mbsd.dynamics.batch.single_run import Base, single_run
+from mbsd.dynamics.events import packing as made
+from mbsd.dynamics.simulate import request_for
+from mbsd.measures import final, first, largest, samples, smallest
+from tests.dynamics.many_models import air
+from tools.models.guided import free_geneva, loose_gears
+from tools.models.releases import sling
+from tools.models.repeated_joints import cranks
+from tools.models.rough_contacts import ball as rough_ball
+from tools.models.rough_contacts import belt, rod
+from tools.models.sticking import (
+    bell,
+)
+from tools.models.stops import ball, barrier, bumpers
+from tools.models.user_events import halved, height, swing
 
 STEPS = 20
-
-
-Case = tuple[Callable[[], Mechanism], float, dict[str, tuple[str, float, float]], str, str]
-CASES: dict[str, Case] = {
-    "swing": (swing, 1.5, {"drive": ("torque", 1.0, 3.0)}, "arm", "hinge.fx"),
-    "ball": (ball, 2.0, {"floor": ("restitution", 0.4, 0.9)}, "ball", "kinetic"),
-    "rubbing": (rubbing, 1.5, {"bob": ("mass", 0.2, 0.6)}, "bob", "pin.fy"),
-    "crank": (crank, 2.0, {"spring": ("stiffness", 10.0, 80.0)}, "slider", "motor.power"),
-}
-
-
-def measures_of(body: str, own: str, duration: float) -> dict[str, Any]:
-    return {
-        "end": final("t"),
-        "x": samples(f"{body}.x", [0.5 * duration, duration]),
-        "theta": final(f"{body}.theta"),
-        "omega": final(f"{body}.omega"),
-        "most": largest(own),
-        "own": integral(own),
-        "first": first(f"{body}.vx", above=0.1),
-        "work": final("work"),
-    }
-
-
-def single(sol: Solution, measures: Mapping[str, Any]) -> dict[str, np.ndarray]:
-    """The same measures of a single solution."""
-    names = {name for each in measures.values() for name in each.quantities}
-    along = {name: quantity_named(sol.mechanism, name, list(columns(sol))).of_solution(sol)[None] for name in names}
-    out: dict[str, np.ndarray] = {}
-    for name, each in measures.items():
-        out |= each.of(name, sol.t, along)
-    return out
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_events_are_met_as_by_single_simulations(case: str) -> None:
-    build, duration, varied, body, own = CASES[case]
-    random, count = np.random.default_rng(5), 5 if case == "rubbing" else 10
-    vary = {name: {key: random.uniform(low, high, count)} for name, (key, low, high) in varied.items()}
-    measures = measures_of(body, own, duration)
-    many = build().simulate_many(duration, vary=vary, measure=measures, steps=STEPS)
-    assert many.alone == [None] * count, many.way
-    happened = ended = 0
-    for k in range(count):
-        m = build()
-        for name, values in vary.items():
-            m.change(name, **{key: float(column[k]) for key, column in values.items()})
-        sol = m.simulate(duration, steps=STEPS)
-        happened += sum(event.what == "event" for event in sol.events)
-        ended += sol.events[-1].what == "end"
-        for name, value in single(sol, measures).items():
-            np.testing.assert_allclose(many[name][k], value[0], rtol=1e-8, atol=1e-8, err_msg=f"{case} {k} {name}")
-    assert happened >= count
-    if case in ("swing", "crank"):
-        assert ended == count
+EXACT = 2e-9
 
 
 def test_rows_that_end_early_are_looked_at_in_windows() -> None:
@@ -156,3 +115,254 @@ def test_a_turned_world_and_tight_tolerances_meet_them_too(direction: int) -> No
         assert many.alone == [None, None], many.way
         ends.append(np.concatenate([many["end"], many["w"]]))
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
+
+
+def test_starts_vary_and_rows_end_early_by_the_steps_of_whole_ones() -> None:
+    degrees = np.linspace(-170.0, 170.0, 12)
+    m = free_geneva(5)
+    early = {"far": first("wheel.theta", above=1.5), "late": first("crank.theta", below=-9.0, give="wheel.omega")}
+    short, whole = (
+        m.simulate_many(
+            3.0, start={"crank": degrees}, moving={"crank": -9.0}, measure=measure, steps=300, formulation="independent"
+        )
+        for measure in (early, {**early, "end": final("crank.theta")})
+    )
+    assert short.alone == [None] * 12, short.way
+    for name in early:
+        assert np.array_equal(short[name], whole[name], equal_nan=True)
+    assert np.isfinite(short["far"]).any()
+
+
+def test_a_row_that_cannot_start_has_its_reason_beside_others() -> None:
+    many = free_geneva(5).simulate_many(
+        1.0, vary={"index": {"radius": [0.1 * math.sin(math.pi / 5), 0.07]}}, measure={"end": final("wheel.theta")},
+        steps=4, formulation="independent",
+    )  # fmt: skip
+    assert many.good.tolist() == [True, False]
+    assert "its radius must be" in str(many.reason[1])
+
+
+def test_a_piston_without_room_is_a_reason() -> None:
+    start = {"piston": [(-0.2, 0.0, 0.0), (0.0, 0.0, 0.0)]}
+    many = air().simulate_many(0.1, start=start, measure={"x": final("piston.x")}, steps=STEPS)
+    assert many.good.tolist() == [False, True]
+    m = air()
+    m.start_near(piston=(-0.2, 0, 0))
+    with pytest.raises(MechanismError) as single:
+        m.simulate(0.1, steps=STEPS)
+    assert str(single.value) in str(many.reason[0])
+
+
+def test_room_is_looked_at_along_a_motion() -> None:
+    packed, t = pack(air()), np.array([0.0, 0.1])
+    y = np.zeros((2, 2, 6))
+    assert worker.is_possible(packed, t, y)
+    y[1, 0, 3] = -0.2
+    assert not worker.is_possible(packed, t, y)
+    assert worker.is_possible(packed, t[:1], y[:1])
+
+
+def test_bells_come_to_rest_from_any_angle_where_single_ones_do() -> None:
+    """Starts vary, rows end early, and the digits do not depend on the threads."""
+    angles, measure = [-20.0, -60.0], {"still": first("bar.omega", above=-1e-9, give="bar.theta")}
+    alone, together = (bell().simulate_many(4.0, start={"bar": angles}, measure=measure, threads=n) for n in (1, 2))
+    assert alone.alone == [None] * 2, alone.way
+    np.testing.assert_array_equal(alone["still"], together["still"])
+    end = bell().simulate_many(4.0, start={"bar": angles}, measure={"rest": final("bar.theta")})
+    for angle, rest in zip(angles, end["rest"], strict=True):
+        sol = bell(angle).simulate(4.0)
+        assert abs(sol.body("bar").omega[-1]) < 1e-12
+        assert rest == pytest.approx(sol.body("bar").theta[-1], abs=EXACT)
+        assert abs(rest + math.pi / 2) > 1e-3
+
+
+def test_a_turned_world_changes_nothing() -> None:
+    ends = []
+    for turned in (0.0, 2.0):
+        many = bell(-20.0, turned).simulate_many(4.0, vary={"bar": {"mass": [1.0]}}, measure={"a": final("bar.theta")})
+        assert many.alone == [None], many.way
+        ends.append(many["a"][0] - turned)
+    assert ends[0] == pytest.approx(ends[1], abs=1e-7)
+
+
+@pytest.mark.parametrize("method", ["rk4", "radau"])
+def test_other_methods_meet_joints_that_stick(method: str) -> None:
+    step = {"step": 1e-3} if method == "rk4" else {}
+    m = bell()
+    many = m.simulate_many(
+        0.5, vary={"bar": {"mass": [1.0]}}, measure={"a": final("bar.theta")}, steps=10, method=method, **step
+    )
+    assert many.way == "all of 1 in the compiled loop"
+    m.change("bar", mass=1.0)
+    assert many["a"][0] == pytest.approx(m.simulate(0.5, steps=10).body("bar").theta[-1], abs=1e-6)
+
+
+def test_a_row_begins_with_all_its_joints() -> None:
+    many = sling().simulate_many(
+        1.2, vary={"spring": {"torque": [4.0, 4.0, 0.0, 4.0]}}, measure={"y": final("arm.y")}, steps=STEPS, threads=1
+    )
+    assert many["y"][0] == many["y"][1] == many["y"][3]
+    assert many["y"][2] == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_body_without_mass_that_is_let_go_goes_on_as_it_went() -> None:
+    m = Mechanism("light")
+    rod, bob = m.bar("rod", 0.5, mass=0.0), m.body("arm", mass=1.0, inertia=0.1)
+    m.revolute("A", m.ground.origin, rod.start)
+    m.weld("B", rod.end, bob.origin)
+    m.torque("drive", bob, 0.0)
+    m.event("low", angle_reaches(rod, -1.0), releases="B")
+    m.start_near(rod=0)
+    many = m.simulate_many(2.0, vary={"drive": {"torque": [0.0, 80.0]}}, measure={"t": final("rod.theta")}, steps=5)
+    assert many.alone == [None, None], many.way
+    sol = m.simulate(2.0, steps=5)
+    np.testing.assert_allclose(sol.body("rod").omega[-1], sol.body("rod").omega[-2], rtol=1e-9)
+    np.testing.assert_allclose(many["t"][0], sol.body("rod").theta[-1], atol=1e-9)
+
+
+def test_what_can_not_be_released_is_refused() -> None:
+    m = sling()
+    value = angle_reaches(m.bodies["arm"], 1.0)
+    with pytest.raises(ModelError, match=r"event 'a': .*joint to release 'hing'.*hinge"):
+        m.event("a", value, releases="hing")
+    with pytest.raises(ModelError, match="releases is 3"):
+        m.event("a", value, releases=3)  # pyright: ignore[reportArgumentType]
+    with pytest.raises(ModelError, match="ends the simulation"):
+        m.event("a", value, releases="hinge", terminal=True)
+    assert "a" not in m.events
+
+
+@pytest.mark.parametrize("duration", [1e-9, 1e-6, 1e-3, 0.3])
+def test_a_bar_that_starts_where_it_breaks_and_leaves_breaks_when_it_comes_back(duration: float) -> None:
+    m = Mechanism("bars")
+    end = m.ground.at(0, 0)
+    for k in range(2):
+        bar = m.bar(f"bar{k}", 0.2, mass=0.5 / (k + 1))
+        m.revolute(f"pin{k}", end, bar.start)
+        m.event(f"breaks{k}", angle_reaches(bar, 0.0), releases=f"pin{k}")
+        end = bar.end
+    m.start_near(bar0=0, bar1=0)
+    alone = m.simulate(duration, steps=4)
+    assert not [event for event in alone.events if event.time < 1e-3]
+    many = m.simulate_many(duration, vary={"bar0": {"mass": [0.5, 0.4]}}, measure={"x": final("bar1.x")}, steps=4)
+    assert many.good.all()
+    assert many["x"][0] == pytest.approx(alone.body("bar1").x[-1], rel=1e-12)
+
+
+def test_rows_are_exchanged_for_steps_in_which_all_contacts_are_open_as_well() -> None:
+    m = cranks(12.0, stops=True)
+    asked = request_for(m, 1.0, STEPS, None, "dop853", 1e-9, None, "auto", {})
+    parts = Base(single_run(m, asked)).parts
+    assert parts.contacts.schur.rows is parts.dyn.schur.rows
+    assert parts.contacts.schur.rows.flags.writeable
+
+
+def test_machines_with_many_rows_are_prepared_a_few_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    vary, measure = (
+        {"coupler": {"mass": [0.5, 0.7, 1.0, 2.0]}},
+        {"own": largest("A1.fy"), "theta": final("crank2.theta")},
+    )
+    given = []
+    for most in (worker.GRAMS_AT_ONCE, 0, 2 * 12**2):
+        monkeypatch.setattr(worker, "GRAMS_AT_ONCE", most)
+        many = cranks(stops=True).simulate_many(1.0, vary=vary, measure=measure, steps=10, threads=1)
+        assert many.alone == [None] * 4
+        assert "anew" in many.way
+        given.append(many)
+    for name in measure:
+        np.testing.assert_array_equal(given[0][name], given[1][name])
+        np.testing.assert_array_equal(given[0][name], given[2][name])
+
+
+def test_rows_that_start_inside_or_jam_say_so_and_do_not_stop_others() -> None:
+    m = Mechanism("pushed", gravity=None)
+    arm = m.bar("arm", 0.5, mass=1.0)
+    m.revolute("pivot", m.ground.origin, arm.start)
+    m.angle_stop("stop", m.ground.origin, arm.start, 0.5, upper=True, restitution=0.5)
+    m.torsion_spring("spring", m.ground, arm, 2.0, 0.1)
+    m.start_near(arm=0)
+    many = m.simulate_many(0.5, start={"arm": [-30.0, 60.0, 10.0]}, measure={"a": largest("arm.theta")}, steps=20)
+    assert many.good.tolist() == [True, False, True]
+    assert "'stop' starts" in str(many.reason[1])
+    assert np.isnan(many["a"]).tolist() == [False, True, False]
+    assert many["a"][0] <= 0.5 + 1e-9
+
+
+def test_steps_of_pins_without_contacts_have_the_digits_of_all_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    def measured() -> Any:
+        many = barrier(stops=True).simulate_many(
+            0.6,
+            vary={"spring": {"damping": [0.1, 0.3, 0.8]}},
+            measure={"angle": final("rocker.theta"), "force": largest("D.fy"), "back": smallest("rocker.omega")},
+            steps=60,
+            threads=1,
+        )
+        assert many.alone == [None] * 3
+        return [many[name].tolist() for name in ("angle", "force", "force_time", "back")]
+
+    by_pins = measured()
+    monkeypatch.setattr(made, "PINS", 1000)
+    assert measured() == by_pins
+
+
+def test_only_pins_that_are_all_rows_go_their_own_way() -> None:
+    def pins(m: Mechanism) -> int:
+        return len(contacts_of_run(m).schur.pins)
+
+    def contacts_of_run(m: Mechanism) -> Any:
+        asked = request_for(m, 0.5, 10, None, "dop853", 1e-7, None, "auto", {})
+        return single_run(m, asked).contacts
+
+    assert pins(barrier(stops=True)) == 4
+    assert pins(ball()) == pins(bumpers()) == 0
+    dry = barrier(stops=True)
+    dry.friction("dry", "D", coefficient=0.1, radius=0.01)
+    assert pins(dry) == 0
+
+
+def test_rows_whose_friction_is_refused_or_none_are_prepared_by_themselves() -> None:
+    given = {"friction": [0.0, 0.2, 0.3], "static_friction": [0.0, 0.3, 0.2], "restitution": 0.5}
+    many = rough_ball().simulate_many(0.5, vary={"floor": given}, measure={"x": final("ball.x")}, steps=4)
+    assert many.good.tolist() == [True, True, False]
+    assert "static friction" in str(many.reason[2])
+    for k in range(2):
+        m = rough_ball()
+        m.change("floor", friction=given["friction"][k], static_friction=given["static_friction"][k], restitution=0.5)
+        np.testing.assert_allclose(many["x"][k], m.simulate(0.5, steps=4).body("ball").x[-1], atol=1e-12)
+
+
+def test_rows_that_end_early_and_threads_change_no_digit() -> None:
+    """Rows are put away and taken up again while blocks slide and stick."""
+    vary = {"spring": {"stiffness": [20.0, 50.0, 90.0, 120.0]}}
+    early = {"when": first("block.x", above=0.03), "how": first("block.x", above=0.03, give="block.vx")}
+    single, double = (belt().simulate_many(2.0, vary=vary, measure=early, steps=400, threads=n) for n in (1, 2))
+    whole = belt().simulate_many(2.0, vary=vary, measure=early | {"x": final("block.x")}, steps=400)
+    assert single.alone == [None] * 4, single.way
+    assert np.isfinite(single["when"]).any()
+    for name in early:
+        np.testing.assert_array_equal(single[name], double[name])
+        np.testing.assert_array_equal(single[name], whole[name])
+
+
+def test_wheels_that_may_meet_go_in_the_loop_up_to_where_they_do() -> None:
+    many = loose_gears().simulate_many(
+        1.5, vary={"coil": {"stiffness": [0.0, 3.0]}}, measure={"x": final("gear.x")}, steps=10
+    )
+    assert many.good.tolist() == [False, True]
+    assert many.alone[1] is None
+    assert "'mesh' meet at t = " in str(many.reason[0])
+    np.testing.assert_allclose(many["x"][1], loose_gears(3.0).simulate(1.5, steps=10).body("gear").x[-1], atol=1e-9)
+
+
+def test_numbers_of_friction_vary_and_jamming_rows_say_so() -> None:
+    """A rod that slides into the floor: from some friction on there is no motion (Painleve)."""
+    rows = [0.2, 0.5, 2.5]
+    m = rod()
+    many = m.simulate_many(0.3, vary={"tip": {"friction": rows}}, measure={"x": final("rod.x")}, steps=10)
+    assert many.good.tolist() == [True, True, False]
+    with pytest.raises(SimulationError) as jams:
+        rod(rows[2]).simulate(0.3, steps=10)
+    assert str(jams.value) in str(many.reason[2])
+    for k in range(2):
+        expected = rod(rows[k]).simulate(0.3, steps=10).body("rod").x[-1]
+        np.testing.assert_allclose(many["x"][k], expected, atol=2e-9)

@@ -13,10 +13,10 @@ from scipy.special import ellipk
 import mbsd.dynamics.integrators
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from shared.stage.paths import ROOT
-from tools.integrators.accuracy import Rung, case, cost, order
-from tools.integrators.long_runs import RUNS, swing
-from tools.integrators.mechanisms import AMPLITUDE, G, four_bar, pendulum
-from tools.integrators.tables import with_tables
+from tools.documents.integrators.accuracy import Rung, case, cost, order
+from tools.documents.integrators.long_runs import RUNS, swing
+from tools.documents.integrators.measured import with_tables
+from tools.documents.integrators.mechanisms import AMPLITUDE, G, four_bar, pendulum
 
 for _module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
     importlib.import_module(f"mbsd.dynamics.integrators.{_module.name}")

@@ -14,7 +14,6 @@ from mbsd.base.errors import SimulationError
 from mbsd.compiling.jit import kernel
 from mbsd.dynamics.events.refusals import taking_turns
 from mbsd.dynamics.events.sticking.giving_way import solve_least
-from mbsd.measures import final, samples
 from mbsd.model.event import Happening
 
 
@@ -26,29 +25,6 @@ def discs(count: int) -> Mechanism:
         m.rigid_contact(f"floor{k}", m.ground.origin, disc.origin, radius=0.1, restitution=0.5)
     m.start_near(**{f"d{k}": (0.3 * k, 0.2 + 0.01 * k, 0.0) for k in range(count)})
     return m
-
-
-def test_more_than_forty_contacts_go_in_the_loop() -> None:
-    m = discs(45)
-    many = m.simulate_many(0.4, vary={"d44": {"mass": [1.0, 2.0]}}, measure={"y": final("d44.y")}, steps=4)
-    assert many.way == "all of 2 in the compiled loop"
-    sol = m.simulate(0.4, steps=4)
-    assert len({event.name for event in sol.events}) == 45
-    np.testing.assert_allclose(many["y"], sol.body("d44").y[-1], rtol=1e-12)
-
-
-def test_contacts_that_remember_their_approach_stand_beside_stops() -> None:
-    m = Mechanism("soft", gravity=(0, -9.81))
-    ball, other = m.body("ball", 1.0, inertia=0.01), m.body("other", 1.0, inertia=0.01)
-    m.contact("soft", m.ground.origin, ball.origin, radius=0.1, stiffness=1e5, restitution=0.6)
-    m.rigid_contact("hard", m.ground.origin, other.origin, radius=0.1, restitution=0.6)
-    m.start_near(ball=(0, 0.4, 0), other=(1, 0.3, 0))
-    times = np.linspace(0.0, 0.8, 9).tolist()
-    many = m.simulate_many(vary={"ball": {"mass": [1.0, 1.5]}}, measure={"y": samples("ball.y", times)}, times=times)
-    assert many.way == "all of 2 in the compiled loop"
-    for k, mass in enumerate((1.0, 1.5)):
-        m.change("ball", mass=mass)
-        np.testing.assert_allclose(many["y"][k], m.simulate(times=times).body("ball").y, atol=1e-9)
 
 
 @pytest.mark.parametrize("method", ["rk4", "radau", "generalized_alpha", "scipy-dop853"])

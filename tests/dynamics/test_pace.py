@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, SimulationError
-from mbsd.dynamics.runs import independent_steps, pace, run
+from mbsd.dynamics.runs import motion, run
+from mbsd.dynamics.runs import steps as pace
 
 
 def pendulum() -> Mechanism:
@@ -139,13 +140,13 @@ def test_steps_that_creep_towards_a_change_point_end_with_its_time(monkeypatch: 
         m.revolute(f"right{k}", deck.end, rods[k].end)
     m.start_near(rod0=60, rod1=60, rod2=60, deck1=0, deck2=0)
     m.start_moving(rod0=-1.7)
-    calls, original = [], independent_steps.advance
+    calls, original = [], motion.advance
 
     def advance(*given: Any) -> int:
         calls.append(given)
         assert len(calls) < 1000, "it creeps for ever"
         return original(*given)
 
-    monkeypatch.setattr(independent_steps, "advance", advance)
+    monkeypatch.setattr(motion, "advance", advance)
     with pytest.raises(SimulationError, match=r"no longer advances at t = 0\.34.* Look for a pose that is singular"):
         m.simulate(1.0, steps=12, tolerance=1e-9)

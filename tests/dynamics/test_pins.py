@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.dynamics.reference.pins import MANY
 from mbsd.dynamics.reference.projection import project

@@ -7,8 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from mbsd import Mechanism
-from mbsd.measures import samples
 from mbsd.results.solution import Solution
 from tools.models.sticking import stuck_five_bar, two_slider_cranks
 
@@ -97,25 +95,3 @@ def test_neither_the_order_of_joints_nor_a_turned_world_changes_a_share(change) 
     turn = complex(math.cos(change.get("turned", 0.0)), math.sin(change.get("turned", 0.0)))
     force, turned = (each.joint("C").fx + 1j * each.joint("C").fy for each in (sol, other))
     np.testing.assert_allclose(force * turn, turned, atol=1e-6)
-
-
-def measured(m: Mechanism, bodies: list[str], joints: list[str]) -> np.ndarray:
-    """(n, T) what one row of many simulations measures."""
-    times = np.linspace(0.0, 0.6, STEPS + 1)
-    what = [f"{body}.theta" for body in bodies] + [f"{joint}.{part}" for joint in joints for part in ("fx", "torque")]
-    many = m.simulate_many(
-        0.6,
-        vary={bodies[0]: {"mass": [m.bodies[bodies[0]].mass]}},
-        measure={name: samples(name, times.tolist()) for name in what},
-        steps=STEPS,
-    )
-    assert many.alone == [None], many.way
-    return np.stack([many[name][0] for name in what])
-
-
-def test_many_simulations_share_so_too() -> None:
-    both = measured(two_slider_cranks(1.0), ["crank b"], ["Ob", "Bb"])
-    own = measured(two_slider_cranks(names="b"), ["crank b"], ["Ob", "Bb"])
-    np.testing.assert_allclose(both, own, atol=1e-7)
-    bar, other = (measured(stuck_five_bar(order=order), ["b"], ["C", "E"]) for order in ("ABCDE", "DBEAC"))
-    np.testing.assert_allclose(bar, other, atol=1e-6)

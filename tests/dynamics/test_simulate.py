@@ -17,7 +17,7 @@ from mbsd import AssemblyError, InitialConditionWarning, Mechanism, MobilityErro
 from mbsd.base.kept import Kept
 from mbsd.compiling.jit import OFTEN
 from mbsd.dynamics.prepare import prepare
-from mbsd.dynamics.runs.to_end import integrate
+from mbsd.dynamics.runs.motion import integrate
 from mbsd.dynamics.simulate import integrator_named
 
 A02 = json.loads((Path(__file__).parents[1] / "published" / "reference" / "iftomm_a02_n_four_bar_n2.json").read_text())[

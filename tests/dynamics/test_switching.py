@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
+from mbsd.dynamics.runs.motion import to_end
 from mbsd.dynamics.runs.run import Run
-from mbsd.dynamics.runs.to_end import to_end
 from mbsd.dynamics.simulate import integrator_named
 from mbsd.dynamics.state import EVALUATIONS
 

@@ -11,7 +11,7 @@ from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.model.force import ForceKind
-from mbsd.results.energy import potential_of
+from mbsd.results.forces import potential_of
 from mbsd.testing import force_kinds
 from mbsd.testing.forces import example, motion
 

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from mbsd import InitialConditionWarning, Mechanism
-from mbsd.dynamics.prepare import prepare
-from mbsd.dynamics.start import large
+from mbsd.dynamics.prepare import large, prepare
 from mbsd.results.solution import Solution
 from tests.dynamics.test_simulate import n_four_bar
 

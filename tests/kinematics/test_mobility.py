@@ -84,7 +84,7 @@ def test_redundant_joints_that_disagree_are_refused() -> None:
 
 
 def test_missing_driver_is_named_with_what_can_move() -> None:
-    with pytest.raises(MobilityError, match=r"1 of 1 degrees of freedom is not driven: crank, coupler, rocker"):
+    with pytest.raises(MobilityError, match=r"1 of 1 degree of freedom is not driven: crank, coupler, rocker"):
         four_bar(drive=False).sweep()
 
 

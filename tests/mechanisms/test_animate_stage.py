@@ -11,11 +11,11 @@ import pytest
 
 from mbsd.drawing.animation.words import QUANTITIES as DRAWN
 from mbsd.results.solution import Solution
-from mechanisms.stages.animate import stage as animate_stage
+from mechanisms.stages import animate as animate_stage
 from mechanisms.stages.parts import stage as parts_stage
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
-from tests.project.making import planned, run
+from tests.running.make import run
 from tools.fixtures import film_fixture
 
 
@@ -48,8 +48,6 @@ def test_unknown_views_are_refused(view: str, words: str) -> None:
 
 
 def test_make_hands_the_view_over_as_it_is() -> None:
-    assert planned("animate-four-bar") == ["animate four_bar"]
-    assert planned("animate-four-bar", "VIEW=reactions,velocities") == ["animate four_bar --view=reactions,velocities"]
     done = run("make", "-o", "install", "animate-four-bar", "VIEW=$(shell touch stolen);x")
     assert done.returncode != 0
     assert "there is no view" in done.stderr
@@ -59,7 +57,7 @@ def test_make_hands_the_view_over_as_it_is() -> None:
 KILLED = """
 import os, signal
 from mbsd.drawing.animation import encoders
-from mechanisms.stages.animate import stage
+from mechanisms.stages import animate as stage
 run = encoders._run
 def killed(path, command, pictures):
     run(path, command, pictures)  # the first round is a whole film of its own

@@ -12,9 +12,7 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import stage as solve_stage
-from mechanisms.stages.solve.bare_motion import bare_solution
-from mechanisms.stages.solve.estimated_masses import HALF_WIDTH, THICKNESS, estimated_masses
-from mechanisms.stages.solve.masses import give_masses
+from mechanisms.stages.solve.masses import HALF_WIDTH, THICKNESS, bare_solution, estimated_masses, give_masses
 from shared.contract import read_motion
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
@@ -212,7 +210,7 @@ def test_impacts_without_rows_of_their_own_are_told(
     _Author(monkeypatch, build, motion=lambda m, p: m.simulate(0.25, steps=20))
     bare_solution("arm")
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("solve: warning: arm: 1 impacts, the first 'floor' at 0.19")
+    assert line.startswith("solve: warning: arm: 1 impact, the first 'floor' at 0.19")
     _Author(monkeypatch, build, DURATION=0.25)
     bare_solution("arm")
     assert capsys.readouterr().err == ""

@@ -80,6 +80,14 @@ def test_an_edit_redoes_what_follows_from_it_and_nothing_else(tree: Path) -> Non
     assert not {"shot.json", "parts/crank.stl", "parts/slider.stl", "parts/pin_A.step"} & longer
 
 
+@pytest.mark.parametrize("scale", ["1:2", "1:7"])
+def test_models_of_a_new_mechanism_are_clear(tree: Path, scale: str) -> None:
+    """Their clearances are those that a printer needs, whatever the scale."""
+    for command in ("parts", "clearance"):
+        done = stage(tree, "mechanisms", command, "my_linkage", f"--scale={scale}")
+        assert done.returncode == 0, (command, done.stderr)
+
+
 def test_an_unknown_kind_is_refused_with_the_known_ones() -> None:
     with pytest.raises(UserError, match=r"no kind 'simulatd'.*driven: .*simulated: .*did you mean 'simulated'\?"):
         new.run("my_linkage", "simulatd")

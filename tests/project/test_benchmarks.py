@@ -8,16 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks import machines, rows, table
-from benchmarks.derivatives import SWEEP
-from benchmarks.derivatives import measure as derivatives
+from benchmarks import derivatives, machines, rows, synthesis, table
 from benchmarks.dynamics import CODES, chain, n_four_bar, pins, squeezer
 from benchmarks.dynamics.cases import BESIDE_PEERS, case
 from benchmarks.dynamics.equations import Chain, Equations
 from benchmarks.dynamics.settings import load
 from benchmarks.machines import mbsd_code
 from benchmarks.rows import Bar, Row
-from benchmarks.synthesis import measure as synthesis
 
 PACKAGES = {"exudyn": "exudyn", "mujoco": "mujoco", "sundials": "sksundae"}
 QUICK = ("A01 pendulum", "A02 N=1", "A03 squeezer")
@@ -156,9 +153,10 @@ def test_the_table_says_what_was_missed() -> None:
         Row("A03", "mbsd", "1", "tolerance 1", 0.001, 1e-6, {"angle (rad)": 1e-6}),
         Row("A03", "peer", "2", "step 1", 0.002, 1.0, {"angle (rad)": 1.0}, within_limits=False),
     ]
-    text = table.text(rows, [Bar("A03", 50.0, 2.0, "peer", "step 1", met=False)])
-    assert "| A03 | 50x | 2x | peer | step 1 | **no** |" in text
-    assert "| A03 | peer | 2 | 2 ms | 2 | angle (rad) 1.0e+00; **beyond the limits** | step 1 |" in text
+    bars = table.bars_table(rows, [Bar("A03", 50.0, 2.0, "peer", "step 1", met=False)])
+    assert "| A03 | 1 ms | 50x | 2x | peer | step 1 | **no** |" in bars
+    every = table.rows_table(rows)
+    assert "| A03 | peer | 2 | 2 ms | 2 | angle (rad) 1.0e+00; **beyond the limits** | step 1 |" in every
 
 
 @pytest.mark.parametrize("links", [1, 5])
@@ -201,7 +199,7 @@ def test_our_synthesis_passes_through_its_points() -> None:
 
 
 def test_our_gradients_are_those_of_whole_motions() -> None:
-    make, numbers, duration, measure = derivatives.PROBLEMS[SWEEP]
+    make, numbers, duration, measure = derivatives.PROBLEMS[derivatives.SWEEP]
     m, numbers = make(), numbers[1:4]
     gradient = m.sensitivities({"of": measure}, numbers, duration, derivatives.STEPS)["of"]
     assert derivatives.error(m, numbers, duration, measure, gradient) < 1e-6

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from shared.stage.paths import ROOT
+from tests.running.make import run
 from tools import check
 
 
@@ -32,3 +34,20 @@ def test_the_lock_is_read(tmp_path: Path) -> None:
     lock.write_text("a-b==1.2 \\\n    --hash=sha256:0\nwin==3 ; sys_platform == 'win32' \\\n    --hash=sha256:1\n")
     assert check.locked(lock) == {"a-b": "1.2"}
     assert len(check.locked(ROOT / "requirements.lock")) > 50
+
+
+def test_check_tells_versions_libraries_disk_and_device() -> None:
+    done = run("make", "-o", "install", "check")
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert [line.partition(":")[0] for line in lines] == [
+        "python",
+        "packages",
+        "system libraries",
+        "programs",
+        "disk",
+        "render device",
+    ]
+    assert re.search(r"numpy \d+\.\d+\.\d+, .*bpy 5\.2", lines[1])
+    assert re.search(r"\d+ GB free", lines[4])
+    assert re.search(r"(CPU|OPTIX|CUDA|HIP|METAL|ONEAPI).*, Blender 5\.2", lines[5])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import os
-import pkgutil
 import re
 import subprocess
 import sys
@@ -14,10 +13,11 @@ from pathlib import Path
 import pytest
 
 from shared.stage.paths import ROOT
+from tools.documents.figures.figures import PAGES
 
 PUBLIC = ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md")
 DOCUMENTS = [ROOT / name for name in PUBLIC] + sorted((ROOT / "docs").rglob("*.md"))
-DRAWN = {ROOT / "docs" / f"{module.name}.md" for module in pkgutil.iter_modules([str(ROOT / "tools/figures/pages")])}
+DRAWN = {ROOT / "docs" / f"{page}.md" for page in PAGES}
 """Pages with pictures, whose Python test_figures.py runs, too."""
 BLOCK = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 
@@ -97,9 +97,60 @@ def test_links_lead_to_files(document: Path) -> None:
 
 def test_the_readme_is_short_and_shows_the_two_commands() -> None:
     text = (ROOT / "README.md").read_text()
-    assert len(text.splitlines()) <= 120
-    assert "make run-four-bar" in text
-    assert "make test" in text
+    assert len(text.splitlines()) <= 110
+    assert (
+        text.index("mbsd run")
+        < text.index("from mbsd import")
+        < text.index("make run-four-bar")
+        < text.index("make test")
+    )
+
+
+HEADING = re.compile(r"^#{1,6} (.+)$", flags=re.MULTILINE)
+ANCHORED = re.compile(r"\]\(([^)#\s]*\.md)?#([^)\s]+)\)")
+
+
+def anchors(document: Path) -> set[str]:
+    """Return the anchors of a page as forges and the site make them of its headings."""
+    text = re.sub(r"^```.*?^```$", "", document.read_text(), flags=re.MULTILINE | re.DOTALL)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in HEADING.findall(text)}
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_links_to_sections_lead_to_headings(document: Path) -> None:
+    for page, anchor in ANCHORED.findall(document.read_text()):
+        target = (document.parent / page).resolve() if page else document
+        assert anchor in anchors(target), f"{document.name} links to {page}#{anchor}"
+
+
+WORDS = {
+    r"refus\w*": "raises an error",
+    r"made again|makes? again": "rebuilt",
+    r"(?<!virtual )machines?(?! code| addresses)": "mechanism, or computer",
+    r"strays?": "varies",
+}
+"""One word for one thing: words of our own, and what the pages say instead."""
+PAGES = [page for page in DOCUMENTS if page.parent == ROOT / "docs" or "decisions" in page.parts or page.parent == ROOT]
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_pages_have_one_word_for_one_thing(word: str) -> None:
+    uses = [
+        f"{page.name}: {line.strip()[:80]}"
+        for page in PAGES
+        if page.name not in ("CHANGELOG.md", "CONTRIBUTING.md", "benchmarks.md")
+        for line in re.sub(r"^```.*?^```|`[^`]*`|\]\([^)]*\)", "", page.read_text(), flags=re.M | re.S).splitlines()
+        if re.search(rf"\b(?:{word})\b", line)
+    ]
+    assert not uses, f"say {WORDS[word]}: " + "; ".join(uses)
+
+
+def test_pages_are_short_enough_to_be_finished() -> None:
+    lines = {page: len(page.read_text().splitlines()) for page in DOCUMENTS if page.is_relative_to(ROOT / "docs")}
+    assert sum(lines.values()) <= 7000
+    changes = (ROOT / "CHANGELOG.md").read_text()
+    assert len(changes.splitlines()) <= 150
+    assert len(changes.split()) <= 3000
 
 
 def test_pictures_are_small_enough_for_a_clone() -> None:

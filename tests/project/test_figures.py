@@ -13,9 +13,9 @@ from PIL import Image, ImageSequence
 
 from mbsd.drawing.look import FAINT, INK, QUIET
 from shared.stage.paths import ROOT
-from tools.figures.__main__ import PAGES, drawn
-from tools.figures.dark import COLOUR, NEUTRAL, PAPER, dark, data_colours, name_of
-from tools.figures.dark_gif import dark_gif
+from tools.documents.figures.dark import COLOUR, NEUTRAL, PAPER, dark, data_colours, name_of
+from tools.documents.figures.dark_gif import dark_gif
+from tools.documents.figures.figures import PAGES, drawn
 
 LARGEST = 300_000
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from shared.stage.paths import ROOT
-from tests.project.making import run
+from tests.running.make import copy_tools, run
 
 
 def test_the_locks_hold_hashes_and_no_addresses() -> None:
@@ -31,13 +31,16 @@ def test_the_benchmarks_add_to_the_locked_versions_and_change_none() -> None:
     assert all(main[name] == version for name, version in bench.items() if name in main)
 
 
+NOT_COMPILED = shutil.ignore_patterns("__pycache__")
+
+
 class Tree:
     """A copy of the bootstrap in a folder of its own, with a uv that writes down what it is asked for."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        shutil.copytree(ROOT / "tools", folder / "tools")
-        shutil.copytree(ROOT / "shared" / "system", folder / "shared" / "system")
+        copy_tools(folder)
+        shutil.copytree(ROOT / "shared" / "system", folder / "shared" / "system", ignore=NOT_COMPILED)
         shutil.copy(ROOT / "shared" / "__init__.py", folder / "shared")
         (folder / "mbsd").mkdir()
         (folder / "mbsd" / "__init__.py").touch()

@@ -12,8 +12,7 @@ import matplotlib as mpl
 import pytest
 
 from shared.stage.errors import UserError
-from tools.lecture.__main__ import NOTEBOOK
-from tools.lecture.notebook import code, executed, read, written
+from tools.documents.lecture import NOTEBOOK, code, executed, read, written
 
 JUPYTER = pytest.mark.skipif(find_spec("nbclient") is None, reason="needs nbclient, of the extra docs")
 

@@ -1,22 +1,21 @@
-"""``mbsd`` alone is a light package: its wheel needs numpy, scipy and numba, and solving touches nothing else."""
+"""``mbsd`` alone needs numpy, scipy and numba of the versions tried; extras load inside functions alone."""
 
 from __future__ import annotations
 
 import ast
-import email
-import os
-import re
-import subprocess
 import sys
 import tomllib
-import zipfile
-from pathlib import Path
+from collections.abc import Iterator
+from functools import cache
 
+import numba
 import pytest
 
+from mbsd import MechanismError
+from mbsd.compiling.numba_version import NEWEST, OLDEST, refuse_other_versions
 from shared.stage.paths import ROOT
-from tools.wheel.archives import build
 
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 CORE = {"numpy", "scipy", "numba"}
 OPTIONAL = {
     "pandas": "pandas",
@@ -32,125 +31,65 @@ OPTIONAL = {
 """What single methods ask for, and the extra that brings it."""
 PACKAGE = {"imageio_ffmpeg": "imageio-ffmpeg", "PIL": "pillow"}
 """Of what is imported under another name."""
-BLOCKER = """
-import sys
-ALLOWED = set(sys.stdlib_module_names) | {"numpy", "scipy", "numba", "llvmlite", "mbsd"}
-class Blocker:
-    def find_spec(self, name, path=None, target=None):
-        top = name.partition(".")[0]
-        if top not in ALLOWED and not top.startswith("_"):  # the interpreter's own files may begin so
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-sys.meta_path.insert(0, Blocker())
-"""
-USE = """
-import os, tempfile, warnings
-import mbsd
-heavy = {"scipy", "numba"} & set(sys.modules)
-assert not heavy, f"import mbsd loads {heavy}"
-from mbsd import Mechanism, ModelError, constant_rate, table
-m = Mechanism("slider_crank")
-crank, rod, slider = m.bar("crank", 0.05, 0.2), m.bar("rod", 0.15, 0.3), m.body("slider", 0.5)
-m.revolute("O", m.ground.at(0, 0), crank.start)
-m.revolute("A", crank.end, rod.start)
-m.revolute("B", rod.end, slider.origin)
-m.prismatic("guide", m.ground.at(0, 0), slider.origin)
-m.start_near(crank=30, rod=-10)
-assert m.mobility().dof == 1
-m.simulate(0.01, steps=4)
-m.drive_angle("motor", crank, table([0, .1, .2, .3, .4, .5], [0, .1, .2, .3, .4, .5]))
-sol = m.sweep(duration=0.4, steps=8)
-assert abs(sol.body("slider").x[0] - 0.2) < 1e-12
-sol._repr_html_()
-with tempfile.TemporaryDirectory() as folder:
-    m.save(os.path.join(folder, "model.json"))
-    assert Mechanism.load(os.path.join(folder, "model.json")).mobility().dof == 1
-assert m.topology()._repr_svg_().startswith("<svg")
-def film():
-    sol.animate("crank.mp4")
-asked = (("pandas", sol.to_frame), ("draw", m.draw), ("draw", sol.draw), ("animate", film))
-for extra, ask in asked:
-    try:
-        ask()
-    except ModelError as error:
-        assert f"mbsd[{extra}]" in str(error), error
-    else:
-        raise AssertionError(extra)
-print(os.path.dirname(mbsd.__file__))
-"""
 
 
-@pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel that ``make wheel`` builds."""
-    return build(ROOT, tmp_path_factory.mktemp("wheel"))[1]
+@cache
+def trees() -> dict[str, ast.Module]:
+    """Return the syntax trees of the solver's files, by path; each keeps to the syntax of the oldest Python."""
+    oldest = tuple(map(int, PROJECT["requires-python"].removeprefix(">=").split(".")))
+    return {
+        str(file): ast.parse(file.read_text(), filename=str(file), feature_version=oldest)
+        for file in (ROOT / "mbsd").rglob("*.py")
+    }
 
 
-def test_the_wheel_holds_the_solver_the_rooms_and_nothing_else(wheel: Path) -> None:
-    with zipfile.ZipFile(wheel) as archive:
-        names = set(archive.namelist())
-    sources = {f.relative_to(ROOT).as_posix() for f in (ROOT / "mbsd").rglob("*.py")}
-    sources.add("mbsd/drawing/view/player.js")
-    for room in ("mechanisms", "render", "shared", "studio"):
-        files = {f for f in (ROOT / room).rglob("*") if f.is_file() and "__pycache__" not in f.parts}
-        gallery = {folder.parent for folder in (ROOT / "mechanisms").glob("*/mechanism.py")}
-        kept = {f for f in files if not gallery & set(f.parents)}
-        sources |= {f"mbsd/rooms/{f.relative_to(ROOT).as_posix()}" for f in kept}
-    assert {name for name in names if ".dist-info/" not in name} == sources | {"mbsd/py.typed"}
-    assert wheel.stat().st_size < 3_000_000
-
-
-def test_the_wheel_needs_three_packages(wheel: Path) -> None:
-    with zipfile.ZipFile(wheel) as archive:
-        (metadata,) = (name for name in archive.namelist() if name.endswith("METADATA"))
-        fields = email.message_from_bytes(archive.read(metadata))
-    needs = fields.get_all("Requires-Dist", [])
-    plain = {re.split(r"[^\w-]", need)[0] for need in needs if "extra ==" not in need}
-    assert plain == CORE
-    assert {"draw", "animate", "cad", "film", "studio", "pandas"} <= set(fields.get_all("Provides-Extra", []))
-
-
-def test_the_wheel_solves_where_no_extra_is_installed(wheel: Path, tmp_path: Path) -> None:
-    site = tmp_path / "site"
-    with zipfile.ZipFile(wheel) as archive:
-        archive.extractall(site)
-    environment = os.environ | {"PYTHONPATH": str(site), "NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run(
-        [sys.executable, "-c", BLOCKER + USE], cwd=tmp_path, env=environment, capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
-    assert Path(done.stdout.strip()) == site / "mbsd"
+def imported(node: ast.AST, inside: bool = False) -> Iterator[tuple[str, bool]]:
+    """Yield what is imported below a node, and whether inside a function or for types alone."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.Import):
+            yield from ((alias.name.partition(".")[0], inside) for alias in child.names)
+        elif isinstance(child, ast.ImportFrom):
+            yield (child.module or "").partition(".")[0], inside
+        for_types = isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"
+        yield from imported(child, inside or for_types or isinstance(child, ast.FunctionDef))
 
 
 def test_the_solver_imports_an_extra_only_inside_a_function() -> None:
-    for file in (ROOT / "mbsd").rglob("*.py"):
-        tree = ast.parse(file.read_text())
-        inside = {id(node) for f in ast.walk(tree) if isinstance(f, ast.FunctionDef) for node in ast.walk(f)}
-        for node in ast.walk(tree):
-            modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-            modules += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
-            known = {"mbsd", "llvmlite", *CORE, *sys.stdlib_module_names}  # numba brings llvmlite
-            for top in {module.partition(".")[0] for module in modules} - known:
-                assert top in OPTIONAL, f"{file} imports {top}"
-                assert id(node) in inside or _for_types(tree, node), f"{file} imports {top} when it is itself imported"
-
-
-def _for_types(tree: ast.Module, node: ast.AST) -> bool:
-    """Under ``if TYPE_CHECKING:``."""
-    return any(
-        isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING" and node in block.body
-        for block in tree.body
-    )
+    known = {"mbsd", "llvmlite", *CORE, *sys.stdlib_module_names}  # numba brings llvmlite
+    for file, tree in trees().items():
+        for top, inside in imported(tree):
+            assert top in known or top in OPTIONAL, f"{file} imports {top}"
+            assert top in known or inside, f"{file} imports {top} when it is itself imported"
 
 
 def test_the_solver_keeps_to_the_syntax_of_its_oldest_python() -> None:
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    oldest = tuple(map(int, project["requires-python"].removeprefix(">=").split(".")))
-    assert f"Programming Language :: Python :: {oldest[0]}.{oldest[1]}" in project["classifiers"]
-    for file in (ROOT / "mbsd").rglob("*.py"):
-        ast.parse(file.read_text(), filename=str(file), feature_version=oldest)
+    oldest = PROJECT["requires-python"].removeprefix(">=")
+    assert f"Programming Language :: Python :: {oldest}" in PROJECT["classifiers"]
+    assert trees()
 
 
 def test_each_optional_import_has_its_extra() -> None:
-    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    extras = PROJECT["optional-dependencies"]
     for package, extra in OPTIONAL.items():
         assert any(need.startswith(PACKAGE.get(package, package)) for need in extras[extra])
+
+
+@pytest.mark.parametrize("version", ["0.60.0", "0.69.0", "0.69.0rc1", "1.0.0", "0.100.0"])
+def test_another_numba_is_refused_with_the_remedy(version: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(numba, "__version__", version)
+    with pytest.raises(
+        MechanismError, match=rf"numba {version} is installed.*pip install 'numba>=0\.61,<0\.69'"
+    ) as refused:
+        refuse_other_versions()
+    assert isinstance(refused.value, ImportError)
+
+
+@pytest.mark.parametrize("version", ["0.61.0", "0.61.2", "0.68.1", "0.68.0rc1"])
+def test_those_that_were_tried_are_taken(version: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(numba, "__version__", version)
+    refuse_other_versions()
+
+
+def test_the_package_asks_for_the_same_versions() -> None:
+    bounds = f"numba>={OLDEST[0]}.{OLDEST[1]},<{NEWEST[0]}.{NEWEST[1] + 1}"
+    assert bounds in PROJECT["dependencies"]

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from shared.stage.paths import ROOT
-from tests.project.making import run
+from tests.running.make import copy_tools, run
 
 WHERE = "import mbsd, sys; print(mbsd.PLACE, sys.prefix)"
 EDITABLE = """
@@ -35,7 +34,7 @@ class Clone:
 
     def make(self, movable: bool) -> None:
         """As the installation made it, or as it did before environments could be moved."""
-        shutil.copytree(ROOT / "tools", self.folder / "tools", ignore=shutil.ignore_patterns("__pycache__"))
+        copy_tools(self.folder)
         self.source("old")
         for lock in ("requirements.lock", "requirements-bench.lock"):
             (self.folder / lock).write_text("")

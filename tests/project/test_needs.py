@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from shared.stage.paths import ROOT
-from tests.project.making import run
+from tests.running.make import run
 from tests.running.needs import SOLVER
 
 LACKING = """
@@ -59,12 +59,10 @@ def tried(
     )
 
 
-@pytest.mark.parametrize("words", [(), ("-n", "2", "--dist", "loadscope")])
-def test_what_wants_a_missing_program_is_skipped_and_told_first_and_last(
-    tmp_path: Path, words: tuple[str, ...]
-) -> None:
+def test_what_wants_a_missing_program_is_skipped_and_told_first_and_last(tmp_path: Path) -> None:
+    """Also by two processes, and in CI where that is asked for."""
     (tmp_path / "test_some.py").write_text(TESTS)
-    done = tried(tmp_path, *words, STRICT="0")
+    done = tried(tmp_path, "-n", "2", "--dist", "loadscope", CI="true", STRICT="0")
     assert done.returncode == 0, done.stdout
     assert "2 passed, 2 skipped" in done.stdout
     line = LINE.format(GET)
@@ -83,11 +81,6 @@ def test_strictly_it_is_an_error_before_the_first_test(tmp_path: Path, variable:
     assert done.returncode == pytest.ExitCode.USAGE_ERROR
     assert done.stderr == f"ERROR: missing programs nowhere: {GET} (CI or STRICT=1: no test is skipped)\n\n"
     assert "passed" not in done.stdout
-
-
-def test_in_ci_it_is_skipped_where_that_is_asked_for(tmp_path: Path) -> None:
-    (tmp_path / "test_some.py").write_text(TESTS)
-    assert "2 passed, 2 skipped" in tried(tmp_path, CI="true", STRICT="0").stdout
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="a Mac needs no libraries")

@@ -10,8 +10,7 @@ from PIL import Image
 
 from mechanisms.four_bar.mechanism import Params, build
 from shared.stage.paths import ROOT
-from tools.readme_loop.lines import CRANK, LINES, run
-from tools.readme_loop.story import RATE, TURNS, frames
+from tools.documents.readme_loop.story import CRANK, LINES, RATE, TURNS, frames, run
 
 LOOP = ROOT / "docs" / "readme_loop.webp"
 

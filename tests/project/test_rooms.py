@@ -1,8 +1,9 @@
-"""Who may import whom, where import-linter cannot look: the three files of each mechanism."""
+"""Rooms: who may import whom where import-linter cannot look, and that the tree and its documents agree."""
 
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -62,7 +63,7 @@ def test_import_linter_sees_every_other_folder() -> None:
 
 HEAVY = {"bpy", "cadquery", "distributed", "trimesh", "manifold3d", "matplotlib", "numba", "scipy", "rich"}
 STAGES = [
-    *(f"mechanisms.stages.{room}.stage" for room in ("parts", "solve", "clearance", "shot", "tolerances")),
+    *(f"mechanisms.stages.{name}" for name in ("parts.stage", "solve.stage", "clearance.stage", "shot", "tolerances")),
     "render.plots", "render.frames.still", "render.frames.frames", "render.frames.film", "render.frames.blend",
 ]  # fmt: skip
 
@@ -73,3 +74,46 @@ def test_a_stage_loads_nothing_heavy_before_it_knows_that_it_must_run(module: st
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == []
+
+
+PACKAGES = sorted(
+    file for room in ("mbsd", "mechanisms", "render", "shared", "studio") for file in (ROOT / room).rglob("__init__.py")
+)
+
+
+def test_every_package_says_in_a_sentence_what_it_holds() -> None:
+    """The tree is the map: there is no other list of files."""
+    silent = [file for file in PACKAGES if not (ast.get_docstring(ast.parse(file.read_text())) or "").strip()]
+    assert len(PACKAGES) > 50
+    assert not silent, f"write a docstring of one sentence: {silent}"
+
+
+NAMING = [ROOT / "ARCHITECTURE.md", *sorted((ROOT / "docs" / "decisions").rglob("*.md"))]
+
+
+def test_files_and_folders_that_architecture_and_decisions_name_exist() -> None:
+    sources = [
+        file.relative_to(ROOT)
+        for room in ("benchmarks", "docs", "mbsd", "mechanisms", "render", "shared", "studio", "tests", "tools")
+        for file in (ROOT / room, *(ROOT / room).rglob("*"))
+        if "node_modules" not in file.parts
+    ]
+    known = {f"/{file.as_posix()}" for file in sources}
+    for page in NAMING:
+        for name in re.findall(r"`([\w./-]+(?:\.(?:py|js|md)|/))`", page.read_text()):
+            ending = f"/{name.rstrip('/')}"
+            assert any(path.endswith(ending) for path in known), f"{page.relative_to(ROOT)} names {name}"
+
+
+def test_every_decision_is_listed_and_is_one_thing() -> None:
+    folder = ROOT / "docs" / "decisions"
+    listed = set(re.findall(r"\]\(([a-z-]+/[a-z-]+\.md)\)", (folder / "README.md").read_text()))
+    assert listed == {file.relative_to(folder).as_posix() for file in folder.rglob("*.md")} - {"README.md"}
+    for file in folder.glob("*/*.md"):
+        assert re.findall(r"^#+ ", file.read_text(), flags=re.MULTILINE) == ["# "], file
+
+
+def test_the_architecture_has_two_pages() -> None:
+    text = (ROOT / "ARCHITECTURE.md").read_text()
+    assert len(text.splitlines()) <= 120
+    assert max(len(line) for line in text.splitlines() if not line.startswith("|")) <= 135

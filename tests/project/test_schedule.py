@@ -79,17 +79,15 @@ def test_fast_are_quick_files_of_rooms_that_start_no_program() -> None:
 
 
 def test_slow_folders_exist_and_each_target_has_its_tests() -> None:
-    """`make test` and `make test-slow` together run every test once."""
+    """`make test` and `make test-slow`, which choose by one mark, together run every test once."""
     assert set(mechanism_names()) > SLOW
-    chosen: dict[str, set[str]] = {}
+    seen = _Seen()
     files = [str(TESTS / "mechanisms" / "test_mechanisms.py"), str(TESTS / "project" / "test_rooms.py")]
-    for words in ("", "not slow", "slow", "fast"):
-        seen = _Seen()
-        pytest.main(["--collect-only", "-q", "-p", "no:cacheprovider", "-m", words, *files], plugins=[seen])
-        chosen[words] = {item.nodeid for item in seen.items}
-    assert chosen["not slow"] | chosen["slow"] == chosen[""]
-    assert not chosen["not slow"] & chosen["slow"]
-    assert {group_of(test) for test in chosen["fast"]} == {"tests/project/test_rooms.py"}
+    pytest.main(["--collect-only", "-q", "-p", "no:cacheprovider", *files], plugins=[seen])
+    marked = {mark: [item for item in seen.items if item.get_closest_marker(mark)] for mark in ("slow", "fast")}
+    assert {group_of(item.nodeid).partition("[")[2].rstrip("]") for item in marked["slow"]} == SLOW
+    assert {group_of(item.nodeid) for item in marked["fast"]} == {"tests/project/test_rooms.py"}
+    assert not set(map(id, marked["fast"])) & set(map(id, marked["slow"]))
 
 
 SHARED = """

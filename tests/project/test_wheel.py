@@ -1,12 +1,14 @@
-"""``make wheel``: the same bytes each time, and archives that serve in an empty environment outside the clone."""
+"""The archives of ``make wheel``: their bytes and content, and what they serve in environments outside the clone."""
 
 from __future__ import annotations
 
+import email
 import os
 import re
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tarfile
 import zipfile
 from importlib.metadata import distribution
@@ -15,6 +17,8 @@ from pathlib import Path
 import pytest
 
 import mbsd
+from shared.cluster.identity import sources_of
+from shared.cluster.preload import PARTS
 from shared.stage.paths import ROOT
 from tools.wheel.archives import build, build_with_kernels
 
@@ -42,6 +46,51 @@ FOLDERS = """
 from mbsd.compiling.kernel_cache import KernelCache
 opened = [one for one in gc.get_objects() if isinstance(one, KernelCache) and "_files" in vars(one)]
 print("folders", *{one.cache_path for one in opened})
+"""
+BLOCKER = """
+import sys
+ALLOWED = set(sys.stdlib_module_names) | {"numpy", "scipy", "numba", "llvmlite", "mbsd"}
+class Blocker:
+    def find_spec(self, name, path=None, target=None):
+        top = name.partition(".")[0]
+        if top not in ALLOWED and not top.startswith("_"):  # the interpreter's own files may begin so
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+sys.meta_path.insert(0, Blocker())
+"""
+USE = """
+import os, tempfile, warnings
+import mbsd
+heavy = {"scipy", "numba"} & set(sys.modules)
+assert not heavy, f"import mbsd loads {heavy}"
+from mbsd import Mechanism, ModelError, constant_rate, table
+m = Mechanism("slider_crank")
+crank, rod, slider = m.bar("crank", 0.05, 0.2), m.bar("rod", 0.15, 0.3), m.body("slider", 0.5)
+m.revolute("O", m.ground.at(0, 0), crank.start)
+m.revolute("A", crank.end, rod.start)
+m.revolute("B", rod.end, slider.origin)
+m.prismatic("guide", m.ground.at(0, 0), slider.origin)
+m.start_near(crank=30, rod=-10)
+assert m.mobility().dof == 1
+m.simulate(0.01, steps=4)
+m.drive_angle("motor", crank, table([0, .1, .2, .3, .4, .5], [0, .1, .2, .3, .4, .5]))
+sol = m.sweep(duration=0.4, steps=8)
+assert abs(sol.body("slider").x[0] - 0.2) < 1e-12
+sol._repr_html_()
+with tempfile.TemporaryDirectory() as folder:
+    m.save(os.path.join(folder, "model.json"))
+    assert Mechanism.load(os.path.join(folder, "model.json")).mobility().dof == 1
+assert m.topology()._repr_svg_().startswith("<svg")
+def film():
+    sol.animate("crank.mp4")
+asked = (("pandas", sol.to_frame), ("draw", m.draw), ("draw", sol.draw), ("animate", film))
+for extra, ask in asked:
+    try:
+        ask()
+    except ModelError as error:
+        assert f"mbsd[{extra}]" in str(error), error
+    else:
+        raise AssertionError(extra)
+print(os.path.dirname(mbsd.__file__))
 """
 
 
@@ -90,15 +139,13 @@ def installed(archives: list[Path], empty: Path) -> Path:
     return _installed(empty, archives[1])
 
 
-def test_the_same_sources_give_the_same_bytes(archives: list[Path], tmp_path: Path) -> None:
-    again = build(ROOT, tmp_path)
-    assert [file.name for file in again] == [file.name for file in archives]
-    assert [file.read_bytes() for file in again] == [file.read_bytes() for file in archives]
+# -- the archives -----------------------------------------------------------------------------------------------------
 
 
-def test_the_umask_of_whoever_builds_is_not_in_the_archives(archives: list[Path], tmp_path: Path) -> None:
+def test_the_same_sources_give_the_same_bytes_whatever_the_umask(archives: list[Path], tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tools.wheel", "--out", str(tmp_path)]
     subprocess.run(command, cwd=ROOT, umask=0o077, capture_output=True, check=True)
+    assert sorted(file.name for file in archives) == sorted(file.name for file in tmp_path.iterdir())
     assert [(tmp_path / file.name).read_bytes() for file in archives] == [file.read_bytes() for file in archives]
 
 
@@ -110,6 +157,45 @@ def test_the_sdist_builds_the_wheel(archives: list[Path], tmp_path: Path) -> Non
     code = "from setuptools.build_meta import build_wheel; build_wheel('..')"
     _run(sys.executable, code, sources, SOURCE_DATE_EPOCH="315532800")
     assert (tmp_path / wheel.name).read_bytes() == wheel.read_bytes()
+
+
+def test_the_wheel_holds_the_solver_the_rooms_and_nothing_else(archives: list[Path]) -> None:
+    with zipfile.ZipFile(archives[1]) as archive:
+        names = set(archive.namelist())
+    sources = {f.relative_to(ROOT).as_posix() for f in (ROOT / "mbsd").rglob("*.py")}
+    sources.add("mbsd/drawing/view/player.js")
+    for room in ("mechanisms", "render", "shared", "studio"):
+        files = {f for f in (ROOT / room).rglob("*") if f.is_file() and "__pycache__" not in f.parts}
+        gallery = {folder.parent for folder in (ROOT / "mechanisms").glob("*/mechanism.py")}
+        kept = {f for f in files if not gallery & set(f.parents)}
+        sources |= {f"mbsd/rooms/{f.relative_to(ROOT).as_posix()}" for f in kept}
+    assert {name for name in names if ".dist-info/" not in name} == sources | {"mbsd/py.typed"}
+    assert archives[1].stat().st_size < 3_000_000
+
+
+def test_the_wheel_needs_three_packages(archives: list[Path]) -> None:
+    with zipfile.ZipFile(archives[1]) as archive:
+        (metadata,) = (name for name in archive.namelist() if name.endswith("METADATA"))
+        fields = email.message_from_bytes(archive.read(metadata))
+    needs = fields.get_all("Requires-Dist", [])
+    plain = {re.split(r"[^\w-]", need)[0] for need in needs if "extra ==" not in need}
+    assert plain == {"numpy", "scipy", "numba"}
+    assert {"draw", "animate", "cad", "film", "studio", "pandas"} <= set(fields.get_all("Provides-Extra", []))
+
+
+def test_the_wheel_solves_where_no_extra_is_installed(archives: list[Path], tmp_path: Path) -> None:
+    site = tmp_path / "site"
+    with zipfile.ZipFile(archives[1]) as archive:
+        archive.extractall(site)
+    environment = os.environ | {"PYTHONPATH": str(site), "NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", BLOCKER + USE], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert Path(done.stdout.strip()) == site / "mbsd"
+
+
+# -- the solver in an empty environment -------------------------------------------------------------------------------
 
 
 def test_the_readme_runs_in_an_empty_environment(installed: Path, empty: Path, tmp_path: Path) -> None:
@@ -128,7 +214,7 @@ def test_a_kind_of_ones_own_is_checked_in_an_empty_environment(empty: Path, tmp_
     assert _run(empty / "bin" / "python", code, tmp_path, NUMBA_DISABLE_JIT="1")[0] == "agrees"
 
 
-def _compiled_before(folder: Path, sources: Path) -> None:
+def _compiled_before(folder: Path, sources: Path, python: Path) -> None:
     """The kernels that the runs below need, from where this clone keeps them."""
     code = README_BLOCK + SIMULATED + COUNTED + FOLDERS
     (told,) = (line for line in _run(sys.executable, code, ROOT) if line.startswith("folders "))
@@ -138,7 +224,7 @@ def _compiled_before(folder: Path, sources: Path) -> None:
 
 @pytest.mark.slow
 def test_a_wheel_with_kernels_compiles_nothing_and_writes_nothing(empty: Path, tmp_path: Path) -> None:
-    wheel = build_with_kernels(ROOT, tmp_path / "dist", _compiled_before)
+    wheel = build_with_kernels(ROOT, tmp_path / "dist", fill=_compiled_before)
     version = f"cp{sys.version_info.major}{sys.version_info.minor}"
     assert wheel.name.startswith(f"mbsd-{mbsd.__version__}-{version}-{version}-")
     with zipfile.ZipFile(wheel) as archive:
@@ -177,3 +263,83 @@ def test_without_its_kernels_the_wheel_compiles_into_the_users_folder(tmp_path: 
     shutil.copytree(tmp_path / "kept" / "kernels", tmp_path / "shipped", dirs_exist_ok=True)
     assert _run(sys.executable, code, tmp_path, **kept | {"NUMBA_CACHE_DIR": str(tmp_path / "new")}) == ["2.0 1"]
     assert not list((tmp_path / "new").rglob("*.nb*"))
+
+
+# -- the program in an environment with all extras -------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def program(archives: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """``mbsd`` as pip installs it; what it needs lies in the environment of the tests."""
+    folder = tmp_path_factory.mktemp("environment")
+    subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+    (site,) = folder.glob("lib/python*/site-packages")
+    for entry in Path(sysconfig.get_path("purelib")).iterdir():
+        if not entry.name.startswith(("mbsd", "pip", "__pycache__")) and not (site / entry.name).exists():
+            (site / entry.name).symlink_to(entry)
+    install = [folder / "bin" / "pip", "install", "--quiet", "--no-index", "--no-deps", archives[1]]
+    subprocess.run(install, check=True, cwd=folder)
+    return folder / "bin" / "mbsd"
+
+
+def _called(program: Path, *words: str, at: Path) -> subprocess.CompletedProcess[str]:
+    """The program, in ``at``, as in a shell that knows nothing of the clone."""
+    ours = ("PYTHONPATH", "MBSD_OUT", "MBSD_MAKE", "MBSD_FACE", "MBSD_PYTHON", "MBSD_WORKSHOP", "MECHANISMS", "CLUSTER")
+    kept = {key: value for key, value in os.environ.items() if key not in ours} | {"NUMBA_DISABLE_JIT": "1"}
+    return subprocess.run([program, *words], cwd=at, env=kept, capture_output=True, text=True)
+
+
+def test_a_new_machine_is_solved_in_an_empty_folder_by_the_files_of_the_wheel(program: Path, tmp_path: Path) -> None:
+    for words in (("new", "crank", "--single"), ("check",), ("solve",), ("export", "--format", "csv")):
+        done = _called(program, *words, at=tmp_path)
+        assert done.returncode == 0, done.stderr
+        assert str(ROOT) not in done.stdout + done.stderr
+    made = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()}
+    assert {"crank.py", "mbsd.toml", "out/crank/data.json", "out/crank/export/crank.csv"} <= made
+    assert "solve: crank: nothing to do" in _called(program, "solve", at=tmp_path).stdout
+
+
+def test_the_rooms_are_no_names_for_others(program: Path, tmp_path: Path) -> None:
+    python = program.parent / "python"
+    code = (
+        "import importlib.util as u; print([n for n in ('shared', 'render', 'studio', 'mechanisms') if u.find_spec(n)])"
+    )
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    done = subprocess.run(
+        [python, "-P", "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == "[]\n"
+
+
+COPY = """
+import sys
+from pathlib import Path
+import mbsd
+sys.path.insert(0, str(Path(mbsd.__file__).parent / "rooms"))
+from mechanisms.stages.parts.on_cluster.built import copy_program
+from shared.cluster.identity import sources_of
+from shared.cluster.preload import PARTS
+copy_program(Path("tree"))
+assert all(sources_of(room) == sources_of(room, Path("tree").resolve()) for room in PARTS)
+print([sources_of(room) for room in PARTS])
+"""
+
+
+def test_a_worker_of_the_wheel_is_as_one_of_the_clone_and_makes_parts_in_the_same_copy(
+    program: Path, tmp_path: Path
+) -> None:
+    environment = {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "MBSD_WORKSHOP")}
+    python = program.parent / "python"
+    done = subprocess.run([python, "-P", "-c", COPY], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == str([sources_of(room) for room in PARTS])
+    assert not (tmp_path / "tree" / "mbsd" / "rooms").exists()
+
+
+def test_all_commands_are_there(program: Path, tmp_path: Path) -> None:
+    done = _called(program, "--help", at=tmp_path)
+    assert done.returncode == 0
+    assert all(
+        f"    {name} " in done.stdout for name in ("run", "film", "print", "overnight", "import", "export", "live")
+    )
+    assert _called(program, "run", at=tmp_path).returncode == 1

@@ -16,7 +16,7 @@ def test_an_impact_is_marked_in_joules_and_is_no_power() -> None:
     given, rate = powers(ball)
     assert np.abs(given).max() == np.abs(rate).max() == 0.0  # a gradient over the samples would show tens of watts
     assert (
-        statement(ball) == "nothing gives or takes power: the energy stays, but for an impact that takes 1.47 J at once"
+        statement(ball) == "nothing gives or takes power: the energy stays, but for 1 impact that takes 1.47 J at once"
     )
     drawn = figure("energy", ball)
     assert "\N{MINUS SIGN}1.47 J" in shown(drawn)

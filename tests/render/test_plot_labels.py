@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
+from render.plots.labels import Labels
 from render.plots.style import spread
 from shared.contract import EventMark
 from tests.render.plotted import MOTION, NAMES, figure, overlaps
@@ -63,6 +65,18 @@ def test_long_names_stay_on_the_page() -> None:
     boxes = [text.get_window_extent() for axes in drawn.axes for text in axes.texts if text.get_text() in names]
     assert len(boxes) == 3 * len(names)
     assert max(box.x1 for box in boxes) < drawn.bbox.x1
+
+
+def test_names_of_a_machine_that_throws_far_stand_apart() -> None:
+    """Ten names at points that are one pixel apart, in a plane as wide as the flight of what is thrown."""
+    axes = Figure(figsize=(16, 10), dpi=100).add_axes((0.1, 0.1, 0.8, 0.8))
+    axes.plot([0.0, 200.0], [0.0, 100.0])
+    labels = Labels(axes)
+    for k in range(10):
+        labels.add(f"combination_lever_{k}", (20.0 + 0.1 * k, 40.0), "black")
+    labels.write()
+    assert len(axes.texts) == 10
+    assert overlaps(axes.get_figure()) == []
 
 
 @given(st.lists(st.floats(0, 300), min_size=1, max_size=12), st.floats(5, 20))

@@ -56,6 +56,19 @@ def test_a_rod_turned_round_and_one_to_ground() -> None:
     assert spoke.alpha == pytest.approx(np.zeros(len(motion.time)), abs=1e-9)
 
 
+def test_a_released_rod_stays_on_its_first_body() -> None:
+    motion = four_bar_motion()
+    row = len(motion.time) // 3
+    joint = msgspec.structs.replace(motion.joints["B"], released=motion.time[row - 1])
+    released = msgspec.structs.replace(motion, joints=motion.joints | {"rod": joint})
+    held, left = (with_rods(each, rod_of(B, C)).bodies["rod"] for each in (motion, released))
+    crank = motion.bodies["crank"]
+    assert left.theta[:row] == held.theta[:row]
+    turned = np.subtract(left.theta[row:], crank.theta[row:])
+    assert turned == pytest.approx(np.full(len(turned), held.theta[row - 1] - crank.theta[row - 1]))
+    assert (left.omega[row:], left.alpha[row:]) == (crank.omega[row:], crank.alpha[row:])
+
+
 def test_rods_that_cannot_be_are_refused() -> None:
     motion = four_bar_motion()
     with pytest.raises(UserError, match=r"the rod 'rod' of parts\.json ends on 'arm', which data.json does not move"):

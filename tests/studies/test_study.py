@@ -224,7 +224,7 @@ def test_what_cannot_be_is_refused(keywords: dict[str, Any], said: str, monkeypa
 
 @pytest.mark.parametrize("given", [[1, 2], {"swing": "x"}, {3: 1.0}, {"swing": [1.0, 2.0]}])
 def test_what_measure_gives_wrong_is_the_reason(given: Any) -> None:
-    with pytest.warns(ModelWarning, match="all 1 points failed, the first for: ModelError: measure"):
+    with pytest.warns(ModelWarning, match="all of 1 point failed, the first for: ModelError: measure"):
         table = study(build, [{"crank": 0.03, "rocker": 0.09}], lambda m: given)
     assert table["reason"][0].startswith("ModelError: measure gives")
 

@@ -20,7 +20,7 @@ from shared.stage.paths import ROOT
 from studio.fetch import fetch, transfer
 from tests.running.needs import needs
 from tests.running.processes import working_for
-from tools.fixtures.loopback_ssh import Machine, machine
+from tests.studio.loopback_ssh import Machine, machine
 
 HOST = f"{getpass.getuser()}@127.0.0.1"
 LARGE = 6_000_000

@@ -29,6 +29,95 @@ MASSES = {"crank": 0.05, "coupler": 0.12, "rocker": 0.10}
 HEIGHTS = {"crank": 0.010, "coupler": 0.016, "rocker": 0.010}
 
 
+BARS = ("crank", "coupler", "rocker")
+PINS = {"A": ("ground", "crank"), "B": ("crank", "coupler"), "C": ("coupler", "rocker"), "D": ("ground", "rocker")}
+"""The bodies of each pin; the second feels its force, the first the opposite one."""
+PUSHED = {"crank": {"A": 1, "B": -1}, "coupler": {"B": 1, "C": -1}, "rocker": {"C": 1, "D": 1}}
+"""Sign of each pin's force on each bar."""
+
+
+class FourBar:
+    """A crank-rocker A-B-C-D turning at ``speed`` (rad/s) at given times (T,): (T,) angles, (T, 2) places (m)."""
+
+    def __init__(self, time: np.ndarray, ground: float, lengths: dict[str, float], speed: float) -> None:
+        self.lengths, zero = lengths, np.zeros_like(time)
+        crank, coupler, rocker = (lengths[name] for name in BARS)
+        a, d = np.zeros((time.size, 2)), np.broadcast_to([ground, 0.0], (time.size, 2))
+        self.theta = {"crank": speed * time}
+        b = crank * _unit(self.theta["crank"])
+        diagonal = d - b
+        length = np.hypot(*diagonal.T)
+        bend = np.arccos((coupler**2 + length**2 - rocker**2) / (2 * coupler * length))
+        self.theta["coupler"] = np.unwrap(np.arctan2(diagonal[:, 1], diagonal[:, 0]) + bend)
+        c = b + coupler * _unit(self.theta["coupler"])
+        self.theta["rocker"] = np.unwrap(np.arctan2(*(c - d).T[::-1]))
+        self.pins = {"A": a, "B": b, "C": c, "D": d}
+        # Loop: crank n2 w2 + coupler n3 w3 - rocker n4 w4 = 0 and its derivative, n the normals of the bars.
+        self.along = u = {name: _unit(angle) for name, angle in self.theta.items()}
+        self.across = n = {name: _normal(value) for name, value in u.items()}
+        loop = np.stack([coupler * n["coupler"], -rocker * n["rocker"]], axis=-1)
+        rate = np.linalg.solve(loop, -crank * speed * n["crank"][..., None])[..., 0]
+        self.omega = {"crank": zero + speed, "coupler": rate[:, 0], "rocker": rate[:, 1]}
+        centripetal = sum(
+            sign * lengths[name] * self.omega[name][:, None] ** 2 * u[name]
+            for name, sign in (("crank", 1), ("coupler", 1), ("rocker", -1))
+        )
+        bent = np.linalg.solve(loop, np.asarray(centripetal)[..., None])[..., 0]
+        self.alpha = {"crank": zero, "coupler": bent[:, 0], "rocker": bent[:, 1]}
+        still = np.zeros_like(a)
+        self.frames = {
+            "crank": (a, still, still),
+            "coupler": (b, crank * speed * n["crank"], -crank * speed**2 * u["crank"]),
+            "rocker": (d, still, still),
+        }
+        self.inertia = {name: MASSES[name] * lengths[name] ** 2 / 12 for name in BARS}
+        self.centres = {name: self.point(name, lengths[name] / 2, 0.0) for name in BARS}
+
+    def point(self, body: str, x: float, y: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return position, velocity and acceleration of a point of a body."""
+        arm = x * self.along[body] + y * self.across[body]
+        w, e = self.omega[body][:, None], self.alpha[body][:, None]
+        place, velocity, acceleration = self.frames[body]
+        return place + arm, velocity + w * _normal(arm), acceleration + e * _normal(arm) - w**2 * arm
+
+    def efforts(self) -> np.ndarray:
+        """Return (T, 9) forces of the pins A to D (N) and the motor's torque (N m), from Newton-Euler equations."""
+        count = len(self.pins["A"])
+        matrix, right = np.zeros((count, 9, 9)), np.zeros((count, 9))
+        for row, (body, joints) in enumerate(PUSHED.items()):
+            position, _, acceleration = self.centres[body]
+            for joint, sign in joints.items():
+                column, arm = 2 * "ABCD".index(joint), self.pins[joint] - position
+                matrix[:, 3 * row, column] = matrix[:, 3 * row + 1, column + 1] = sign
+                matrix[:, 3 * row + 2, column] = -sign * arm[:, 1]
+                matrix[:, 3 * row + 2, column + 1] = sign * arm[:, 0]
+            right[:, 3 * row : 3 * row + 2] = MASSES[body] * (acceleration - GRAVITY)
+            right[:, 3 * row + 2] = self.inertia[body] * self.alpha[body]
+        matrix[:, 2, 8] = 1.0
+        return np.linalg.solve(matrix, right[..., None])[..., 0]
+
+    def energies(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return kinetic and potential energy (J) and the power that they take (W), (T,) each."""
+        kinetic = sum(
+            0.5 * MASSES[k] * (self.centres[k][1] ** 2).sum(1) + 0.5 * self.inertia[k] * self.omega[k] ** 2
+            for k in BARS
+        )
+        potential = sum(-MASSES[k] * self.centres[k][0] @ GRAVITY for k in BARS)
+        power = sum(
+            MASSES[k] * (self.centres[k][1] * (self.centres[k][2] - GRAVITY)).sum(1)
+            + self.inertia[k] * self.omega[k] * self.alpha[k]
+            for k in BARS
+        )
+        return np.asarray(kinetic), np.asarray(potential), np.asarray(power)
+
+    def residuals(self) -> tuple[float, float, float]:
+        """Return what the pin C is open by, and the differences of its velocity and acceleration on both bars."""
+        opening = np.abs(np.hypot(*(self.pins["C"] - self.pins["D"]).T) - self.lengths["rocker"]).max()
+        ends = (self.point(name, self.lengths[name], 0) for name in ("coupler", "rocker"))
+        _, velocity, acceleration = (float(np.abs(a - b).max()) for a, b in zip(*ends, strict=True))
+        return float(opening), velocity, acceleration
+
+
 def four_bar_motion(
     steps: int = 360,
     turns: int = 1,
@@ -39,136 +128,56 @@ def four_bar_motion(
     speed: float = 2 * np.pi,
     point: tuple[float, float] = (0.06, 0.03),
 ) -> Motion:
-    """A crank-rocker A-B-C-D turning at ``speed`` (rad/s); ``steps`` intervals a turn, both ends of the time given."""
+    """Return the motion of a crank-rocker; ``steps`` intervals a turn, both ends of the time given."""
     period = 2 * np.pi / speed
     time = np.linspace(0.0, turns * period, turns * steps + 1)
-    lengths = {"crank": crank, "coupler": coupler, "rocker": rocker}
-    zero = np.zeros_like(time)
-
-    theta = {"crank": speed * time}
-    a, d = np.zeros((time.size, 2)), np.broadcast_to([ground, 0.0], (time.size, 2))
-    b = crank * _unit(theta["crank"])
-    diagonal = d - b
-    length = np.hypot(*diagonal.T)
-    bend = np.arccos((coupler**2 + length**2 - rocker**2) / (2 * coupler * length))
-    theta["coupler"] = np.unwrap(np.arctan2(diagonal[:, 1], diagonal[:, 0]) + bend)
-    c = b + coupler * _unit(theta["coupler"])
-    theta["rocker"] = np.unwrap(np.arctan2(*(c - d).T[::-1]))
-
-    # Loop: crank n2 w2 + coupler n3 w3 - rocker n4 w4 = 0 and its derivative, n the normals of the bars.
-    u = {name: _unit(angle) for name, angle in theta.items()}
-    n = {name: _normal(value) for name, value in u.items()}
-    loop = np.stack([coupler * n["coupler"], -rocker * n["rocker"]], axis=-1)
-    rate = np.linalg.solve(loop, -crank * speed * n["crank"][..., None])[..., 0]
-    omega = {"crank": zero + speed, "coupler": rate[:, 0], "rocker": rate[:, 1]}
-    centripetal = sum(
-        sign * lengths[name] * omega[name][:, None] ** 2 * u[name]
-        for name, sign in (("crank", 1), ("coupler", 1), ("rocker", -1))
-    )
-    bent = np.linalg.solve(loop, np.asarray(centripetal)[..., None])[..., 0]
-    alpha = {"crank": zero, "coupler": bent[:, 0], "rocker": bent[:, 1]}
-
-    origin = {"crank": a, "coupler": b, "rocker": d}
-    still = np.zeros_like(a)
-    origin_v = {"crank": still, "coupler": crank * speed * n["crank"], "rocker": still}
-    origin_a = {"crank": still, "coupler": -crank * speed**2 * u["crank"], "rocker": still}
-
-    def at(body: str, x: float, y: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Position, velocity and acceleration of a point of a body."""
-        arm = x * u[body] + y * n[body]
-        w, e = omega[body][:, None], alpha[body][:, None]
-        return (
-            origin[body] + arm,
-            origin_v[body] + w * _normal(arm),
-            origin_a[body] + e * _normal(arm) - w**2 * arm,
-        )
-
-    centre = {name: at(name, lengths[name] / 2, 0.0) for name in lengths}
-    inertia = {name: MASSES[name] * lengths[name] ** 2 / 12 for name in lengths}
-    pins = {"A": a, "B": b, "C": c, "D": d}
-    on_body = {"crank": {"A": 1, "B": -1}, "coupler": {"B": 1, "C": -1}, "rocker": {"C": 1, "D": 1}}
-    matrix, right = np.zeros((time.size, 9, 9)), np.zeros((time.size, 9))
-    for row, (body, joints) in enumerate(on_body.items()):
-        position, _, acceleration = centre[body]
-        for joint, sign in joints.items():
-            column, arm = 2 * "ABCD".index(joint), pins[joint] - position
-            matrix[:, 3 * row, column] = matrix[:, 3 * row + 1, column + 1] = sign
-            matrix[:, 3 * row + 2, column] = -sign * arm[:, 1]
-            matrix[:, 3 * row + 2, column + 1] = sign * arm[:, 0]
-        right[:, 3 * row : 3 * row + 2] = MASSES[body] * (acceleration - GRAVITY)
-        right[:, 3 * row + 2] = inertia[body] * alpha[body]
-    matrix[:, 2, 8] = 1.0
-    solved = np.linalg.solve(matrix, right[..., None])[..., 0]
-    torque = solved[:, 8]
-
-    kinetic = sum(0.5 * MASSES[k] * (centre[k][1] ** 2).sum(1) + 0.5 * inertia[k] * omega[k] ** 2 for k in lengths)
-    potential = sum(-MASSES[k] * centre[k][0] @ GRAVITY for k in lengths)
-    power = sum(
-        MASSES[k] * (centre[k][1] * (centre[k][2] - GRAVITY)).sum(1) + inertia[k] * omega[k] * alpha[k] for k in lengths
-    )
-    p, v, acc = at("coupler", *point)
-    ends = {"A": ("ground", "crank"), "B": ("crank", "coupler"), "C": ("coupler", "rocker"), "D": ("ground", "rocker")}
+    bars = FourBar(time, ground, {"crank": crank, "coupler": coupler, "rocker": rocker}, speed)
+    solved, (kinetic, potential, power) = bars.efforts(), bars.energies()
+    torque, zero = solved[:, 8], np.zeros_like(time)
+    pushes = dict.fromkeys(("x", "y", "fx", "fy"), zero.tolist())
+    opening, velocity, acceleration = bars.residuals()
     return Motion(
         mechanism="four_bar",
         provenance=Provenance(inputs="0" * 64, versions={"mbsd": "0.1.0"}),
         gravity=(float(GRAVITY[0]), float(GRAVITY[1])),
         period=float(period),
         time=time.tolist(),
-        bodies={
-            k: BodyMotion(
-                **_columns(origin[k], origin_v[k], origin_a[k]),
-                theta=theta[k].tolist(),
-                omega=omega[k].tolist(),
-                alpha=alpha[k].tolist(),
-                z=HEIGHTS[k],
-                mass=MASSES[k],
-                com=(lengths[k] / 2, 0.0),
-                inertia=inertia[k],
-            )
-            for k in lengths
-        },
+        bodies={name: _bar_motion(bars, name) for name in BARS},
         joints={
-            k: JointMotion(
-                kind="revolute",
-                pair="pin",
-                bodies=ends[k],
-                x=pins[k][:, 0].tolist(),
-                y=pins[k][:, 1].tolist(),
-                fx=solved[:, 2 * i].tolist(),
-                fy=solved[:, 2 * i + 1].tolist(),
-                torque=zero.tolist(),
+            name: JointMotion(
+                kind="revolute", pair="pin", bodies=bodies,
+                x=bars.pins[name][:, 0].tolist(), y=bars.pins[name][:, 1].tolist(),
+                fx=solved[:, 2 * i].tolist(), fy=solved[:, 2 * i + 1].tolist(), torque=zero.tolist(),
             )
-            for i, k in enumerate("ABCD")
+            for i, (name, bodies) in enumerate(PINS.items())
         },
         drivers={
             "motor": DriverMotion(
                 kind="angle",
                 actions=[
-                    Action(
-                        body=body,
-                        **dict.fromkeys(("x", "y", "fx", "fy"), zero.tolist()),
-                        torque=(sign * torque).tolist(),
-                    )
+                    Action(body=body, **pushes, torque=(sign * torque).tolist())
                     for body, sign in (("ground", -1.0), ("crank", 1.0))
                 ],
-                value=theta["crank"].tolist(),
-                effort=torque.tolist(),
-                power=(torque * speed).tolist(),
+                value=bars.theta["crank"].tolist(), effort=torque.tolist(), power=(torque * speed).tolist(),
             )
         },
-        points={"P": PointMotion(body="coupler", **_columns(p, v, acc))},
-        energy=Energy(kinetic=np.asarray(kinetic).tolist(), potential=np.asarray(potential).tolist()),
+        points={"P": PointMotion(body="coupler", **_columns(*bars.point("coupler", *point)))},
+        energy=Energy(kinetic=kinetic.tolist(), potential=potential.tolist()),
         diagnostics=Diagnostics(
-            position_residual=float(np.abs(np.hypot(*(c - d).T) - rocker).max()),
-            velocity_residual=float(np.abs(at("coupler", coupler, 0)[1] - at("rocker", rocker, 0)[1]).max()),
-            acceleration_residual=float(np.abs(at("coupler", coupler, 0)[2] - at("rocker", rocker, 0)[2]).max()),
-            power_residual=float(np.abs(power - torque * speed).max()),
-            dof=1,
-            redundant=[],
+            position_residual=opening, velocity_residual=velocity, acceleration_residual=acceleration,
+            power_residual=float(np.abs(power - torque * speed).max()), dof=1, redundant=[],
             # The sine of the transmission angle: zero where the real margin is.
-            singularity_margin=np.abs(np.sin(theta["rocker"] - theta["coupler"])).tolist(),
+            singularity_margin=np.abs(np.sin(bars.theta["rocker"] - bars.theta["coupler"])).tolist(),
         ),
-    )
+    )  # fmt: skip
+
+
+def _bar_motion(bars: FourBar, name: str) -> BodyMotion:
+    return BodyMotion(
+        **_columns(*bars.frames[name]),
+        theta=bars.theta[name].tolist(), omega=bars.omega[name].tolist(), alpha=bars.alpha[name].tolist(),
+        z=HEIGHTS[name], mass=MASSES[name], com=(bars.lengths[name] / 2, 0.0), inertia=bars.inertia[name],
+    )  # fmt: skip
 
 
 def bouncing_ball(steps: int = 40, restitution: float = 0.5, mass: float = 0.2) -> Motion:

@@ -1,6 +1,6 @@
 """``make release``: sdist, wheel, their hashes and NOTES.md in dist/, if all that a release promises holds.
 
-    python -m tools.release [--out FOLDER] [--only WORD]
+    python -m tools.release [--out FOLDER] [--only WORD] [--pythons VERSION ...]
 
 Everything is built from a clone of HEAD in a temporary folder; nothing is tagged and nothing leaves the machine. Checks
 go on after a failure, so that one run names all; ``--only`` runs those whose names hold a word, and writes nothing.
@@ -10,17 +10,19 @@ from __future__ import annotations
 
 import argparse
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from shared.stage.console import run_cli, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT
-from tools.release.archives import sums
+from tools.release.archives import built, clone, commit_time, sums
 from tools.release.checks import CHECKS, Release
-from tools.release.clone import clone
-from tools.release.notes import notes
-from tools.release.versions import wanted_version
+from tools.release.written import notes, wanted_version
+
+PYTHONS = ("3.11", "3.12", "3.13", "3.14")
+"""Versions whose wheels have compiled kernels; uv finds or fetches them."""
 
 
 def main() -> int:
@@ -28,6 +30,7 @@ def main() -> int:
     parser = argparse.ArgumentParser("tools.release", description=__doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "dist", help="the folder, dist if not given")
     parser.add_argument("--only", default="", help="checks whose names hold this word")
+    parser.add_argument("--pythons", nargs="*", default=PYTHONS, help="versions with compiled kernels in their wheels")
     asked = parser.parse_args()
     chosen = {name: check for name, check in CHECKS.items() if asked.only in name}
     if not chosen:
@@ -38,12 +41,12 @@ def main() -> int:
         if failed:
             raise UserError(f"release: {len(failed)} of {len(chosen)} checks failed: {', '.join(failed)}")
         if not asked.only:
-            put(release, asked.out)
+            write(release, asked.out, asked.pythons)
     return 0
 
 
 def passes(name: str, check: object, release: Release) -> bool:
-    """Whether a check holds; its line says what it saw or what is wrong."""
+    """Return True if a check holds; its line says what it saw or what is wrong."""
     assert callable(check)
     try:
         say("release", f"{name}: {check(release)}")
@@ -53,10 +56,10 @@ def passes(name: str, check: object, release: Release) -> bool:
     return True
 
 
-def put(release: Release, out: Path) -> None:
-    """Write the archives, their hashes and the notes of the tag."""
+def write(release: Release, out: Path, pythons: Sequence[str]) -> None:
+    """Write the archives, with compiled kernels for these Pythons, their hashes and the notes of the tag."""
     version = wanted_version(release.sources)
-    archives = release.archives()
+    archives = built(release.sources, release.folder / "released", commit_time(release.sources), pythons)
     files = {path.name: path.read_bytes() for path in archives}
     files["SHA256SUMS"] = sums(archives).encode()
     files["NOTES.md"] = notes(release.text("CHANGELOG.md"), version).encode()

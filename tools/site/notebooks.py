@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from tools.figures.dark import dark
+from tools.documents.figures.dark import dark
 
 
 def page_of_notebook(path: Path) -> tuple[str, dict[str, bytes]]:

@@ -11,6 +11,8 @@ from shared.stage.errors import UserError
 from tools.site.notebooks import page_of_notebook
 from tools.site.pictures import for_both_themes
 from tools.site.sources import page_of_folder, page_of_source
+from tools.site.theory import PAGE as THEORY
+from tools.site.theory import with_equations
 
 AT_THE_TOP = ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md")
 ELSEWHERE = ("tests/published/reference/README.md",)
@@ -35,7 +37,10 @@ def stage(root: Path, folder: Path) -> None:
     pages = documents(root)
     wanted: set[Path] = set()
     for page in pages:
-        text, linked = linked_page((root / page).read_text(), page, root, pages)
+        text = (root / page).read_text()
+        if page == THEORY:
+            text = with_equations(text, root)
+        text, linked = linked_page(text, page, root, pages)
         wanted |= linked
         _write(folder / page, (ALONE if page == HOME else "") + for_both_themes(text))
     for path in sorted((root / "docs").rglob("*")):

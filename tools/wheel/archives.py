@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import io
-import json
 import os
 import shutil
 import subprocess
@@ -16,10 +15,9 @@ from contextlib import contextmanager
 from importlib.metadata import distribution
 from pathlib import Path
 
-from mbsd.compiling.shipped_kernels import here
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
-from tools.wheel.kernels import compile_into
+from tools.wheel.kernels import compile_into, interpreter
 
 BESIDE = ("pyproject.toml", "setup.py", "MANIFEST.in", "README.md", "LICENSE", "NOTICE.md")
 EARLIEST = 315532800
@@ -35,16 +33,20 @@ def build(root: Path, out: Path) -> list[Path]:
         return [_put(file, out) for file in (sdist, wheel)]
 
 
-def build_with_kernels(root: Path, out: Path, fill: Callable[[Path, Path], None] = compile_into) -> Path:
-    """A wheel with compiled kernels, for this Python, this numba and processors of this kind.
+def build_with_kernels(
+    root: Path, out: Path, version: str = "", fill: Callable[[Path, Path, Path], None] = compile_into
+) -> Path:
+    """Build a wheel with compiled kernels, for one Python, this numba and processors of this kind.
 
-    ``fill(folder, sources)`` puts the compiled kernels of the package below ``sources`` into ``folder``.
+    ``version``: of that Python, such as "3.12"; this one if it is not given. ``fill(folder, sources, python)`` puts the
+    compiled kernels of the package below ``sources`` into ``folder``.
     """
-    with _unpacked(root) as (_, sources):
+    with _unpacked(root) as (_, sources), interpreter(version) as python:
         kernels = sources / "mbsd" / "kernels"
-        fill(kernels, sources)
-        (kernels / "made_for.json").write_text(json.dumps(here(), indent=1) + "\n")
-        return _put(_backend("build_wheel", sources, {"--build-option": [f"--plat-name={_platform()}"]}), out)
+        fill(kernels, sources, python)
+        (kernels / "made_for.json").write_text(_described(python, sources))
+        settings = {"--build-option": [f"--plat-name={_platform()}"]}
+        return _put(_backend("build_wheel", sources, settings, python), out)
 
 
 @contextmanager
@@ -79,16 +81,25 @@ def _settle(sdist: Path) -> None:
     sdist.write_bytes(gzip.compress(plain.getvalue(), mtime=_time()))
 
 
+def _described(python: Path, sources: Path) -> str:
+    """Return what code compiled by this Python depends on, as JSON."""
+    code = "import json; from mbsd.compiling.shipped_kernels import here; print(json.dumps(here(), indent=1))"
+    environment = os.environ | {"PYTHONPATH": str(sources)}
+    return subprocess.run([str(python), "-c", code], env=environment, check=True, capture_output=True, text=True).stdout
+
+
 def _time() -> int:
     return int(os.environ.get("SOURCE_DATE_EPOCH") or EARLIEST)
 
 
-def _backend(hook: str, sources: Path, settings: dict[str, list[str]] | None = None) -> Path:
-    """What a hook of the build backend makes in a process of its own, which sees no other source."""
+def _backend(
+    hook: str, sources: Path, settings: dict[str, list[str]] | None = None, python: Path = Path(sys.executable)
+) -> Path:
+    """Return what a hook of the build backend makes in a process of its own, which sees no other source."""
     code = f"from setuptools.build_meta import *; print({hook}('dist', config_settings={settings!r}))"
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     environment["SOURCE_DATE_EPOCH"] = str(_time())
-    command = [sys.executable, "-c", code]
+    command = [str(python), "-c", code]
     # A wheel keeps the modes of its files, and these follow the umask.
     done = subprocess.run(command, cwd=sources, env=environment, umask=0o022, capture_output=True, text=True)
     if done.returncode != 0:

@@ -7,10 +7,14 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.metadata import distribution
 from pathlib import Path
 
 from shared.stage.console import say
 from shared.stage.errors import UserError
+from shared.stage.paths import ROOT
 
 PARTS = {
     "equations at addresses": """
@@ -18,14 +22,6 @@ import importlib, pkgutil, mbsd
 for module in pkgutil.walk_packages(mbsd.__path__, "mbsd."):
     if not module.name.endswith("__main__"):
         importlib.import_module(module.name)
-""",
-    "events and contacts": """
-from mbsd import Mechanism
-m = Mechanism("ball")
-ball = m.body("ball", mass=0.2, inertia=1e-5)
-m.rigid_contact("floor", m.ground.origin, ball.origin, radius=0.01)
-m.start_near(ball=(0.0, 0.1, 0.0))
-m.simulate(0.5)
 """,
     "integrators": """
 import importlib, pkgutil
@@ -47,19 +43,58 @@ m.modes()
 """Beside what ``python -m mbsd compile`` compiles."""
 
 
-def compile_into(folder: Path, sources: Path) -> None:
-    """Compile the kernels of the package below ``sources`` and put them into ``folder``."""
+def compile_into(folder: Path, sources: Path, python: Path = Path(sys.executable)) -> None:
+    """Compile the kernels of the package below ``sources`` with this Python and put them into ``folder``."""
     with tempfile.TemporaryDirectory() as cache:
         say("wheel", "compiling all kernels, which takes minutes")
-        _python(["-m", "mbsd", "compile"], sources, cache)
+        _run(python, ["-m", "mbsd", "compile"], sources, cache)
         for what, code in PARTS.items():
             say("wheel", f"compiling {what}")
-            _python(["-c", code], sources, cache)
+            _run(python, ["-c", code], sources, cache)
         shutil.copytree(Path(cache) / "kernels", folder, ignore=shutil.ignore_patterns(".lock", "*.tmp.*"))
 
 
-def _python(arguments: list[str], sources: Path, cache: str) -> None:
+@contextmanager
+def interpreter(version: str) -> Iterator[Path]:
+    """Yield a Python of this version that has what the solver and its wheel need; ours where the version is ours.
+
+    Raises UserError if uv finds no such Python, or its packages cannot be installed.
+    """
+    if version in ("", f"{sys.version_info.major}.{sys.version_info.minor}"):
+        yield Path(sys.executable)
+        return
+    with tempfile.TemporaryDirectory(prefix="mbsd-wheel-") as folder:
+        python = Path(folder) / "venv" / "bin" / "python"
+        uv = _output(["sh", str(ROOT / "tools" / "find_uv.sh")], "uv is missing")
+        _output(
+            [uv, "venv", "--quiet", "--python", _installed(version), str(python.parent.parent)],
+            f"there is no Python {version}",
+        )
+        packages = [f"numba=={distribution('numba').version}", "numpy", "scipy", "setuptools"]
+        command = [uv, "pip", "install", "--quiet", "--python", str(python), *packages]
+        _output(command, f"packages for Python {version} could not be installed")
+        yield python
+
+
+def _installed(version: str) -> str:
+    """Return the path of a Python of this version that runs here; its version, for uv to fetch, where there is none."""
+    try:
+        command = [f"python{version}", "-c", "import sys; print(sys.executable)"]
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return version
+
+
+def _output(command: list[str], otherwise: str) -> str:
+    """Return what a command prints. Raises UserError, which begins with ``otherwise``, if it fails."""
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    if run.returncode != 0:
+        raise UserError(f"wheel: {otherwise}: {' '.join(run.stderr.split())[-400:]}")
+    return run.stdout.strip()
+
+
+def _run(python: Path, arguments: list[str], sources: Path, cache: str) -> None:
     environment = os.environ | {"PYTHONPATH": str(sources), "NUMBA_CACHE_DIR": cache}
-    done = subprocess.run([sys.executable, *arguments], cwd=sources, env=environment, capture_output=True, text=True)
-    if done.returncode != 0:
-        raise UserError(f"wheel: kernels could not be compiled: {done.stderr.strip()[-500:]}")
+    run = subprocess.run([str(python), *arguments], cwd=sources, env=environment, capture_output=True, text=True)
+    if run.returncode != 0:
+        raise UserError(f"wheel: kernels could not be compiled: {run.stderr.strip()[-500:]}")

@@ -71,7 +71,7 @@ class SweepTangents:
         return self.variants[k].weights / self.variants[k].step
 
     def models(self, k: int, number: Number) -> list[Callable[[], Model]]:
-        """What makes the mechanisms of :meth:`moved`."""
+        """Return the function that makes the mechanisms of :meth:`moved`."""
         return models_of(self.m, number, self.variants[k])
 
     def _states(self, variants: Variants, tangent_of: Tangent) -> np.ndarray:

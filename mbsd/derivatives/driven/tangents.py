@@ -200,7 +200,7 @@ def along_direction(
     order: tuple[np.ndarray, np.ndarray] = FOURTH,
     reach: float = REACH,
 ) -> Left:
-    """What is left over, differentiated along a direction q, v (T, 3 nb) of the motion at held numbers."""
+    """Return residuals, differentiated along a direction q, v (T, 3 nb) of the motion at held numbers."""
     step = steps_along(terms, along, q, v, reach)
     offsets, weights = order
     if along.approached is None:
@@ -220,7 +220,7 @@ def along_direction(
 
 
 def has_kinks(terms: Terms) -> bool:
-    """Whether forces may change within much less than the size of the mechanism, as those of contacts do."""
+    """Return True if forces may change within much less than the size of the mechanism, as those of contacts do."""
     loads = terms.loads
     return loads is not None and len(loads.interaction) + len(loads.user) > 0
 
@@ -275,7 +275,7 @@ def differences(
 
 
 def per_scales(terms: Terms, along: Along) -> tuple[np.ndarray, float]:
-    """What makes coordinates (3 nb,), and then speeds, parts of their sizes and of the fastest."""
+    """Return factors that make coordinates (3 nb,), then speeds, parts of their sizes and of the fastest."""
     scale, fastest = _scales(terms, along)
     return 1.0 / scale, 1.0 / fastest
 

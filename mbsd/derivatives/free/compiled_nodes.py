@@ -1,4 +1,4 @@
-"""What the compiled equations of differentiated.py are given of a mechanism, and the room in which they work."""
+"""Arguments and scratch of the compiled equations of differentiated.py for a mechanism."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def differentiated(
     terms: Terms, nodes: Nodes, own: Own, per_size: np.ndarray, per_speed: float, reach: np.ndarray, asked: np.ndarray
 ) -> Made:
-    """What ``differentiate`` makes; ``asked`` (R,) are the nodes of which everything is wanted."""
+    """Return what ``differentiate`` makes; ``asked`` (R,) are the nodes of which everything is wanted."""
     packed, (count, n, f), numbers = terms.packed, nodes.free.shape, len(own.load)
     rows, width = nodes.lam.shape[1], nodes.q.shape[1]
     ways, first = 2 * f + len(own.moving), f + len(own.moving)
@@ -49,5 +49,5 @@ def differentiated(
 
 
 def can_differentiate(terms: Terms) -> bool:
-    """Whether ``differentiate`` knows the mechanism: no friction in joints, and no curve that crosses itself."""
+    """Return True if ``differentiate`` knows the mechanism: no friction in joints, and no curve that crosses itself."""
     return not terms.rough and not CurveBranches(terms.packed)

@@ -1,4 +1,4 @@
-"""What an event makes of a tangent: its time moves, velocities jump, and accelerations differ before and after.
+"""Jumps of a tangent at an event: its time moves, velocities jump, and accelerations differ before and after.
 
     t' = -(dg + g_p) / (dg/dt)                   of the scalar g that falls through zero (guards.py)
     y_-' + f_- t'   is mapped by the event's own law, R,  to   y_+' + f_+ t'
@@ -133,7 +133,7 @@ class Jump:
         return total / variants.step
 
     def _plain(self) -> Plain | None:
-        """What the law needs to know, where a single contact without friction is struck."""
+        """Return what the law needs where a single contact without friction is struck."""
         packed = self.whole.terms.packed
         assert self.along.held is not None
         held = np.flatnonzero(self.along.held[self.before])

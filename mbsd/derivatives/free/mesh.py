@@ -95,7 +95,7 @@ def nodes_of(edges: np.ndarray, met: np.ndarray) -> np.ndarray:
 
 
 def apart(times: np.ndarray, met: np.ndarray, span: float) -> np.ndarray:
-    """Those of the times (s) that are not those of events."""
+    """Return the times (s) that are no times of events."""
     if not len(met):
         return times
     return times[np.abs(times[:, None] - met[None]).min(axis=1) > ROUNDING * span]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mbsd.base.errors import ModelWarning
-from mbsd.base.warn import warn
+from mbsd.base.warning import warn
 from mbsd.derivatives.free.mesh import refined
 from mbsd.derivatives.free.stretch import Tangents
 

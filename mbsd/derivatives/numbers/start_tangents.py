@@ -32,7 +32,7 @@ ALONG = 1e-5
 
 
 class StartTangents:
-    """Those of a mechanism ``m`` made ``ready``."""
+    """Tangents of the start of a mechanism ``m`` made ``ready``."""
 
     def __init__(self, m: Model, ready: PreparedDynamics) -> None:
         packed = ready.packed
@@ -125,7 +125,7 @@ class StartTangents:
 
     @staticmethod
     def _inverse(jac: np.ndarray, kept: list[int], held: np.ndarray) -> np.ndarray | None:
-        """That of J (m, n) and what is ``held``; None where they leave something open, or joints repeat others.
+        """Return the inverse of J (m, n) and ``held``; None where they leave something open, or joints repeat others.
 
         ``kept``: rows of J that do not.
         """

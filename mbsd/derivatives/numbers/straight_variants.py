@@ -18,7 +18,7 @@ from mbsd.numbers.placed import PLACES
 
 
 def variants_beside(variation: Variation, numbers: Sequence[Number], known: Sequence[Near | None]) -> list[Variants]:
-    """Those of all numbers; what does not go on straight, and is None, is packed by itself."""
+    """Return variants of all numbers; numbers that act nonlinearly are packed separately."""
     return [
         variation.of(number, SECOND, TINY, starts=False)
         if near is None

@@ -1,4 +1,4 @@
-"""What the equations of a known motion leave over, at other states and other numbers than those that solve them.
+"""Residuals of the equations of a known motion, at other states and numbers than those that solve them.
 
     Phi,   J v - nu,   J a - gamma,   Q + F(lam) + m g - M a - J^T lam        a and lam held
 
@@ -22,7 +22,7 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import times_compact
-from mbsd.dynamics.rows.joint_sticks import standing
+from mbsd.dynamics.switches import standing
 from mbsd.equations.laws import Laws
 from mbsd.equations.left_over import leave
 from mbsd.equations.loads import Loads
@@ -75,7 +75,7 @@ class Along:
 
 
 class Left(NamedTuple):
-    """What is left over."""
+    """Residuals."""
 
     position: np.ndarray
     """(T, m) Phi."""
@@ -89,7 +89,7 @@ class Left(NamedTuple):
     """(T, m) J w of ``Along.spread``, where that is given."""
 
     def each(self, of: Callable[[np.ndarray], np.ndarray]) -> Left:
-        """What ``of`` makes of each."""
+        """Return what ``of`` makes of each."""
         return Left(
             of(self.position), of(self.velocity), of(self.acceleration), of(self.load),
             None if self.spread is None else of(self.spread),
@@ -107,7 +107,7 @@ class Change(NamedTuple):
 
 
 def stacked(lefts: Sequence[Left], of: Callable[[list[np.ndarray]], np.ndarray]) -> Left:
-    """What ``of`` makes of each part of all of them."""
+    """Return what ``of`` makes of each part of all of them."""
     spread = [left.spread for left in lefts if left.spread is not None]
     return Left(
         of([left.position for left in lefts]), of([left.velocity for left in lefts]),
@@ -129,7 +129,7 @@ class Terms:
 
     @property
     def rough(self) -> bool:
-        """Whether joints have friction."""
+        """True if joints have friction."""
         return self.loads is not None and len(self.loads.friction) > 0
 
     def left(self, along: Along, q: np.ndarray | None = None, v: np.ndarray | None = None, pushed: bool = True) -> Left:

@@ -92,7 +92,7 @@ class Variants:
 
 
 def models_of(m: Model, number: Number, variants: Variants) -> list[Callable[[], Model]]:
-    """What makes mechanisms with the values of a number that variants have."""
+    """Return the function that makes mechanisms with the values of a number that variants have."""
     values = [number.value + variant.offset * variants.step for variant in variants.variants]
     if number.built is not None:
         return [partial(number.built, value) for value in values]
@@ -166,7 +166,7 @@ class Variation:
         return repr((m.starts, m.velocities)) == self.given
 
     def _pushes_alike(self, m: Model, packed: Packed) -> bool:
-        """Whether forces are clearly those of the motion: elements alone, which know no masses, at the same arms."""
+        """Return True if forces are clearly those of the motion: elements alone, without masses, at the same arms."""
         loads = self.base.loads
         if loads is None or len(loads.interaction) or len(loads.user) or len(loads.friction):
             return False

@@ -23,11 +23,11 @@ from mbsd.derivatives.smooth.forces_beside import slopes_of_forces
 from mbsd.derivatives.smooth.rates_beside import FIRST, Held, motions_beside, rates_beside
 from mbsd.derivatives.smooth.sides import Sides, forces_beside
 from mbsd.derivatives.smooth.smooth_motion import CLOSE, NotSmooth
-from mbsd.dynamics.embedding.arrays import Embedding
+from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.measures.quantities import Motions
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated import Course, Outputs
-from mbsd.dynamics.runs.embed import Embedded, begin_at, embedded_at_start, embedding_scratch
+from mbsd.dynamics.runs.embedding import Embedded, begin_at, embedded_at_start, embedding_scratch
 from mbsd.kinematics.groups.blocks import BLOCK
 from mbsd.kinematics.groups.carrying.columns import INERTIA, MASS, THETA
 from mbsd.kinematics.groups.groups import KIND

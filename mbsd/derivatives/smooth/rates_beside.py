@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from mbsd.compiling.jit import internal, kernel
-from mbsd.dynamics.embedding.equations import accelerate, evaluate, put, settle
+from mbsd.dynamics.independent.equations import accelerate, evaluate, place_all, settle
 from mbsd.kinematics.groups.carrying.columns import BASE, NEAR, THETA
 
 FIRST = 3
@@ -79,5 +79,5 @@ def motions_beside(dyn, scratch, t, q, z, states, forces, y, a):
         power = evaluate(dyn, scratch, t[k], states[k], rates, forces)
         if power != power:
             return k
-        put(scratch.body, scratch.rate, scratch.base, scratch.coordinate, rates, forces, y[k], a[k])
+        place_all(scratch, rates, forces, y[k], a[k])
     return states.shape[0]

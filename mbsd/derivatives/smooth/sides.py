@@ -17,10 +17,10 @@ from mbsd.derivatives.numbers.start_tangents import StartTangents
 from mbsd.derivatives.numbers.variants import SECOND, TINY, Variant, Variants, Variation
 from mbsd.derivatives.smooth.forces_beside import ForcesBeside
 from mbsd.derivatives.smooth.smooth_motion import NotSmooth
-from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.embedding.coordinates import choices
+from mbsd.dynamics.independent.arrays import Embedding
+from mbsd.dynamics.independent.coordinates import choices
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.runs.embed import Embedded
+from mbsd.dynamics.runs.embedding import Embedded
 from mbsd.kinematics.groups.carrying.columns import AVOID, SIGN
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.kinematics.groups.tables import rows_of
@@ -72,7 +72,7 @@ class BothSides:
         """By number, how arrays change with it; None where they do not go on straight."""
 
     def of(self, m: Model, numbers: Sequence[Number], whole: bool) -> list[Sides]:
-        """Return those of all numbers of ``m``; ``whole``: for more than how bodies move.
+        """Return sides of all numbers of ``m``; ``whole``: for more than how bodies move.
 
         Raises NotSmooth where the groups are others.
         """
@@ -85,14 +85,14 @@ class BothSides:
         ]
 
     def nearer(self, p: int, step: float, traces: Mapping[str, Marker]) -> Sides:
-        """Return those of number p that are ``step`` of its size away, less than usual. Raises NotSmooth likewise."""
+        """Return sides of number p that are ``step`` of its size away, less than usual. Raises NotSmooth likewise."""
         near = self.near[p]
         if near is not None:
             return self.straight([near], step)[0]
         return self.packed(self.variation.of(self.numbers[p], SECOND, step), traces)
 
     def straight(self, every: Sequence[Near], step: float = TINY) -> list[Sides]:
-        """Those of numbers on both of whose sides all arrays go on straight, ``step`` of their sizes away."""
+        """Return sides of numbers, ``step`` of their sizes away, on both of which all arrays go on straight."""
         if not every:
             return []
         system, com = self.ready.packed.system, self.ready.packed.com
@@ -167,7 +167,7 @@ class BothSides:
         return rows
 
     def packed(self, variants: Variants, traces: Mapping[str, Marker]) -> Sides:
-        """Those that were packed each by itself, of a mechanism with ``traces``. Raises NotSmooth likewise."""
+        """Return sides that were packed each by itself, of a mechanism with ``traces``. Raises NotSmooth likewise."""
         own = variants.variants
         systems = [variant.terms.packed.system for variant in own]
         moved: dict[str, np.ndarray] = {}

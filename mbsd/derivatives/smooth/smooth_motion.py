@@ -44,14 +44,14 @@ class Motion:
 
 
 def motion_of(sol: Solution) -> Motion:
-    """That of a simulation."""
+    """Return the smooth motion of a simulation."""
     along = along_of(sol)
     along.held = sol.held
     return Motion(sol.t, along, sol)
 
 
 def between(course: Course, times: np.ndarray) -> Motion:
-    """That of a smooth course at times (R,) (s) within it."""
+    """Return the motion of a smooth course at times (R,) (s) within it."""
     assert course.q is not None
     q, v, a = between_looks(course.t, course.q, course.v, course.a, times)
     rows = len(course.packed.ws.phi)

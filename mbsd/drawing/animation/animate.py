@@ -10,16 +10,15 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.progress import users_progress
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
+from mbsd.base.users_function import users_progress
 from mbsd.drawing.animation.clip import HOLD, clip_of
 from mbsd.drawing.animation.encoders import ffmpeg, held, write_gif, write_mp4
 from mbsd.drawing.animation.picture.page import Page
 from mbsd.drawing.animation.scene import scene_of
 from mbsd.drawing.animation.words import EVERYTHING, QUANTITIES
 from mbsd.drawing.literal import literal
-from mbsd.pictures.animation import Animation
+from mbsd.pictures import Animation
 from mbsd.results.solution import Solution
 
 SUFFIXES = (".mp4", ".gif")

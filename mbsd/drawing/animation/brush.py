@@ -98,7 +98,7 @@ class Brush(Canvas):
         return self.driver if colour == MOVED else colour
 
     def band(self, outer: Point, inner: Point, colour: str) -> None:
-        """What lies between two closed outlines (m)."""
+        """Fill the area between two closed outlines (m)."""
         from matplotlib.path import Path
 
         self.keep(outer)

@@ -36,7 +36,7 @@ class Clip:
 
     @property
     def words(self) -> str:
-        """What the picture states about the rate; nothing at real time."""
+        """Return the words about the playback rate; empty at real time."""
         if math.isclose(self.rate, 1.0, rel_tol=1e-9):
             return ""
         if self.rate < 1.0 and math.isclose(round(1 / self.rate), 1 / self.rate, rel_tol=1e-9):

@@ -1,4 +1,4 @@
-"""What an animation draws, found before the first picture: steady symbols, extent, arrows, scales, traces, impacts."""
+"""Scene of an animation, prepared before the first picture: symbols, extent, arrows, scales, traces, impacts."""
 
 from __future__ import annotations
 

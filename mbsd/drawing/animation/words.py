@@ -1,4 +1,4 @@
-"""What an animation may show, and how its quantities are written: colours, units, round numbers."""
+"""Quantities that an animation may show, and their writing: colours, units, round numbers."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from mbsd.base.errors import ModelError
 from mbsd.drawing.canvas import Canvas
-from mbsd.drawing.carriers import along_line, at_place, beside, on_body
+from mbsd.drawing.carriers import along_axes, along_line, at_place, on_body
 from mbsd.drawing.look import LOAD
 from mbsd.drawing.pose import Pose
 from mbsd.model.cylinders.cycle import Opening
@@ -37,7 +37,7 @@ def draw_engine_cylinder(canvas: Canvas, force: Force, pose: Pose, joints: Seque
     with canvas.on(on_body(force.i.body.name)):
         canvas.line([origin + x * u + y * n for x, y in barrel], LOAD, 1.6, order=3)
     crown = [origin + here * u + side * 0.97 * half * n for side in (-1.0, 1.0)]
-    with canvas.on(beside(force.i, force.j)):
+    with canvas.on(along_axes(force.i, force.j)):
         canvas.line(crown, LOAD, 2.4, order=3.2)
     sides = [-1.0, 1.0] if len(openings) > 1 else [-1.0]
     for side, opening in zip(sides, openings, strict=False):

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mbsd.drawing.canvas import Canvas
-from mbsd.drawing.carriers import GROUND, along_line, at_place, beside, on_body
+from mbsd.drawing.carriers import GROUND, along_axes, along_line, at_place, on_body
 from mbsd.drawing.look import INK, MOVED, PAPER, QUIET, WRONG
 from mbsd.drawing.symbols.cam import draw_cam
 from mbsd.drawing.symbols.geneva import draw_geneva
@@ -159,7 +159,7 @@ def _drive_coordinate(canvas: Canvas, place: Place) -> None:
     normal = np.array([-axis[1], axis[0]])
     normal = normal if normal[1] > 0 or (normal[1] == 0 and normal[0] > 0) else -normal
     start = place.j + 1.9 * u * normal
-    with canvas.on(beside(place.joint.i, place.joint.j)):
+    with canvas.on(along_axes(place.joint.i, place.joint.j)):
         canvas.line([start - 1.4 * u * axis, start + 1.1 * u * axis], MOVED, 1.8, order=7)
         canvas.head(start + 1.6 * u * axis, axis, MOVED)
     with canvas.on(at_place(place.joint.j)):

@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsd.base.codes import AXIS, DAMPING, LINE, LINEAR, PUSH, TURN
 from mbsd.drawing.canvas import Canvas
-from mbsd.drawing.carriers import Carrier, End, along_line, at_place, beside
+from mbsd.drawing.carriers import Carrier, End, along_axes, along_line, at_place
 from mbsd.drawing.look import LOAD
 from mbsd.drawing.pose import Pose
 from mbsd.drawing.symbols.cylinder import draw_engine_cylinder, draw_strut, engine_cylinder_reach
@@ -55,7 +55,7 @@ def draw_force(canvas: Canvas, force: Force, pose: Pose, joints: Sequence[Joint]
             _turning(canvas, force, j)
     elif element.kind == PUSH:
         way = -1.0 if force.params.get("force", 0.0) < 0 else 1.0
-        with canvas.on(beside(force.i, force.j)):
+        with canvas.on(along_axes(force.i, force.j)):
             tail = _arrow(canvas, j, way * pose.axis(force.i))
         with canvas.on(at_place(force.j)):
             canvas.label(force.name, tail, 0.4, LOAD)
@@ -102,7 +102,7 @@ def draw_special(canvas: Canvas, force: Force, pose: Pose) -> None:
     if force.kind.surface is not None:
         _surface(canvas, force, pose)
     bodies = force.params.get("bodies", ())
-    places = [(Carrier("place", (End(name),)), pose.of(name, 0.0, 0.0)) for name in bodies]
+    places = [(Carrier("place", (End(name),)), pose.point(name, 0.0, 0.0)) for name in bodies]
     places = places or [(at_place(force.j), pose.place(force.j))]
     for carrier, place in places:
         with canvas.on(carrier):
@@ -132,7 +132,7 @@ def _surface(canvas: Canvas, force: Force, pose: Pose) -> None:
 
 
 def _keeps_width(force: Force, pose: Pose, end: np.ndarray, unit: float) -> bool:
-    """Whether a spring from marker to marker is nowhere so short that its coils are drawn narrower."""
+    """True if a spring from marker to marker never becomes so short that its coils are drawn narrower."""
     gap = pose.place(force.j) - pose.place(force.i)
     along, aside = (ways.get(f"force {force.name}", np.zeros(0)) for ways in (pose.travel, pose.aside))
     shortest = float(np.hypot(along, aside).min(initial=float(np.hypot(*gap))))

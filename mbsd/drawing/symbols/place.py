@@ -42,12 +42,12 @@ class Place:
 
     @property
     def grounded(self) -> bool:
-        """Whether one of the two bodies is ground."""
+        """True if one of the two bodies is ground."""
         return "ground" in self.joint.bodies
 
     @property
     def carrier(self) -> Carrier:
-        """What carries the second marker: ground too, where the joint holds it there."""
+        """Return the carrier of the second marker: ground too, where the joint holds it there."""
         return GROUND if self.grounded else at_place(self.joint.j)
 
     @property

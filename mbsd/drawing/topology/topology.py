@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.base.errors import AssemblyError, ModelError
-from mbsd.base.quantity import written
+from mbsd.base.quantity import counted, written
 from mbsd.drawing import look
 from mbsd.drawing.topology.graph_layout import layout
 from mbsd.drawing.topology.icons import icon, sign_of
@@ -15,7 +15,7 @@ from mbsd.drawing.topology.svg_text import d, tag
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model
-from mbsd.pictures.picture import Svg
+from mbsd.pictures import Svg
 from mbsd.results.mobility import Mobility
 
 MOST_NODES = 600
@@ -66,8 +66,7 @@ def _mobility(m: Model) -> tuple[Mobility | None, str]:
     except AssemblyError:
         return None, "the links do not close, so freedoms and redundant joints are unknown"
     count = len(m.drivers)
-    driven = f"; {count} driver{'s' * (count != 1)}" if count else "; no driver"
-    return mobility, f"{mobility}{driven}"
+    return mobility, f"{mobility}; {counted(count, 'driver')}"
 
 
 def _body(m: Model, name: str, k: int) -> Node:

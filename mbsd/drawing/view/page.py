@@ -16,7 +16,7 @@ from mbsd.base.files import write_whole
 from mbsd.drawing.carriers import Carrier
 from mbsd.drawing.inks import body_inks, on_dark
 from mbsd.drawing.view.carried import moving
-from mbsd.pictures.view import View
+from mbsd.pictures import View
 from mbsd.results.solution import Solution
 
 MOST = 361

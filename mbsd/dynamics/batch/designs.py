@@ -8,7 +8,7 @@ moving={"door": [...]}      as m.start_moving: rad/s (n,), or (vx, vy, omega) (n
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -29,13 +29,13 @@ MOST = 100_000_000
 
 @dataclass
 class Designs:
-    """What varies, as arrays over ``count`` rows."""
+    """Numbers that vary, as arrays over ``count`` rows."""
 
     m: Model
     count: int
     columns: list[Varied]
     exact: bool = False
-    """Whether each has the digits of a simulation by itself, whichever others are beside it."""
+    """True if each has the digits of a simulation by itself, whichever others are beside it."""
 
     @cached_property
     def changes(self) -> dict[str, dict[str, np.ndarray]]:
@@ -65,8 +65,8 @@ class Designs:
         """A mechanism of its own to be changed."""
         return copy.deepcopy(self.m)
 
-    def row_by_row(self) -> RowByRow:
-        """A mechanism of its own that becomes that of one row after another."""
+    def row_by_row(self) -> Callable[[int], Any]:
+        """Return what gives the mechanism of a row, until the next is asked for."""
         return RowByRow(self)
 
     def extremes(self) -> set[int]:
@@ -99,8 +99,8 @@ class RowByRow:
         self._designs, self.m = designs, designs.copied()
         self._saved = SavedModel(self.m)
 
-    def of(self, row: int) -> Any:
-        """The mechanism of a row, until the next is asked for. Raises ModelError for numbers that it refuses."""
+    def __call__(self, row: int) -> Any:
+        """Return the mechanism of a row, until the next is asked for. Raises ModelError for numbers that it refuses."""
         self._saved.restore()  # what stands at the end of a bar depends on its length
         self._designs.put_numbers(self.m, row)
         self._designs.put_start(self.m, row)
@@ -116,20 +116,9 @@ class Built(Designs):
         self.why = why
         """Why their numbers are not put into one of them."""
 
-    def row_by_row(self) -> Any:
-        """Gives those that were built."""
-        return BuiltRows(self.mechanisms)
-
-
-class BuiltRows:
-    """Mechanisms that were built one by one, in the order of the rows."""
-
-    def __init__(self, mechanisms: Sequence[Model]) -> None:
-        self._mechanisms = mechanisms
-
-    def of(self, row: int) -> Any:
-        """The mechanism of a row."""
-        return self._mechanisms[row]
+    def row_by_row(self) -> Callable[[int], Any]:
+        """Return what gives the mechanisms as they were built."""
+        return self.mechanisms.__getitem__
 
 
 def _plain(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Which outputs are made: rows end where all their measures are known, and what nobody reads is left out.
+"""Outputs that are made: rows end where all their measures are known, and what nobody reads is left out.
 
 Where what decides is an angle or its rate, the loop itself compares every output with what it is to pass. All else is
 looked at window by window. What a measure says of a window is what it says of all outputs up to its end, if
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -41,25 +41,25 @@ class Passed:
 
 @dataclass(frozen=True)
 class Plan:
-    """Which outputs of a row are made."""
+    """Outputs of a row that are made."""
 
     windows: list[int]
     """Numbers of outputs at which rows are looked at, the last of them that of all; none where few are made at once."""
     few: np.ndarray | None = None
     """Rows of the output times that are made behind the windows, the first and the last among them; None: rows end."""
     passed: tuple[Passed, ...] = ()
-    """What all decides, if the loop can compare it itself: there are no windows then."""
+    """Thresholds that decide all, if the loop can compare them itself: there are no windows then."""
     least: int = 0
     """Outputs that a row has at least, then."""
 
 
 def all_outputs(times: int) -> Plan:
-    """That of rows whose outputs are all made."""
+    """Return the plan that makes every output."""
     return Plan([times])
 
 
 def plan_of(t: np.ndarray, measures: Mapping[str, Measure], quantities: Mapping[str, Quantity]) -> Plan:
-    """That of output times t (T,) (s)."""
+    """Return the plan of output times t (T,) (s)."""
     every, times = list(measures.values()), len(t)
     if any(quantity.reactive for quantity in quantities.values()):
         return all_outputs(times)
@@ -77,7 +77,7 @@ def plan_of(t: np.ndarray, measures: Mapping[str, Measure], quantities: Mapping[
 
 
 def _passed(measures: Sequence[Measure], quantities: Mapping[str, Quantity]) -> tuple[Passed, ...]:
-    """What these are to pass; nothing if there are too many, or any is none that the loop can compare."""
+    """Return the thresholds of measures; nothing if they are too many, or the loop cannot compare one of them."""
     out = []
     for measure in measures:
         threshold, turn = measure.threshold, quantities[measure.quantity].turn
@@ -88,7 +88,7 @@ def _passed(measures: Sequence[Measure], quantities: Mapping[str, Quantity]) -> 
 
 
 class Known:
-    """Which measures of which rows are known as windows pass; with ``few`` those that read few outputs are left out."""
+    """Tracks which measures of rows are final, window by window; ``few`` leaves out those that read few outputs."""
 
     def __init__(
         self, measures: Mapping[str, Measure], quantities: Mapping[str, Quantity], rows: int, few: bool = False
@@ -99,7 +99,7 @@ class Known:
         self.known = np.zeros((len(self.measures), rows), bool)
 
     def look(self, rows: np.ndarray, t: np.ndarray, motions_of: Callable[[np.ndarray], Motions]) -> np.ndarray:
-        """Which of ``rows`` have nothing left to measure; ``motions_of`` gives those of some in a window (n, T)."""
+        """Return the ``rows`` with nothing left to measure; ``motions_of`` gives motions of some in a window (n, T)."""
         all_rows = np.arange(self.known.shape[1])
         seen = all_rows if MOSTLY * len(rows) > len(all_rows) else rows  # of all rows they are not copied
         motions = motions_of(seen)
@@ -113,4 +113,4 @@ class Known:
 def window(out: Outputs, begin: int, end: int) -> Outputs:
     """Outputs ``begin`` to ``end`` (left out) of all rows."""
     y, a, lam, work, margin = (part[:, begin:end] for part in (out.y, out.a, out.lam, out.work, out.margin))
-    return replace(out, t=out.t[begin:end], y=y, a=a, lam=lam, work=work, margin=margin)
+    return out._replace(t=out.t[begin:end], y=y, a=a, lam=lam, work=work, margin=margin)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,18 +14,19 @@ from mbsd.dynamics.batch.single_run import SingleRun
 from mbsd.dynamics.measures.quantities import Motions, Reactive
 
 
-@dataclass
-class Outputs:
-    """Arrays that the compiled loop fills; see there."""
+class Outputs(NamedTuple):
+    """Arrays that the compiled loop fills (rows.py), row by row as those of Output."""
 
     t: np.ndarray
     """(T,) s"""
     y: np.ndarray
+    """(R, T, 2, 3 nb)"""
     a: np.ndarray
     lam: np.ndarray
     work: np.ndarray
     margin: np.ndarray
     status: np.ndarray
+    """(R,) int"""
     steps: np.ndarray
     over: np.ndarray
     """(R,) when an event of the user ended a simulation (s); infinite where none did."""
@@ -35,11 +37,6 @@ class Outputs:
     def shape(self) -> tuple[int, int, bool, int]:
         """Coordinates and rows of a simulation, whether the loop finds multipliers and accelerations, and events."""
         return self.y.shape[-1], self.lam.shape[-1], self.lam.shape[1] > 0, self.released.shape[-1]
-
-    @property
-    def arrays(self) -> tuple[np.ndarray, ...]:
-        """In the order of the loop's arguments."""
-        return self.y, self.a, self.lam, self.work, self.margin, self.status, self.steps, self.over, self.released
 
 
 def until(times: np.ndarray, over: np.ndarray) -> np.ndarray:
@@ -69,7 +66,7 @@ def room_for(count: int, t: np.ndarray, coordinates: int, rows: int, forces: boo
 
 @dataclass
 class Reacting:
-    """What reactions of R rows at T times are made of."""
+    """The parts of reactions of R rows at T times."""
 
     packed: list[Packed]
     """One for each row, or one for all."""
@@ -86,8 +83,8 @@ class Reacting:
     rows: np.ndarray
     """Their rows of J, one joint after the other."""
 
-    def of(self, which: np.ndarray) -> Reactive:
-        """Reactions of some rows."""
+    def reactions_of(self, which: np.ndarray) -> Reactive:
+        """Return the reactions of some rows."""
         packed, some = self.packed[0], slice(None) if len(which) == len(self.y) else which  # views, where all are meant
         jacobians, q, own = self.jacobians[some], self.y[some, :, 0], self.lam[some][..., self.rows]
         count, times = q.shape[:2]
@@ -132,7 +129,7 @@ class MotionsOf:
         }
 
     def __call__(self, out: Outputs, which: np.ndarray, reacting: Reacting | None = None) -> Motions:
-        """Those of the rows ``which``."""
+        """Return the motions of the rows ``which``."""
         own = slice(None) if len(which) == len(out.status) else which  # views, where all are meant
         end, times = len(self.names), out.y.shape[1]
         q, v, a = (
@@ -145,5 +142,5 @@ class MotionsOf:
         traces = {name: (body, some(place), some(angle)) for name, (body, place, angle) in self.traces.items()}
         return Motions(
             self.names, q, v, a, out.work[own], some(self.com), some(self.mass), some(self.inertia), traces,
-            until(out.t, out.over[own]), None if reacting is None else reacting.of(which),
+            until(out.t, out.over[own]), None if reacting is None else reacting.reactions_of(which),
         )  # fmt: skip

@@ -19,14 +19,14 @@ from mbsd.arrays.directory import directory, made_of_masses, numbers_of
 from mbsd.base.arguments import SMALLEST
 from mbsd.base.codes import CYCLOIDAL, HARMONIC, POLYNOMIAL
 from mbsd.base.errors import MechanismError
-from mbsd.dynamics.batch.base import Base
 from mbsd.dynamics.batch.designs import Designs
+from mbsd.dynamics.batch.single_run import Base
 from mbsd.dynamics.batch.starts import Starts, starts_of
-from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.embedding.blocks.places import KEPT_Q, KEPT_SIZE
-from mbsd.dynamics.events.arrays import KINETIC, RESTITUTION, STATIC, Contacts
-from mbsd.dynamics.prepare.mass_ratio import USUAL
-from mbsd.dynamics.prepare.pressed import presses
+from mbsd.dynamics.events.arrays import KINETIC, RESTITUTION, STATIC
+from mbsd.dynamics.independent.arrays import KEPT_Q, KEPT_SIZE, Embedding
+from mbsd.dynamics.independent.coordinates import coordinates_along
+from mbsd.dynamics.prepare.inertia import USUAL
+from mbsd.dynamics.prepare.refusals import presses
 from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA
 from mbsd.model.body import rod_inertia
 from mbsd.model.laws import Motion
@@ -53,8 +53,7 @@ class Patches:
     """Numbers of all rows of ``designs`` by their places in the block of ``base``. Raises NotPatched."""
 
     def __init__(self, designs: Designs, base: Base, starts: bool = True) -> None:
-        self.designs, self.base, self.dyn, self.scratch = designs, base, base.arguments[0], base.arguments[1]
-        self.ready = base.run.ready
+        self.designs, self.base, self.ready = designs, base, base.run.ready
         self.mass: np.ndarray | None = None
         self.inertia: np.ndarray | None = None
         columns: list[Column] = []
@@ -87,7 +86,7 @@ class Patches:
     def of_thread(self, base: Base) -> Patches:
         """The same for a block of another thread, which is laid out alike."""
         out = copy.copy(self)
-        out.base, out.dyn, out.scratch, out.ready = base, base.arguments[0], base.arguments[1], base.run.ready
+        out.base, out.ready = base, base.run.ready
         out.starts = None if self.starts is None else starts_of(self.designs, base)
         return out
 
@@ -116,7 +115,7 @@ class Patches:
             raise _other(name, values) from None
         if force.kind.of_reactions or force.kind.oil or force.kind.chamber or "function" in force.params:
             raise NotPatched(f"force '{name}'")
-        entries = directory(self.ready.packed)[name].entries(self.dyn.loads)
+        entries = directory(self.ready.packed)[name].entries(self.base.parts.dyn.loads)
         places = [self.base.layout.place(array, *index) for array, index in entries]
         if len(numbers) != len(places):
             raise _other(name, values)
@@ -150,7 +149,7 @@ class Patches:
 
     def _of_laws(self) -> Iterator[Column]:
         """Yield the columns of numbers of laws, on which neither the start nor the end of a step may depend."""
-        designs, laws = self.designs, self.dyn.laws
+        designs, laws = self.designs, self.base.parts.dyn.laws
         refused = NotPatched(" and ".join(f"{each.key} of '{each.whole}'" for each, _ in designs.numbers))
         for each, number in designs.numbers:
             at, force = number.within, designs.m.forces.get(each.whole)
@@ -210,8 +209,8 @@ class Patches:
         friction, static = np.asarray(numbers["friction"]), np.asarray(numbers["static_friction"])
         if followers or (static < friction).any() or ("friction" in columns and not (friction > 0.0).all()):
             raise _other(name, values)
-        contacts = next((part for part in self.base.arguments if isinstance(part, Contacts)), None)
-        if contacts is None:  # arguments of a loop that meets none
+        contacts = getattr(self.base.parts, "contacts", None)
+        if contacts is None:  # parts of a loop that meets none
             return
         own = [contact.name for contact in self.ready.switches.contacts].index(name)
         sliding, place = self.ready.switches.contacts[own].sliding, self.base.layout.place
@@ -245,7 +244,7 @@ class Patches:
     def _of_masses(self) -> Iterator[Column]:
         assert self.mass is not None
         assert self.inertia is not None
-        dyn, layout, dynamics = self.dyn, self.base.layout, self.ready.dynamics
+        dyn, layout, dynamics = self.base.parts.dyn, self.base.layout, self.ready.dynamics
         gravity = self.ready.packed.system.gravity
         whole = np.repeat(self.mass, 3, axis=1)
         whole[:, 2::3] = self.inertia
@@ -262,8 +261,8 @@ class Patches:
                     yield layout.place(dyn.inverse, at), 1.0 / value
                     yield layout.place(dyn.metric, at), 1.0 / value
             if isinstance(dyn, Embedding):
-                yield layout.place(self.scratch.body, b, MASS), self.mass[:, b].copy()
-                yield layout.place(self.scratch.body, b, INERTIA), self.inertia[:, b].copy()
+                yield layout.place(self.base.parts.scratch.body, b, MASS), self.mass[:, b].copy()
+                yield layout.place(self.base.parts.scratch.body, b, INERTIA), self.inertia[:, b].copy()
             else:
                 yield layout.place(dyn.system.mass, b), self.mass[:, b].copy()
                 yield layout.place(dyn.system.inertia, b), self.inertia[:, b].copy()
@@ -279,40 +278,27 @@ class Patches:
     # -- starts --------------------------------------------------------------------------------------------------
 
     def _start_places(self) -> np.ndarray:
-        state, layout, scratch = self.base.arguments[2], self.base.layout, self.scratch
+        state, scratch, layout = self.base.parts.state, self.base.parts.scratch, self.base.layout
         places = [layout.place(state.y, part, c) for part in range(2) for c in range(state.y.shape[1])]
-        if isinstance(self.dyn, Embedding):
+        if isinstance(self.base.parts.dyn, Embedding):
             bodies, count = len(scratch.base), state.y.shape[1] - 3
             places += [layout.place(scratch.base, b, THETA) for b in range(bodies)]
             places += [layout.place(scratch.coordinate, k, BASE) for k in range(count)]
-            if self.dyn.block[KEPT_SIZE]:
-                first = int(self.dyn.block[KEPT_Q])
+            if self.base.parts.dyn.block[KEPT_SIZE]:
+                first = int(self.base.parts.dyn.block[KEPT_Q])
                 places += [layout.place(scratch.block_work, first + c) for c in range(3 * bodies)]
         return np.array(places, np.int64)
 
     def _start_values(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        if not isinstance(self.dyn, Embedding):
+        if not isinstance(self.base.parts.dyn, Embedding):
             return np.concatenate([q, v], axis=1)
         independent = self.base.run.independent
         assert independent is not None
         z = coordinates_along(self.base.run.coordinates, q, v)
         parts = [z[:, 0], z[:, 1], q[:, 2::3], z[:, 0, 3:]]
-        if self.dyn.block[KEPT_SIZE]:
+        if self.base.parts.dyn.block[KEPT_SIZE]:
             parts.append(q)
         return np.concatenate(parts, axis=1)
-
-
-def coordinates_along(coordinates: list[Any], q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(R, 2, 3 + f) independent coordinates and their rates at q, v (R, 3 nb)."""
-    out = np.zeros((len(q), 2, 3 + len(coordinates)))
-    for k, coordinate in enumerate(coordinates):
-        if coordinate.slide is None:
-            i, j = 3 * coordinate.body + 2, 3 * coordinate.other + 2
-            out[:, 0, 3 + k], out[:, 1, 3 + k] = q[:, i] - q[:, j], v[:, i] - v[:, j]
-        else:
-            out[:, 0, 3 + k] = [coordinate.at(row) for row in q]
-            out[:, 1, 3 + k] = [coordinate.rate(*row) for row in zip(q, v, strict=True)]
-    return out
 
 
 def _same(a: Any, b: Any) -> bool:
@@ -323,7 +309,7 @@ def _same(a: Any, b: Any) -> bool:
 
 
 def agrees(patches: Patches, row: int, fresh: np.ndarray, content_of: Callable[[], np.ndarray]) -> bool:
-    """Whether the block of a row is the one that preparing it in full makes."""
+    """Return True if the block of a row is the one that preparing it in full makes."""
     value, _, reasons = patches(range(row, row + 1))
     if reasons[0] is not None:
         return True
@@ -342,12 +328,11 @@ def _overwritten(base: Base) -> list[tuple[int, int]]:
 
     So does the lift of coordinates without inertia, of which any small one serves.
     """
-    ws = getattr(base.arguments[1], "ws", None)
-    parts = [base.arguments[0].loads.law]
+    dyn, ws = base.parts.dyn, getattr(base.parts.scratch, "ws", None)
+    parts = [dyn.loads.law]
     if ws is not None:
         parts += [part for name, part in zip(ws._fields, ws, strict=True) if name != "relative" and part.size]
     places = [(first, first + part.size) for part in parts for first in [base.layout.place(part)]]
-    dyn = base.arguments[0]
     if not isinstance(dyn, Embedding):
         massless = [int(c) for c in np.flatnonzero(dyn.inertia == 0)]
         lifted = [base.layout.place(part, c) for part in (dyn.inverse, dyn.metric) for c in massless]

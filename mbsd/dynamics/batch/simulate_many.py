@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from copy import copy
 from dataclasses import dataclass
@@ -14,23 +14,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mbsd.base.arguments import whole_number
-from mbsd.base.cores import cores
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.names import no_such
-from mbsd.base.progress import users_progress
-from mbsd.base.quiet import quiet
-from mbsd.base.shown import shown
-from mbsd.base.users_function import described, refuse_other_arguments
-from mbsd.dynamics.batch.designs import Designs, designs_of
+from mbsd.base.names import no_such, shown
+from mbsd.base.running import cores
+from mbsd.base.users_function import described, refuse_other_arguments, users_progress
+from mbsd.base.warning import quiet
+from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.early import all_outputs, plan_of
-from mbsd.dynamics.batch.single_run import Asked, NotCompiled, single_run
-from mbsd.dynamics.batch.work import Measures, Work
-from mbsd.dynamics.batch.worker import TRIED, Worker, simulated
+from mbsd.dynamics.batch.loop import Measures, Work
+from mbsd.dynamics.batch.single_run import NotCompiled, single_run
+from mbsd.dynamics.batch.worker import TRIED, Worker
 from mbsd.dynamics.integrators.advance import PAUSED_ANYWHERE
 from mbsd.dynamics.measures.columns import Done, joined, numbers_of
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.dynamics.measures.quantities import Quantity, quantity_named
-from mbsd.dynamics.simulate import integrator_named, output_times, refuse_bad_steps, refuse_formulation, simulate
+from mbsd.dynamics.runs.run import Request
+from mbsd.dynamics.simulate import PART, simulate, simulated
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
 from mbsd.results.columns import columns
@@ -52,7 +51,7 @@ LOOK = 0.2
 """s between two looks at the keyboard."""
 REASON = "reason"
 WRONGLY_WRITTEN = (NameError, AttributeError, TypeError, KeyError, ImportError, ModelError)
-"""What a function raises that is wrong for any simulation."""
+"""Errors of a function that is wrong for any simulation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,56 +113,14 @@ class Simulations:
         return f"<Simulations: {self.way}; {bad} failed; {', '.join(self.columns)}>"
 
 
-def simulate_many(
-    m: Model,
-    duration: float | None,
-    vary: Any,
-    start: Any,
-    moving: Any,
-    measure: Any,
-    steps: int,
-    times: Sequence[float] | np.ndarray | None,
-    method: str,
-    tolerance: float,
-    step: float | None,
-    formulation: str,
-    threads: int | None,
-    progress: Callable[[float], None] | None,
-    options: Mapping[str, float],
-) -> Simulations:
-    """See :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
-    asked = asked_for(m, duration, steps, times, method, tolerance, step, formulation, options)
-    if threads is not None and whole_number(f"{m.name}: threads", threads) > MOST_THREADS:
-        raise ModelError(f"{m.name}: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
-    progress = users_progress(f"{m.name}: progress", progress, "the part done, 0 .. 1")
-    return simulations(designs_of(m, vary, start, moving), measure, asked, threads, progress)
-
-
-def asked_for(
-    m: Model,
-    duration: float | None,
-    steps: int,
-    times: Sequence[float] | np.ndarray | None,
-    method: str,
-    tolerance: float,
-    step: float | None,
-    formulation: str,
-    options: Mapping[str, float],
-) -> Asked:
-    """How each is simulated. Raises ModelError for what ``simulate`` refuses."""
-    integrator = integrator_named(m.name, method)
-    integrator.numbers(m.name, options)
-    refuse_formulation(m, formulation, integrator)
-    grid = output_times(m, duration, steps, times)
-    refuse_bad_steps(m, grid, tolerance, step)
-    return Asked(grid, integrator, tolerance, step, formulation, options)
-
-
 def simulations(
-    designs: Designs, measure: Any, asked: Asked, threads: int | None, progress: Callable[[float], None] | None
+    designs: Designs, measure: Any, asked: Request, threads: int | None, progress: Callable[[float], None] | None
 ) -> Simulations:
     """Measures of all designs; see :meth:`mbsd.mechanism.Mechanism.simulate_many`."""
     m, grid = designs.m, asked.times
+    if threads is not None and whole_number(f"{m.name}: threads", threads) > MOST_THREADS:
+        raise ModelError(f"{m.name}: threads is {shown(threads)}; it must be {MOST_THREADS} at most")
+    progress = users_progress(f"{m.name}: progress", progress, PART)
     measures = checked_measures(m, measure, grid)
     quantities = {} if callable(measures) else quantities_of(designs, measures)
     why = _why_single(designs, asked, measures, quantities)
@@ -227,14 +184,14 @@ def quantities_of(designs: Designs, measures: Mapping[str, Measure]) -> dict[str
     return {name: quantity_named(designs.m, name, known) for name in names}
 
 
-def _refuse_no_numbers(designs: Designs, asked: Asked, measure: Callable[[Any], Any]) -> None:
+def _refuse_no_numbers(designs: Designs, asked: Request, measure: Callable[[Any], Any]) -> None:
     """Raise ModelError if ``measure`` gives anything but numbers of the first simulation, or is written wrongly.
 
     Else what it raises is the reason of that row.
     """
     with quiet():
         try:
-            sol = simulated(designs.row_by_row().of(0), asked)
+            sol = simulated(designs.row_by_row()(0), asked)
         except Exception:
             return
         try:
@@ -251,7 +208,7 @@ def _column_names(designs: Designs) -> list[str]:
     models, first = designs.row_by_row(), None
     for row in range(-1, min(designs.count, TRIED)):
         try:
-            own = copy(models.of(row) if row >= 0 else designs.m)
+            own = copy(models(row) if row >= 0 else designs.m)
             own.events = {}  # none belongs to this instant
             return list(columns(simulate(own, 1e-9, 1, None, "dop853", 1e-6, None, _unseen, {})))
         except MechanismError as error:
@@ -264,7 +221,7 @@ def _unseen(part: float) -> None:
     """The progress of an instant, which may compile for a while and would say how far it is."""
 
 
-def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mapping[str, Quantity]) -> str | None:
+def _why_single(designs: Designs, asked: Request, measures: Any, quantities: Mapping[str, Quantity]) -> str | None:
     if callable(measures):
         return "measure is a function of a solution"
     slow = [name for name, quantity in quantities.items() if quantity.of_motions is None]
@@ -273,7 +230,7 @@ def _why_single(designs: Designs, asked: Asked, measures: Any, quantities: Mappi
     models, reactive = designs.row_by_row(), any(quantity.reactive for quantity in quantities.values())
     for row in {0, designs.count // 2, designs.count - 1}:
         try:
-            single_run(models.of(row), asked, reactive)
+            single_run(models(row), asked, reactive)
         except NotCompiled as why:
             return str(why)
         except Exception:

@@ -2,32 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from operator import attrgetter
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.dynamics.batch.block import kind_of
-from mbsd.dynamics.batch.cylinders import has_cylinders
-from mbsd.dynamics.embedding.blocks.places import KEPT_SIZE
-from mbsd.dynamics.embedding.coordinates import Coordinate
+from mbsd.arrays.packing import Packed
+from mbsd.dynamics.batch.block import content, kind_of, laid_out
+from mbsd.dynamics.batch.rows import Numbers
 from mbsd.dynamics.events.arrays import Contacts
 from mbsd.dynamics.events.packing import contacts_of
 from mbsd.dynamics.events.users import packing as users_packing
 from mbsd.dynamics.genevas.arrays import Genevas
 from mbsd.dynamics.genevas.packing import no_genevas
+from mbsd.dynamics.independent.arrays import KEPT_SIZE
+from mbsd.dynamics.independent.coordinates import Coordinate
 from mbsd.dynamics.integrators.advance import number_of
-from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated_rows import packing as repeated_packing
-from mbsd.dynamics.runs.carried_steps import NEAR, can_carry
-from mbsd.dynamics.runs.embed import embedded_at_start
-from mbsd.dynamics.runs.independent_steps import IndependentSteps
-from mbsd.dynamics.runs.run import INDEPENDENT, REFERENCE, Run
-from mbsd.dynamics.runs.to_end import independent_steps
+from mbsd.dynamics.runs.embedding import embedded_at_start
+from mbsd.dynamics.runs.motion import NEAR, IndependentSteps, can_carry, independent_steps
+from mbsd.dynamics.runs.run import REFERENCE, Request, Run, run_of
 from mbsd.dynamics.state import State
 from mbsd.equations.interactions.switching import SWITCHING
 from mbsd.kinematics.limits.joints import limits_of
@@ -36,17 +35,21 @@ from mbsd.model.event import Event
 from mbsd.model.mechanism import Model
 
 
-@dataclass(frozen=True)
-class Asked:
-    """How each is simulated, as ``simulate`` takes it."""
+def has_cylinders(packed: Packed) -> bool:
+    """Return True if gas or oil must be checked after a simulation."""
+    return any(force.kind.chamber is not None or force.kind.states is not None for force in packed.forces)
 
-    times: np.ndarray
-    """(T,) s."""
-    integrator: Integrator
-    tolerance: float
-    step: float | None
-    formulation: str
-    options: Mapping[str, float]
+
+class Parts(NamedTuple):
+    """Arrays that the loop reads and overwrites."""
+
+    dyn: Any
+    """Dynamics or Embedding."""
+    scratch: Any
+    state: Any
+    settings: Any
+    contacts: Contacts
+    genevas: Genevas
 
 
 class NotCompiled(Exception):
@@ -66,7 +69,7 @@ class SingleRun:
     traces: dict[str, Marker]
     """Traced points as they are now."""
     events: list[Event]
-    """Those of the user."""
+    """Events of the user."""
 
     @property
     def steps_at_once(self) -> int:
@@ -76,10 +79,10 @@ class SingleRun:
 
     @cached_property
     def kind(self) -> tuple[Any, ...]:
-        """What runs that share a block have in common."""
+        """Return all that runs which share a block have in common."""
         stops, dynamics = self.ready.stops, (self.ready.dynamics,)
         return (
-            kind_of(self.arguments),
+            kind_of(self.parts),
             None if self.independent is None else kind_of(dynamics),  # multipliers are found from it
             self.ready.mobility.redundant_rows,
             tuple((name, marker.body.name) for name, marker in self.traces.items()),
@@ -91,29 +94,29 @@ class SingleRun:
 
     @property
     def counts_turns(self) -> bool:
-        """Whether what it starts with decides of which whole turn limits of angles are."""
+        """Return True if limits of angles are counted from the turn of its start."""
         return bool(self.ready.switches.contacts) and any(limit.angular for limit in limits_of(self.ready.packed))
 
     @property
     def failed(self) -> bool:
-        """Whether a function of the user failed in this thread."""
+        """Return True if a function of the user failed in this thread."""
         return any(callback.failed for callback in self.ready.packed.specials.callbacks)
 
-    def forget(self) -> None:
-        """That it did."""
+    def forget_failures(self) -> None:
+        """Clear recorded failures of functions of the user."""
         for callback in self.ready.packed.specials.callbacks:
             callback.forget()
 
     @cached_property
     def outputs_count(self) -> bool:
-        """Whether forces at outputs count in later steps: friction goes on from the last one, others may remember."""
+        """Return True if forces at outputs count later: friction goes on from the last one, others may remember."""
         loads, sliding = self.ready.dynamics.loads, self.ready.dynamics.sliding
         switches = bool(loads.switch[0, SWITCHING] > 0.0)
         return switches or len(loads.friction) + len(loads.user) + len(sliding.rows) > 0
 
     @cached_property
     def outputs_alone(self) -> bool:
-        """Whether nobody but measures reads outputs, and no evaluation goes on from that of an output.
+        """Return True if outputs do not influence later steps and only measures read them.
 
         That is so of closed forms: Newton-Raphson begins where the last evaluation ended, and moves last digits.
         """
@@ -131,12 +134,12 @@ class SingleRun:
         return NEAR if carried else 0.0
 
     @property
-    def arguments(self) -> tuple[Any, ...]:
-        """dyn, scratch, state and settings of the integrator's loop, contacts, and Genevas."""
+    def parts(self) -> Parts:
+        """Return the arrays that the loop reads and overwrites."""
         if self.independent is not None:
             own = self.independent
-            return own.arrays, own.scratch, own.own, own.settings, self.contacts, self.genevas
-        return self.ready.dynamics, self.run.scratch, self.state, self.run.settings, self.contacts, self.genevas
+            return Parts(own.arrays, own.scratch, own.own, own.settings, self.contacts, self.genevas)
+        return Parts(self.ready.dynamics, self.run.scratch, self.state, self.run.settings, self.contacts, self.genevas)
 
     @cached_property
     def contacts(self) -> Contacts:
@@ -153,7 +156,27 @@ class SingleRun:
         return own.genevas
 
 
-def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:
+class Base:
+    """A run before its first step, laid out in a block of numbers, which all others of its kind share."""
+
+    def __init__(self, run: SingleRun, parts_of: Callable[[SingleRun], Any] = attrgetter("parts")) -> None:
+        """``parts_of`` gives what is laid out of a run."""
+        self.run, self._parts_of = run, parts_of
+        self.parts, self.block, self.layout = laid_out(parts_of(run))
+        self.fresh = self.block[None].copy()
+        """(1, N) the block before the first step."""
+
+    def alike(self, runs: Sequence[SingleRun]) -> Numbers:
+        """Return the numbers of runs of this kind that were prepared."""
+        fresh = np.array([content(self._parts_of(run)) for run in runs])
+        return Numbers(self.block, fresh, np.zeros(0, np.int64), np.zeros((1, 0)))
+
+    def with_values(self, place: np.ndarray, value: np.ndarray) -> Numbers:
+        """Return the numbers of rows that differ from this run by ``value`` (R, k) at ``place`` (k,)."""
+        return Numbers(self.block, self.fresh, place, value)
+
+
+def single_run(m: Model, asked: Request, reactive: bool = False) -> SingleRun:
     """Prepare it as ``simulate`` does; ``reactive``: measures read reactions, too.
 
     Raises what ``simulate`` raises, and NotCompiled.
@@ -161,20 +184,13 @@ def single_run(m: Model, asked: Asked, reactive: bool = False) -> SingleRun:
     if number_of(asked.integrator) is None:
         raise NotCompiled(f"method '{asked.integrator.name}' has no loop over many")
     times, events = asked.times, list(m.events.values())
-    if events and asked.formulation == INDEPENDENT:
-        raise NotCompiled("formulation='independent' does not know events")
     ready = prepare_dynamics(m, float(times[0]), float(times[-1]), contacts=True)
-    if asked.formulation == INDEPENDENT and (ready.switches.contacts or ready.sticks):
-        raise NotCompiled("formulation='independent' does not know contacts, limits and joints that stick")
     _refuse(ready)
     if reactive and ready.approaches:
         raise NotCompiled("reactions where the damping of a contact remembers how fast it approached")
     if reactive and ready.following.rows:
         raise NotCompiled("reactions where points are on curves that cross themselves")
-    longest = asked.step or float(np.diff(times).max())
-    run = Run(
-        ready, asked.integrator, asked.tolerance, longest, float(times[-1] - times[0]), asked.options, asked.formulation
-    )
+    run = run_of(m, asked, ready)
     why = users_packing.why_not(events, run.settings.longest)
     if why is not None:
         raise NotCompiled(why)

@@ -20,8 +20,8 @@ from mbsd.arrays.inertias import inertia_of, least_energy, usual_inertia
 from mbsd.arrays.packing import pack
 from mbsd.base.errors import ModelError
 from mbsd.base.users_function import described
-from mbsd.dynamics.batch.base import Base
 from mbsd.dynamics.batch.designs import Designs
+from mbsd.dynamics.batch.single_run import Base
 from mbsd.equations.assembly import tabulate
 from mbsd.kinematics.pose.close import CLOSED
 from mbsd.kinematics.pose.held_values import free_direction, half_held, places_of
@@ -57,7 +57,7 @@ class Starts:
         return packed
 
     def __call__(self, rows: Sequence[int]) -> Started:
-        """Those of some rows."""
+        """Return the starts of some rows."""
         ready = self.ready
         q, v = np.repeat(ready.initial.q[None], len(rows), 0), np.repeat(ready.initial.v[None], len(rows), 0)
         reasons: list[str | None] = []
@@ -91,7 +91,7 @@ class StartsAtOnce(Starts):
         self.nu[packed.driver_rows :] = self.drive[1:, 1]
 
     def __call__(self, rows: Sequence[int]) -> Started:
-        """Those of some rows."""
+        """Return the starts of some rows."""
         reasons = [self._refused(row) for row in rows]
         known = [k for k, reason in enumerate(reasons) if reason is None]
         if len(known) == len(rows):
@@ -112,7 +112,7 @@ class StartsAtOnce(Starts):
         return None
 
     def _at_once(self, rows: Sequence[int]) -> Started:
-        """Those of rows whose starts can be."""
+        """Return the starts of rows whose starts are possible."""
         q = np.repeat(self.ready.initial.q[None], len(rows), 0)
         targets = self._targets(rows)
         q[:, self.wanted] = targets
@@ -219,7 +219,7 @@ def starts_of(designs: Designs, base: Base) -> Starts:
 
 
 def _is_tree(packed: Packed) -> bool:
-    """Whether joints and drivers connect bodies and ground without loops."""
+    """Return True if joints and drivers connect bodies and ground without loops."""
     group = list(range(len(packed.body_names)))
     for i, j in packed.system.marker_body[packed.markers]:
         a, b = group[i], group[j]

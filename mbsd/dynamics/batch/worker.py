@@ -1,4 +1,4 @@
-"""What one thread does: simulations in chunks, each in the compiled loop or by ``simulate``, and their measures."""
+"""The work of one thread: simulations in chunks, each in the compiled loop or by ``simulate``, and their measures."""
 
 from __future__ import annotations
 
@@ -8,26 +8,29 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.stopping import stops_when
+from mbsd.arrays.packing import Packed
+from mbsd.base.errors import MechanismError
+from mbsd.base.running import stops_when
 from mbsd.base.users_function import described
-from mbsd.dynamics.batch.base import Base, based_on
 from mbsd.dynamics.batch.block import content
-from mbsd.dynamics.batch.cylinders import can_be, has_cylinders
 from mbsd.dynamics.batch.designs import Built
-from mbsd.dynamics.batch.loop import MOST_STEPS, Loop
+from mbsd.dynamics.batch.loop import MOST_STEPS, Loop, Work
 from mbsd.dynamics.batch.outputs import MotionsOf, Outputs
 from mbsd.dynamics.batch.patches import NotPatched, Patches, agrees
 from mbsd.dynamics.batch.reactions import Reactions
-from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, STOPPED
-from mbsd.dynamics.batch.single_run import Asked, NotCompiled, SingleRun, single_run
-from mbsd.dynamics.batch.work import Work
+from mbsd.dynamics.batch.rows import NEARLY_SINGULAR, STOPPED, Numbers
+from mbsd.dynamics.batch.single_run import (
+    Base,
+    NotCompiled,
+    SingleRun,
+    has_cylinders,
+    single_run,
+)
 from mbsd.dynamics.events.loop import NOT_SOLVED
 from mbsd.dynamics.measures.columns import Done, columns_of, failed, joined, numbers_of
 from mbsd.dynamics.measures.quantities import Motions
-from mbsd.dynamics.simulate import simulate
+from mbsd.dynamics.simulate import refuse_impossible, simulated
 from mbsd.dynamics.state import CHOOSE, NO_CONVERGENCE, NOT_FINITE, PAUSED, REACHED, UNCLEAR
-from mbsd.model.mechanism import Model
-from mbsd.results.solution import Solution
 
 TRIED = 64
 """Rows of which the first that can be prepared is what others go by."""
@@ -91,13 +94,13 @@ class Worker:
         """The first row that can be prepared."""
         for row in range(min(self.designs.count, TRIED)):
             try:
-                return based_on(self._run_of(row))
+                return Base(self._run_of(row))
             except Exception:
                 continue
         return None
 
     def _run_of(self, row: int) -> SingleRun:
-        return single_run(self.models.of(row), self.work.asked, self.work.reactive)
+        return single_run(self.models(row), self.work.asked, self.work.reactive)
 
     def _patches(self) -> Patches | None:
         """Numbers of rows that need not be prepared, if none need; some are prepared for comparison."""
@@ -121,8 +124,8 @@ class Worker:
                 run = self._run_of(row)
             except Exception:
                 continue
-            same = run.kind == base.kind
-            if not same or not agrees(patches, row, base.fresh[0], partial(content, run.arguments)):
+            same = run.kind == base.run.kind
+            if not same or not agrees(patches, row, base.fresh[0], partial(content, run.parts)):
                 self.work.note = "each is prepared anew: more than what varies depends on it"
                 return None
         return patches
@@ -136,7 +139,7 @@ class Worker:
         inertia = None if self.patches.inertia is None else self.patches.inertia[rows.start : rows.stop]
         runs, times = [self.base.run], self.work.asked.times
         motions = MotionsOf(runs, mass, inertia)
-        out = self._run(self.base.fresh, self.patches.place, value, motions, runs)
+        out = self._run(self.base.with_values(self.patches.place, value), motions, runs)
         if q is not None:  # closed forms may stand on another branch than the start does
             odd = np.abs(out.y[:, 0, 0] - q).max(axis=1) > NEAR * self.base.run.ready.packed.size
             out.status[odd] = OTHER
@@ -168,12 +171,11 @@ class Worker:
 
     def _of_kind(self, kind: tuple[Any, ...], runs: Mapping[int, SingleRun]) -> dict[int, Done]:
         """Rows that share a block, by their numbers."""
-        if self.base is None or self.base.kind != kind:
-            self.base, self.reactions = based_on(next(iter(runs.values()))), None
+        if self.base is None or self.base.run.kind != kind:
+            self.base, self.reactions = Base(next(iter(runs.values()))), None
         own, times = list(runs.values()), self.work.asked.times
         motions = MotionsOf(own, None, None)
-        fresh = np.array([content(run.arguments) for run in own])
-        out = self._run(fresh, np.zeros(0, np.int64), np.zeros((1, 0)), motions, own)
+        out = self._run(self.base.alike(own), motions, own)
         reacting = self._reactions(None).of_runs(own, out, times) if self.work.reactive else None
         together = self._measured(list(runs), lambda which: motions(out, which, reacting), out)
         return {row: together.row(k) for k, row in enumerate(runs)}
@@ -185,23 +187,21 @@ class Worker:
             self.reactions = Reactions(self.base.run, patches, np.array(wanted, np.int64))
         return self.reactions
 
-    def _run(
-        self, fresh: np.ndarray, place: np.ndarray, value: np.ndarray, motions: MotionsOf, runs: Sequence[SingleRun]
-    ) -> Outputs:
+    def _run(self, numbers: Numbers, motions: MotionsOf, runs: Sequence[SingleRun]) -> Outputs:
         """Rows to their end, or as far as there is something to measure; they are those of ``runs``, or like it."""
         assert self.base is not None
         if self.loop is None or self.loop.base is not self.base:
             self.loop = Loop(self.base, self.work, None if self.loop is None else self.loop.room)
         run, packed = self.base.run, self.base.run.ready.packed
-        run.forget()
-        out, written = self.loop(fresh, place, value, motions)
+        run.forget_failures()
+        out, written = self.loop(numbers, motions)
         if run.failed:  # in some row, or in a trial step that was not taken: single simulations can tell
             out.status[out.status == REACHED] = FAILED
-            run.forget()
+            run.forget_failures()
         if has_cylinders(packed):
             for k in np.flatnonzero(out.status == REACHED).tolist():
                 own, end = runs[min(k, len(runs) - 1)].ready.packed, written[k]
-                if not can_be(own, np.minimum(out.t[:end], out.over[k]), out.y[k, :end]):
+                if not is_possible(own, np.minimum(out.t[:end], out.over[k]), out.y[k, :end]):
                     out.status[k] = NO_ROOM
         return out
 
@@ -249,16 +249,17 @@ class Worker:
 
     def _simulated(self, row: int) -> dict[str, np.ndarray]:
         measures = self.work.measures
-        sol = simulated(self.models.of(row), self.work.asked)
+        sol = simulated(self.models(row), self.work.asked)
         if not isinstance(measures, Mapping):
             return {name: np.array([value]) for name, value in numbers_of(sol.mechanism.name, measures(sol)).items()}
         along = {name: quantity.of_solution(sol)[None] for name, quantity in self.work.quantities.items()}
         return columns_of(measures, sol.t, along)
 
 
-def simulated(m: Model, asked: Asked) -> Solution:
-    """One simulation by itself."""
-    return simulate(
-        m, None, 1, asked.times, asked.integrator.name, asked.tolerance, asked.step, None, asked.options,
-        formulation=asked.formulation,
-    )  # fmt: skip
+def is_possible(packed: Packed, t: np.ndarray, y: np.ndarray) -> bool:
+    """Return True if ``simulate`` takes y (T, 2, 3 nb) at times (T,) (s): cylinders have room and pressure."""
+    try:
+        refuse_impossible(packed, t, y)
+    except MechanismError:
+        return False
+    return True

@@ -111,7 +111,7 @@ where joints slide beside others at rest."""
 
 
 class Sticks(NamedTuple):
-    """What joints with friction add, for c rows and f joints with friction; contacts that lose friction once they slide
+    """Arrays of f joints with friction, for c rows; contacts that lose friction once they slide
     share with others, too. No rows where there is none of them."""
 
     joint: Any
@@ -136,6 +136,19 @@ class Sticks(NamedTuple):
     """mbsd.dynamics.events.laws.division.Division, of c rows."""
     together: Any
     """mbsd.dynamics.events.laws.least_part.Together, of c rows."""
+
+
+class Stepping(NamedTuple):
+    """What steps need beside a state: tolerances, outputs, and the times of jumps."""
+
+    settings: Any
+    """mbsd.dynamics.state.Settings"""
+    out: Any
+    """mbsd.dynamics.state.Output"""
+    before: Any
+    """(j,) times (s) right before loads or laws jump, rising."""
+    after: Any
+    """(j,) times right after."""
 
 
 class Outside(NamedTuple):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.errors import ModelError, ModelWarning, SimulationError
-from mbsd.base.warn import warn
+from mbsd.base.warning import warn
 from mbsd.compiling.callback import Callback
 from mbsd.compiling.jit import Often
 from mbsd.dynamics.events.arrays import (
@@ -54,10 +54,9 @@ from mbsd.dynamics.events.refusals import jam_at, refuse_inside, taking_turns
 from mbsd.dynamics.events.search import CHANCE
 from mbsd.dynamics.events.users.arrays import GROUP, ROW, UNKNOWN
 from mbsd.dynamics.repeated_rows.packing import opened
-from mbsd.dynamics.runs.pace import Pace
-from mbsd.dynamics.runs.recording import Snapshot
-from mbsd.dynamics.runs.reference_steps import advance, check_callbacks
-from mbsd.dynamics.runs.refusal import refusal
+from mbsd.dynamics.runs.diagnosis import refusal
+from mbsd.dynamics.runs.run import Snapshot
+from mbsd.dynamics.runs.steps import Pace, advance, check_callbacks
 from mbsd.dynamics.state import NEXT, NOT_FINITE, PAUSED, REACHED, TIME, WORK, Output, State
 from mbsd.equations.system import ZERO
 from mbsd.model.event import Event, Happening
@@ -197,7 +196,7 @@ class EventSteps:
         return states, tuple(number[gaps:, SIGN].tolist()), switches.held()
 
     def _note_outputs(self) -> None:
-        """Outputs written since the last call were written with the rows that held then."""
+        """Note which rows held at the outputs that were written since the last call."""
         following = int(self.state.count[NEXT])
         self.held[self._told : following] = self._holding
         self._told = max(self._told, following)
@@ -260,7 +259,7 @@ class EventSteps:
     # -- points to go on from -----------------------------------------------------------------------------------
 
     def snapshot(self) -> Snapshot:
-        """This moment, to go on from."""
+        """Return this moment, to go on from."""
         held = tuple(part.copy() for part in self._kept)
         released = frozenset(self.switches.released)
         return Snapshot(

@@ -11,7 +11,7 @@ import math
 from mbsd.compiling.callback import call
 from mbsd.compiling.jit import internal, lazy
 from mbsd.dynamics.events.arrays import HALF, LAST_STEP, METHOD, SHORTEST, TRYING
-from mbsd.dynamics.integrators.advance import copy_state, through
+from mbsd.dynamics.integrators.advance import advance_past_jumps, copy_state
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STEP_TOO_SMALL, TIME
 from mbsd.equations.relative.curve_pieces import CLOSED, FARTHEST, SPAN, U, X, Y, find_foot
 from mbsd.equations.system import LAST
@@ -19,7 +19,7 @@ from mbsd.equations.system import LAST
 
 @internal
 def _line(system, y, i, j):
-    """From marker i to marker j (m) in the world at y (2, 3 nb), and how that changes (m/s)."""
+    """Return the vector (m) from marker i to marker j in the world at y (2, 3 nb), and its rate (m/s)."""
     x0 = 0.0
     x1 = 0.0
     v0 = 0.0
@@ -41,7 +41,7 @@ def _line(system, y, i, j):
 
 @internal
 def _approach(system, wheels, before, after, h):
-    """How far centres came nearer to each other in a step of h (s) between two y, over how far they may."""
+    """Return how far centres approached each other in a step of h (s) between two y, over what is allowed."""
     most = 0.0
     for k in range(wheels.markers.shape[0]):
         x0, x1, v0, v1 = _line(system, before, wheels.markers[k, 0], wheels.markers[k, 1])
@@ -59,7 +59,7 @@ def _approach(system, wheels, before, after, h):
 
 @internal
 def _met(system, wheels, y):
-    """Whether the centres of two wheels have met at y (2, 3 nb)."""
+    """Return True if the centres of two wheels have met at y (2, 3 nb)."""
     met = False
     for k in range(wheels.markers.shape[0]):
         x0, x1, _, _ = _line(system, y, wheels.markers[k, 0], wheels.markers[k, 1])
@@ -99,8 +99,17 @@ def _find_feet(system, ws, curves, q):
     return most
 
 
+@internal
+def _advance(dyn, scratch, state, contacts, stepping, end, steps):
+    """Call ``advance_past_jumps`` with the integrator of the run."""
+    method = int(contacts.clock[METHOD])
+    return advance_past_jumps(
+        dyn, scratch, state, stepping.out, stepping.settings, end, steps, stepping.before, stepping.after, method
+    )
+
+
 @lazy(int)
-def _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, before, after):
+def _step_by_step(dyn, scratch, state, contacts, stepping, end, steps):
     wheels = contacts.wheels
     curves = contacts.curves
     kept = wheels.before
@@ -108,13 +117,13 @@ def _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, befo
         copy_state(kept, state)
         target = end
         while True:
-            status = through(dyn, scratch, state, out, settings, target, 1, before, after, int(contacts.clock[METHOD]))
+            status = _advance(dyn, scratch, state, contacts, stepping, target, 1)
             if status != REACHED and status != PAUSED:
                 return status
             taken = state.clock[TIME] - kept.clock[TIME]
             farthest = _approach(dyn.system, wheels, kept.y, state.y, taken)
             farthest = max(farthest, _find_feet(dyn.system, scratch.ws, curves, state.y[0]))
-            if farthest <= 1.0 or taken <= wheels.bounds[SHORTEST] * settings.longest:
+            if farthest <= 1.0 or taken <= wheels.bounds[SHORTEST] * stepping.settings.longest:
                 break
             copy_state(state, kept)
             target = kept.clock[TIME] + taken / (2.0 * farthest)
@@ -132,7 +141,7 @@ def _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, befo
 
 @lazy(int)
 def _advance_outside(contacts, end, steps):
-    """``through`` by an integrator in Python."""
+    """Advance by an integrator in Python."""
     outside = contacts.outside
     outside.asked[0] = steps
     outside.asked[1] = contacts.clock[TRYING]
@@ -141,10 +150,10 @@ def _advance_outside(contacts, end, steps):
 
 
 @internal
-def advance_to(dyn, scratch, state, out, settings, contacts, end, steps, before, after):
-    """``through``, a step at a time where wheels may meet or points follow curves."""
+def advance_to(dyn, scratch, state, contacts, stepping, end, steps):
+    """Advance to ``end`` (s), a step at a time where wheels may meet or points follow curves; returns a status."""
     if contacts.clock[METHOD] < 0.0:
         return _advance_outside(contacts, end, steps)
     if contacts.wheels.markers.shape[0] > 0 or contacts.curves.place.shape[0] > 0:
-        return _step_by_step(dyn, scratch, state, out, settings, contacts, end, steps, before, after)
-    return through(dyn, scratch, state, out, settings, end, steps, before, after, int(contacts.clock[METHOD]))
+        return _step_by_step(dyn, scratch, state, contacts, stepping, end, steps)
+    return _advance(dyn, scratch, state, contacts, stepping, end, steps)

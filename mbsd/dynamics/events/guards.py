@@ -1,4 +1,4 @@
-"""What is looked at within a step, on its quintic, which shows where to look, and of the motion itself.
+"""Guards: scalars whose zeros within a step are events, on the step's quintic and along the motion itself.
 
     open contact    its gap (of a clutch its rate)      closed contact    its normal force N
     it slides       its speed, sign kept                it sticks         mu_s N - |T|
@@ -7,9 +7,9 @@
 Each is that of a row of Contacts: of a gap, or of a way; sticking/ways.py says what those of joints are. Scalars are
 not negative now, and mean an event where they fall through zero.
 
-    q(x) = q_0 + h v_0 x + h^2 a_0 x^2 / 2 + ... x^5        x = (t - t_0) / h
+    q(x) = q_0 + h q_0' x + h^2 q_0'' x^2 / 2 + ... x^5        x = (t - t_0) / h
 
-The quintic has places, velocities and accelerations of both ends of the step; the motion itself is found by going on
+The quintic has q, q' and q'' of both ends of the step; the motion itself is found by going on
 from the start of the step.
 """
 
@@ -37,29 +37,31 @@ from mbsd.dynamics.events.arrays import (
     VALUE,
 )
 from mbsd.dynamics.events.following import advance_to
-from mbsd.dynamics.events.rows import along, any_held, gaps, gaps_of, measure_gaps, without_contacts
+from mbsd.dynamics.events.rows import any_held, gaps_of, read_gaps
 from mbsd.dynamics.events.sticking.ways import read_ways
 from mbsd.dynamics.events.users.values import signed
+from mbsd.dynamics.formulation import along, bends, derivative, measure_gaps, speeds, without_contacts
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.state import NEXT, REACHED, TIME
 
 
 @internal
-def fit(contacts, state):
-    """The quintic from contacts.before to ``state``."""
+def fit(dyn, contacts, state):
+    """Find the quintic from contacts.before to ``state``, whose derivatives are valid."""
     before = contacts.before
+    bends(dyn, before.y, before.dy, contacts.rates[0])
+    bends(dyn, state.y, state.dy, contacts.rates[1])
     start = before.clock[TIME]
     h = state.clock[TIME] - start
     contacts.clock[START] = start
     contacts.clock[LENGTH] = h
     for c in range(state.y.shape[1]):
         q0 = before.y[0, c]
-        v0 = h * before.y[1, c]
-        a0 = h * h * before.dy[1, c]
+        v0 = h * before.dy[0, c]
+        a0 = h * h * contacts.rates[0, c]
         rise = state.y[0, c] - q0 - v0 - a0 / 2
-        slope = h * state.y[1, c] - v0 - a0
-        bend = h * h * state.dy[1, c] - a0
+        slope = h * state.dy[0, c] - v0 - a0
+        bend = h * h * contacts.rates[1, c] - a0
         contacts.quintic[0, c] = q0
         contacts.quintic[1, c] = v0
         contacts.quintic[2, c] = a0 / 2
@@ -69,7 +71,7 @@ def fit(contacts, state):
 
 
 @internal
-def stand_at(contacts, x):
+def stand_at(dyn, contacts, x):
     """Fill contacts.pose at the part x of the step; returns the time (s)."""
     k = contacts.quintic
     h = contacts.clock[LENGTH]
@@ -77,6 +79,7 @@ def stand_at(contacts, x):
         contacts.pose[0, c] = k[0, c] + x * (k[1, c] + x * (k[2, c] + x * (k[3, c] + x * (k[4, c] + x * k[5, c]))))
         rate = k[1, c] + x * (2 * k[2, c] + x * (3 * k[3, c] + x * (4 * k[4, c] + x * 5 * k[5, c])))
         contacts.pose[1, c] = rate / h
+    speeds(dyn, contacts.pose[0], contacts.pose[1])
     return contacts.clock[START] + h * x
 
 
@@ -110,7 +113,7 @@ def read(dyn, scratch, contacts, t, y, forces):
     if forces:
         derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
     else:
-        measure_gaps(dyn, scratch, t, y[0])
+        read_gaps(dyn, scratch, t, y[0])
     _values(dyn, scratch, contacts, y, forces)
 
 
@@ -121,11 +124,11 @@ def sample(dyn, scratch, contacts):
     for k in range(contacts.place.shape[0]):
         forces = forces or contacts.number[k, CLOSED] > 0.0
     for i in range(PARTS.shape[0]):
-        t = stand_at(contacts, PARTS[i])
+        t = stand_at(dyn, contacts, PARTS[i])
         if forces:
             derivative(dyn, scratch, t, contacts.pose, contacts.rates, contacts.lam)
         else:
-            gaps(dyn, scratch, t, contacts.pose[0])
+            measure_gaps(dyn, scratch, t, contacts.pose[0])
         _values(dyn, scratch, contacts, contacts.pose, forces)
         for k in range(contacts.place.shape[0]):
             contacts.samples[k, i] = contacts.vector[VALUE, k]
@@ -133,7 +136,7 @@ def sample(dyn, scratch, contacts):
 
 @internal
 def _value(dyn, scratch, contacts, t, y, k):
-    """What is looked at of row k at a state y (2, 3 nb); behind the last row are events of the user."""
+    """Return the guard of row k at a state y (2, 3 nb); behind the last row are events of the user."""
     if k >= contacts.place.shape[0]:
         return signed(contacts.events, k - contacts.place.shape[0], t, y)
     read(dyn, scratch, contacts, t, y, contacts.number[k, CLOSED] > 0.0)
@@ -142,27 +145,27 @@ def _value(dyn, scratch, contacts, t, y, k):
 
 @apart
 def on_quintic(dyn, scratch, contacts, k, x):
-    """What is looked at of row k at the part x of the step, on the quintic."""
-    t = stand_at(contacts, x)
+    """Return the guard of row k at the part x of the step, on the quintic."""
+    t = stand_at(dyn, contacts, x)
     return _value(dyn, scratch, contacts, t, contacts.pose, k)
 
 
 @internal
 def at_state(dyn, scratch, contacts, state, k):
-    """The same of a state."""
+    """Return the guard of row k at a state."""
     return _value(dyn, scratch, contacts, state.clock[TIME], state.y, k)
 
 
 @apart
-def of_motion(dyn, scratch, settings, contacts, out, before, after, k, t):
-    """The same at a time (s) within the step, by the motion itself; not a number where it gets nowhere."""
+def of_motion(dyn, scratch, contacts, stepping, k, t):
+    """Return the guard of row k along the motion itself at a time (s) within the step; NaN where it gets nowhere."""
     trial = contacts.trial
     copy_state(trial, contacts.before)
     if t > trial.clock[TIME]:
-        trial.count[NEXT] = out.t.shape[0]
+        trial.count[NEXT] = stepping.out.t.shape[0]
         own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
         contacts.clock[TRYING] = 1.0
-        status = advance_to(own, scratch, trial, out, settings, contacts, t, NO_LIMIT, before, after)
+        status = advance_to(own, scratch, trial, contacts, stepping, t, NO_LIMIT)
         contacts.clock[TRYING] = 0.0
         if status != REACHED:
             contacts.clock[FAILURE] = status
@@ -172,5 +175,5 @@ def of_motion(dyn, scratch, settings, contacts, out, before, after, k, t):
 
 @internal
 def beyond_time(contacts):
-    """(s) where what was met is beyond zero."""
+    """Return the time (s) at which the guard that was met is beyond zero."""
     return contacts.clock[START] + contacts.clock[LENGTH] * contacts.clock[BEYOND]

@@ -1,4 +1,4 @@
-"""Changes where contacts close, open, slide or stick: impacts, then the state of each from now on.
+"""Jumps where contacts close, open, slide or stick: impacts, then the state of each contact from now on.
 
 By Poisson's law with Coulomb friction in both phases of an impact:
 
@@ -56,7 +56,6 @@ from mbsd.dynamics.events.friction.decisions import (
 from mbsd.dynamics.events.friction.pushes import solve_with_friction
 from mbsd.dynamics.events.pushes import find_compliance, solve_pushes
 from mbsd.dynamics.events.rows import (
-    along,
     find_rates,
     gaps_of,
     give,
@@ -66,7 +65,7 @@ from mbsd.dynamics.events.rows import (
     release_rows,
     stop,
 )
-from mbsd.dynamics.reference.acceleration import derivative
+from mbsd.dynamics.formulation import along, derivative, push
 from mbsd.dynamics.state import TIME
 
 CLOSE = 1e2
@@ -221,7 +220,6 @@ def _decide(dyn, scratch, contacts, t, y, touched):
     count = contacts.place.shape[0]
     ways = contacts.friction.gap.shape[0]
     schur = dyn.schur
-    jac = scratch.ws.jac
     derivative(dyn, scratch, t, y, contacts.rates, contacts.lam)
     force = contacts.force
     for c in range(force.shape[0]):
@@ -230,10 +228,7 @@ def _decide(dyn, scratch, contacts, t, y, touched):
         for s in range(2):
             r = schur.rows[b, s]
             if r >= 0:
-                for side in range(2):
-                    at = 3 * dyn.system.row_body[r, side]
-                    for c in range(3):
-                        force[at + c] += jac[r, 3 * side + c] * contacts.lam[r]
+                push(dyn, scratch, r, contacts.lam[r], force)
     largest = 0.0
     for c in range(3, force.shape[0]):
         largest = max(largest, abs(force[c]))
@@ -256,9 +251,9 @@ def _decide(dyn, scratch, contacts, t, y, touched):
 
 @apart
 def resolve(dyn, scratch, contacts, state, met):
-    """Impacts, and what contacts do from now on, after the scalar of row ``met`` fell through zero; -1: at the start.
+    """Resolve impacts, and decide what contacts do from now on, after the guard of row ``met`` fell through zero.
 
-    Returns False where that is impossible; refusals.py says why.
+    ``met`` is -1 at the start. Returns False where that is impossible; refusals.py says why.
     """
     count = contacts.place.shape[0]
     gaps = gaps_of(contacts)
@@ -306,7 +301,7 @@ def resolve(dyn, scratch, contacts, state, met):
 
 @internal
 def moving(dyn, scratch, contacts, v):
-    """Whether contacts that hold still move, or others creep; then chosen[KEPT] are the rows that are to be stopped.
+    """Return True if contacts that hold still move, or others creep; then chosen[KEPT] are the rows to be stopped.
 
     Joints that stick are among them.
     """

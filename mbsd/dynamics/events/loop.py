@@ -1,4 +1,4 @@
-"""Steps of a row with contacts: one by one, back to the start of the step where something happens, and on from there.
+"""The loop of a run with events: step, look for an event within the step, step exactly to it, jump, and go on.
 
     step     one step of the integrator; does a scalar fall through zero within it?
     root     from the state before the step, integrate to shorter and shorter ends, until the scalar is zero
@@ -15,7 +15,6 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, kernel, lazy
-from mbsd.dynamics.embedding.arrays import Embedding
 from mbsd.dynamics.events.arrays import (
     ACTED,
     APART,
@@ -43,22 +42,23 @@ from mbsd.dynamics.events.arrays import (
     SHARING,
     WHEN,
     WHICH,
+    Stepping,
 )
 from mbsd.dynamics.events.following import advance_to
 from mbsd.dynamics.events.friction.decisions import one_by_one
 from mbsd.dynamics.events.guards import fit
 from mbsd.dynamics.events.jumps import resolve
-from mbsd.dynamics.events.rows import any_held, hold_rows, without_contacts
+from mbsd.dynamics.events.rows import any_held, hold_rows
 from mbsd.dynamics.events.search import event_time, first_met
 from mbsd.dynamics.events.sticking.jumps import resolve_friction
 from mbsd.dynamics.events.sticking.ways import share_here, share_outputs
 from mbsd.dynamics.events.user_actions import ACTS, ENDED, HAPPENED, PASSED, finish_action, happen, hold_joints
 from mbsd.dynamics.events.users.values import begin_sides, find_sides, first_reached
+from mbsd.dynamics.formulation import begin_run, measure, without_contacts
+from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.integrators.advance import NO_LIMIT, copy_state, cross
-from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.dynamics.reference.projection import measure
 from mbsd.dynamics.repeated_rows.exchange import hold_independent, look
-from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, begin, record_here
+from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, record_here
 
 NOT_SOLVED = -7
 """Status of rows with an event at which nothing is possible."""
@@ -78,7 +78,7 @@ def _restart(dyn, scratch, contacts, state):
     """Forget the derivative, which belongs to the motion before."""
     state.count[STARTED] = 0
     state.clock[STEP] = 0.0
-    begin(dyn, scratch, state)
+    begin_run(dyn, scratch, state)
     load = 1e-300
     for c in range(3, dyn.weight.shape[0]):
         load = max(load, abs(dyn.weight[c]))
@@ -86,7 +86,7 @@ def _restart(dyn, scratch, contacts, state):
         load = max(load, abs(state.lam[r]))
     contacts.clock[LOAD] = load
     if contacts.events.table.shape[0] > 0:
-        find_sides(contacts.events, state)
+        find_sides(dyn, contacts.events, state)
 
 
 @internal
@@ -104,10 +104,10 @@ def _resolve(dyn, scratch, contacts, state, met):
 
 
 @internal
-def _find_reached(contacts, state):
+def _find_reached(dyn, contacts, state):
     """Let the first event happen next whose value has come to zero and stays there."""
     if contacts.events.table.shape[0] > 0:
-        reached = first_reached(contacts.events, state)
+        reached = first_reached(dyn, contacts.events, state)
         if reached >= 0:
             contacts.clock[PENDING] = 1.0 + contacts.place.shape[0] + reached
 
@@ -128,7 +128,7 @@ def _begin(dyn, scratch, contacts, state):
     if not _resolve(dyn, scratch, contacts, state, -1):
         return False
     _restart(dyn, scratch, contacts, state)
-    _find_reached(contacts, state)
+    _find_reached(dyn, contacts, state)
     return True
 
 
@@ -143,17 +143,18 @@ def _has_room(contacts, t):
 
 
 @internal
-def _go_to(own, scratch, state, settings, contacts, out, t, before, after):
+def _go_to(own, scratch, state, contacts, stepping, t):
     """Bring the state to the time t (s) within its step, at which contacts.trial often stands already."""
     following = contacts.before.count[NEXT]
-    outputs = following < out.t.shape[0] and out.t[following] <= t
+    t_out = stepping.out.t
+    outputs = following < t_out.shape[0] and t_out[following] <= t
     if contacts.clock[FAILURE] == 0.0 and contacts.trial.clock[TIME] == t and not outputs:
         copy_state(state, contacts.trial)
         state.count[NEXT] = following
         return
     copy_state(state, contacts.before)
     if contacts.clock[FAILURE] == 0.0 and t > state.clock[TIME]:
-        status = advance_to(own, scratch, state, out, settings, contacts, t, NO_LIMIT, before, after)
+        status = advance_to(own, scratch, state, contacts, stepping, t, NO_LIMIT)
         if status != REACHED and status != PAUSED:
             contacts.clock[FAILURE] = status
 
@@ -169,35 +170,35 @@ def _end(dyn, scratch, state, contacts, out):
 
 
 @internal
-def _step(dyn, scratch, state, settings, contacts, out, end, before, after):
+def _step(dyn, scratch, state, contacts, stepping, end):
     """Take one step, or part of one up to an event, which then is PENDING; returns a status."""
     if contacts.repeated.place.shape[0] > 0:
         look(dyn, scratch, contacts.repeated, state, 1)
     own = dyn if any_held(contacts) else without_contacts(dyn, contacts)
-    cross(state, before, after)
-    begin(own, scratch, state)
+    cross(state, stepping.before, stepping.after)
+    begin_run(own, scratch, state)
     if contacts.events.table.shape[0] > 0:
-        find_sides(contacts.events, state)
+        find_sides(dyn, contacts.events, state)
     copy_state(contacts.before, state)
-    status = advance_to(own, scratch, state, out, settings, contacts, end, 1, before, after)
+    status = advance_to(own, scratch, state, contacts, stepping, end, 1)
     if status != REACHED and status != PAUSED:
         return status
     met = -1
     contacts.clock[FAILURE] = 0.0
     if state.clock[TIME] > contacts.before.clock[TIME]:
-        fit(contacts, state)
+        fit(dyn, contacts, state)
         contacts.trial.clock[TIME] = -math.inf
-        met = first_met(dyn, scratch, state, settings, contacts, out, before, after)
+        met = first_met(dyn, scratch, state, contacts, stepping)
     if met >= 0:
-        t = event_time(dyn, scratch, settings, contacts, out, before, after, met)
-        _go_to(own, scratch, state, settings, contacts, out, t, before, after)
+        t = event_time(dyn, scratch, contacts, stepping, met)
+        _go_to(own, scratch, state, contacts, stepping, t)
     if contacts.clock[SHARING] > 0.0:
-        share_outputs(dyn, scratch, contacts, out, contacts.before.count[NEXT], state.count[NEXT])
+        share_outputs(dyn, scratch, contacts, stepping.out, contacts.before.count[NEXT], state.count[NEXT])
     if contacts.clock[FAILURE] != 0.0:
         return int(contacts.clock[FAILURE])
     if met < 0:
         return REACHED if status == REACHED and state.clock[TIME] >= end else PAUSED
-    begin(own, scratch, state)
+    begin_run(own, scratch, state)
     contacts.clock[PENDING] = 1.0 + met
     return FOUND
 
@@ -230,13 +231,14 @@ def _jump(dyn, scratch, state, contacts, out):
         if not _resolve(dyn, scratch, contacts, state, met if met < count else -1):
             return NOT_SOLVED
     _restart(dyn, scratch, contacts, state)
-    _find_reached(contacts, state)
+    _find_reached(dyn, contacts, state)
     return JUMPED
 
 
 @lazy(int)
 def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
     clock = contacts.clock
+    stepping = Stepping(settings, out, before, after)
     hold_rows(dyn, contacts)
     hold_independent(dyn, contacts.repeated)
     if contacts.events.release.shape[0] > 0:
@@ -255,7 +257,7 @@ def _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, aft
             if taken >= steps:
                 return PAUSED
             taken += 1
-            status = _step(dyn, scratch, state, settings, contacts, out, end, before, after)
+            status = _step(dyn, scratch, state, contacts, stepping, end)
             if status == PAUSED:
                 continue
             if status != FOUND:
@@ -281,11 +283,11 @@ def _none(dyn, scratch, state, settings, contacts, out, end, steps, before, afte
     return NOT_SOLVED
 
 
-go_on = alternatives({Dynamics: _meet, Embedding: _none})
+go_on = alternatives({Embedding: _none}, _meet)
 """Go on to ``end`` (s), ``steps`` steps at most, meeting events; returns a status of ``advance``, or one of these."""
 
 
 @kernel
 def run_events(dyn, scratch, state, settings, contacts, out, end, steps, before, after):
-    """``go_on`` in reference coordinates, called from Python."""
+    """Call ``go_on`` in reference coordinates, from Python."""
     return _go_on(dyn, scratch, state, settings, contacts, out, end, steps, before, after)

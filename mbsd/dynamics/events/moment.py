@@ -12,8 +12,7 @@ import numpy as np
 from mbsd.arrays.states import own_states, states_of
 from mbsd.base.arguments import LARGEST
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.base.users_function import described
 from mbsd.compiling.callback import as_numbers
 from mbsd.model.body import Marker, at_end, finite_number
@@ -50,22 +49,22 @@ class Moment:
         """Numbers of the joints that an action released."""
 
     def body(self, name: str) -> Frame:
-        """A body's frame."""
+        """Return a body's frame."""
         return self._frame(self._number(name), (0.0, 0.0), 0.0)
 
     def point(self, marker: Marker) -> Frame:
-        """A marker; one at the end of a bar is where the bar ends in this mechanism, a copy with another length."""
+        """Return a marker's frame; the end of a bar is where the bar ends in this mechanism, perhaps a changed copy."""
         return self._frame(self._number(marker.body.name), place_of(self.packed, marker), marker.angle)
 
     def numbers(self, frames: Sequence[Marker]) -> tuple[np.ndarray, np.ndarray]:
-        """x, y, theta of each frame in turn (m, rad), and their rates: (3 f,) and (3 f,)."""
+        """Return x, y, theta of each frame in turn (m, rad) and their rates: (3 f,) and (3 f,)."""
         seen = [self.point(marker) for marker in frames]
         places = [number for frame in seen for number in (frame.x, frame.y, frame.theta)]
         rates = [number for frame in seen for number in (frame.vx, frame.vy, frame.omega)]
         return np.array(places), np.array(rates)
 
     def state(self, force: str, name: str) -> float:
-        """A state of a force (SI), such as ``pressure_a`` of a hydraulic cylinder. Raises ModelError for no such."""
+        """Return a state of a force (SI), such as ``pressure_a`` of a hydraulic cylinder; ModelError if unknown."""
         known = {
             with_states.name: with_states.kind.states.names
             for with_states in self.packed.forces
@@ -147,7 +146,7 @@ class Moment:
         return self.packed.body_names.index(name)
 
     def _arm(self, b: int, place: tuple[float, float]) -> tuple[float, float]:
-        """World axes, from the centre of mass to a place in the author's frame."""
+        """Return the vector (m), in world axes, from the centre of mass to a position in the author's frame."""
         x, y = place[0] - self.packed.com[b, 0], place[1] - self.packed.com[b, 1]
         c, s = math.cos(self.q[3 * b + 2]), math.sin(self.q[3 * b + 2])
         return c * x - s * y, s * x + c * y

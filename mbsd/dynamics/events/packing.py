@@ -40,15 +40,13 @@ from mbsd.dynamics.events.laws.least_part import together_of
 from mbsd.dynamics.events.users.packing import events_of, may_release
 from mbsd.dynamics.integrators.advance import number_of
 from mbsd.dynamics.integrators.kind import Integrator
-from mbsd.dynamics.prepare.following import SHORTEST
-from mbsd.dynamics.prepare.prepared import PreparedDynamics
+from mbsd.dynamics.prepare.prepared import SHORTEST, PreparedDynamics
 from mbsd.dynamics.reference.pins import with_pins
-from mbsd.dynamics.reference.schur import Schur
-from mbsd.dynamics.reference.sequence import elimination_sequence
+from mbsd.dynamics.reference.schur import Schur, elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.repeated_rows.packing import repeated_of
-from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import State
+from mbsd.dynamics.switches import RunContact
 from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
 from mbsd.equations.constraints.relative import ROW as RELATIVE_ROW
 from mbsd.kinematics.limits.free_wheels import HALF, MET
@@ -118,7 +116,7 @@ def contacts_of(
 
 
 def _rough(ready: PreparedDynamics) -> list[tuple[int, RunContact]]:
-    """Contacts with friction, with their numbers among all."""
+    """Return contacts with friction, with their numbers among all."""
     return [(k, contact) for k, contact in enumerate(ready.switches.contacts) if contact.way is not None]
 
 
@@ -172,7 +170,7 @@ def _divides(ready: PreparedDynamics) -> bool:
 
 
 def _friction_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Friction:
-    """Friction of contacts."""
+    """Return the friction of contacts."""
     rough, count = _rough(ready), len(ready.switches.contacts)
     way_of = {k: count + w for w, (k, _) in enumerate(rough)}
     order = [row for k in range(count) for row in ([k, way_of[k]] if k in way_of else [k])]
@@ -190,7 +188,7 @@ def _friction_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> Frictio
 
 
 def _wheels_of(ready: PreparedDynamics, before: State) -> Wheels:
-    """Wheels that may run into each other."""
+    """Return the wheels that may run into each other."""
     pairs = ready.following.wheels.pairs
     sized = [with_radii(joint.params) for joint, _, _ in pairs]
     return Wheels(
@@ -202,7 +200,7 @@ def _wheels_of(ready: PreparedDynamics, before: State) -> Wheels:
 
 
 def _curves_of(ready: PreparedDynamics) -> Curves:
-    """Points on curves that cross themselves."""
+    """Return the points on curves that cross themselves."""
     special, rows = ready.packed.system.special, ready.following.rows
     own = {(row.i, row.j) for row in rows}
     place = [
@@ -215,7 +213,7 @@ def _curves_of(ready: PreparedDynamics) -> Curves:
 
 
 def _without(ready: PreparedDynamics, events: Sequence[Event]) -> tuple[Schur, np.ndarray]:
-    """What steps need while all contacts are open."""
+    """Return the elimination sequence and relative constraints while all contacts are open."""
     packed, schur, special = ready.packed, ready.dynamics.schur, ready.packed.system.special
     if not ready.switches.contacts and not ready.sticks:
         return schur, special

@@ -14,8 +14,7 @@ import math
 
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.arrays import ALONE, NORMAL, ROW, TAKING
-from mbsd.dynamics.events.rows import along
-from mbsd.dynamics.reference.refinement import respond
+from mbsd.dynamics.formulation import along, push, respond
 
 STIFF = 1e-12
 """Compliance of a row, as part of that of its bodies alone, below which nothing gives way."""
@@ -27,26 +26,22 @@ SMALL = 1e-11
 
 
 @apart
-def find_answer(dyn, scratch, contacts, k):
-    """Fill answer[k], the change of velocities by a unit impulse of contact k, and vector[ALONE] without joints.
+def find_answer(dyn, scratch, contacts, k, lam):
+    """Fill answer[k], the change of velocities by a unit impulse of row k, and vector[ALONE] without joints.
 
-    Factors and scratch.ws.jac are those of the pose, with the rows of all contacts released.
+    lam (m,) takes the multipliers. Factors and scratch.ws.jac are those of the pose, with all contacts released.
     """
-    ws = scratch.ws
     n3 = dyn.inverse.shape[0]
     force = contacts.force
     row = contacts.place[k, ROW]
     for c in range(n3):
         force[c] = 0.0
-    for side in range(2):
-        at = 3 * dyn.system.row_body[row, side]
-        for c in range(3):
-            force[at + c] += ws.jac[row, 3 * side + c]
+    push(dyn, scratch, row, 1.0, force)
     alone = 0.0
     for c in range(3, n3):
         alone += dyn.inverse[c] * force[c] ** 2
     contacts.vector[ALONE, k] = alone if alone > 0.0 else 1.0
-    respond(dyn, scratch, force, 0.0, contacts.answer[k], scratch.multipliers)
+    respond(dyn, scratch, force, 0.0, contacts.answer[k], lam)
 
 
 @internal
@@ -55,7 +50,14 @@ def find_compliance(dyn, scratch, contacts, flags):
     count = contacts.place.shape[0]
     for k in range(count):
         if flags[k] != 0:
-            find_answer(dyn, scratch, contacts, k)
+            find_answer(dyn, scratch, contacts, k, scratch.multipliers)
+    read_compliance(dyn, scratch, contacts, flags)
+
+
+@internal
+def read_compliance(dyn, scratch, contacts, flags):
+    """Fill compliance of the rows in ``flags`` (c,), whose answers are there."""
+    count = contacts.place.shape[0]
     for k in range(count):
         for j in range(count):
             if flags[k] != 0 and flags[j] != 0:
@@ -112,7 +114,7 @@ def solve_pushes(contacts, rates):
 
 @internal
 def lowest_row(tableau, n):
-    """The row of a tableau (n, 2 n + 2) where its right-hand side is the lowest; -1 where none is negative."""
+    """Return the row of a tableau (n, 2 n + 2) with the lowest right-hand side; -1 where none is negative."""
     lowest = -1
     least = 0.0
     for i in range(n):
@@ -124,7 +126,7 @@ def lowest_row(tableau, n):
 
 @internal
 def pivot_to_end(tableau, basis, n, row):
-    """Pivot a tableau (n, 2 n + 2) to the end, the artificial variable entering at ``row``; whether it leaves."""
+    """Pivot a tableau (n, 2 n + 2) to the end, the artificial variable entering at ``row``; True if it leaves."""
     last = 2 * n + 1
     entering = 2 * n
     for i in range(n):
@@ -157,7 +159,7 @@ def pivot_to_end(tableau, basis, n, row):
 
 @internal
 def _leaving_row(tableau, basis, n, entering):
-    """The row of the least ratio, ties broken lexicographically; -1 if there is none."""
+    """Return the row of the least ratio, ties broken lexicographically; -1 if there is none."""
     left = 0
     chosen = -1
     for i in range(n):

@@ -12,8 +12,8 @@ from mbsd.base.errors import SimulationError
 from mbsd.dynamics.events.arrays import ALONE, FAILURE, NO_AGREEMENT, NOW, TAKING, Contacts
 from mbsd.dynamics.events.loop import INSIDE
 from mbsd.dynamics.events.pushes import STIFF
-from mbsd.dynamics.rows.switches import RunContact
 from mbsd.dynamics.state import TIME, State
+from mbsd.dynamics.switches import RunContact
 from mbsd.model.event import Happening
 
 TURNS, BRIEF = 100, 1e-4

@@ -1,4 +1,4 @@
-"""Where in a step what is looked at falls through zero, on its quintic: roots between samples, and dips.
+"""Zeros of guards on the quintic of a step: roots between samples, and dips.
 
 k: a row of Contacts, or an event behind the last one.
 
@@ -25,7 +25,7 @@ SAMPLES = 6
 
 @apart
 def quintic_root(dyn, scratch, contacts, k, level, left, right, at_left, at_right):
-    """Part of the step between ``left`` and ``right`` where the quintic of row k passes ``level``."""
+    """Return the part of the step between ``left`` and ``right`` where the quintic of row k passes ``level``."""
     a = right
     fa = at_right - level
     b = left
@@ -46,7 +46,7 @@ def quintic_root(dyn, scratch, contacts, k, level, left, right, at_left, at_righ
 
 @apart
 def root_between(dyn, scratch, contacts, k, left, right, at_left, at_right, still, zero):
-    """Between two parts of the step, and a part where it is negative; the first counts as zero up to ``zero``."""
+    """Return the root between two parts of the step, and a part beyond it; the first value is zero up to ``zero``."""
     level = min(0.0, max(at_left, -still))
     negative = right
     if at_left <= zero:
@@ -69,9 +69,9 @@ def root_between(dyn, scratch, contacts, k, left, right, at_left, at_right, stil
 
 @apart
 def dips_before(
-    dyn, scratch, settings, contacts, out, before, after, k, x, values, count, still, where, negative
+    dyn, scratch, contacts, stepping, k, x, values, count, still, where, negative
 ):  # fmt: skip
-    """Where it first falls through zero, and a part where it is negative: in a dip, or else as given; -1, -1: never.
+    """Return the part where a guard first falls through zero, in a dip or as given, and one beyond; -1, -1: never.
 
     ``values`` stand at the first ``count`` of the parts ``x``; ``where`` is where these show a fall.
     """
@@ -80,7 +80,7 @@ def dips_before(
         while known < count and x[known] <= where:
             known += 1
         count = known
-    above, below = first_dip(dyn, scratch, settings, contacts, out, before, after, k, x, values, count, still)
+    above, below = first_dip(dyn, scratch, contacts, stepping, k, x, values, count, still)
     if below >= 0.0:
         high = on_quintic(dyn, scratch, contacts, k, above)
         low = on_quintic(dyn, scratch, contacts, k, below)
@@ -106,7 +106,7 @@ A, FA, B, FB, FALLS, RISES = range(6)
 
 @internal
 def _lowest(piece):
-    """Where the two lines of an interval meet, and their value there."""
+    """Return where the two lines of an interval meet, and their value there."""
     falls = piece[FALLS]
     rises = piece[RISES]
     if falls >= 0.0 or rises <= 0.0:
@@ -128,7 +128,7 @@ def _put(piece, a, fa, b, fb, falls, rises):
 
 @inlined
 def _slopes(x, values, i, count):
-    """Slopes of the lines through the samples on both sides of the i-th interval; 0 where there are none."""
+    """Return slopes of the lines through the samples on both sides of the i-th interval; 0 where there are none."""
     left = 0.0
     right = 0.0
     if i > 0:
@@ -140,7 +140,7 @@ def _slopes(x, values, i, count):
 
 @internal
 def may_dip(x, values, i, count, still):
-    """Whether a scalar may fall below -``still`` in the i-th interval, by its first ``count`` values at x alone."""
+    """Return True if a scalar may fall below -``still`` in the i-th interval, by its first ``count`` values at x."""
     fa = values[i]
     fb = values[i + 1]
     if i == 0 and min(fa, fb) <= still:
@@ -174,8 +174,8 @@ def _interval(dyn, scratch, contacts, k, x, values, i, count):
 
 
 @apart
-def _searched(dyn, scratch, settings, contacts, out, before, after, k, level, truly):
-    """Parts above and below ``level`` from intervals[0] on; the second is -1 if there is none below."""
+def _searched(dyn, scratch, contacts, stepping, k, level, truly):
+    """Return parts above and below ``level`` from intervals[0] on; the second is -1 if there is none below."""
     pieces = contacts.intervals
     waiting = 1
     looks = 0
@@ -195,7 +195,7 @@ def _searched(dyn, scratch, settings, contacts, out, before, after, k, level, tr
         x = min(max(x, a + INSIDE * width), b - INSIDE * width)
         if truly:
             t = contacts.clock[START] + contacts.clock[LENGTH] * x
-            fx = of_motion(dyn, scratch, settings, contacts, out, before, after, k, t)
+            fx = of_motion(dyn, scratch, contacts, stepping, k, t)
         else:
             fx = on_quintic(dyn, scratch, contacts, k, x)
         looks += 1
@@ -210,8 +210,8 @@ def _searched(dyn, scratch, settings, contacts, out, before, after, k, level, tr
 
 
 @apart
-def first_dip(dyn, scratch, settings, contacts, out, before, after, k, x, values, count, still):
-    """Parts between which row k first falls below -``still`` among ``count`` values at x; -1: it does not."""
+def first_dip(dyn, scratch, contacts, stepping, k, x, values, count, still):
+    """Return parts between which row k first falls below -``still`` among ``count`` values at x; -1: it does not."""
     low = values[0]
     high = low
     for i in range(1, count):
@@ -224,15 +224,15 @@ def first_dip(dyn, scratch, settings, contacts, out, before, after, k, x, values
         kept_falls = contacts.intervals[0, FALLS]
         kept_rises = contacts.intervals[0, RISES]
         level = UNSURE * (high - low) - still
-        above, below = _searched(dyn, scratch, settings, contacts, out, before, after, k, level, False)
+        above, below = _searched(dyn, scratch, contacts, stepping, k, level, False)
         if below < 0.0:
             continue
         if on_quintic(dyn, scratch, contacts, k, below) < -still:
             t = contacts.clock[START] + contacts.clock[LENGTH] * below
-            if of_motion(dyn, scratch, settings, contacts, out, before, after, k, t) < -still:
+            if of_motion(dyn, scratch, contacts, stepping, k, t) < -still:
                 return above, below
         _put(contacts.intervals[0], x[i], values[i], x[i + 1], values[i + 1], kept_falls, kept_rises)
-        above, below = _searched(dyn, scratch, settings, contacts, out, before, after, k, -still, True)
+        above, below = _searched(dyn, scratch, contacts, stepping, k, -still, True)
         if below >= 0.0:
             return above, below
     return 0.0, -1.0

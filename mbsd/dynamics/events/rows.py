@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import apart, inlined, internal, merged
+from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.arrays import (
     BLOCK,
     CLOSED,
@@ -20,42 +20,19 @@ from mbsd.dynamics.events.arrays import (
     TAKING,
 )
 from mbsd.dynamics.events.bounds import DEPENDENT
-from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.equations.constraints.relative import rows as relative_rows
-from mbsd.equations.laws import evaluate_laws
-from mbsd.equations.markers import place
-from mbsd.equations.system import ZERO, System
-
-
-@merged
-def gaps(dyn, scratch, t, q):
-    """``measure`` of the rows that events switch alone, which are all constraints of relative pose."""
-    if scratch.drive.shape[0] > 1:
-        evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
-    place(dyn.system, q, scratch.ws)
-    relative_rows(dyn.system, q, scratch.drive, scratch.ws)
+from mbsd.dynamics.formulation import along, measure_gaps
+from mbsd.equations.system import ZERO
 
 
 @apart
-def measure_gaps(dyn, scratch, t, q):
-    """``gaps`` as a call."""
-    gaps(dyn, scratch, t, q)
-
-
-@internal
-def along(dyn, scratch, row, u):
-    """Row of J times u (3 nb,), where scratch.ws.jac is."""
-    out = 0.0
-    for side in range(2):
-        at = 3 * dyn.system.row_body[row, side]
-        for c in range(3):
-            out += scratch.ws.jac[row, 3 * side + c] * u[at + c]
-    return out
+def read_gaps(dyn, scratch, t, q):
+    """Call ``measure_gaps``, which its callers otherwise contain."""
+    measure_gaps(dyn, scratch, t, q)
 
 
 @internal
 def gaps_of(contacts):
-    """Number of gaps, the first rows of Contacts; those of ways of contacts, then of joints, are behind them."""
+    """Return the number of gaps, the first rows of Contacts; behind them are ways of contacts, then of joints."""
     return contacts.place.shape[0] - contacts.friction.gap.shape[0] - contacts.sticks.joint.shape[0]
 
 
@@ -153,51 +130,9 @@ def stop(dyn, scratch, contacts, v):
                 v[c] += contacts.answer[k, c] * push[k]
 
 
-@inlined
-def without_contacts(dyn, contacts):
-    """The mechanism without its contacts: a fifth less to do in steps in which all are open."""
-    system = dyn.system
-    bare = System(
-        system.mass,
-        system.inertia,
-        system.gravity,
-        system.marker_body,
-        system.marker_arm,
-        system.marker_axis,
-        system.moving,
-        system.directed,
-        system.point,
-        system.angle,
-        system.slot,
-        system.along,
-        system.distance,
-        contacts.special,
-        system.address,
-        system.numbers,
-        system.driven,
-        system.row_body,
-        system.angle_offset,
-        system.distance_length,
-    )
-    return Dynamics(
-        bare,
-        dyn.laws,
-        dyn.loads,
-        contacts.schur,
-        contacts.friction.none,
-        dyn.inertia,
-        dyn.inverse,
-        dyn.metric,
-        dyn.weight,
-        dyn.passes,
-        dyn.baumgarte,
-        dyn.per_size,
-    )
-
-
 @internal
 def any_held(contacts):
-    """Whether a contact is closed, or a joint sticks."""
+    """Return True if a contact is closed, or a joint sticks."""
     held = False
     for k in range(contacts.place.shape[0]):
         held = held or contacts.number[k, CLOSED] > 0.0

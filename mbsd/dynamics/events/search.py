@@ -1,4 +1,4 @@
-"""Which contact closes, opens, slips or comes to rest first in a step, and when.
+"""The search for the first event within a step, and its time.
 
 Interior samples of the step's quintic also find scalars that dip below zero and come back, and those that leave zero
 at the start of the step (a bounce) and return within it. What dips between two samples is found by its minimum
@@ -34,22 +34,20 @@ from mbsd.dynamics.events.arrays import (
 )
 from mbsd.dynamics.events.bounds import LESS
 from mbsd.dynamics.events.guards import (
-    along,
     at_state,
     beyond_time,
-    measure_gaps,
     of_motion,
     on_quintic,
     sample,
     stand_at,
 )
 from mbsd.dynamics.events.roots import MOST_ROOTS, SAMPLES, dips_before, may_dip, root_between
-from mbsd.dynamics.events.rows import gaps_of
+from mbsd.dynamics.events.rows import gaps_of, read_gaps
 from mbsd.dynamics.events.user_search import first_event
 from mbsd.dynamics.events.users.arrays import SIDE
 from mbsd.dynamics.events.users.values import rounding_of
+from mbsd.dynamics.formulation import along, derivative
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.state import TIME
 
 CHANCE = 15
@@ -60,7 +58,7 @@ ROUNDING = 1e-10
 
 @internal
 def still_of(contacts, k):
-    """Values of row k above minus this are rounding."""
+    """Return the size below which negative values of row k are rounding."""
     if k >= contacts.place.shape[0]:
         return 0.0
     return ROUNDING * contacts.clock[LOAD] if contacts.number[k, CLOSED] > 0.0 else contacts.number[k, NEAR]
@@ -74,11 +72,11 @@ def _leaves(dyn, scratch, contacts, k):
     """
     row = contacts.place[k, ROW]
     rest = -contacts.number[k, REST]
-    t = stand_at(contacts, 1.0)
-    measure_gaps(dyn, scratch, t, contacts.pose[0])
+    t = stand_at(dyn, contacts, 1.0)
+    read_gaps(dyn, scratch, t, contacts.pose[0])
     if not along(dyn, scratch, row, contacts.pose[1]) > rest:
         return False
-    t = stand_at(contacts, 0.0)
+    t = stand_at(dyn, contacts, 0.0)
     derivative(dyn, scratch, t, contacts.pose, contacts.rates, contacts.lam)
     if not along(dyn, scratch, row, contacts.pose[1]) > rest:
         return False
@@ -88,7 +86,7 @@ def _leaves(dyn, scratch, contacts, k):
 
 @apart
 def _falls(dyn, scratch, contacts, k, until):
-    """Where samples of contact k show a fall through zero before ``until``, and a part where it is negative; -1, -1."""
+    """Return where samples of row k show a fall through zero before ``until``, and a part beyond; -1, -1: nowhere."""
     still = still_of(contacts, k)
     values = contacts.samples[k]
     first = 0
@@ -124,19 +122,19 @@ def _falls(dyn, scratch, contacts, k, until):
 
 
 @apart
-def _met_of(dyn, scratch, settings, contacts, out, before, after, k, until):
-    """Where the scalar of row k first falls through zero, and a part where it is negative; -1, -1 where it does not."""
+def _met_of(dyn, scratch, contacts, stepping, k, until):
+    """Return where the guard of row k first falls through zero, and a part beyond; -1, -1 where it does not."""
     where, negative = _falls(dyn, scratch, contacts, k, until)
     still = still_of(contacts, k)
     return dips_before(
-        dyn, scratch, settings, contacts, out, before, after, k, contacts.parts, contacts.samples[k], SAMPLES,
+        dyn, scratch, contacts, stepping, k, contacts.parts, contacts.samples[k], SAMPLES,
         still, where, negative,
     )  # fmt: skip
 
 
 @internal
 def _may_meet(contacts, k):
-    """Whether samples of contact k leave it open that it falls through zero; most steps end here."""
+    """Return True if samples of row k do not rule out a fall through zero; most steps end here."""
     still = still_of(contacts, k)
     values = contacts.samples[k]
     may = False
@@ -159,8 +157,8 @@ def _fallen(dyn, scratch, contacts, state):
 
 
 @apart
-def first_met(dyn, scratch, state, settings, contacts, out, before, after):
-    """The row whose scalar is the first to fall through zero within the step to ``state``; -1: none.
+def first_met(dyn, scratch, state, contacts, stepping):
+    """Return the row whose guard is the first to fall through zero within the step to ``state``; -1: none.
 
     What comes behind the last row is an event of the user. WHERE and BEYOND of the clock are set.
     """
@@ -188,20 +186,20 @@ def first_met(dyn, scratch, state, settings, contacts, out, before, after):
             if contacts.chosen[SKIPPED, k] != 0 or resting != (turn >= count):
                 continue
             until = 2.0 if best < 0 else contacts.clock[BEYOND]
-            where, negative = _met_of(dyn, scratch, settings, contacts, out, before, after, k, until)
+            where, negative = _met_of(dyn, scratch, contacts, stepping, k, until)
             if where >= 0.0 and (best < 0 or where < contacts.clock[WHERE]):
                 best = k
                 contacts.clock[WHERE] = where
                 contacts.clock[BEYOND] = negative
         if events > 0:
-            best = first_event(dyn, scratch, settings, contacts, out, before, after, best)
+            best = first_event(dyn, scratch, contacts, stepping, best)
         if best < 0 or contacts.clock[WHERE] == 0.0:
             return best
         if contacts.clock[BEYOND] == 1.0:
             value = at_state(dyn, scratch, contacts, state, best)
         else:
             t = beyond_time(contacts)
-            value = of_motion(dyn, scratch, settings, contacts, out, before, after, best, t)
+            value = of_motion(dyn, scratch, contacts, stepping, best, t)
         if value < -still_of(contacts, best):
             if best >= count and _chance(contacts, state, best - count, value):
                 contacts.clock[FAILURE] = CHANCE
@@ -231,15 +229,15 @@ def _chance(contacts, state, e, value):
 
 
 @apart
-def _near_root(dyn, scratch, settings, contacts, out, before, after, k, first, reach):
-    """The root (s) within ``reach`` of ``first`` by secants, the first along the quintic; NaN where they leave it."""
+def _near_root(dyn, scratch, contacts, stepping, k, first, reach):
+    """Return the root (s) within ``reach`` of ``first`` by secants; a time beyond where they leave it."""
     h = contacts.clock[LENGTH]
     part = (first - contacts.clock[START]) / h
     beside = 1e-4
     rise = on_quintic(dyn, scratch, contacts, k, part + beside) - on_quintic(dyn, scratch, contacts, k, part - beside)
     slope = rise / (2.0 * beside * h)
     t = first
-    f = of_motion(dyn, scratch, settings, contacts, out, before, after, k, t)
+    f = of_motion(dyn, scratch, contacts, stepping, k, t)
     least = 1e-15 + 8.9e-16 * abs(t)
     for _ in range(6):
         if not slope < 0.0:
@@ -250,7 +248,7 @@ def _near_root(dyn, scratch, settings, contacts, out, before, after, k, first, r
         following = t + ahead
         if not abs(following - first) <= reach:
             break
-        value = of_motion(dyn, scratch, settings, contacts, out, before, after, k, following)
+        value = of_motion(dyn, scratch, contacts, stepping, k, following)
         if abs(ahead) > 1e3 * least:
             slope = (value - f) / ahead
         t = following
@@ -259,36 +257,36 @@ def _near_root(dyn, scratch, settings, contacts, out, before, after, k, first, r
 
 
 @apart
-def event_time(dyn, scratch, settings, contacts, out, before, after, k):
-    """When (s) what row k met happens, of the motion itself: as exactly as that is known."""
+def event_time(dyn, scratch, contacts, stepping, k):
+    """Return the time (s) of the event of row k along the motion itself, as exactly as that is known."""
     start = contacts.clock[START]
     first = start + contacts.clock[LENGTH] * contacts.clock[WHERE]
     if not first > start:
         return start
     high = beyond_time(contacts)
     reach = min(1e-3 * (high - start), 0.5 * (first - start))
-    near = _near_root(dyn, scratch, settings, contacts, out, before, after, k, first, reach)
+    near = _near_root(dyn, scratch, contacts, stepping, k, first, reach)
     if near <= first + reach:
         return near
     low = start
-    at_low = of_motion(dyn, scratch, settings, contacts, out, before, after, k, first - reach)
+    at_low = of_motion(dyn, scratch, contacts, stepping, k, first - reach)
     if at_low > 0.0:
         low = first - reach
-    at_high = of_motion(dyn, scratch, settings, contacts, out, before, after, k, first + reach)
+    at_high = of_motion(dyn, scratch, contacts, stepping, k, first + reach)
     if first + reach < high and at_high < 0.0:
         high = first + reach
     else:
-        at_high = of_motion(dyn, scratch, settings, contacts, out, before, after, k, high)
+        at_high = of_motion(dyn, scratch, contacts, stepping, k, high)
     if low == start:
-        at_low = of_motion(dyn, scratch, settings, contacts, out, before, after, k, low)
+        at_low = of_motion(dyn, scratch, contacts, stepping, k, low)
     if not at_low > 0.0 or not at_high < 0.0:
         return first  # it left zero at the start of the step: the quintic's root stands
-    return _true_root(dyn, scratch, settings, contacts, out, before, after, k, low, at_low, high, at_high)
+    return _true_root(dyn, scratch, contacts, stepping, k, low, at_low, high, at_high)
 
 
 @apart
-def _true_root(dyn, scratch, settings, contacts, out, before, after, k, low, at_low, high, at_high):
-    """The root (s) between two times."""
+def _true_root(dyn, scratch, contacts, stepping, k, low, at_low, high, at_high):
+    """Return the root (s) between two times."""
     a = high
     fa = at_high
     b = low
@@ -303,7 +301,7 @@ def _true_root(dyn, scratch, settings, contacts, out, before, after, k, low, at_
             break
         part = min(max(part, edge), 1.0 - edge)
         x = a + part * (b - a)
-        f = of_motion(dyn, scratch, settings, contacts, out, before, after, k, x)
+        f = of_motion(dyn, scratch, contacts, stepping, k, x)
         a, fa, b, fb, c, fc = narrowed(a, fa, b, fb, x, f)
         if f == 0.0:
             break

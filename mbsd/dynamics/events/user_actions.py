@@ -1,4 +1,4 @@
-"""What an event of the user does: it is noted, ends the simulation, changes velocities, or releases joints.
+"""Actions of the user's events: one is noted, ends the simulation, changes velocities, or releases joints.
 
 Rows of J of a released joint hold no more, for good, and it has no friction. Rows that repeat them hold instead.
 """
@@ -28,7 +28,7 @@ from mbsd.dynamics.events.users.arrays import (
     SIDE_OF_BLOCK,
 )
 from mbsd.dynamics.events.users.values import read_frames, turn_side
-from mbsd.dynamics.reference.projection import project
+from mbsd.dynamics.formulation import project
 from mbsd.dynamics.repeated_rows import arrays as repeated_arrays
 from mbsd.dynamics.repeated_rows.exchange import take_over
 from mbsd.dynamics.state import TIME
@@ -104,7 +104,7 @@ def happen(dyn, scratch, contacts, state, e):
     events = contacts.events
     table = events.table
     side = -1 if events.number[e, SIDE] < 0.0 else 1
-    turn_side(events, e, state)
+    turn_side(dyn, events, e, state)
     if table[e, DIRECTION] != 0 and table[e, DIRECTION] != -side:
         return PASSED
     if table[e, ENDS] != 0:

@@ -23,7 +23,7 @@ SAMPLES = 6
 
 @internal
 def _expected(x, values, begin, end, at):
-    """The polynomial through values [begin, end) at x, at another place."""
+    """Return the polynomial through values [begin, end) at x, at another position."""
     out = 0.0
     for k in range(begin, end):
         above = 1.0
@@ -38,7 +38,7 @@ def _expected(x, values, begin, end, at):
 
 @internal
 def _until_negative(values, count):
-    """How many values there are up to the first negative one behind the first."""
+    """Return how many values there are up to the first negative one behind the first."""
     for k in range(1, count):
         if values[k] < 0.0:
             return k + 1
@@ -59,7 +59,7 @@ def _put_between(x, values, count, at, value):
 
 @internal
 def _by_shortest(dyn, scratch, contacts, e, k):
-    """As often as the shortest thing in it asks for; up to the first negative value."""
+    """Look as often as ``shortest`` asks for, up to the first negative value; returns how many values there are."""
     events = contacts.events
     x = events.parts
     values = events.values
@@ -88,7 +88,7 @@ def _by_shortest(dyn, scratch, contacts, e, k):
 
 @internal
 def _find_middles(dyn, scratch, contacts, k, count):
-    """Values in the middle of rough intervals, and whether neighbours let expect another: rough[1]."""
+    """Find values in the middle of rough intervals, and whether neighbours let expect another: rough[1]."""
     events = contacts.events
     x = events.parts
     values = events.values
@@ -203,8 +203,8 @@ def look(dyn, scratch, contacts, e):
 
 
 @apart
-def _met_of(dyn, scratch, settings, contacts, out, before, after, e, until):
-    """Where event e first passes zero, and a part where it is beyond; -1, -1 where it does not."""
+def _met_of(dyn, scratch, contacts, stepping, e, until):
+    """Return where event e first passes zero, and a part beyond; -1, -1 where it does not."""
     events = contacts.events
     k = contacts.place.shape[0] + e
     count = look(dyn, scratch, contacts, e)
@@ -222,17 +222,17 @@ def _met_of(dyn, scratch, settings, contacts, out, before, after, e, until):
         where, negative = root_between(
             dyn, scratch, contacts, k, x[first], x[first + 1], values[first], values[first + 1], 0.0, zero
         )
-    return dips_before(dyn, scratch, settings, contacts, out, before, after, k, x, values, count, 0.0, where, negative)
+    return dips_before(dyn, scratch, contacts, stepping, k, x, values, count, 0.0, where, negative)
 
 
 @lazy(int)
-def first_event(dyn, scratch, settings, contacts, out, before, after, best):
-    """The number of what is met first: ``best`` with WHERE and BEYOND of the clock, -1 for none, or an event."""
+def first_event(dyn, scratch, contacts, stepping, best):
+    """Return the row that is met first: ``best`` with WHERE and BEYOND of the clock, -1 for none, or an event."""
     for e in range(contacts.events.table.shape[0]):
         if contacts.events.skipped[e] != 0 or contacts.events.number[e, SIDE] == 0.0:  # it has stayed zero
             continue
         until = 2.0 if best < 0 else contacts.clock[BEYOND]
-        where, negative = _met_of(dyn, scratch, settings, contacts, out, before, after, e, until)
+        where, negative = _met_of(dyn, scratch, contacts, stepping, e, until)
         if where >= 0.0 and (best < 0 or where < contacts.clock[WHERE]):
             best = contacts.place.shape[0] + e
             contacts.clock[WHERE] = where

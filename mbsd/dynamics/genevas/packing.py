@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.dynamics.embedding.arrays import Embedding, EmbeddingScratch
 from mbsd.dynamics.genevas.arrays import RADIUS, Genevas, Memory
+from mbsd.dynamics.independent.arrays import Embedding, EmbeddingScratch
 from mbsd.dynamics.state import State, output_for
 
 _NOTHING = tuple(np.zeros((0,) * dimensions) for dimensions in (2, 2, 2, 1, 2, 1))

@@ -14,8 +14,6 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, kernel, lazy
-from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.embedding.equations import write_alone
 from mbsd.dynamics.genevas.arrays import (
     ARM_X,
     ARM_Y,
@@ -27,8 +25,9 @@ from mbsd.dynamics.genevas.arrays import (
     TO_Y,
     WHEEL,
 )
-from mbsd.dynamics.integrators.advance import USUAL, copy_state, through
-from mbsd.dynamics.reference.arrays import Dynamics
+from mbsd.dynamics.independent.arrays import Embedding
+from mbsd.dynamics.independent.equations import write_alone
+from mbsd.dynamics.integrators.advance import USUAL, advance_past_jumps, copy_state
 from mbsd.dynamics.state import ACCEPTED, ERROR, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK
 
 SHORT = 1e-3
@@ -46,7 +45,7 @@ ROUNDING = 8
 
 @internal
 def _ulp(t):
-    """Between a number and the next larger one."""
+    """Return the distance to the next larger number."""
     return math.nextafter(abs(t), math.inf) - abs(t)
 
 
@@ -78,7 +77,7 @@ def _keep(dyn, scratch, state, genevas):
 
 @internal
 def _return(dyn, scratch, state, genevas):
-    """Stand there again."""
+    """Return to where the state was kept."""
     copy_state(state, genevas.before)
     kept = genevas.kept
     _copy_table(dyn.number, kept.number)
@@ -130,7 +129,7 @@ def _look(dyn, scratch, genevas, state, gap):
 
 @internal
 def _crossed(before, after):
-    """Whether a jump lies between them."""
+    """Return True if a jump lies between them."""
     crossed = False
     for k in range(before.shape[0]):
         crossed = crossed or before[k] * after[k] < 0.0
@@ -180,7 +179,7 @@ def _meet(dyn, scratch, state, out, settings, genevas, wait, late, before, after
         if not target < late - least:
             target = now + 0.5 * (late - now)
         _keep(dyn, scratch, state, genevas)
-        status = through(dyn, scratch, state, out, settings, target, MOST, before, after, USUAL)
+        status = advance_past_jumps(dyn, scratch, state, out, settings, target, MOST, before, after, USUAL)
         if status != REACHED and status != PAUSED:
             return status
         later = _look(dyn, scratch, genevas, state, there)
@@ -240,7 +239,9 @@ def _index(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
         if not meets:
             _keep(dyn, scratch, state, genevas)
             ahead = int(min(max(wait / (4.0 * step), 1.0), MOST_UNSEEN))
-            status = through(dyn, scratch, state, out, settings, end, min(ahead, steps), before, after, USUAL)
+            status = advance_past_jumps(
+                dyn, scratch, state, out, settings, end, min(ahead, steps), before, after, USUAL
+            )
             later = _look(dyn, scratch, genevas, state, there)
             meets = _crossed(here, there)
             if meets:
@@ -253,7 +254,7 @@ def _index(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
             status = _meet(dyn, scratch, state, out, settings, genevas, wait, late, before, after)
             wait = _look(dyn, scratch, genevas, state, here)
         if status == PAUSED and state.clock[TIME] == now:  # it cannot be met: a step goes over it
-            status = through(dyn, scratch, state, out, settings, end, 1, before, after, USUAL)
+            status = advance_past_jumps(dyn, scratch, state, out, settings, end, 1, before, after, USUAL)
             wait = _look(dyn, scratch, genevas, state, here)
         if state.count[STARTED] == 0:
             state.clock[STEP] = step
@@ -278,11 +279,11 @@ def _never(dyn, scratch, state, out, settings, genevas, end, steps, before, afte
     return PAUSED
 
 
-index = alternatives({Dynamics: _never, Embedding: _index_here})
+index = alternatives({Embedding: _index_here}, _never)
 """``through`` by the usual integrator, from jump to jump of Genevas; never in reference coordinates."""
 
 
 @kernel
 def run_indexed(dyn, scratch, state, out, settings, genevas, end, steps, before, after):
-    """``index`` in independent coordinates, called from Python."""
+    """Call ``index`` in independent coordinates, from Python."""
     return _index(dyn, scratch, state, out, settings, genevas, end, steps, before, after)

@@ -1,4 +1,4 @@
-"""The integrators behind one name, by number, and steps that end where loads or laws jump.
+"""Advance a state by the integrator of a number, with steps that end where loads or laws jump.
 
 Each integrator but the usual one is compiled when it is first called; in independent coordinates there is the usual one
 alone. A step ends right before a jump, and the next one begins right after it (prepare/stops.py).
@@ -8,65 +8,65 @@ from __future__ import annotations
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, lazy
-from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.integrators import baumgarte, generalized_alpha, rattle, rk4, symplectic
+from mbsd.dynamics.independent.arrays import Embedding
+from mbsd.dynamics.integrators import generalized_alpha, rattle, rk4
 from mbsd.dynamics.integrators.dop853.loop import DOP853
 from mbsd.dynamics.integrators.dop853.loop import advance as advance_dop853
 from mbsd.dynamics.integrators.kind import Integrator
 from mbsd.dynamics.integrators.radau import loop as radau
-from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.dynamics.state import ACCEPTED, PAUSED, REACHED, STARTED, STEP, TIME
 
 INTEGRATORS = (
-    DOP853, rk4.RK4, baumgarte.BAUMGARTE, rattle.RATTLE, symplectic.SYMPLECTIC, generalized_alpha.GENERALIZED_ALPHA,
+    DOP853, rk4.RK4, rk4.BAUMGARTE, rattle.RATTLE, rattle.SYMPLECTIC, generalized_alpha.GENERALIZED_ALPHA,
     radau.RADAU,
 )  # fmt: skip
 USUAL, BY_RK4, BY_BAUMGARTE, BY_RATTLE, BY_SYMPLECTIC, BY_GENERALIZED_ALPHA, BY_RADAU = range(len(INTEGRATORS))
-PAUSED_ANYWHERE = (DOP853, rk4.RK4, baumgarte.BAUMGARTE)
-"""Those whose steps are the same wherever they pause; the others begin their search for a matrix or a step anew."""
+PAUSED_ANYWHERE = (DOP853, rk4.RK4, rk4.BAUMGARTE)
+"""Integrators whose steps are the same wherever they pause; others look for a matrix or a step anew."""
 
-advance_rk4, advance_baumgarte, advance_rattle = rk4.advance, baumgarte.advance, rattle.advance
-advance_symplectic, advance_alpha, advance_radau = symplectic.advance, generalized_alpha.advance, radau.advance
+advance_rk4, advance_baumgarte = rk4.advance, rk4.advance_baumgarte
+advance_rattle, advance_symplectic = rattle.advance, rattle.advance_symplectic
+advance_alpha, advance_radau = generalized_alpha.advance, radau.advance
 
 
 def number_of(integrator: Integrator) -> int | None:
-    """The number of an integrator, or None where it has no loop here."""
+    """Return the number of an integrator, or None where it has no loop here."""
     return INTEGRATORS.index(integrator) if integrator in INTEGRATORS else None
 
 
 @lazy(int)
 def later_rk4(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_rk4(dyn, scratch, state, out, settings, end, most)
 
 
 @lazy(int)
 def later_baumgarte(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_baumgarte(dyn, scratch, state, out, settings, end, most)
 
 
 @lazy(int)
 def later_rattle(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_rattle(dyn, scratch, state, out, settings, end, most)
 
 
 @lazy(int)
 def later_symplectic(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_symplectic(dyn, scratch, state, out, settings, end, most)
 
 
 @lazy(int)
 def later_alpha(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_alpha(dyn, scratch, state, out, settings, end, most)
 
 
 @lazy(int)
 def later_radau(dyn, scratch, state, out, settings, end, most):
-    """``advance``."""
+    """Advance by this method, compiled when it is first called."""
     return advance_radau(dyn, scratch, state, out, settings, end, most)
 
 
@@ -94,7 +94,7 @@ def _usual(dyn, scratch, state, out, settings, end, most, method):
     return advance_dop853(dyn, scratch, state, out, settings, end, most)
 
 
-advance = alternatives({Dynamics: _by_number, Embedding: _usual})
+advance = alternatives({Embedding: _usual}, _by_number)
 """advance(dyn, scratch, state, out, settings, end, most, method): as an integrator's own, with its number behind."""
 
 
@@ -103,7 +103,7 @@ NO_LIMIT = 10**12
 
 @internal
 def next_stop(before, t):
-    """The first stop after the time t; as many as there are if there is none."""
+    """Return the number of the first jump after the time t (s); as many as there are if there is none."""
     low = 0
     high = before.shape[0]
     while low < high:
@@ -142,8 +142,8 @@ def cross(state, before, after):
 
 
 @internal
-def through(dyn, scratch, state, out, settings, end, steps, before, after, method):
-    """``advance`` from stop to stop, by the integrator of this number (INTEGRATORS)."""
+def advance_past_jumps(dyn, scratch, state, out, settings, end, steps, before, after, method):
+    """Call ``advance`` from jump to jump, by the integrator of this number (INTEGRATORS)."""
     while True:
         if state.clock[TIME] < end:
             cross(state, before, after)

@@ -20,11 +20,9 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import internal, kernel
+from mbsd.dynamics.formulation import begin_run, close_step, derivative
+from mbsd.dynamics.integrators.full_matrix import differentiate, factor_full, solve_full, too_large
 from mbsd.dynamics.integrators.kind import Integrator, Option, register
-from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
-from mbsd.dynamics.reference.projection import close_step
-from mbsd.dynamics.reference.tangents import differentiate, too_large
 from mbsd.dynamics.state import (
     ACCEPTED,
     EVALUATIONS,
@@ -38,7 +36,6 @@ from mbsd.dynamics.state import (
     STEP,
     TIME,
     WORK,
-    begin,
     fixed_step,
     record_here,
 )
@@ -55,7 +52,7 @@ SLOW = 0.3
 
 @internal
 def _matrix(dyn, scratch, t, trial, a, h, rho):
-    """A new matrix at a trial state (2, 3 nb); returns the evaluations it took."""
+    """Factor the matrix at a trial state (2, 3 nb); returns the evaluations it took."""
     full = scratch.full
     m, f, g, b = _weights(rho)
     count = differentiate(dyn, scratch, t, trial, a, scratch.stages[3], scratch.stages[4])
@@ -70,7 +67,7 @@ def _matrix(dyn, scratch, t, trial, a, h, rho):
 
 @internal
 def _weights(rho):
-    """m, f, g, b."""
+    """Return m, f, g, b."""
     m = (2.0 * rho - 1.0) / (rho + 1.0)
     f = rho / (rho + 1.0)
     g = 0.5 + f - m
@@ -91,7 +88,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     m, f, g, b = _weights(rho)
     if state.count[STARTED] == 0:
         state.clock[STEP] = 0.0
-    begin(dyn, scratch, state)
+    begin_run(dyn, scratch, state)
     if state.clock[STEP] == 0.0:  # a start, or a restart after an event
         for c in range(3, n3):
             x[c] = state.dy[1, c]

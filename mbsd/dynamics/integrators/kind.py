@@ -1,4 +1,4 @@
-"""What an integrator is, and the registry that one test walks through."""
+"""Integrator: a method by name, and the registry of all of them."""
 
 from __future__ import annotations
 
@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 
 if TYPE_CHECKING:
     from mbsd.dynamics.reference.arrays import Dynamics
@@ -47,9 +46,11 @@ class Integrator:
     options: Mapping[str, Option] = field(default_factory=dict)
     """Numbers that ``simulate`` takes by name for this method; in this order they stand in Settings.options."""
     matrices: tuple[int, int] = (0, 0)
-    """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/reference/full_matrix.py)."""
+    """Full matrices it needs, and their rows for each coordinate (see mbsd/dynamics/integrators/full_matrix.py)."""
     independent: bool = False
     """Whether ``advance`` integrates independent coordinates as well: ``dyn`` is then an Embedding."""
+    general: bool = False
+    """Whether ``advance`` steps q' = N(q) v of any formulation; the others step q' = v."""
     refusal: Callable[[Dynamics], str | None] = lambda dynamics: None
     """Why this method cannot simulate a mechanism, or None."""
     meets_switches: bool = False
@@ -69,7 +70,7 @@ class Integrator:
         return True
 
     def why_refused(self, dynamics: Dynamics) -> str | None:
-        """Why this method cannot simulate a mechanism here, or None."""
+        """Return why this method cannot simulate a mechanism here, or None."""
         if not self.installed:
             return (
                 f"method '{self.name}' needs the package '{self.package}', which is not installed; take another method"
@@ -77,7 +78,7 @@ class Integrator:
         return self.refusal(dynamics)
 
     def numbers(self, model: str, given: Mapping[str, float]) -> np.ndarray:
-        """(options,) what was given, else the defaults. Raises ModelError for unknown names and impossible values."""
+        """Return (options,) as given, else the defaults. Raises ModelError for unknown names and impossible values."""
         for name, value in given.items():
             if name not in self.options:
                 raise ModelError(f"{model}: method '{self.name}': {no_such('option', name, self.options)}")
@@ -95,7 +96,7 @@ class Integrator:
 
 
 def without_sliding(dynamics: Dynamics) -> str | None:
-    """The refusal of methods that do not step along the derivative, which alone knows friction from reactions."""
+    """Return why a method that does not step along the derivative cannot simulate friction, or None."""
     if len(dynamics.loads.friction):
         return "this method does not know the friction of joints; take 'dop853', or joints without friction"
     if len(dynamics.sliding.rows):

@@ -11,13 +11,21 @@ lam is found by Newton's method with S = J W^-1 J^T at q0 instead of J(q1) W^-1 
 about h omega. W is M, lifted a little where bodies lack mass, and what it has too much is balanced in the next pass.
 
 Source: Andersen 1983, J. Comput. Phys. 52; Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4.
+
+'symplectic' takes five steps of RATTLE as one of order 4, for long runs without friction:
+
+    h p, h p, h (1 - 4 p), h p, h p,      p = 1 / (4 - 4^(1/3)) = 0.4145
+
+The third goes back in time. Errors are far smaller than those of the composition of three.
+
+Source: Suzuki 1990, Phys. Lett. A 146; Hairer, Lubich, Wanner, Geometric Numerical Integration, II.4.
 """
 
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel
+from mbsd.dynamics.formulation import begin_run, derivative
 from mbsd.dynamics.integrators.kind import Integrator, register, without_sliding
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.projection import LIFT
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.dynamics.state import (
@@ -30,7 +38,6 @@ from mbsd.dynamics.state import (
     REACHED,
     TIME,
     WORK,
-    begin,
     fixed_step,
     record_here,
 )
@@ -49,7 +56,7 @@ SUZUKI = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
 
 @internal
 def _loads(dyn, scratch, t, y):
-    """Q at (t, y) into scratch.stages[1, 0], after _factor at the same pose; returns its power (W)."""
+    """Put Q at (t, y) into scratch.stages[1, 0], after _factor at the same pose; returns its power (W)."""
     load = scratch.stages[1, 0]
     for c in range(load.shape[0]):
         load[c] = dyn.weight[c]
@@ -60,7 +67,7 @@ def _loads(dyn, scratch, t, y):
 
 @internal
 def _factor(dyn, scratch, t, q):
-    """Laws and factors of S at (t, q)."""
+    """Evaluate laws and factor S at (t, q)."""
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
     position(dyn.system, q, scratch.drive, scratch.ws)
@@ -69,7 +76,7 @@ def _factor(dyn, scratch, t, q):
 
 @inlined
 def _stand(dyn, scratch, t, y):
-    """Factors of S and the loads at (t, y), where a step begins; returns the power of the loads (W)."""
+    """Factor S and find the loads at (t, y), where a step begins; returns the power of the loads (W)."""
     _factor(dyn, scratch, t, y[0])
     return _loads(dyn, scratch, t, y)
 
@@ -111,7 +118,7 @@ def _correct(dyn, scratch, v, lam):
 
 @inlined
 def _driver_work(dyn, scratch, lam):
-    """Work (J) of the impulses lam (m,) of drivers at the rates in scratch.drive."""
+    """Return the work (J) of the impulses lam (m,) of drivers at the rates in scratch.drive."""
     work = 0.0
     for k in range(dyn.system.driven.shape[0]):
         work -= lam[dyn.system.driven[k, 0]] * scratch.drive[dyn.system.driven[k, 1], 1]
@@ -120,7 +127,7 @@ def _driver_work(dyn, scratch, lam):
 
 @apart
 def rattle_step(dyn, scratch, t, h, y, power):
-    """One step of y (2, 3 nb) from t to t + h (s), h of either sign; _stand was called at its start, and is at its end.
+    """Step y (2, 3 nb) from t to t + h (s), h of either sign; _stand was called at its start, and is at its end.
 
     ``power`` is that of the loads at the start (W). Returns the power of the loads at the end and the work (J), in
     scratch.report[1:3], and whether lam and v1 were found.
@@ -209,9 +216,9 @@ def rattle_step(dyn, scratch, t, h, y, power):
 
 @apart
 def march(dyn, scratch, state, out, settings, end, max_steps, parts):
-    """``advance`` by RATTLE (1 part) or by its composition of order 4 (5 parts)."""
+    """Advance by RATTLE (1 part) or by its composition of order 4 (5 parts)."""
     y = state.y
-    begin(dyn, scratch, state)
+    begin_run(dyn, scratch, state)
     power = _stand(dyn, scratch, state.clock[TIME], y)
     fresh = True
     accepted = 0
@@ -259,3 +266,14 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
 
 
 RATTLE = register(Integrator("rattle", advance, STAGES, order=2, fixed_step=True, refusal=without_sliding))
+
+
+@kernel
+def advance_symplectic(dyn, scratch, state, out, settings, end, max_steps):
+    """Go on to ``end`` (s), ``max_steps`` steps at most, writing the outputs passed. Returns a status."""
+    return march(dyn, scratch, state, out, settings, end, max_steps, 5)
+
+
+SYMPLECTIC = register(
+    Integrator("symplectic", advance_symplectic, STAGES, order=4, fixed_step=True, refusal=without_sliding)
+)

@@ -13,7 +13,7 @@ from mbsd.compiling.jit import internal
 
 @internal
 def next_part(a, fa, b, fb, c, fc):
-    """Where between a and b the root is looked for next, as a part of the way from a to b."""
+    """Return where between a and b the root is looked for next, as a part of the way from a to b."""
     if fb == fc or fa == fc:
         return 0.5
     xi = (a - b) / (c - b)
@@ -25,7 +25,7 @@ def next_part(a, fa, b, fb, c, fc):
 
 @internal
 def narrowed(a, fa, b, fb, x, f):
-    """The next a, fa, b, fb, c, fc, after f was found at x between a and b."""
+    """Return the next a, fa, b, fb, c, fc, after f was evaluated at x between a and b."""
     if (f > 0.0) == (fa > 0.0):
         return x, f, b, fb, a, fa
     return x, f, a, fa, b, fb

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, inlined
-from mbsd.dynamics.integrators.formulation import derivative
+from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.state import EVALUATIONS, TIME
 
 WITHIN = 1e-3
@@ -17,7 +17,7 @@ WITHIN = 1e-3
 
 @inlined
 def allowed(settings, before, after, part, c):
-    """Tolerance of one entry of the state."""
+    """Return the tolerance of one entry of the state."""
     return settings.absolute[part, c] + settings.growing[part, c] * max(abs(before[part, c]), abs(after[part, c]))
 
 

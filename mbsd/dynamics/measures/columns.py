@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.dynamics.measures.kinds import Measure
 
 
@@ -39,7 +39,7 @@ def columns_of(
 
 
 def numbers_of(owner: str, given: Any) -> dict[str, float]:
-    """What a function that measures gave. Raises ModelError for anything but names and numbers."""
+    """Return the numbers that a function of the user gave. Raises ModelError for anything but names and numbers."""
     if not isinstance(given, Mapping) or not given:
         raise ModelError(f"{owner}: measure gives {shown(given)}; it must give names and numbers {{name: number}}")
     out = {}

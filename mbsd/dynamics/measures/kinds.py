@@ -1,4 +1,4 @@
-"""What is kept of each of many simulations: a few numbers of a quantity along its outputs, by functions of their own.
+"""Measures of each of many simulations: a few numbers of a quantity along its outputs, by functions of their own.
 
     final("door.theta")                      at the last output
     largest("A.fx"), smallest("A.fx")        over all outputs, and when: two columns
@@ -47,17 +47,17 @@ class Measure:
 
     @property
     def ends(self) -> bool:
-        """Whether it may be known before the last output."""
+        """True if it may be known before the last output."""
         return False
 
     @property
     def reads_few(self) -> bool:
-        """Whether it reads the outputs that are ``needed`` alone, which are few, whatever the others are."""
+        """True if it reads the outputs that are ``needed`` alone, which are few, whatever the others are."""
         return False
 
     @property
     def threshold(self) -> tuple[float, bool] | None:
-        """What its quantity is to pass, and whether it is to be below; None where more decides what is known."""
+        """Return the value that its quantity is to pass and True if from above; None where more decides."""
         return None
 
     def known(self, t: np.ndarray, along: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -19,8 +19,8 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such
 from mbsd.model.mechanism import Model
 from mbsd.results.columns import FRAME
-from mbsd.results.moved_frame import moved_frame
 from mbsd.results.solution import Solution
+from mbsd.results.views import moved_frame
 
 ACCELERATIONS = ("ax", "ay", "alpha")
 TURNS = ("theta", "omega")
@@ -116,7 +116,7 @@ class Quantity:
     of_motions: Callable[[Motions], np.ndarray] | None = None
     """(R, T), if it is found of many at once."""
     reactive: bool = False
-    """Whether it comes from multipliers."""
+    """True if it comes from multipliers."""
     joint: int | None = None
     """Number of the joint whose reaction it is, if so."""
     turn: tuple[str, int] | None = None
@@ -124,7 +124,7 @@ class Quantity:
 
     @property
     def forces(self) -> bool:
-        """Whether it comes from multipliers or accelerations."""
+        """True if it comes from multipliers or accelerations."""
         return self.reactive or self.name.rpartition(".")[2] in ACCELERATIONS
 
 

@@ -1,38 +1,124 @@
-"""A mechanism made ready for forward dynamics: arrays, independent rows, elimination sequence, consistent start."""
+"""A mechanism made ready for forward dynamics: arrays, independent rows, elimination sequence, consistent start.
+
+States of forces start with given values, else with those of a steady state, as the kind of force says. A force whose
+states do not follow from the motion alone, as the pressures behind a closed valve, carries what is there to be carried:
+the effort e at which what it measures would not accelerate,
+
+    x''(e) = 0     for all such forces at once;  x'' is linear in e, so one evaluation for each and one more tell it
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.arrays.chambers import check_pistons
 from mbsd.arrays.driver_laws import refuse_bad_laws
 from mbsd.arrays.inertias import inertia_of, usual_inertia
-from mbsd.arrays.laws import compiled_laws
+from mbsd.arrays.laws import compiled_laws, law_values
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed, pack
-from mbsd.arrays.states import widened, with_states
+from mbsd.arrays.states import columns_of, ones_of, widened, with_states
 from mbsd.base.errors import MobilityError, ModelError
-from mbsd.dynamics.prepare.dependent import refuse_singular_start
-from mbsd.dynamics.prepare.lent_inertia import lift_inertia
-from mbsd.dynamics.prepare.mass_ratio import as_heavy_as_ground, passes_for
+from mbsd.base.quantity import counted
+from mbsd.dynamics.formulation import derivative
+from mbsd.dynamics.prepare.inertia import as_heavy_as_ground, lift_inertia, passes_for
+from mbsd.dynamics.prepare.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
-from mbsd.dynamics.prepare.pressed import refuse_pressed
-from mbsd.dynamics.prepare.start_states import take_start_states
-from mbsd.dynamics.prepare.unheld import refuse_unheld
-from mbsd.dynamics.reference.arrays import Dynamics
+from mbsd.dynamics.prepare.refusals import refuse_pressed, refuse_singular_start, refuse_unheld
+from mbsd.dynamics.reference.arrays import Dynamics, scratch_for
 from mbsd.dynamics.reference.pins import with_pins
-from mbsd.dynamics.reference.sequence import elimination_sequence
+from mbsd.dynamics.reference.schur import elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
-from mbsd.dynamics.rows.joint_sticks import joint_sticks, stuck_rows
-from mbsd.dynamics.rows.switches import Switches, friction_rows
-from mbsd.dynamics.start.large import MANY_COORDINATES, blocks_of, consistent_large, independent_large
+from mbsd.dynamics.switches import Switches, friction_rows, joint_sticks, stuck_rows
 from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 from mbsd.kinematics.pose.initial import Initial, consistent
 from mbsd.kinematics.pose.mobility import joint_mobility, rows_at
 from mbsd.model.mechanism import Model
+from mbsd.results.measured import measured, measured_rate
 from mbsd.results.mobility import Mobility
+
+if TYPE_CHECKING:
+    from mbsd.dynamics.prepare.prepared import PreparedDynamics
+    from mbsd.model.force import Element, Force, States
+
+MOMENT = 1e-5
+"""Step of the differences that give x'' (s)."""
+USUAL = 10.0
+"""An effort (N or N m) that is no rounding, for each kg of the mechanism."""
+FAINT = 1e-9
+"""Part of the largest change of x'' by an effort below which an effort moves nothing."""
+
+
+def take_start_states(ready: PreparedDynamics) -> None:
+    """Write the states at the start into its velocities."""
+    holders = _holders(ready)
+    count = len(holders)
+    none = _measured_accelerations(ready, holders, np.zeros(count))
+    usual = max(1.0, USUAL * float(ready.packed.system.mass.sum()))
+    effects = np.array([_measured_accelerations(ready, holders, usual * unit) - none for unit in np.eye(count)]).T
+    efforts = np.zeros(count)
+    if np.isfinite(none).all() and np.isfinite(effects).all():
+        efforts = usual * np.linalg.lstsq(effects, -none, rcond=FAINT)[0]
+    _write(ready, holders, efforts)
+
+
+class _Holder:
+    """A force with states, and how it stands at the start."""
+
+    def __init__(self, ready: PreparedDynamics, force: Force, i: int, j: int) -> None:
+        assert force.kind.states is not None
+        assert force.kind.along is not None
+        self.force, self.i, self.j = force, i, j
+        self.states: States = force.kind.states
+        self.element: Element = force.kind.along(force)
+        q, v = ready.initial.q[None], ready.initial.v[None]
+        self.value = float(measured(ready.packed, self.element, i, j, q)[0])
+        self.rate = float(measured_rate(ready.packed, self.element, i, j, q, v)[0])
+        self.model = ready.packed.name
+        values = law_values(ready.packed, ready.dynamics.laws, force, np.array([ready.start]))
+        self.laws = {name: float(value[0]) for name, value in values.items()}
+
+    def at(self, effort: float) -> list[float]:
+        """The states under this effort."""
+        return list(self.states.start(self.model, self.force, self.laws, self.value, self.rate, effort))
+
+
+def _holders(ready: PreparedDynamics) -> list[_Holder]:
+    packed = ready.packed
+    return [
+        _Holder(ready, force, int(i), int(j))
+        for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True)
+        if force.kind.states is not None
+    ]
+
+
+def _write(ready: PreparedDynamics, holders: list[_Holder], efforts: np.ndarray) -> None:
+    states = [value for holder, effort in zip(holders, efforts, strict=True) for value in holder.at(float(effort))]
+    ready.initial.v[columns_of(ready.packed)] = np.array(states) / ones_of(ready.packed)
+
+
+def _measured_accelerations(ready: PreparedDynamics, holders: list[_Holder], efforts: np.ndarray) -> np.ndarray:
+    """(n,) x'' of what each holder measures, at the start, under their efforts (n,)."""
+    packed = ready.packed
+    _write(ready, holders, efforts)
+    state = np.stack([ready.initial.q, ready.initial.v])
+    out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
+    scratch = scratch_for(ready.dynamics, packed.ws, len(packed.motions), 1)
+    derivative(ready.dynamics, scratch, ready.start, state, out, lam)
+    packed.specials.check()
+    steps = MOMENT * np.array([-1.0, 1.0])[:, None]
+    q = state[0] + steps * state[1] + 0.5 * steps**2 * out[1]
+    v = state[1] + steps * out[1]
+    return np.array(
+        [
+            np.diff(measured_rate(packed, holder.element, holder.i, holder.j, q, v))[0] / (2.0 * MOMENT)
+            for holder in holders
+        ]
+    )
+
 
 REFINEMENTS = 3
 """Passes at least where inertia was lifted: the second takes off the lift, the third what rounding it enlarged."""
@@ -153,6 +239,6 @@ def _refuse_superfluous_drivers(packed: Packed, mobility: Mobility) -> None:
     drivers = len(packed.ws.phi) - packed.driver_rows
     if drivers > mobility.dof:
         raise MobilityError(
-            f"{packed.name}: {drivers} drivers for {mobility.dof} degree{'s' * (mobility.dof != 1)} of freedom; "
+            f"{packed.name}: {counted(drivers, 'driver')} for {counted(mobility.dof, 'degree')} of freedom; "
             "remove a driver or free a joint"
         )

@@ -65,23 +65,19 @@ class Stops:
 
     @property
     def jumps(self) -> Jumps:
-        """Those where something may jump."""
+        """Return the stops where something may jump."""
         rows = np.flatnonzero(self.after > self.before)
         return Jumps(self.before[rows], self.after[rows], tuple(self.names[k] for k in rows))
-
-    def cross(self, state: State) -> None:
-        """Go on after the jump right before which ``state`` stands, if it stands there."""
-        k = int(np.searchsorted(self.before, state.clock[TIME]))
-        if k < len(self.before) and self.before[k] == state.clock[TIME] < self.after[k]:
-            state.clock[TIME] = self.after[k]
-            state.clock[STEP] = state.count[STARTED] = 0
 
     def through(self, advance: Callable[..., int], arrays: Any, scratch: Any, state: State, *rest: Any) -> int:
         """``advance`` of an Integrator, from stop to stop."""
         out, settings, end, steps = rest
         while True:
-            if state.clock[TIME] < end:
-                self.cross(state)
+            k = int(np.searchsorted(self.before, state.clock[TIME]))
+            at_jump = k < len(self.before) and self.before[k] == state.clock[TIME] < self.after[k]
+            if at_jump and state.clock[TIME] < end:
+                state.clock[TIME] = self.after[k]
+                state.clock[STEP] = state.count[STARTED] = 0
             k = int(np.searchsorted(self.before, state.clock[TIME], side="right"))
             if k == len(self.before) or self.before[k] >= end:
                 return advance(arrays, scratch, state, out, settings, end, steps)
@@ -223,7 +219,7 @@ class _Column:
         return self._whole.count
 
     def once(self, times: np.ndarray) -> np.ndarray:
-        """Those looked at before."""
+        """Return the values that were looked at before."""
         return self._seen[:, self._column]
 
     def __call__(self, times: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Accelerations and multipliers at a state, and the derivative that integrators step along.
+"""Accelerations and multipliers at a state.
 
     M a + J^T lam = Q                  S lam = J W^-1 Q - gamma,   S = J W^-1 J^T
     J a = gamma                        a = W^-1 (Q - J^T lam)
@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.compiling.jit import lazy, merged, shared
+from mbsd.compiling.jit import lazy, merged
 from mbsd.dynamics.reference.pins import factor_pins, solve_pins
 from mbsd.dynamics.reference.refinement import MOST_MORE, SHRINKS, refine, unbalanced
 from mbsd.dynamics.reference.schur import factor_schur, times_jacobian
@@ -145,11 +145,3 @@ def accelerate(dyn, scratch, t, state, a, lam):
     for k in range(system.driven.shape[0]):
         power -= lam[system.driven[k, 0]] * drive[system.driven[k, 1], 1]
     return power
-
-
-@shared
-def derivative(dyn, scratch, t, state, out, lam):
-    """out (2, 3 nb) = d(state)/dt, lam (m,); returns the power of loads and drivers (W)."""
-    for c in range(3, state.shape[1]):
-        out[0, c] = state[1, c]
-    return accelerate(dyn, scratch, t, state, out[1], lam)

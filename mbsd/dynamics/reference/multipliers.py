@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
     from mbsd.dynamics.reference.arrays import Dynamics
 
+NEGLIGIBLE = 1e-9
+"""Singular values of J below this part of the largest are zero."""
 CHUNK = 2_000_000
 """Numbers of Jacobians that are held at once."""
 
@@ -95,3 +97,14 @@ def _drives(packed: Packed, dynamics: Dynamics, times: np.ndarray) -> np.ndarray
     for k in range(1, len(out)):
         tabulate_law(dynamics.laws, k, times, out[k])
     return np.ascontiguousarray(out.swapaxes(0, 1))
+
+
+def least_norm(packed: Packed, jacobians: np.ndarray, lam: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """Return the multipliers (T, m) of least norm of joints that share loads in many ways, which lam (T, m) divides.
+
+    ``jacobians`` (T, m, 6) are compact; ``held`` (T, m) tells which rows hold.
+    """
+    out, joints = lam.copy(), slice(0, packed.contact_rows)
+    for k, j in enumerate(packed.spread(jacobians * held[..., None])[:, joints]):
+        out[k, joints] = np.linalg.lstsq(j.T, j.T @ lam[k, joints], rcond=NEGLIGIBLE)[0] * held[k, joints]
+    return out

@@ -7,7 +7,7 @@ Source: Eich 1993, SIAM J. Numer. Anal. 30 (projection after each step); Hairer,
 
 from __future__ import annotations
 
-from mbsd.compiling.jit import apart, inlined, merged, shared
+from mbsd.compiling.jit import apart, kernel, shared
 from mbsd.dynamics.reference.pins import change_by_pins, factor_pins
 from mbsd.dynamics.reference.schur import factor_schur, solve_schur, subtract_forces, times_jacobian
 from mbsd.equations.assembly import evaluate_nu, evaluate_position, position
@@ -16,14 +16,13 @@ from mbsd.equations.laws import evaluate_laws
 LIFT = 1e-11
 """Lift of the diagonal of S, relative: where joints nearly depend (singular poses), rounding in Phi is not blown up."""
 
-OPEN, CONTRACTION = 1e-4, 0.1
-"""A second pass that moves coordinates by less (sizes, rad) leaves the square of that; one that moves them by more,
-and by more than this part of the first pass, does not lead to a pose near the step's."""
 
+@shared
+def project(dyn, scratch, t, state, passes):
+    """Project coordinates and velocities of a state (2, 3 nb) in place, ``passes`` times.
 
-@merged
-def bring_back(dyn, scratch, t, state, passes):
-    """``project`` for kernels that contain it."""
+    The largest changes of coordinates in the first and last pass (sizes, rad) go to scratch.report[1:3].
+    """
     system = dyn.system
     schur = dyn.schur
     ws = scratch.ws
@@ -65,32 +64,16 @@ def bring_back(dyn, scratch, t, state, passes):
             scratch.report[1] = largest
 
 
-@shared
-def project(dyn, scratch, t, state, passes):
-    """Project coordinates and velocities of a state (2, 3 nb) in place, ``passes`` times.
-
-    The largest changes of coordinates in the first and last pass (sizes, rad) go to scratch.report[1:3].
-    """
-    bring_back(dyn, scratch, t, state, passes)
-
-
-@inlined
-def close_step(dyn, scratch, t, state):
-    """Project a state (2, 3 nb) that a step of fixed length has led to, at its end t (s); returns whether it closes.
-
-    Numbers that are none count as closed: they are looked for elsewhere.
-    """
-    project(dyn, scratch, t, state, 2)
-    if scratch.report[2] > OPEN:
-        if scratch.report[2] > CONTRACTION * scratch.report[1]:
-            return False
-        project(dyn, scratch, t, state, 2)
-    return not scratch.report[2] > OPEN
-
-
 @apart
 def measure(dyn, scratch, t, q):
     """Fill scratch.ws.phi and scratch.ws.jac at q (3 nb,) and t (s)."""
     if scratch.drive.shape[0] > 1:
         evaluate_laws(dyn.laws, scratch.drive.shape[0], t, scratch.drive)
     position(dyn.system, q, scratch.drive, scratch.ws)
+
+
+@kernel
+def factor_at(dyn, scratch, t, state):
+    """Factor at the pose of a state; the part of each row that is new stays in factors.low[k, 1:3]."""
+    project(dyn, scratch, t, state, 1)
+    factor_schur(dyn.schur, dyn.metric, scratch.ws.jac, scratch.factors, 0.0)

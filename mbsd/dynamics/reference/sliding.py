@@ -21,6 +21,7 @@ import numpy as np
 
 from mbsd.compiling.jit import lazy
 from mbsd.dynamics.reference.refinement import respond
+from mbsd.dynamics.reference.rows import along, push
 from mbsd.equations.gauss import eliminate
 
 
@@ -45,7 +46,6 @@ def sliding_for(rows: np.ndarray, coordinates: int, multipliers: int) -> Sliding
 def begin_sliding(dyn, scratch):
     """Find (a_k, lam_k) of every sliding contact at the pose of the factors; the friction of none is applied yet."""
     table = dyn.sliding.table
-    ws = scratch.ws
     n3 = dyn.inertia.shape[0]
     at_a = 1 + n3
     at_lam = at_a + n3
@@ -60,10 +60,7 @@ def begin_sliding(dyn, scratch):
         way = dyn.sliding.rows[k, 1]
         for c in range(n3):
             force[c] = 0.0
-        for side in range(2):
-            at = 3 * dyn.system.row_body[way, side]
-            for c in range(3):
-                force[at + c] -= table[k, 0] * ws.jac[way, 3 * side + c]
+        push(dyn, scratch, way, -table[k, 0], force)
         respond(dyn, scratch, force, 0.0, own_a, own_lam)
 
 
@@ -72,7 +69,6 @@ def slide(dyn, scratch, v, a, lam):
     """Add the friction to a (3 nb,), lam (m,) and what is left of Q, after begin_sliding; returns its power (W)."""
     rows = dyn.sliding.rows
     table = dyn.sliding.table
-    ws = scratch.ws
     n3 = a.shape[0]
     count = rows.shape[0]
     at_a = 1 + n3
@@ -102,12 +98,7 @@ def slide(dyn, scratch, v, a, lam):
             scratch.force[c] += table[k, 1 + c] * more
         for r in range(lam.shape[0]):
             lam[r] += table[k, at_lam + r] * more
-        speed = 0.0
-        for side in range(2):
-            at = 3 * dyn.system.row_body[way, side]
-            for c in range(3):
-                speed += ws.jac[way, 3 * side + c] * v[at + c]
-        power -= table[k, 0] * more * speed
+        power -= table[k, 0] * more * along(dyn, scratch, way, v)
     for k in range(count):
         if table[k, 0] != 0.0:
             lam[rows[k, 1]] = table[k, 0] * matrix[k, count]

@@ -18,10 +18,10 @@ import math
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import apart, inlined, internal, lazy
-from mbsd.dynamics.embedding.arrays import Embedding
-from mbsd.dynamics.integrators.advance import through
-from mbsd.dynamics.reference.arrays import Dynamics
-from mbsd.dynamics.reference.projection import measure
+from mbsd.dynamics.formulation import measure, push
+from mbsd.dynamics.independent.arrays import Embedding
+from mbsd.dynamics.integrators.advance import advance_past_jumps
+from mbsd.dynamics.reference.rows import OPENED_BY
 from mbsd.dynamics.repeated_rows.arrays import (
     BETTER,
     BLOCK,
@@ -35,9 +35,10 @@ from mbsd.dynamics.repeated_rows.arrays import (
     STEPS,
     UNTIL,
 )
-from mbsd.dynamics.rows.bounds import LOOK, OPENED_BY
 from mbsd.dynamics.state import PAUSED, TIME
 
+LOOK = 10
+"""Steps between two looks at which rows hold."""
 TURNS = 40
 """Turns of inverse iteration."""
 
@@ -60,10 +61,9 @@ def find_rows(dyn, scratch, repeated, t, q):
         row = repeated.place[i, ROW]
         for c in range(jac.shape[1]):
             jac[i, c] = 0.0
-        for side in range(2):
-            at = 3 * dyn.system.row_body[row, side]
-            for c in range(3):
-                jac[i, at + c] += scratch.ws.jac[row, 3 * side + c] * repeated.number[i, SCALE] * size[at + c]
+        push(dyn, scratch, row, repeated.number[i, SCALE], jac[i])
+        for c in range(jac.shape[1]):
+            jac[i, c] *= size[c]
 
 
 @apart
@@ -231,7 +231,7 @@ def _again(dyn, scratch, state, out, settings, repeated, end, steps, before, aft
     while status == PAUSED and taken < steps:
         some = min(steps - taken, LOOK - int(repeated.clock[STEPS]) % LOOK)
         look(dyn, scratch, repeated, state, some)
-        status = through(dyn, scratch, state, out, settings, end, some, before, after, method)
+        status = advance_past_jumps(dyn, scratch, state, out, settings, end, some, before, after, method)
         taken += some
     return status
 
@@ -256,9 +256,9 @@ def _go_again(dyn, scratch, state, out, settings, repeated, end, steps, before, 
     return _again(dyn, scratch, state, out, settings, repeated, end, steps, before, after, method)
 
 
-again = alternatives({Dynamics: _go_again, Embedding: _never})
+again = alternatives({Embedding: _never}, _go_again)
 """``through``, with a look at the rows now and then; never in independent coordinates."""
-opens = alternatives({Dynamics: _opens_where, Embedding: _no_row_opens})
+opens = alternatives({Embedding: _no_row_opens}, _opens_where)
 """Whether a row that did not hold once is open in one of the outputs ``first`` to ``end`` (left out)."""
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated_rows.arrays import BETTER, FOLLOWS, HELD, OPENED, ROW, SCALE, UNTIL, Repeated
-from mbsd.dynamics.start.large import MANY_COORDINATES
 from mbsd.kinematics.pose.mobility import BETTER as FACTOR
 from mbsd.kinematics.pose.mobility import RANK_TOLERANCE
 
@@ -22,7 +22,7 @@ def why_not(ready: PreparedDynamics) -> str | None:
 
 
 def repeated_of(ready: PreparedDynamics) -> Repeated:
-    """Those of a run at its start."""
+    """Return the rows of a run at its start."""
     packed, switches = ready.packed, ready.switches
     spare = set(switches.spare)
     rows = range(packed.contact_rows) if spare else []

@@ -18,34 +18,35 @@ def _apply():
 
 
 def address() -> int:
-    """Where the evaluation is; compiles it at first."""
+    """Return where the evaluation is; compiles it at first."""
     return _apply().address if COMPILED else 0
 
 
 if COMPILED:
 
     @intrinsic
-    def _call(typing, address, interaction, n, given, state, out, switches, t, q, v, cos_sin, load):  # pyright: ignore[reportUnusedParameter, reportRedeclaration]
-        """Call it with contiguous arrays."""
-        kinds = interaction, n, given, state, out, switches, t, q, v, cos_sin, load
+    def _call(typing, address, count, t, arrays):  # pyright: ignore[reportUnusedParameter, reportRedeclaration]
+        """Call it with a tuple of contiguous arrays, in the order of ``apply``."""
 
         def code(context, builder, signature, arguments):
-            where, *values = arguments
-            for place, kind in enumerate(kinds):
-                if isinstance(kind, types.Array):
-                    values[place] = context.make_array(kind)(context, builder, values[place]).data
+            where, number, time, values = arguments
+            data = []
+            for index, kind in enumerate(signature.args[3]):
+                array = context.make_array(kind)(context, builder, builder.extract_value(values, index))
+                data.append(array.data)
+            given = [data[0], number, *data[1:5], time, *data[5:]]
             double = cgutils.ir.DoubleType()
-            function = cgutils.ir.FunctionType(double, [value.type for value in values])
-            return builder.call(builder.inttoptr(where, function.as_pointer()), values)
+            function = cgutils.ir.FunctionType(double, [value.type for value in given])
+            return builder.call(builder.inttoptr(where, function.as_pointer()), given)
 
-        return types.float64(types.int64, *kinds), code
+        return types.float64(types.int64, types.int64, types.float64, arrays), code
 
 else:
 
-    def _call(address, interaction, n, given, state, out, switches, t, q, v, cos_sin, load):
-        """Call it with contiguous arrays."""
-        flat = [part.reshape(-1) for part in (interaction, given, state, out, switches, q, v, cos_sin, load)]
-        return _apply()(flat[0], n, *flat[1:5], t, *flat[5:])
+    def _call(address, count, t, arrays):
+        """Call it with a tuple of contiguous arrays, in the order of ``apply``."""
+        flat = [part.reshape(-1) for part in arrays]
+        return _apply()(flat[0], count, *flat[1:5], t, *flat[5:])
 
 
 @inlined
@@ -60,4 +61,5 @@ def apply_interactions(interaction, given, state, exchange, switch, laws, law, t
             law_at(laws, interaction[k, 2], t, law)
             switch[k + 1, LAW_HERE] = law[0]
             switch[k + 1, LAW_RATE_HERE] = law[1]
-    return _call(interaction[0, 5], interaction, count, given, state, exchange[1], switch, t, q, v, cos_sin, load)
+    arrays = (interaction, given, state, exchange[1], switch, q, v, cos_sin, load)
+    return _call(interaction[0, 5], count, t, arrays)

@@ -1,4 +1,4 @@
-"""What the function of an interaction reads and fills; it is compiled only when a model uses it.
+"""Arguments of an interaction's function, which is compiled only when a model uses it.
 
     void force(const double *numbers, const double *state, double *out)
 
@@ -47,7 +47,7 @@ interaction = equation
 
 
 def switches(name: str) -> bool:
-    """Whether the force of this file has kinks or jumps that it tells."""
+    """Return True if the force of this file has kinks or jumps that it tells."""
     return getattr(importlib.import_module(f"mbsd.equations.interactions.{name}"), "SWITCHES", False)
 
 

@@ -21,7 +21,7 @@ def note(out, depth, rate, exponent):
 
 @inlined
 def touches(state, depth):
-    """Whether the two touch: as the step holds it, else by depth."""
+    """Return True if the two touch: as the step holds it, else by depth."""
     return state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0)
 
 

@@ -1,4 +1,4 @@
-"""What a body feels in a turning frame; the law is in forces/rotating_frame.py."""
+"""Inertial forces on a body in a turning frame; the law is in forces/rotating_frame.py."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which side of their kinks and jumps interactions are on, for integrators that end their steps there.
+"""Sides of kinks and jumps that interactions are on, for integrators that end their steps there.
 
 A force that switches tells a number s (m) that changes its sign there: the depth of a contact, say. While a step is
 tried the force may be held on the side on which it began, and goes on smoothly beyond s = 0; how far it went beyond is

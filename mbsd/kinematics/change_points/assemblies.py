@@ -112,8 +112,9 @@ class Solver:
         determinant = np.zeros((count, len(self.sequence.ends)))
         drives = way.drives(p, sign)
         status, _ = newton.sweep(
-            packed.system, self.sequence, self.factors, packed.ws, packed.size, sign * p, drives,
-            np.full(drives.shape[1], np.inf), q, v, a, np.zeros(count), determinant, 0, count,
+            packed.system, self.sequence, self.factors, packed.ws, packed.size,
+            newton.DrivenMotion(sign * p, drives, np.full(drives.shape[1], np.inf), q, v, a),
+            np.zeros(count), determinant, 0, count,
         )  # fmt: skip
         packed.specials.check()
         return (q, sign * v, a, determinant) if status == newton.DONE else None

@@ -1,4 +1,4 @@
-"""Which bodies are a block, how they hang, and its equations as tables (mbsd/kinematics/groups/blocks.py).
+"""Bodies of a block, how they are connected, and its equations as tables (mbsd/kinematics/groups/blocks.py).
 
 Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 6 (block triangular form).
 """

@@ -42,8 +42,6 @@ DOUBTED_BEFORE = 4
 class Blocks(NamedTuple):
     """All blocks of a plan; the group of kind BLOCK has the number of its block as ``motion``."""
 
-    address: Any
-    """(1,) of the compiled solution (mbsd/kinematics/groups/newton/block.py)."""
     head: Any
     """(blocks, 9)"""
     tree: Any
@@ -79,11 +77,10 @@ class Blocks(NamedTuple):
 @cache
 def no_blocks() -> Blocks:
     """Blocks of a plan of closed forms of one and two bodies alone; where there is none, nobody writes into scratch."""
-    return with_scratch(0, [], [], [], [], [], [], np.zeros(0), [], [], [])
+    return with_scratch([], [], [], [], [], [], np.zeros(0), [], [], [])
 
 
 def with_scratch(
-    address: int,
     head: Sequence[Sequence[int]],
     tree: Sequence[Sequence[int]],
     rows: Sequence[Sequence[int]],
@@ -98,7 +95,6 @@ def with_scratch(
     """The fields of the same names as arrays, and the scratch."""
     most = max((row[BODIES] for row in head), default=0)
     return Blocks(
-        address=np.array([address], np.int64),
         head=np.array(head, np.int64).reshape(-1, 9),
         tree=np.array(tree, np.int64).reshape(-1, 5),
         rows=np.array(rows, np.int64).reshape(-1, 9),

@@ -9,6 +9,7 @@ doubted.
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
 from mbsd.compiling.jit import threaded
 from mbsd.kinematics.groups.carrying.cases import PoseAlone
@@ -20,22 +21,64 @@ NEAR = 0.25
 """Part of the angle to the other branch by which the extrapolated motion may be missed."""
 
 
-@threaded
-def place_designs(group, row, start, driven, every, place, rate, roots, last, body, arm, turned, out, angle, status):
-    """Fill out (n, points, T, 2), angle (n, bodies, T) and status (n,) of n designs with rows (n, g, 21) of Groups.row.
+class Wanted(NamedTuple):
+    """Points and angles that are wanted of n designs."""
 
-    Poses are solved equally far apart in time; every ``every``th is kept.
+    body: Any
+    """(points,) of each point."""
+    arm: Any
+    """(n, points, 2) from the centre of mass."""
+    turned: Any
+    """(bodies,) whose angles are wanted."""
+
+
+class Placed(NamedTuple):
+    """Results of n designs."""
+
+    out: Any
+    """(n, points, T, 2)"""
+    angle: Any
+    """(n, bodies, T)"""
+    status: Any
+    """(n,)"""
+
+
+class Scratch(NamedTuple):
+    """Scratch of one thread."""
+
+    place: Any
+    """(nb, 7), with cosine 1 for ground."""
+    rate: Any
+    """(1, 1)"""
+    roots: Any
+    """(g, 2)"""
+    last: Any
+    """(bodies,)"""
+
+
+@threaded
+def place_designs(group, row, start, driven, every, wanted, placed, scratch):
+    """Fill ``placed`` with the ``wanted`` of n designs with rows (n, g, 21) of Groups.row.
+
+    Poses are solved equally far apart in time; every ``every``th is kept. Angles go on from start (3 nb,).
     driven (every (T - 1) + 1, g, 2) cosine and sine of DRIVEN groups' angles, values of the other laws.
-    Points: body (points,) and arm (n, points, 2) from centres of mass; turned (bodies,) whose angles are wanted, going
-    on from start (3 nb,). Scratch: place (nb, 7) with cosine 1 for ground, rate (1, 1), roots (g, 2), last (bodies,).
     """
+    body = wanted.body
+    arm = wanted.arm
+    turned = wanted.turned
+    out = placed.out
+    angle = placed.angle
+    status = placed.status
+    place = scratch.place
+    roots = scratch.roots
+    last = scratch.last
     for design in range(row.shape[0]):
         status[design] = SOLVED
         for i in range(turned.shape[0]):
             last[i] = start[3 * turned[i] + 2]
         for k in range(driven.shape[0]):
             state = SOLVED
-            case = PoseAlone(group, row[design], place, rate, driven[k])
+            case = PoseAlone(group, row[design], place, scratch.rate, driven[k])
             for e in range(group.shape[0]):
                 state = solve_group(case, e)
                 if state != SOLVED:

@@ -151,11 +151,6 @@ class _Parts:
 
     def tables(self) -> Parts:
         """As the kernels read them."""
-        address = 0
-        if self.head:
-            from mbsd.kinematics.groups.newton.block import ADDRESS
-
-            address = ADDRESS
         carriers = {int(body) for kind, bodies, _, _ in self.plan.taken if kind < BLOCK for body in bodies[2:]}
         for head in self.head:
             own = {row[0] for row in self.tree[head[TREE_AT] : head[TREE_AT] + head[BODIES]]}
@@ -164,7 +159,7 @@ class _Parts:
             if kind == TRAIN:
                 numbers[CARRIES_ON] = float(bodies[0] in carriers)
         blocks = with_scratch(
-            address, self.head, self.tree, self.equations, self.near, self.frame, self.numbers,
+            self.head, self.tree, self.equations, self.near, self.frame, self.numbers,
             self.packed.system.numbers, self.train, [body for body, _ in self.shares],
             [share for _, share in self.shares],
         )  # fmt: skip

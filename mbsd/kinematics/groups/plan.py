@@ -65,7 +65,7 @@ def _planned(packed: Packed, q0: np.ndarray) -> Groups | None:
 
 
 def describe(groups: Groups, blocks: Blocks, names: list[str]) -> str:
-    """What the plan is, for people: ``driven crank; RRR coupler, rocker``."""
+    """Return the plan in words: ``driven crank; RRR coupler, rocker``."""
     parts = []
     for kind, bodies, motion in zip(groups.kind, groups.body, groups.motion, strict=True):
         if kind == BLOCK:
@@ -117,7 +117,7 @@ def links_of_joints(packed: Packed, numbers: Iterable[int]) -> list[list[Link]]:
 
 
 class Recipe(NamedTuple):
-    """What a group was made by."""
+    """The recipe by which a group was planned."""
 
     make: Callable[..., Made | None]
     bodies: tuple[int, ...]
@@ -155,7 +155,7 @@ class Plan:
 
     @property
     def complete(self) -> bool:
-        """Whether all bodies are known and all joints used."""
+        """True if all bodies are known and all joints used."""
         return len(self.known) == len(self.links) and self.used.issuperset(range(len(self.packed.joints)))
 
     def grow(self) -> None:
@@ -245,7 +245,7 @@ class Plan:
         return out
 
     def _same_offsets(self, packed: Packed) -> bool:
-        """Whether angles between bodies and lengths of rods are those of this plan, so that its links are."""
+        """Return True if angles between bodies and lengths of rods are those of this plan, so that its links are."""
         pairs = [(getattr(part.system, name) for part in (packed, self.packed))
                  for name in ("angle_offset", "distance_length")]  # fmt: skip
         return all(a.tobytes() == b.tobytes() for a, b in pairs)

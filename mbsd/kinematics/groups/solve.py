@@ -10,6 +10,7 @@ between its ends, where a body turns too far to count turns, or where a law move
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
 from mbsd.compiling.jit import internal, kernel
 from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, DOUBTED_BEFORE, NEAR_AT, ROWS_AT, TRAIN, TREE_AT
@@ -19,7 +20,8 @@ from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED, dip, wound
 from mbsd.kinematics.groups.groups import DRIVEN, FIRST, LAW, SECOND, WATCHED
 from mbsd.kinematics.groups.kinds.driven import SENSE
 from mbsd.kinematics.groups.kinds.train import CARRIES_ON, solve_train
-from mbsd.kinematics.groups.newton.call import call_block
+from mbsd.kinematics.groups.newton.block import solve_block
+from mbsd.kinematics.groups.newton.records import Block, History, Work
 from mbsd.kinematics.groups.solve_group import solve_group
 from mbsd.kinematics.law_step import jumps
 
@@ -62,20 +64,40 @@ def turned_on(body, b, before):
     return angle + 2.0 * math.pi * math.floor((before - angle) / (2.0 * math.pi) + 0.5)
 
 
-@kernel
-def solve_groups(
-    groups, blocks, start, times, drives, stride, tiny, first_row, q, v, a, determinant, body, rate, turn, point, before
-):
-    """Fill rows ``first_row`` .. of q, v, a (T, 3 nb) at times (T,) with drives (T, motions + 1, 3).
+class Poses(NamedTuple):
+    """Scratch: all bodies at one time."""
 
-    Angles go on from start (3 nb,). ``stride`` (motions + 1,) is how far each law may go in one step, ``tiny`` (m^2)
-    the square of a length that counts as zero. The row ``first_row`` itself is not compared with the one before it.
-    ``determinant`` (blocks, T, 1) is filled for the blocks (mbsd/kinematics/groups/blocks.py).
-    Scratch: ``body`` (nb, 7) and ``turn`` (nb, 2) with cosine 1 for ground, ``rate`` (nb, 6), ``point`` (4, 8),
-    ``before`` (g, 3) squared sines and their rates; the last column keeps the squared sines of the first row of all.
-    Returns (status, index, part): where a step was DOUBTED, the part of it at which a pose is asked for. The status is
-    SOLVED_CLOSE where all are solved and both poses of a group are close to each other at the first or the last.
+    body: Any
+    """(nb, 7), with cosine 1 for ground."""
+    rate: Any
+    """(nb, 6)"""
+    turn: Any
+    """(nb, 2), with cosine 1 for ground."""
+    point: Any
+    """(4, 8)"""
+    before: Any
+    """(g, 3) squared sines and their rates; the last column keeps the squared sines of the first row of all."""
+
+
+@kernel
+def solve_groups(groups, blocks, start, motion, determinant, poses, tiny, first_row):
+    """Fill q, v, a of ``motion`` (kinematics/newton.py) from row ``first_row`` on.
+
+    Angles go on from start (3 nb,); ``tiny`` (m^2) is the square of a length that counts as zero. The row ``first_row``
+    itself is not compared with the one before it. ``determinant`` (blocks, T, 1) is filled for the blocks
+    (mbsd/kinematics/groups/blocks.py). Returns (status, index, part): where a step was DOUBTED, the part of it at which
+    a pose is asked for. The status is SOLVED_CLOSE where all are solved and both poses of a group are close to each
+    other at the first or the last.
     """
+    times = motion.times
+    drives = motion.drives
+    q = motion.q
+    v = motion.v
+    a = motion.a
+    body = poses.body
+    rate = poses.rate
+    turn = poses.turn
+    before = poses.before
     for k in range(first_row, times.shape[0]):
         qk = q[k]
         vk = v[k]
@@ -90,23 +112,22 @@ def solve_groups(
             n = groups.row[e]
             if kind == TRAIN:
                 train = blocks.train[groups.motion[e]]
-                solve_train(bodies, n, train, blocks.train_body, blocks.share, qk, vk, ak, turn, point)
+                solve_train(bodies, n, train, blocks.train_body, blocks.share, qk, vk, ak, turn, poses.point)
                 turning = 3 * bodies[FIRST] + 2
                 if goes_on and n[CARRIES_ON] > 0.0 and wound(qk, last, vk, v[k - 1], ak, a[k - 1], h, turning):
                     return DOUBTED, k, 0.5
                 take(body, rate, bodies[FIRST], qk, vk, ak, turn)
                 continue
             if kind == BLOCK:
-                block = groups.motion[e]
-                head = blocks.head[block]
-                state = call_block(
-                    blocks.address[0], k,
-                    (
+                head = blocks.head[groups.motion[e]]
+                state = solve_block(
+                    k,
+                    Block(
                         head, blocks.tree[head[TREE_AT] :], blocks.rows[head[ROWS_AT] :], blocks.near[head[NEAR_AT] :],
-                        blocks.frame[head[TREE_AT] :], blocks.arms[head[ROWS_AT] :], times, drives, q, v, a, turn,
-                        start, blocks.numbers, determinant[block], point, blocks.unknown, blocks.jac,
-                        blocks.out, blocks.du, blocks.scratch,
+                        blocks.frame[head[TREE_AT] :], blocks.arms[head[ROWS_AT] :], blocks.numbers,
                     ),
+                    History(times, drives, q, v, a, turn, start, determinant[groups.motion[e]]),
+                    Work(blocks.unknown, blocks.jac, blocks.out, blocks.du, blocks.scratch, poses.point),
                 )  # fmt: skip
                 if state == DOUBTED_BEFORE:
                     return DOUBTED, k - 1, 0.5
@@ -116,7 +137,7 @@ def solve_groups(
                     take(body, rate, blocks.tree[i, BODY], qk, vk, ak, turn)
                 continue
             law = bodies[LAW]
-            if law > 0 and goes_on and jumps(drives[k, law], drives[k - 1, law], h, stride[law]):
+            if law > 0 and goes_on and jumps(drives[k, law], drives[k - 1, law], h, motion.stride[law]):
                 return DOUBTED, k, 0.5
             state = solve_group(case, e)
             if state != SOLVED:

@@ -83,7 +83,7 @@ class Trains:
         return True
 
     def proves(self, row: int) -> bool:
-        """Whether a row holds always, because the angles that were found make it so."""
+        """Return True if a row holds always, because the angles that were found make it so."""
         if row not in self.rows:
             return False
         total: dict[int, float] = {}
@@ -127,7 +127,7 @@ class Trains:
         return out
 
     def _carries(self, entry: np.ndarray) -> bool:
-        """Whether the arm of a gear carries both centres by pins, not only by chance at the start."""
+        """Return True if the arm of a gear carries both centres by pins, not only by chance at the start."""
         return all(int(entry[ARM]) in self._at_one_pin(int(entry[column])) for column in (MARKER_I, MARKER_J))
 
     def _at_one_pin(self, marker: int) -> dict[int, np.ndarray]:

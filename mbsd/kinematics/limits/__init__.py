@@ -1,1 +1,1 @@
-"""What a motion may not pass: limits and stops of joints, contacts, crossings of curves, wheels that meet."""
+"""Limits of a motion: limits and stops of joints, contacts, crossings of curves, wheels that meet."""

@@ -222,7 +222,7 @@ def _velocities(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> t
 def given_velocities(
     m: Model, packed: Packed, q: np.ndarray
 ) -> tuple[list[dict[int, float]], np.ndarray, list[tuple[str, str]]]:
-    """What start_moving gives: rows as {coordinate: factor}, values (k,), names and units, in the order given.
+    """Return what start_moving gives: rows as {coordinate: factor}, values (k,), names and units, in the order given.
 
     The velocity is that of a body's frame, not of its centre of mass.
     """

@@ -18,6 +18,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MobilityError, SingularPoseError
 from mbsd.base.kept import Kept
+from mbsd.base.quantity import counted
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, close, rough_pose
 from mbsd.kinematics.pose.phases import let_phases_go, take_phases
@@ -55,7 +56,7 @@ def rows_at(packed: Packed, q: np.ndarray) -> list[int]:
 
 
 def _key(packed: Packed, q: np.ndarray) -> tuple[object, ...] | None:
-    """What J at q (3 nb,) and the words about it depend on; None where that is more than numbers."""
+    """Return all that J at q (3 nb,) and the words about it depend on; None where that is more than numbers."""
     numbers = packed.numbers()
     if numbers is None:
         return None
@@ -139,7 +140,7 @@ def _chosen(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> lis
         missing = packed.coordinates - len(kept)
         free = _moving(packed, scaled_jacobian(packed, best))
         raise MobilityError(
-            f"{packed.name}: at t = {time:.6g} s {missing} of {joints.dof} degrees of freedom "
+            f"{packed.name}: at t = {time:.6g} s {missing} of {counted(joints.dof, 'degree')} of freedom "
             f"{'is' if missing == 1 else 'are'} not driven: {', '.join(free)} can still move. "
             f"Add {'a driver' if missing == 1 else f'{missing} drivers'}, "
             "for example m.drive_angle(...)." + _of_play(packed)
@@ -193,7 +194,7 @@ def _refuse_idle_drivers(packed: Packed, joints: Mobility, kept: list[int], time
     fixed = "the joints" + (f" and driver{'s' * (len(others) > 1)} {', '.join(others)}" if others else "")
     raise MobilityError(
         f"{packed.name}: at t = {time:.6g} s driver '{idle[0].name}' drives a freedom that {fixed} already fix: "
-        f"{joints.dof} degree{'s' * (joints.dof != 1)} of freedom, {len(drivers)} drivers. "
+        f"{counted(joints.dof, 'degree')} of freedom, {counted(len(drivers), 'driver')}. "
         "Remove one driver or free a joint."
     )
 

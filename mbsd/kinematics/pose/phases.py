@@ -1,4 +1,4 @@
-"""What the closed start pose decides about constraints of relative pose.
+"""Phases of constraints of relative pose, which the closed start pose decides.
 
 Gears, racks and belts hold how bodies roll on each other, not where they stand: the constant of such a *phased* row
 is the value that F has when all other constraints are closed, unless the joint gives angles that belong together.

@@ -1,4 +1,4 @@
-"""Whether the links close in another way that is as near to what start_near says as the one that is taken.
+"""Twins: other ways to close the links that are as near to start_near as the one that is taken.
 
 Near is, in radians, the root of the sum of squares of how far bodies turn from their rough angles, and of how far they
 move, in sizes, from places that were given. Bodies without a rough angle count from zero, as they start there. The

@@ -153,7 +153,7 @@ def _known_frame(m: Model, name: str) -> np.ndarray:
 
 
 def _free(m: Model, packed: Packed, q: np.ndarray, b: int) -> list[str]:
-    """What of body b neither joints and drivers nor start_near tell in the pose q (3 nb,)."""
+    """Return what neither joints and drivers nor start_near tell of body b in the pose q (3 nb,)."""
     from mbsd.equations.assembly import residual_and_jacobian
     from mbsd.kinematics.pose.initial import given_coordinates
 

@@ -46,7 +46,7 @@ class Lift:
         return self.solution.force(self._named(joint)).power
 
     def work(self, joint: str) -> tuple[float, float]:
-        """What the muscles of a joint give and what they take over the repetition (J); the second is not positive."""
+        """Return the work (J) that the muscles of a joint give and absorb in a repetition; the second is at most 0."""
         power = self.power(joint)
         given, taken = np.maximum(power, 0.0), np.minimum(power, 0.0)
         return float(np.trapezoid(given, self.t)), float(np.trapezoid(taken, self.t))
@@ -129,7 +129,7 @@ def with_moments(m: Mechanism, motion: Solution) -> Solution:
 
 
 def peaks(m: Mechanism, figure: Figure, steps: int = 180) -> dict[str, float]:
-    """What a study measures: largest moments (N m/kg of body mass), floor and pad (N), travel (m) and work (J).
+    """Return a study's measures: largest moments (N m/kg of body mass), floor and pad (N), travel (m), work (J).
 
     ``slip`` is the largest part of its normal force that the floor must hold by friction.
     """

@@ -1,4 +1,4 @@
-"""What the angle between the banks of a V engine decides: what is left unbalanced, how evenly it fires, its torque.
+"""The bank angle of a V engine: unbalanced forces and couples, firing intervals and torque over it.
 
 With two rods on a throw, b apart, order n of both has a part that turns with the shaft and one that turns against it:
 
@@ -50,8 +50,8 @@ class Family:
         """Two on each throw."""
         return 2 * len(self.throws)
 
-    def at(self, angle: float) -> Layout:
-        """The layout with an angle between its banks (degrees)."""
+    def layout(self, angle: float) -> Layout:
+        """Return the layout with an angle between its banks (degrees)."""
         return vee(angle, self.throws, even_split(angle, self.cylinders) if self.split else 0.0)
 
 
@@ -102,7 +102,7 @@ class BankAngles:
     """(A,) torque of the gas: largest less least, over the mean; None without a cycle."""
 
     def left(self, counterweights: bool = False, shafts: Sequence[int] = ()) -> Left:
-        """What is left. ``counterweights`` cancel what turns with the shaft in the first order.
+        """Return what is left unbalanced. ``counterweights`` cancel the first order that turns with the shaft.
 
         ``shafts``: orders that pairs of balance shafts cancel, turning both ways, forces and couples.
         """
@@ -180,7 +180,7 @@ def bank_angles(
     wide = np.asarray(angles, float)
     fired, free = [], []
     for angle in wide:
-        of = family.at(float(angle))
+        of = family.layout(float(angle))
         fired.append(firing(of))
         free.append(free_forces(of, ratio, ORDERS))
     mean = 720.0 / family.cylinders

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from mbsd.base.arguments import not_negative_number, number_pair, positive_number
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 
 
 @dataclass(frozen=True)

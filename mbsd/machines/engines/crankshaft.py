@@ -21,7 +21,7 @@ UPRIGHT = 0.5 * math.pi
 
 
 class ShaftMasses(NamedTuple):
-    """What turns and swings on each throw (kg)."""
+    """Masses that turn and swing on each throw (kg)."""
 
     piston: float | None
     rod: float | None

@@ -41,7 +41,7 @@ class Firing:
 
     @property
     def even(self) -> bool:
-        """Whether all intervals are equal."""
+        """True if all intervals are equal."""
         return bool(np.ptp(self.intervals) < 1e-6)
 
 

@@ -115,7 +115,7 @@ def ring_of(name: str, own: MasterRod, hung: Mapping[int, Knuckle], rod_mass: fl
 
 
 def is_radial(of: Layout) -> bool:
-    """Whether the cylinders stand all round one throw: no half of the turn is without one."""
+    """True if the cylinders stand all round one throw: no half turn is without one."""
     if len(throws(of)) > 1 or len(of.cylinders) < 3:
         return False
     banks = np.sort(of.banks % (2 * math.pi))

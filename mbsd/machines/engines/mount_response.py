@@ -22,7 +22,7 @@ import numpy as np
 from mbsd.analyses.modes import Mode
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.mechanism import Mechanism
 from mbsd.model.laws.constant_rate import constant_rate
 
@@ -72,7 +72,7 @@ class MountResponse:
 def mount_response(
     m: Mechanism, speeds: Sequence[float] | np.ndarray, orders: Sequence[float] | None = None
 ) -> MountResponse:
-    """What an ``engine(..., block=...)`` does on its mounts at constant ``speeds`` (rad/s), for small motions.
+    """Return the steady vibration of an ``engine(..., block=...)`` on its mounts at ``speeds`` (rad/s), linearised.
 
     ``orders``: periods in a turn of the shaft, whole numbers or, with gas of four strokes, halves; by default all up to
     8. Raises ModelError for an engine without a block or without a motor, for speeds that are not positive and orders

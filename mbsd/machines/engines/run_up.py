@@ -29,7 +29,7 @@ from scipy.special import wofz
 
 from mbsd.base.arguments import finite_number, not_negative_number, positive_number
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 
 EXCITATIONS = ("inertia", "constant")
 SAMPLES = 48

@@ -1,4 +1,4 @@
-"""Which cylinders share a throw: those whose throws have one direction and one place along the shaft."""
+"""Groups of cylinders that share a throw: their throws have one direction and one place along the shaft."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What the functions that add joints, drivers, forces and contacts share: their checks, and the entries they make."""
+"""Shared parts of the functions that add joints, drivers, forces and contacts: checks, and entries of the model."""

@@ -1,4 +1,4 @@
-"""What adding a unilateral contact checks, and the entry it makes."""
+"""Adding a unilateral contact: its checks, and its entry."""
 
 from __future__ import annotations
 

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.model.body import Body, Marker
 from mbsd.model.event import Event
 from mbsd.model.joint import Joint

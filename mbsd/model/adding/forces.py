@@ -1,4 +1,4 @@
-"""What adding a force checks, and the entry it makes. Forces in N, torques in N m, counter-clockwise positive."""
+"""Adding a force: its checks, and its entry. Forces in N, torques in N m, counter-clockwise positive."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.body import Body, Marker
 from mbsd.model.force import Force, ForceKind
 from mbsd.model.laws import Motion

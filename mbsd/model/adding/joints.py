@@ -1,4 +1,4 @@
-"""What adding a joint or driver checks, and the entry it makes."""
+"""Adding a joint or driver: its checks, and its entry."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number, number_pair
 from mbsd.base.errors import ModelError, ModelWarning
-from mbsd.base.shown import shown
-from mbsd.base.warn import warn
+from mbsd.base.names import shown
+from mbsd.base.warning import warn
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind
 from mbsd.model.laws import Motion
@@ -90,7 +90,7 @@ def cam_given(m: Model, name: str, profile: CamProfile | Mapping[str, Any], flat
 def wheels_given(
     m: Model, name: str, radii: Mapping[str, float | None], teeth: Sequence[int] | int | None, **size: float | None
 ) -> dict[str, Any]:
-    """What gives the wheels: their radii, or their teeth with the one ``size`` (module or pitch)."""
+    """Return the arguments that give the wheels: radii, or teeth with the one ``size`` (module or pitch)."""
     what, [(unit, value)] = f"{m.name}: joint '{name}'", size.items()
     given = {key: radius for key, radius in radii.items() if radius is not None}
     by_radii, by_teeth = " and ".join(f"{key}=" for key in radii), f"teeth= and {unit}="

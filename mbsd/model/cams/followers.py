@@ -24,8 +24,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.model.body import finite_number
 from mbsd.model.cams.lift import Lift
 from mbsd.model.cams.profile import CamProfile, hermite

@@ -17,8 +17,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number, number_array
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 from mbsd.model.cams.rises import INNER, RISES
 
 TURN = 2 * math.pi

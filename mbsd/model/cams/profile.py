@@ -46,12 +46,12 @@ class CamProfile:
 
     @property
     def flat(self) -> bool:
-        """Whether the follower has a flat face."""
+        """True if the follower has a flat face."""
         return self.follower.endswith("flat")
 
     @property
     def undercut(self) -> bool:
-        """Whether the outline crosses itself, so that the lift cannot be cut."""
+        """True if the outline crosses itself, so that the lift cannot be cut."""
         return bool(self._undercut.any())
 
     @property
@@ -61,7 +61,7 @@ class CamProfile:
 
     @property
     def problems(self) -> list[str]:
-        """What is wrong with this cam, with remedies; empty if it can be made and should run."""
+        """Return the faults of this cam, with remedies; empty if it can be made and should run."""
         faults = []
         if self.undercut:
             where = np.degrees(self.angle[self._undercut])

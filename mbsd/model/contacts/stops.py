@@ -9,7 +9,7 @@ side = 1: the lower end; side = -1: the upper end.
 from __future__ import annotations
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.adding.contacts import add_contact, stop_given
 from mbsd.model.body import Marker
 from mbsd.model.contact import ContactKind, register

@@ -39,7 +39,7 @@ class ArticulatedMotion:
 
     @property
     def turns(self) -> bool:
-        """Whether both rods let the crank go round."""
+        """True if both rods let the crank go round."""
         if not self.master - self.throw > abs(self.master_offset):
             return False
         side = self._knuckles(_turn())[1][:, 1] - self.offset

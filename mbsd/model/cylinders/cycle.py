@@ -1,4 +1,4 @@
-"""What a cycle of the gas in a cylinder is made of: phases by the angle of the crank, each with its own pressure.
+"""Cycles of the gas in a cylinder: phases by the angle of the crank, each with its own pressure.
 
     p = s p_to + (1 - s) G(phi) (V_b / V)^n          s = u^3 (10 - 15 u + 6 u^2),  u = (phi - begin) / width
 
@@ -92,7 +92,7 @@ class GasCycle(ABC):
 
     @property
     def burns(self) -> bool:
-        """Whether heat is released where crank and rod put the piston."""
+        """True if heat is released where crank and rod put the piston."""
         return False
 
     @property
@@ -123,7 +123,7 @@ class BurningCycle(GasCycle):
 
     @property
     def burns(self) -> bool:
-        """Whether there is heat."""
+        """True if there is heat."""
         return bool(self.heat or self.heat_density)
 
     def closed(self, bore: Bore, closes: float, pressure: float, opens: float) -> tuple[Phase, Phase]:

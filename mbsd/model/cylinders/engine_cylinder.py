@@ -27,7 +27,7 @@ CLOSE = 1e-3
 
 @dataclass(frozen=True)
 class EngineCylinder:
-    """What the pressure in a cylinder follows from, beside its cycle."""
+    """The cylinder of an engine: all that its pressure follows from, beside its cycle."""
 
     bore: Bore
     top: float
@@ -39,7 +39,7 @@ class EngineCylinder:
 
     @property
     def shift(self) -> float:
-        """What makes the height of the gas of x (m)."""
+        """The length (m) that makes the height of the gas of x."""
         return self.bore.clearance - self.top
 
 

@@ -49,7 +49,7 @@ class PistonMotion:
 
     @property
     def turns(self) -> bool:
-        """Whether the rod lets the crank go round."""
+        """True if the rod lets the crank go round."""
         return self.rod - self.throw > abs(self.offset)
 
     def below(self, phi: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.cylinders.cycle import Bore, GasCycle, Phase, compression_given
 
 FEWEST = 4

@@ -9,8 +9,8 @@
 
 The smooth form: below s_0 joints creep instead of sticking. The form by events has sign(s) in place of tanh: a
 simulation finds the time when s = 0, where the joint sticks as long as |F| <= mu_s (N + N_0), of a pin times r, holds
-it with a row of J, and finds the time when it slides (dynamics/joint_sticks.py, stick_slip.py). A known motion, as in
-a sweep, determines no friction at rest: it is counted as zero in both forms.
+it with a row of J, and finds the time when it slides (dynamics/switches.py, events/sticking/). A known
+motion, as in a sweep, determines no friction at rest: it is counted as zero in both forms.
 
 The reactions come from the multipliers, found together with the friction (joint_friction.py). Redundant joints share
 loads as the program happens to find them, and so does their friction. Sources: Armstrong-Helouvry, Dupont, Canudas de

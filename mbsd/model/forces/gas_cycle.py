@@ -18,7 +18,7 @@ from functools import lru_cache
 
 from mbsd.base.codes import AXIS
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.adding.forces import above_zero, add_force, amounts_given
 from mbsd.model.body import Body, Marker
 from mbsd.model.chamber import Chamber, CrankCycle

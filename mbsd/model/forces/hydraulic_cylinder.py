@@ -21,7 +21,7 @@ import numpy as np
 from mbsd.base.codes import LINE
 from mbsd.base.errors import ModelError, ModelWarning, SimulationError
 from mbsd.base.quantity import written
-from mbsd.base.warn import warn
+from mbsd.base.warning import warn
 from mbsd.model.adding.forces import Amount, above_zero, add_force, amount_given, amounts_given
 from mbsd.model.body import Marker
 from mbsd.model.force import Element, Force, ForceKind, Interaction, Masses, States, register

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.adding.forces import add_force
 from mbsd.model.body import Body
 from mbsd.model.force import Force, ForceKind, register

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import Any
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.adding.joints import join
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register

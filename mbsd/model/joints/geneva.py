@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.model.adding.joints import join, radii_given
 from mbsd.model.body import Marker
 from mbsd.model.joint import Joint, JointKind, register

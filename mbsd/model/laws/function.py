@@ -11,8 +11,8 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
+from mbsd.base.names import shown
 from mbsd.base.pickled import WithFunctions
-from mbsd.base.shown import shown
 from mbsd.base.users_function import value_at
 from mbsd.model.laws.law import Motion, Times
 
@@ -42,7 +42,7 @@ class Function(WithFunctions, Motion):
 
     @property
     def given_derivatives(self) -> bool:
-        """Whether the user gave them."""
+        """True if the user gave them."""
         return self.df is not None
 
     def over(self, first: float, last: float) -> Motion:

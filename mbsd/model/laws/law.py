@@ -1,4 +1,4 @@
-"""What every motion law is: f, f', f'' as functions of time."""
+"""Motion laws: f, f', f'' as functions of time."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Motion:
 
     @property
     def given_derivatives(self) -> bool:
-        """Whether f' and f'' are its author's, so that they may be wrong; laws that derive them from f say no."""
+        """True if f' and f'' are its author's, so that they may be wrong; laws that derive them from f say no."""
         return True
 
     def knots(self, first: float, last: float) -> np.ndarray:

@@ -1,1 +1,1 @@
-"""What makes the frame vibrate: forces and moments of inertia, and their harmonics against the crank."""
+"""Shaking forces and moments of the frame, and their harmonics against the crank."""

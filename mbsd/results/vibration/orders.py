@@ -20,7 +20,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from mbsd.base.errors import ModelError
-from mbsd.results.vibration.turning import Turning
+from mbsd.results.vibration.crank import Turning
 
 WHOLE = 1e-6
 """Turns: what misses a whole number by less is one."""

@@ -1,4 +1,4 @@
-"""What the inertia of the moving bodies does to the frame, and the centre of mass of them all.
+"""Shaking forces on the frame by the inertia of the moving bodies, and their centre of mass.
 
     F  = -sum m a                                  shaking force (N), a of the centres of mass
     M  = -sum [(r - r0) x m a + I alpha]           shaking moment (N m) about r0
@@ -54,7 +54,7 @@ class Planes:
 
     @property
     def is_one(self) -> bool:
-        """Whether all bodies lie in z = 0, so that no couple arises."""
+        """True if all bodies lie in z = 0, so that no couple arises."""
         return not (self.z.any() or self.products.any())
 
     @property

@@ -1,1 +1,1 @@
-"""What makes a study the same one: the content of build and measure, and the inputs that they have beside it."""
+"""Identity of a study: the content of build and measure, and their other inputs."""

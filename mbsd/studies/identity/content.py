@@ -1,4 +1,4 @@
-"""What functions compute, as a hash: their code, what it refers to, and what they were closed over.
+"""Hash of what functions compute: their code, what it refers to, and what they were closed over.
 
 Followed is whatever the code can reach by its names: helpers of helpers, attributes of modules, methods and bases of
 classes, functions that objects hold. Comments, docstrings, names of files and places in them do not count, so that
@@ -23,7 +23,7 @@ import numpy as np
 
 import mbsd
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.dependencies.imported import file_of, resolved
 from mbsd.dependencies.installed import is_installed
 from mbsd.studies.identity.references import instructions, references
@@ -79,7 +79,7 @@ class Content:
     def add(self, value: Any) -> Content:
         """Count a function or value. Raises ModelError for one that has no content of its own."""
         try:
-            self._digest.update(self._of(value))
+            self._digest.update(self._content(value))
         except RecursionError as error:
             raise ModelError(
                 f"study: what {shown(value)} refers to is nested too deeply to be compared; give folder=None, so that "
@@ -87,7 +87,7 @@ class Content:
             ) from error
         return self
 
-    def _of(self, value: Any) -> bytes:
+    def _content(self, value: Any) -> bytes:
         if type(value) is str and self._root is not None and (value + os.sep).startswith(self._root + os.sep):
             return _joined("place", value[len(self._root) :])
         if type(value) in PLAIN:
@@ -113,7 +113,7 @@ class Content:
         if kind in (dict, MappingProxyType, weakref.WeakKeyDictionary, weakref.WeakValueDictionary):
             return self._mapping(value)
         if kind in (set, frozenset):
-            return _joined("set", "", *sorted(map(self._of, value)))
+            return _joined("set", "", *sorted(map(self._content, value)))
         if kind is np.ndarray:
             if value.dtype.hasobject:
                 return self._all("array", [value.shape, value.dtype.str, value.tolist()])
@@ -151,17 +151,18 @@ class Content:
         return self._object(value)
 
     def _all(self, kind: str, parts: Iterable[Any]) -> bytes:
-        return _joined(kind, "", *map(self._of, parts))
+        return _joined(kind, "", *map(self._content, parts))
 
     def _mapping(self, mapping: Mapping[Any, Any]) -> bytes:
         """The order of names does not count."""
-        return _joined("dict", "", *sorted(self._of(key) + self._of(value) for key, value in mapping.items()))
+        return _joined("dict", "", *sorted(self._content(key) + self._content(value) for key, value in mapping.items()))
 
     def _built_in(self, function: Any) -> bytes:
         owner = getattr(function, "__objclass__", None) or getattr(function, "__self__", None)
         name = f"{getattr(function, '__module__', None)}.{getattr(function, '__qualname__', function.__name__)}"
         self._installed(str(getattr(function, "__module__", "")))
-        return _joined("built-in", name, b"" if owner is None or isinstance(owner, ModuleType) else self._of(owner))
+        has_owner = owner is not None and not isinstance(owner, ModuleType)
+        return _joined("built-in", name, self._content(owner) if has_owner else b"")
 
     def _function(self, function: FunctionType) -> bytes:
         name = str(function.__globals__.get("__name__"))  # __module__ is what functools.wraps made of it
@@ -177,7 +178,7 @@ class Content:
         return _joined(
             "function",
             function.__qualname__.rpartition(".")[2],
-            self._of(function.__code__),
+            self._content(function.__code__),
             self._all("given", given),
             *cells,
             *self._globals(function),
@@ -185,7 +186,7 @@ class Content:
         )
 
     def _cell(self, cell: types.CellType) -> bytes:
-        return self._of(cell.cell_contents) if _is_bound(cell) else b"empty"
+        return self._content(cell.cell_contents) if _is_bound(cell) else b"empty"
 
     def _globals(self, function: FunctionType) -> Iterable[bytes]:
         named, there = references(function.__code__), function.__globals__
@@ -197,13 +198,13 @@ class Content:
             elif isinstance(value, ModuleType):
                 yield _joined("global", name, self._module(value, named.attributes))
             else:
-                yield _joined("global", name, self._of(value))
+                yield _joined("global", name, self._content(value))
 
     def _leniently(self, value: Any) -> bytes:
         """The same for what may not matter: of what has no content of its own the kind counts."""
         strict, self.strict = self.strict, False
         try:
-            return self._of(value)
+            return self._content(value)
         finally:
             self.strict = strict
 
@@ -231,7 +232,7 @@ class Content:
         counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags & ~HAS_DOCSTRING
         names = code.co_varnames, code.co_freevars, code.co_cellvars
         steps = [
-            _joined(name, "", self._of(argument) if constant else repr(argument).encode())
+            _joined(name, "", self._content(argument) if constant else repr(argument).encode())
             for name, argument, constant in instructions(code)
         ]
         return _joined("code", f"{sys.version_info[:2]} {counts} {names}", code.co_exceptiontable, *steps)
@@ -250,7 +251,7 @@ class Content:
 
     def _member(self, value: Any) -> bytes:
         try:
-            return self._of(value)
+            return self._content(value)
         except ModelError:
             if not hasattr(type(value), "__get__"):
                 raise
@@ -269,7 +270,7 @@ class Content:
             if (id(module), attribute) not in self._attributes:
                 self._attributes.add((id(module), attribute))
                 value = vars(module)[attribute]
-                content = self._module(value, attributes) if isinstance(value, ModuleType) else self._of(value)
+                content = self._module(value, attributes) if isinstance(value, ModuleType) else self._content(value)
                 parts.append(_joined("attribute", attribute, content))
         return _joined("module", name, *parts)
 
@@ -296,7 +297,7 @@ class Content:
         return self._all("object", [kind, make, arguments, state, list(items or ()), dict(pairs or ())])
 
     def _is_installed(self, module: ModuleType) -> bool:
-        """Whether a module is of mbsd, of Python or of an installed package; one of the user is noted."""
+        """True if a module is of mbsd, of Python or of an installed package; one of the user is noted."""
         name = module.__name__
         spec = getattr(module, "__spec__", None)
         file = file_of(module)

@@ -1,4 +1,4 @@
-"""What a study depends on beside the content of build and measure: the inputs with which its results are kept."""
+"""Inputs of a study beside the content of build and measure; its results are kept with them."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class StudyPlaces(Places):
     """Files named relative to the folder of the script or module that defines build."""
 
     def is_program(self, file: str) -> bool:
-        """Whether a file is of mbsd."""
+        """True if a file is of mbsd."""
         return is_of_mbsd(file)
 
     def state(self, kind: str, name: str) -> str:
-        """What one input holds now."""
+        """Return the present state of one input."""
         if (kind, name) == ("variables", FOLDER):
             return working_folder(self)
         return super().state(kind, name)
@@ -41,7 +41,7 @@ _PROGRAM = (str(PACKAGE) + os.sep, str(PACKAGE.resolve()) + os.sep)
 
 
 def is_of_mbsd(file: str) -> bool:
-    """Whether a file is of this package."""
+    """True if a file is of this package."""
     return file.startswith(_PROGRAM)
 
 
@@ -95,7 +95,7 @@ _LOADED = time.time()
 
 
 def recorded_inputs(recorder: Recorder) -> Inputs:
-    """What build and measure have read and loaded in this process, and where they did."""
+    """Return the inputs that build and measure have read and loaded in this process."""
     inputs = recorder.inputs(every_module=True)
     here = str(Path.cwd()) + os.sep
     read = [*inputs.files, *inputs.folders]

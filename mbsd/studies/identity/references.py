@@ -1,4 +1,4 @@
-"""What the code of a function refers to: global names, attributes, imports, and whether more than its names say."""
+"""References in the code of a function: global names, attributes, imports, and access by computed names."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ READING = {"globals", "exec", "eval"}
 
 
 class References(NamedTuple):
-    """What a code object and those within it refer to."""
+    """References of a code object and of those within it."""
 
     globals: frozenset[str]
     attributes: frozenset[str]
@@ -28,18 +28,18 @@ class References(NamedTuple):
 
     @property
     def any_module(self) -> bool:
-        """Whether it may reach any module that is loaded."""
+        """True if the code may reach any module that is loaded."""
         return bool(self.attributes & (IMPORTING | REFLECTIVE)) or {"sys", "modules"} <= self.attributes
 
     @property
     def any_global(self) -> bool:
-        """Whether it may reach any global of its module."""
+        """True if the code may reach any global of its module."""
         return bool(self.globals & READING)
 
 
 @cache
 def references(code: CodeType) -> References:
-    """What code refers to."""
+    """Return the references of code."""
     named, imports = set[str](), set[tuple[str, int, tuple[str, ...]]]()
     before: list[object] = [0, None]
     for step in dis.get_instructions(code):

@@ -1,1 +1,1 @@
-"""What strays and by how much: spreads, standard classes, pins with play, and the names by which a user gives them."""
+"""Dimensions that vary and by how much: spreads, standard classes, pins with play, and their names."""

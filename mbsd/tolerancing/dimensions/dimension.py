@@ -1,4 +1,4 @@
-"""What strays, as columns of deviations: a size by one number, a pin by half of its play or by a place in its bore."""
+"""Dimensions as columns of deviations: a size by one number, a pin by half of its play or a position in its bore."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Dimension:
         raise NotImplementedError
 
     def variance(self, slopes: np.ndarray) -> float:
-        """What it adds to the variance of a linear result with slopes (columns,)."""
+        """Return what it adds to the variance of a linear result with slopes (columns,)."""
         raise NotImplementedError
 
     def swing(self, slopes: np.ndarray) -> float:
@@ -170,7 +170,7 @@ class PushedPlay(Play):
         return self._sizes(u)
 
     def variance(self, slopes: np.ndarray) -> float:
-        """That of the size of the play alone."""
+        """Return what the size of the play alone adds."""
         return float((slopes[0] * self._sigma) ** 2)
 
     def swing(self, slopes: np.ndarray) -> float:

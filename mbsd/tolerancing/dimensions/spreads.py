@@ -20,7 +20,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number, positive_number, several_numbers, switch
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.tolerancing.dimensions.standards import GENERAL, GRADES, general_tolerance, standard_tolerance
 
 Tolerance = float | Sequence[float] | str
@@ -156,7 +156,7 @@ class Triangular(Spread):
 
 
 def spread_of(what: str, given: Any) -> Spread:
-    """What is given of a dimension, as a spread: a bare tolerance is :class:`Normal`. Raises ModelError."""
+    """Return the spread that is given of a dimension: a bare tolerance is :class:`Normal`. Raises ModelError."""
     if isinstance(given, Spread):
         return given
     if isinstance(given, str):

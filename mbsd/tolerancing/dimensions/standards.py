@@ -14,8 +14,7 @@ from bisect import bisect_left
 
 from mbsd.base.arguments import positive_number, text
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
-from mbsd.base.shown import shown
+from mbsd.base.names import no_such, shown
 
 GENERAL_STEPS = (3.0, 6.0, 30.0, 120.0, 400.0, 1000.0, 2000.0, 4000.0)
 """Sizes (mm) up to which each column of ISO 2768-1, table 1 goes; the first begins at 0.5."""

@@ -29,7 +29,7 @@ DOUBTED = "two assemblies come near each other during the motion"
 
 
 def serves(m: Model, columns: Sequence[Column], result: Any, ready: Any) -> bool:
-    """Whether these machines can be swept all at once."""
+    """Return True if these machines can be swept all at once."""
     return (
         in_closed_form(ready)
         and all(column.kind not in ("argument", "part") for column in columns)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.model.mechanism import Model
 from mbsd.tolerancing.dimensions.named import numbers_of
@@ -21,7 +21,7 @@ from mbsd.tolerancing.machines.tasks import Task, alone
 
 
 def function_task(function: Any, sizes: Any, result: Any, duration: float | None, steps: int) -> Task:
-    """That of a function with the nominal values as defaults. Raises ModelError."""
+    """Return the task of a function with the nominal values as defaults. Raises ModelError."""
     if not callable(function) or isinstance(function, type):
         raise ModelError(
             f"tolerances: machine is {shown(function)}; give a mechanism, or a function of numbers by name with their "
@@ -42,7 +42,7 @@ def function_task(function: Any, sizes: Any, result: Any, duration: float | None
 
 
 def _itself(owner: str, given: Any) -> Any:
-    """What the function gives is the result. Raises ModelError for a mechanism."""
+    """Return the result itself. Raises ModelError for a mechanism."""
     if isinstance(given, Model):
         raise ModelError(
             f"{owner}: tolerances: it gives a mechanism, and result= is missing; give a measure of mbsd.measures, such "

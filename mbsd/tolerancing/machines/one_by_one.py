@@ -18,7 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.quiet import quiet
+from mbsd.base.warning import quiet
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model
@@ -42,7 +42,7 @@ class Answers:
 
 
 class Machines(Protocol):
-    """What evaluates rows of deviations (n, columns) of a mechanism, or of a function."""
+    """An evaluator of rows of deviations (n, columns) of a mechanism, or of a function."""
 
     at_once: int
     """Rows that it takes at most."""

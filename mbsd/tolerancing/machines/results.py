@@ -1,4 +1,4 @@
-"""What is asked of each machine: a measure of a quantity, or a function of the user, as a number a machine."""
+"""Results: a measure of a quantity, or a function of the user, as one number for each mechanism."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 from mbsd.base.users_function import described
 from mbsd.dynamics.measures.kinds import Measure
 from mbsd.dynamics.measures.quantities import Quantity, quantity_named
@@ -26,7 +26,7 @@ class FailingResult(ModelError):
 
     @property
     def reason(self) -> str:
-        """What it raised, as the reason of a machine."""
+        """Return the error as the reason of a mechanism."""
         return f"the result fails: {described(self.__cause__ or self)}"
 
 
@@ -41,7 +41,7 @@ def result_given(owner: str, result: Any) -> Measure | Callable[[Any], Any]:
 
 
 def named_after(result: Any) -> str:
-    """What a result is of: its measure's quantity, or the name of its function."""
+    """Return the name of a result: its measure's quantity, or its function."""
     if isinstance(result, Measure):
         return result.quantity
     name = getattr(result, "__name__", "")
@@ -61,7 +61,7 @@ def numbers_of_batch(owner: str, given: Any, count: int) -> np.ndarray:
 
 
 def number_of(owner: str, given: Any) -> float:
-    """What a function of a single machine gave. Raises ModelError for no number."""
+    """Return the number that a function of a single mechanism gave. Raises ModelError for no number."""
     value = given.item() if getattr(given, "size", 0) == 1 and hasattr(given, "item") else given
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise NoNumber(f"{owner}: tolerances: result gives {shown(given)}; it must give a number")
@@ -69,7 +69,7 @@ def number_of(owner: str, given: Any) -> float:
 
 
 def called(owner: str, function: Callable[..., Any], *given: Any, **named: Any) -> Any:
-    """What a function of the user gives. Raises FailingResult for what it raises, but for errors of mechanisms."""
+    """Return what a function of the user gives. Raises FailingResult for its errors, but for errors of mechanisms."""
     try:
         return function(*given, **named)
     except MechanismError:
@@ -110,7 +110,7 @@ class OfSolution:
 
 
 def placed(m: Model, name: str) -> tuple[str, str, str] | None:
-    """What a quantity is of ("body" or "trace"), the name and the component, if ``batch`` gives it; else None."""
+    """Return "body" or "trace", the name and the component of a quantity, if ``batch`` gives it; else None."""
     whole, _, component = name.rpartition(".")
     if whole in m.bodies:
         return ("body", whole, component) if component in ("x", "y", "theta") else None

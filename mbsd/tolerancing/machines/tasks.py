@@ -1,4 +1,4 @@
-"""What is to be evaluated of a mechanism: which dimensions stray, how its machines are solved, where its pins lie."""
+"""Tasks: which dimensions of a mechanism vary, how its copies are solved, where its pins lie."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ WAYS = ("auto", "batch", "sweep", "simulate")
 
 @dataclass
 class Task:
-    """What is to be evaluated."""
+    """A task of evaluation."""
 
     owner: str
     dimensions: list[Dimension]
@@ -35,7 +35,7 @@ class Task:
 
 
 def task_of(m: Any, sizes: Any, result: Any, duration: float | None, steps: int, way: str, threads: int | None) -> Task:
-    """That of a mechanism; see :func:`mbsd.tolerances`. Raises ModelError."""
+    """Return the task of a mechanism; see :func:`mbsd.tolerances`. Raises ModelError."""
     if way not in WAYS:
         raise ModelError(f"{m.name}: tolerances: {no_such('way', way, WAYS)}")
     if threads is not None and whole_number(f"{m.name}: tolerances: threads", threads) > MOST_THREADS:

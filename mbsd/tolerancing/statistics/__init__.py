@@ -1,1 +1,1 @@
-"""What is made of results: derivatives, chance, worst cases, shares of the variance, yields."""
+"""Statistics of results: derivatives, chance, worst cases, shares of the variance, yields."""

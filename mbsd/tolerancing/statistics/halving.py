@@ -1,4 +1,4 @@
-"""What it would bring to halve the tolerance, or the play, of one dimension after the other.
+"""Gains of halving the tolerance, or the play, of one dimension after the other.
 
 The same machines with half of its deviations: by first derivatives where these serve, and solved again where they do
 not and where a machine failed.
@@ -34,7 +34,7 @@ class Halving:
 
 
 def curved(values: np.ndarray, linear_std: float) -> bool:
-    """Whether derivatives miss the standard deviation of (n,) results by more than chance."""
+    """Return True if derivatives miss the standard deviation of (n,) results by more than chance."""
     good = values[np.isfinite(values)]
     std, off = float(good.std(ddof=1)), CURVED + CHANCE / math.sqrt(2.0 * len(good))
     return abs(std - linear_std) > off * max(std, linear_std) + ROUNDING * float(np.abs(good).max())

@@ -1,4 +1,4 @@
-"""Which part of the variance of the result comes from which dimension: by first derivatives, or by Sobol's indices.
+"""Shares of dimensions in the variance of the result: by first derivatives, or by Sobol's indices.
 
     S_i  = 1 - E[(f(B) - f(A_B^i))^2] / 2V        first order: what knowing the dimension alone would take away
     ST_i =     E[(f(A) - f(A_B^i))^2] / 2V        total: what remains if all others are known
@@ -16,8 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.tolerancing.dimensions.dimension import Dimension
-from mbsd.tolerancing.statistics.derivatives import Evaluate, parts
-from mbsd.tolerancing.statistics.draws import deviations
+from mbsd.tolerancing.statistics.derivatives import Evaluate, deviations, parts
 
 
 @dataclass(frozen=True, eq=False)

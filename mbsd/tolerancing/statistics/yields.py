@@ -15,7 +15,7 @@ import numpy as np
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
-from mbsd.base.shown import shown
+from mbsd.base.names import shown
 
 Limits = tuple[float | None, float | None]
 

@@ -7,11 +7,10 @@ import re
 import sys
 from dataclasses import dataclass
 
-from render.presets import PRESETS, Preset, preset_named
-from render.shown import has_sound
+from render.presets import PRESETS, Preset, has_sound, preset_named
 from shared.stage.errors import UserError
 from shared.stage.face import said
-from shared.stage.paths import known_name, mechanism_names, unfit_names
+from shared.stage.paths import all_mechanisms, known_name, unfit_names
 
 
 @dataclass(frozen=True)
@@ -50,11 +49,11 @@ def options(
     aspect: str = "",
     sound: str = "",
 ) -> Options:
-    """Options from words as the Makefile has them. Raises UserError naming the word that cannot be."""
+    """Options from words as the Makefile has them. Raises UserError for unfit words and without mechanisms."""
     wanted = only_of(only)
     has_sound(sound)
     return Options(
-        names=wanted or tuple(mechanism_names()),
+        names=wanted or tuple(all_mechanisms()),
         preset=preset_named(preset, aspect),
         show=show,
         spectra=spectra,

@@ -9,6 +9,7 @@ from datetime import datetime, timedelta
 from pathlib import Path
 
 from render.presets import Preset
+from shared.contract.quantity import counted
 from shared.stage.console import duration
 from studio.night.progress.frames import Frames
 
@@ -63,7 +64,7 @@ class Forecast:
         """The forecast in a sentence."""
         if not self.pictures and not self.unread:
             return "every frame is there"
-        text = f"{_number(self.films, 'film')}, {_number(self.pictures, 'frame')} to render"
+        text = f"{counted(self.films, 'film')}, {counted(self.pictures, 'frame')} to render"
         if self.seconds is not None:
             text += f": {duration(self.seconds)}, finished {self.ends(now)}"
         if watts is not None and self.seconds is not None:
@@ -71,9 +72,9 @@ class Forecast:
         free = "" if self.free is None else f" of {size(self.free)} free"
         text += f"; {size(self.bytes)} of disk{free}"
         if self.unknown:
-            text += f"; {_number(self.unknown, 'film')} not measured, taken as the average of the others"
+            text += f"; {counted(self.unknown, 'film')} not measured, taken as the average of the others"
         if self.unread:
-            text += f"; {_number(self.unread, 'film')} not counted, because their parts or motion are not there"
+            text += f"; {counted(self.unread, 'film')} not counted, because their parts or motion are not there"
         return text
 
 
@@ -110,7 +111,3 @@ def energy(joules: float) -> str:
     """An energy for people, in watt-hours or kilowatt-hours."""
     hours = joules / 3600
     return f"{hours:.0f} Wh" if hours < 1000 else f"{hours / 1000:.1f} kWh"
-
-
-def _number(count: int, what: str) -> str:
-    return f"{count} {what}{'s' * (count != 1)}"

@@ -11,7 +11,8 @@ function show() {
     tile.hidden = !fits;
     there += fits;
   }
-  count.textContent = there === tiles.length ? `${there} machines` : there ? `${there} of ${tiles.length} machines` : "No machine answers to that; clear the search or the filter.";
+  const all = `${tiles.length} ${tiles.length === 1 ? "machine" : "machines"}`;
+  count.textContent = there === tiles.length ? all : there ? `${there} of ${all}` : "No machine answers to that; clear the search or the filter.";
   const asked = new URLSearchParams({ ...(field.value && { q: field.value }), ...(pressed && { does: pressed }) }).toString();
   try { history.replaceState(null, "", asked ? `#${asked}` : location.pathname + location.search); } catch { /* a frame without a history */ }
 }

@@ -11,7 +11,8 @@ import pytest
 from mbsd import ModelError, four_stroke
 from mbsd.machines.engines.bank_angles import FAMILIES, bank_angles, gas_torque
 from mbsd.machines.engines.engine import engine
-from tools.engine_layouts.tables import MARKERS, layouts
+from tools.documents.engines.bank_angles import ANGLES, LAYOUTS, layout_table
+from tools.documents.pages import between
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs/engines.md").read_text()
 OF = {family.name: family for family in FAMILIES}
@@ -67,10 +68,9 @@ def test_the_torque_of_the_gas_is_the_sum_over_the_cylinders() -> None:
 
 
 def test_the_page_shows_the_table_of_layouts_and_all_families() -> None:
-    begin, end = MARKERS["layouts"]
-    assert f"{begin}\n{layouts()}\n{end}" in PAGE, "docs/engines.md shows something else: make study-engines"
-    begin, end = MARKERS["angles"]
-    rows = PAGE.partition(begin)[2].partition(end)[0].strip().splitlines()[2:]
+    shown = between(PAGE, *LAYOUTS)
+    assert shown == f"\n{layout_table()}\n", "docs/engines.md shows something else: make study-engines"
+    rows = between(PAGE, *ANGLES).strip().splitlines()[2:]
     assert [row.split(" | ")[0].removeprefix("| ") for row in rows] == [family.name for family in FAMILIES]
     for row, family in zip(rows, FAMILIES, strict=True):
         assert row.endswith(f"{' '.join(bank_angles(family, angles=range(0, 181, 6)).reasons())} |")

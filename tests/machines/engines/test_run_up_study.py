@@ -10,16 +10,15 @@ import pandas as pd
 import pytest
 
 from mbsd import study
-from tools.engine_run_up.picture import picture
-from tools.engine_run_up.runs import GRID, build, measure
-from tools.engine_run_up.table import BEGIN, DAMPING_RATIO, END, RATES, table, with_table
+from tools.documents.engines.run_up import BEGIN, DAMPING_RATIO, END, GRID, RATES, build, measure, picture, table
+from tools.documents.pages import between, replaced
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs/engines.md").read_text()
 
 
 @pytest.fixture(scope="module")
 def runs() -> pd.DataFrame:
-    """Those of the inline four on soft mounts that the page shows."""
+    """Return the runs of the inline four on soft mounts that the page shows."""
     grid = {"layout": ["I4"], "frequency": [8.0], "damping_ratio": [DAMPING_RATIO], "rate": list(RATES)}
     return study(build, grid, measure, folder=None, processes=1, progress=False)
 
@@ -34,15 +33,18 @@ def test_runs_agree_with_one_mode_in_closed_form(runs: pd.DataFrame) -> None:
 
 
 def test_the_page_shows_what_the_study_finds(runs: pd.DataFrame) -> None:
-    shown = PAGE.partition(BEGIN)[2].partition(END)[0].strip().splitlines()
+    shown = between(PAGE, BEGIN, END).strip().splitlines()
     head, line, row = table(runs).splitlines()
     assert shown[:2] == [head, line]
     assert row in shown, "docs/engines.md shows something else: make study-run-up"
     names = [tuple(text.split(" | ")[:2]) for text in shown[2:]]
     assert names == [(f"| {layout}", f"{hertz:g} Hz") for layout in GRID["layout"] for hertz in GRID["frequency"]]
-    assert with_table(f"before {BEGIN}\nold\n{END} after", runs) == f"before {BEGIN}\n{table(runs)}\n{END} after"
+
+
+def test_text_between_markers_is_replaced_and_a_missing_marker_is_an_error() -> None:
+    assert replaced(f"before {BEGIN}\nold\n{END} after", BEGIN, END, "new") == f"before {BEGIN}\nnew\n{END} after"
     with pytest.raises(ValueError, match="the page has no"):
-        with_table("nothing", runs)
+        replaced(f"{END} {BEGIN}", BEGIN, END, "new")
 
 
 def test_the_picture_is_small(runs: pd.DataFrame) -> None:

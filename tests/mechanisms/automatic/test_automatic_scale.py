@@ -9,11 +9,9 @@ import pytest
 
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic, automatic
-from mechanisms.stages.automatic.layout.extents import lengths_of
-from mechanisms.stages.automatic.layout.printed import LEAST
-from mechanisms.stages.automatic.layout.sizes import STANDARD, thin_pins
-from mechanisms.stages.clearance.at_scale import at_scale, what_shrinks
-from mechanisms.stages.loading.wished_scale import scaling
+from mechanisms.stages.automatic.layout.sizes import LEAST, RUNNING, STANDARD, fit_at_scale, lengths_of, thin_pins
+from mechanisms.stages.clearance.path import at_scale, what_shrinks
+from mechanisms.stages.loading.wishes import scaling
 from mechanisms.stages.solve.motion_file import to_motion
 from shared.shapes.bodies import Bodies
 from shared.shapes.fit import Fit
@@ -152,3 +150,12 @@ def test_a_refusal_of_a_model_says_which_fit_would_do() -> None:
     assert half is not None
     named = float(re.search(r"Fit\(running=([0-9.]+)\)", what_shrinks(half))[1])  # type: ignore[index]
     assert named * half.ratio == pytest.approx(Fit().running)
+
+
+def test_a_parts_file_gets_clearances_for_the_scale() -> None:
+    assert fit_at_scale(PIN) == Fit()
+    for scale in (Scale(1, 2), Scale(1, 20)):
+        with scaling(scale):
+            fit = fit_at_scale(PIN)
+        assert fit.running * scale.ratio == pytest.approx(RUNNING)
+        assert min(fit.press, fit.axial) * scale.ratio >= 0.1 - 1e-12

@@ -47,7 +47,7 @@ def test_a_sketch_becomes_a_mechanism(tmp_path: Path, units: int, unit: float, e
     sol = m.sweep(steps=36)
     assert sol.body("ab").omega == pytest.approx(math.tau)
     assert (sol.point("E").x[0], sol.point("E").y[0]) == pytest.approx((60 * unit, 110 * unit))
-    assert sketch.left_out == ["1 lines that do not run from pin to pin"]
+    assert sketch.left_out == ["1 line not from pin to pin"]
     assert sketch.unit == ("" if units else "a millimetre")
 
 

@@ -14,8 +14,8 @@ import pytest
 
 from studio.live.processes import stages
 from studio.live.processes.lines import LONGEST
+from tests.studio.live.arm import ARM
 from tests.studio.live.served import Page, Served, served
-from tools.fixtures.arm import ARM
 
 
 def good(length: float) -> str:

@@ -11,8 +11,8 @@ from pathlib import Path
 import psutil
 import pytest
 
+from tests.studio.live.arm import ARM
 from tests.studio.live.served import Served, served
-from tools.fixtures.arm import ARM
 
 LIMIT = 15.0
 """Seconds; on a busy machine a good edit takes some."""

@@ -10,8 +10,8 @@ import pytest
 from websockets.exceptions import InvalidStatus
 
 from studio.live.gate import Gate
+from tests.studio.live.arm import ARM
 from tests.studio.live.served import Served, served
-from tools.fixtures.arm import ARM
 
 TOKEN, PORT = "secret-word", 8123
 

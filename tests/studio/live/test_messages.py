@@ -14,8 +14,8 @@ from shared.stage.errors import UserError
 from studio.live import mailbox
 from studio.live.mailbox import Mailbox
 from studio.live.wishes import Cancel, Drag, Fit, Set, Thing, Write, wish_of
+from tests.studio.live.arm import ARM
 from tests.studio.live.served import Page, Served, served
-from tools.fixtures.arm import ARM
 
 P = '"thing": {"kind": "point", "name": "P"}, "time": 0'
 HOSTILE = [

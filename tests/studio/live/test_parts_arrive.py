@@ -16,8 +16,8 @@ from render.view.bundle import node, node_modules
 from studio.live.page import page
 from studio.live.processes import stages
 from tests.running.needs import needed
+from tests.studio.live.arm import ARM
 from tests.studio.live.served import served
-from tools.fixtures.arm import ARM
 
 SCRIPT = Path(__file__).parent / "parts.cjs"
 PARTS = '''"""A box for the crank."""

@@ -12,8 +12,8 @@ from render.presets import PRESETS, preset_named
 from shared.stage.errors import UserError
 from studio.night.plan.options import Options, options
 from studio.night.plan.steps import STEPS, command
-from tests.project.making import STAGES, planned
 from tests.running.processes import working_for
+from tests.studio.command.plans import STAGES, planned
 from tests.studio.night.nights import Night, finished, until
 
 
@@ -58,7 +58,7 @@ def test_what_is_asked_for_reaches_the_stages(night: Night):
 
 def test_steps_and_commands_are_those_of_run_in_the_makefile():
     asked = Options(names=("four_bar",), preset=PRESETS["draft"], show="title", spectra="motor", python="echo")
-    lines = planned("run-four-bar", "PRESET=draft", "SHOW=title", "SPECTRA=motor")
+    lines = planned("run", "four-bar", PRESET="draft", SHOW="title", SPECTRA="motor")
     assert [step.name for step in STEPS] == list(STAGES)
     commands = [" ".join(command(step.name, "four_bar", asked)[3:]).replace("--preset ", "--preset=") for step in STEPS]
     assert commands == [line + " --every" * line.startswith("plots") for line in lines]

@@ -45,7 +45,7 @@ class Bars:
 
     @property
     def has_energy(self) -> bool:
-        """Whether there is anything to show."""
+        """True if there is energy to show."""
         return self.largest > 1e-15
 
     def paint_still(self, figure: Any, renderer: Any) -> None:

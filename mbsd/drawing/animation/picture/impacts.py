@@ -53,7 +53,7 @@ def impacts_of(scene: Scene) -> list[Impact]:
 
 
 def draw_impacts(brush: Brush, impacts: list[Impact], clip: Clip, k: int) -> None:
-    """Those that were just before picture ``k``."""
+    """Draw the impacts that were just before picture ``k``."""
     for impact in impacts:
         age = (float(clip.times[k]) - impact.time) / clip.rate / SECONDS
         if 0.0 <= age < 1.0:

@@ -78,7 +78,7 @@ class Panel:
 
     @property
     def is_empty(self) -> bool:
-        """Whether its quantities are all nothing."""
+        """True if all its quantities are zero."""
         return not self.marks and not (self.bars is not None and self.bars.has_energy)
 
     def _seen(self, mark: Arrow | Arc) -> bool:

@@ -1,4 +1,4 @@
-"""What stands still on a picture of the machine: card, title, scale bar, legend of arrows and arcs."""
+"""The steady part of a picture: card, title, scale bar, legend of arrows and arcs."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What arrows and bars of a film stand for: motions, loads, the flow of energy."""
+"""Quantities of arrows and bars of a film: motions, loads, the flow of energy."""

@@ -73,7 +73,7 @@ def moving(view: FrameView, x: float, y: float) -> Moving:
 
 
 def applied(sol: Solution) -> Iterator[tuple[Action, np.ndarray]]:
-    """What each force of the model does to each moving body that feels it, and where (T, 2) (m)."""
+    """Yield the action of each force on each moving body that it loads, and its place (T, 2) (m)."""
     for view in sol.forces.values():
         for body in view.bodies:
             if body != "ground":

@@ -17,7 +17,7 @@ from mbsd.results.solution import Solution
 
 @dataclass(frozen=True)
 class Balance:
-    """What the bars show, (T,) J and W."""
+    """Energies and powers of the bars, (T,) J and W."""
 
     kinetic: np.ndarray
     potential: np.ndarray

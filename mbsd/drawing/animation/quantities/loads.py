@@ -11,7 +11,7 @@ from mbsd.results.solution import Solution
 
 
 def reaction_arrows(sol: Solution) -> list[Arrow | Arc]:
-    """What joints and contacts do to the body that moves."""
+    """Return the reactions of joints and contacts on the moving body."""
     out: list[Arrow | Arc] = []
     drivers = set(sol.mechanism.drivers.values())
     for k, joint in enumerate(sol.packed.joints):

@@ -14,7 +14,7 @@ SAME = 1e-9
 
 
 def motion_arrows(m: Model, tracks: Tracks, quantity: str) -> list[Arrow | Arc]:
-    """Those of ``velocities`` or ``accelerations``; a body none of whose points move gets its turning."""
+    """Return arrows of ``velocities`` or ``accelerations``; an arc for a body that turns about a fixed point alone."""
     out: list[Arrow | Arc] = []
     shown: list[Moving] = []
     points = {name: [moving_marker(tracks.views, marker) for marker in _markers(m, name)] for name in m.bodies}

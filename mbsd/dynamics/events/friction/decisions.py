@@ -64,7 +64,7 @@ def one_by_one(contacts):
 
 @internal
 def acceleration_of(contacts, compliance, forces, k):
-    """Acceleration of row k under N and T in ``forces`` (c,) of chosen[TAKING], and what acts most on it."""
+    """Return the acceleration of row k under N and T in ``forces`` (c,) of chosen[TAKING], and its largest part."""
     out = contacts.vector[FREE, k]
     most = abs(out)
     for j in range(contacts.place.shape[0]):
@@ -77,7 +77,7 @@ def acceleration_of(contacts, compliance, forces, k):
 
 @internal
 def left_of(contacts, forces, k, limit, rounding):
-    """Acceleration of way k, zero where friction up to ``limit`` holds it; ``rounding``: part that counts as none."""
+    """Return the acceleration of way k, 0 where friction up to ``limit`` holds it; ``rounding``: part taken as 0."""
     left = acceleration_of(contacts, contacts.friction.compliance, forces, k)[0]
     own = contacts.compliance[k, k]
     others = abs(left - own * forces[k])
@@ -124,7 +124,7 @@ def find_friction(dyn, scratch, contacts, v, faint):
 
 @internal
 def begin_deciding(contacts, hair):
-    """No static friction has broken but that of a contact that has come to its limit; ``hair``: part of it left."""
+    """Restore static friction, but of a contact that has come to its limit; ``hair``: part of the limit left."""
     number = contacts.friction.number
     for w in range(number.shape[0]):
         number[w, BROKEN] = number[w, FORCED]

@@ -1,4 +1,4 @@
-"""Which ways are at rest at an event, those of contacts and those of joints that stick alike."""
+"""Ways at rest at an event: of contacts and of joints that stick alike."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from mbsd.equations.joint_friction import STATIC
 
 @internal
 def gives(contacts, k):
-    """Whether a force along way k moves anything: none does at a turning point, or where drivers alone move it."""
+    """Return True if a force along way k moves anything: not at a turning point, nor where drivers alone move it."""
     return contacts.compliance[k, k] > STIFF * contacts.vector[ALONE, k]
 
 
 @internal
 def holds(dyn, contacts, k):
-    """Whether friction can hold way k; that of a released joint, or of one with a coefficient of zero, cannot."""
+    """Return True if friction can hold way k: not of a released joint, nor with a coefficient of zero."""
     at = contacts.place[k, FRICTION]
     if contacts.number[k, RELEASED] != 0.0:
         return False
@@ -26,7 +26,7 @@ def holds(dyn, contacts, k):
 
 @internal
 def _halts(contacts, k, gaps, halted):
-    """Whether way k has just come to rest."""
+    """Return True if way k has just come to rest."""
     w = k - gaps
     return contacts.friction.number[w, BROKEN] == 0.0 if w < contacts.friction.gap.shape[0] else k == halted
 

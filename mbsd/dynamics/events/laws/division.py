@@ -49,7 +49,7 @@ whether its force is settled."""
 
 
 class Division(NamedTuple):
-    """Scratch for n joints."""
+    """Return scratch for n joints."""
 
     table: Any
     """(n, n)"""
@@ -103,7 +103,7 @@ def _exchange(table, owner, n, row, k):
 
 @internal
 def _find_pivot(table, taken, n):
-    """Row and column of a large entry in rows not ``taken`` (n,), -1 of none; on the diagonal where G is symmetric."""
+    """Return row and column of a large entry in rows not ``taken`` (n,), -1: none; on the diagonal of a symmetric G."""
     row = -1
     column = -1
     largest = SINGULAR
@@ -185,7 +185,7 @@ def _first(work, n):
 
 @internal
 def _fastest(work, n, first):
-    """The largest rate of the motion in row ``first``."""
+    """Return the largest rate of the motion in row ``first``."""
     fastest = 0.0
     for k in range(n):
         if work.place[SETTLED, k] == 0:
@@ -195,13 +195,13 @@ def _fastest(work, n, first):
 
 @internal
 def _against(work, k, first):
-    """The direction in which the force of joint k raises t."""
+    """Return the direction in which the force of joint k raises t."""
     return 1 if work.table[first, k] * work.number[LOAD, first] > 0.0 else -1
 
 
 @internal
 def _entering(work, n, first):
-    """The first joint whose force raises t further, -1 if there is none."""
+    """Return the first joint whose force raises t further, -1 if there is none."""
     fastest = _fastest(work, n, first)
     for k in range(n):
         moves = work.place[SETTLED, k] == 0 and abs(work.table[first, k]) > RESTS * fastest

@@ -43,7 +43,7 @@ class Holding(NamedTuple):
 
 
 def holding_of(c: int, k: int) -> Holding:
-    """Scratch for c normal forces and k ways at rest, or for less of the first and as much more of the others."""
+    """Return scratch for c normal forces and k ways at rest, or for fewer of the first and more of the others."""
     return Holding(np.zeros((c + 2 * k + 3, 2 * c + 4 * k + 4)), np.zeros(c + 2 * k + 1, np.int64))
 
 

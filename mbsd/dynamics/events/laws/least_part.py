@@ -51,7 +51,7 @@ class Together(NamedTuple):
 
 
 def together_of(n: int) -> Together:
-    """Scratch for n normal forces and ways."""
+    """Return scratch for n normal forces and ways."""
     number, whole = np.zeros((WEIGHT + 1, n)), np.zeros((2, n), np.int64)
     compliance, pick, table, picked = np.zeros((4, n, n))
     return Together(compliance, number, whole[0], pick, whole[1], table, picked, holding_of(0, n))
@@ -59,7 +59,7 @@ def together_of(n: int) -> Together:
 
 @internal
 def _hold(work, m, c, k, part, most):
-    """One programme with number[WEIGHT], of m rows; see hold."""
+    """Solve one programme with number[WEIGHT], of m rows; see hold."""
     number = work.number
     return hold(
         work.table[:m, : c + k],
@@ -76,7 +76,7 @@ def _hold(work, m, c, k, part, most):
 
 @internal
 def _allowed(work, c, w):
-    """What the friction of way w may be under number[FORCE]."""
+    """Return the largest friction of way w under number[FORCE]."""
     out = work.number[SCALED, w]
     for j in range(c):
         out += work.picked[w, j] * max(work.number[FORCE, j], 0.0)
@@ -85,7 +85,7 @@ def _allowed(work, c, w):
 
 @internal
 def _part_of(work, c, k):
-    """The part that number[FORCE] needs."""
+    """Return the part that number[FORCE] needs."""
     part = 0.0
     largest = 1.0
     for j in range(c + k):
@@ -99,7 +99,7 @@ def _part_of(work, c, k):
 
 @internal
 def _repeated(work, m, c, k, part, most):
-    """The least part by programmes that weigh limits as the one before left them; -1 where they come to no end."""
+    """Return the least part by programmes that weigh limits as the one before left them; -1 without an end."""
     number = work.number
     for _ in range(PASSES_TOGETHER):
         largest = 0.0
@@ -122,7 +122,7 @@ def _repeated(work, m, c, k, part, most):
 
 @internal
 def _between(work, m, c, k, most):
-    """The least part between one at which d > 0 and one at which d <= 0, all limits weighed alike; PULLED: none.
+    """Return the least part between one with d > 0 and one with d <= 0, all limits weighed alike; PULLED: none.
 
     By Newton's method, -dd/ds is the sum of what friction may be times the prices of these limits; else by halves.
     """

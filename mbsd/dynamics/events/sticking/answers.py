@@ -1,4 +1,4 @@
-"""How a mechanism answers forces at a pose, its joints and drivers holding and all rows that events switch released.
+"""Responses of a mechanism to forces at a pose, with joints and drivers holding and all switched rows released.
 
     M a + J^T lam = Q,   J a = gamma          M dv + J^T p = impulse,   J dv = 0
 
@@ -8,10 +8,9 @@ By the factors of dynamics/reference/acceleration.py.
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal
-from mbsd.dynamics.events.arrays import ALONE, BLOCK, HELD, ROW, SIDE
+from mbsd.dynamics.events.arrays import BLOCK, HELD, SIDE
 from mbsd.dynamics.events.friction.resting import gives
-from mbsd.dynamics.events.rows import along
-from mbsd.dynamics.reference.refinement import respond
+from mbsd.dynamics.events.pushes import find_answer, read_compliance
 from mbsd.dynamics.reference.schur import factor_schur
 from mbsd.dynamics.reference.sliding import begin_sliding, slide
 from mbsd.equations.assembly import evaluate_gamma, evaluate_position
@@ -33,7 +32,7 @@ def stand(dyn, scratch, t, y):
 
 @apart
 def factor(dyn, scratch):
-    """Factors of the rows that hold now, at the pose of scratch.ws."""
+    """Factor the rows that hold now, at the pose of scratch.ws."""
     factor_schur(dyn.schur, dyn.inverse, scratch.ws.jac, scratch.factors, 0.0)
 
 
@@ -42,13 +41,13 @@ def find_answers(dyn, scratch, contacts, flags):
     """Fill answer, borne, compliance and vector[ALONE] of the rows in ``flags`` (c,)."""
     for k in range(contacts.place.shape[0]):
         if flags[k] != 0:
-            _answer(dyn, scratch, contacts, k)
-    _find_compliance(dyn, scratch, contacts, flags)
+            find_answer(dyn, scratch, contacts, k, contacts.sticks.borne[k])
+    read_compliance(dyn, scratch, contacts, flags)
 
 
 @internal
 def answer_resting(dyn, scratch, contacts, flags):
-    """``find_answers`` of joints at rest, in ``flags`` (c,), where contacts hold and react, with their friction.
+    """Find answers of joints at rest, in ``flags`` (c,), where contacts hold and react, with their friction.
 
     The rows of joints are released. What contacts hold by themselves leaves ``flags``.
     """
@@ -66,40 +65,12 @@ def answer_resting(dyn, scratch, contacts, flags):
     for k in range(joints, count):
         if flags[k] == 0:
             continue
-        _answer(dyn, scratch, contacts, k)
+        find_answer(dyn, scratch, contacts, k, contacts.sticks.borne[k])
         if table.shape[0] > 0:
             for w in range(table.shape[0]):
                 table[w, table.shape[1] - 1] = 0.0
             slide(dyn, scratch, contacts.answer[k], contacts.answer[k], contacts.sticks.borne[k])
-    _find_compliance(dyn, scratch, contacts, flags)
+    read_compliance(dyn, scratch, contacts, flags)
     for k in range(joints, count):
         if held and flags[k] != 0 and not gives(contacts, k):
             flags[k] = 0
-
-
-@apart
-def _answer(dyn, scratch, contacts, k):
-    """Fill answer[k], borne[k] and vector[ALONE] of row k."""
-    force = contacts.force
-    row = contacts.place[k, ROW]
-    for c in range(force.shape[0]):
-        force[c] = 0.0
-    for side in range(2):
-        at = 3 * dyn.system.row_body[row, side]
-        for c in range(3):
-            force[at + c] += scratch.ws.jac[row, 3 * side + c]
-    alone = 0.0
-    for c in range(3, force.shape[0]):
-        alone += dyn.inverse[c] * force[c] ** 2
-    contacts.vector[ALONE, k] = alone if alone > 0.0 else 1.0
-    respond(dyn, scratch, force, 0.0, contacts.answer[k], contacts.sticks.borne[k])
-
-
-@internal
-def _find_compliance(dyn, scratch, contacts, flags):
-    """Fill compliance of the rows in ``flags`` (c,)."""
-    count = contacts.place.shape[0]
-    for k in range(count):
-        for j in range(count):
-            if flags[k] != 0 and flags[j] != 0:
-                contacts.compliance[j, k] = along(dyn, scratch, contacts.place[j, ROW], contacts.answer[k])

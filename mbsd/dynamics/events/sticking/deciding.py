@@ -1,4 +1,4 @@
-"""What gaps that stay closed and joints that may stick do from now on: open, slide or stick.
+"""Decisions about gaps that stay closed and joints that may stick: open, slide or stick from now on.
 
 For contacts that do not separate and joints at rest, in accelerations (friction/pushes.py):
 
@@ -44,7 +44,7 @@ from mbsd.dynamics.events.friction.pushes import solve_with_friction
 from mbsd.dynamics.events.friction.resting import find_resting, gives, holds
 from mbsd.dynamics.events.jumps import FAINT
 from mbsd.dynamics.events.laws.division import divide
-from mbsd.dynamics.events.rows import along, gaps_of
+from mbsd.dynamics.events.rows import gaps_of
 from mbsd.dynamics.events.sticking.answers import stand
 from mbsd.dynamics.events.sticking.giving_way import (
     begin_giving,
@@ -56,7 +56,7 @@ from mbsd.dynamics.events.sticking.giving_way import (
 )
 from mbsd.dynamics.events.sticking.sharing import limit_of
 from mbsd.dynamics.events.sticking.together import divide_together
-from mbsd.dynamics.reference.refinement import respond
+from mbsd.dynamics.formulation import along, respond
 from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import FAINT as FAINT_LOAD
 from mbsd.equations.joint_friction import MOST_PASSES, SENSE, SETTLED, X, apply_friction, normal_forces
@@ -65,7 +65,7 @@ from mbsd.equations.loads import apply_loads
 
 @internal
 def _find_signs(dyn, contacts, halted):
-    """Signs of sliding of joints, after find_resting; chosen[RESTING] are those whose forces are to decide."""
+    """Find signs of sliding of joints, after find_resting; in chosen[RESTING] forces are to decide."""
     resting = contacts.chosen[RESTING]
     joints = contacts.place.shape[0] - contacts.sticks.joint.shape[0]
     for k in range(contacts.place.shape[0]):
@@ -247,7 +247,7 @@ def _agree(dyn, scratch, contacts, v, hair, rounding, giving):
 
 @apart
 def decide(dyn, scratch, contacts, state, halted, slipping, touched):
-    """Normal forces of the gaps in chosen[STAYING], NEXT_SIGN of their ways, number[SIGN] of joints; whether some are.
+    """Find normal forces of gaps in chosen[STAYING], NEXT_SIGN of their ways, number[SIGN] of joints; False: none.
 
     All rows that events switch are released. ``halted``: the joint that has just come to rest, -1 if none has;
     ``slipping``: one at rest, or all that is at rest, has just come to its limit; ``touched``: the gap that has just

@@ -1,4 +1,4 @@
-"""What happens where all that is at rest comes to its limit and no forces hold it: some ways give way.
+"""Ways that give way: all that is at rest has come to its limit, and no forces hold it.
 
 Bodies at rest may hold each other by forces that no longer act once they move: pressed with those they could hold as
 if they moved, and the other way round. So ways are taken to move as they did in the last try that moved any, with

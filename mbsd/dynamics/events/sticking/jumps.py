@@ -1,4 +1,4 @@
-"""What changes at an event where joints have friction, or contacts lose some: impacts, then which rows hold.
+"""Jumps where joints have friction, or contacts lose some: impacts, then which rows hold.
 
 The impacts are those of contacts (events/jumps.py); what holds from now on is decided with the friction of joints.
 """
@@ -45,7 +45,7 @@ from mbsd.equations.joint_friction import SENSE
 
 @internal
 def _any_joint(contacts):
-    """Whether there is a joint that may stick and that no event has released."""
+    """Return True if there is a joint that may stick and that no event has released."""
     there = False
     for k in range(contacts.place.shape[0] - contacts.sticks.joint.shape[0], contacts.place.shape[0]):
         there = there or contacts.number[k, RELEASED] == 0.0
@@ -108,7 +108,7 @@ def _set(dyn, scratch, contacts):
 
 @lazy(bool)
 def resolve_friction(dyn, scratch, contacts, state, met):
-    """Impacts, and what contacts and joints do from now on, after row ``met`` came to an event; -1: at the start.
+    """Resolve impacts, and decide what contacts and joints do after row ``met`` came to an event; -1: at the start.
 
     Returns False where that is impossible; refusals.py says why.
     """

@@ -51,7 +51,7 @@ from mbsd.equations.joint_friction import PIN, PRELOAD, SHAPE, SIZE, STATIC, nor
 
 @internal
 def limit_of(dyn, k, normal):
-    """The largest friction (N, N m) of joint k with friction, at rest under normal forces (f,)."""
+    """Return the largest friction (N, N m) of joint k with friction, at rest under normal forces (f,)."""
     number = dyn.loads.friction_number[k]
     lever = number[SIZE] if dyn.loads.friction[k, SHAPE] == PIN else 1.0
     return number[STATIC] * lever * (normal[k] + number[PRELOAD])

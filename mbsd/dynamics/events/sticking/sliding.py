@@ -14,8 +14,7 @@ from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.arrays import BASIS, FOUND, NOW
-from mbsd.dynamics.events.rows import along
-from mbsd.dynamics.reference.refinement import respond
+from mbsd.dynamics.formulation import along, respond
 from mbsd.dynamics.reference.sliding import slide
 from mbsd.equations.gauss import eliminate
 from mbsd.equations.joint_friction import apply_friction, normal_forces
@@ -89,7 +88,7 @@ def find_changes(contacts, compliance, held, count):
 
 @internal
 def add_beside(contacts, i, force):
-    """``force`` of row i without sharing, with what the present normal forces of joints change of it."""
+    """Return ``force`` of row i without sharing, with what the present normal forces of joints change of it."""
     sticks = contacts.sticks
     for j in range(sticks.change.shape[1]):
         force += sticks.change[i, j] * (sticks.normal[FOUND, j] - sticks.normal[BASIS, j])

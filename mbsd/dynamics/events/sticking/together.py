@@ -1,4 +1,4 @@
-"""What contacts that stick and joints at rest carry together, and how near they are to giving way.
+"""Loads that contacts that stick and joints at rest carry together, and how near these are to giving way.
 
 One set of rows holds them, which says nothing of what each carries: where a ball lies between floor and face of a
 slider that sticks in its guide, any of the three may stick less. Of all forces that keep them at rest those are found
@@ -91,7 +91,7 @@ def _begin(dyn, scratch, contacts, flags):
 
 @internal
 def _pushes(contacts, k):
-    """The way along which the friction of gap k pushes as well, -1 if there is none, and how much of it."""
+    """Return the way along which the friction of gap k pushes as well, -1 if there is none, and how much of it."""
     gap = contacts.friction.gap
     gaps = gaps_of(contacts)
     for w in range(gap.shape[0]):

@@ -1,4 +1,4 @@
-"""What is looked at of joints that stick.
+"""Guards of joints that stick.
 
 slides    its speed, sign kept
 sticks    its limit less |T|; where what is at rest shares its forces  1 - s  of all of it, times the largest load
@@ -24,10 +24,10 @@ from mbsd.dynamics.events.arrays import (
 )
 from mbsd.dynamics.events.friction.resting import holds
 from mbsd.dynamics.events.laws.least_part import PULLED
-from mbsd.dynamics.events.rows import along, gaps_of
+from mbsd.dynamics.events.rows import gaps_of
 from mbsd.dynamics.events.sticking.sharing import carry, limit_of
 from mbsd.dynamics.events.sticking.together import carry_together
-from mbsd.dynamics.reference.projection import measure
+from mbsd.dynamics.formulation import along, measure
 from mbsd.dynamics.state import TIME
 from mbsd.equations.joint_friction import normal_forces
 

@@ -48,6 +48,8 @@ class Events(NamedTuple):
     """(1,) duration (s)."""
     pose: Any
     """(2, 3 nb)"""
+    bend: Any
+    """(3 nb,) q'' at a state."""
     parts: Any
     """(n,) parts of a step, rising, at which an event is looked at."""
     values: Any

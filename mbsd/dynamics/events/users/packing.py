@@ -12,7 +12,7 @@ from mbsd.compiling.callback import Callback
 from mbsd.compiling.jit import COMPILED
 from mbsd.dynamics.events.bounds import MOST_VALUES, NEAR, PER_SHORTEST, ROUNDINGS
 from mbsd.dynamics.events.moment import Moment, place_of, value_at
-from mbsd.dynamics.events.users import ready_made
+from mbsd.dynamics.events.users import values
 from mbsd.dynamics.events.users.arrays import ACTION_FRAMES, BY_PYTHON, ITS_FRICTION, UNKNOWN, WHOLE, Events
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.schur import Schur
@@ -20,7 +20,7 @@ from mbsd.equations.joint_friction import FIRST
 from mbsd.model.body import Marker
 from mbsd.model.event import Event, Reaching
 
-READY_MADE = {name: getattr(ready_made, name) for name in ("turned", "turning", "distance")}
+READY_MADE = {name: getattr(values, name) for name in ("turned", "turning", "distance")}
 MOST = 20_000
 """Values of an event in one step."""
 
@@ -41,7 +41,7 @@ def why_not(events: Sequence[Event], longest: float) -> str | None:
 
 
 def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float, bare: Schur) -> Events:
-    """Those of a run, whose steps are ``longest`` (s) at most, at its start; ``bare``: without rows of contacts."""
+    """Return the user's events at the start of a run, whose steps are ``longest`` (s) at most."""
     packed, frames = ready.packed, list[Marker]()
     table, number = [], []
     for event in events:
@@ -74,6 +74,7 @@ def events_of(ready: PreparedDynamics, events: Sequence[Event], longest: float, 
         _away(ready),
         np.array([ready.end - ready.start]),
         np.zeros((2, n3)),
+        np.zeros(n3),
         np.zeros(looks),
         np.zeros(looks),
         np.zeros((2, looks)),
@@ -94,7 +95,7 @@ def may_release(event: Event) -> bool:
 
 
 def _release(ready: PreparedDynamics, events: Sequence[Event], bare: Schur) -> np.ndarray:
-    """Rows of all joints that events release."""
+    """Return rows of all joints that events release; ``bare``: the sequence without rows of contacts."""
     packed, friction, out = ready.packed, ready.dynamics.loads.friction, []
     names = [joint.name for joint in packed.joints]
     groups = [
@@ -126,7 +127,7 @@ def _ready(events: Sequence[Event]) -> list[tuple[Marker, ...]]:
 
 
 def _looks(event: Event, longest: float) -> int:
-    """Room for the values of an event in one step."""
+    """Return room for the values of an event in one step."""
     asked = math.ceil(PER_SHORTEST * longest / event.shortest) if event.shortest else 0
     return 16 + max(MOST_VALUES, asked)
 

@@ -1,13 +1,14 @@
-"""Values of events at a state: their functions get places and rates of frames."""
+"""Values of events at a state: their functions get positions and rates of frames; ready-made functions are below."""
 
 from __future__ import annotations
 
 import math
 
-from mbsd.compiling.callback import call
-from mbsd.compiling.jit import apart, internal, lazy
+from mbsd.compiling.callback import SIGNATURE, call
+from mbsd.compiling.jit import apart, at_address, internal, lazy
 from mbsd.dynamics.events.bounds import AHEAD, BEYOND
 from mbsd.dynamics.events.users.arrays import FIRST, FRAMES, LEVEL, SIDE, VALUE, WHOLE
+from mbsd.dynamics.formulation import bends
 from mbsd.dynamics.state import TIME
 
 
@@ -42,7 +43,7 @@ def read_frames(events, first, count, q, v):
 
 @apart
 def value_of(events, e, t, q, v):
-    """The value of event e at q, v (3 nb,) and t (s)."""
+    """Return the value of event e at q, v (3 nb,) and t (s)."""
     read_frames(events, events.table[e, FIRST], events.table[e, FRAMES], q, v)
     call(events.table[e, VALUE], t, events.inputs, events.outputs)  # pyright: ignore[reportCallIssue]
     return events.outputs[0] - events.number[e, LEVEL]
@@ -50,7 +51,7 @@ def value_of(events, e, t, q, v):
 
 @internal
 def signed(events, e, t, y):
-    """The same at y (2, 3 nb), with the sign of its side: it is not negative now, and falls through zero."""
+    """Return the value of event e at y (2, 3 nb) with the sign of its side: not negative now, it falls through zero."""
     side = -1.0 if events.number[e, SIDE] < 0.0 else 1.0
     return side * value_of(events, e, t, y[0], y[1])
 
@@ -78,21 +79,23 @@ def _side(events, e, t, y):
 
 
 @apart
-def _side_ahead(events, e, t, y, a):
-    """The sign that an event whose value is zero has next; 0 if it stays zero. a: accelerations (3 nb,)."""
+def _side_ahead(dyn, events, e, t, y, dy):
+    """Return the sign that an event whose value is zero has next; 0 if it stays zero. dy (2, n) is d(y)/dt."""
     side = _side(events, e, t, y)
     if side != 0.0:
         return side
     rounding = rounding_of(events, e, t, y, 1.0)
     pose = events.pose
+    bend = events.bend
+    bends(dyn, y, dy, bend)
     last = AHEAD[-1] * events.span[0]
     for k in range(len(AHEAD) + len(BEYOND)):
         s = AHEAD[k] * events.span[0] if k < len(AHEAD) else BEYOND[k - len(AHEAD)]
         if k >= len(AHEAD) and s <= last:
             continue
         for c in range(pose.shape[1]):
-            pose[0, c] = y[0, c] + s * y[1, c] + s * s / 2 * a[c]
-            pose[1, c] = y[1, c] + s * a[c]
+            pose[0, c] = y[0, c] + s * dy[0, c] + s * s / 2 * bend[c]
+            pose[1, c] = y[1, c] + s * dy[1, c]
         ahead = value_of(events, e, t + s, pose[0], pose[1])
         if abs(ahead) > 10.0 * rounding:
             return 1.0 if ahead > 0.0 else -1.0
@@ -100,33 +103,51 @@ def _side_ahead(events, e, t, y, a):
 
 
 @lazy(int)
-def first_reached(events, state):
-    """The first event that is watched and whose value has come to zero and stays there, as _meet_reached; -1: none."""
+def first_reached(dyn, events, state):
+    """Return the first event that is watched and whose value has come to zero and stays there; -1: none."""
     for e in range(events.table.shape[0]):
         if events.number[e, SIDE] == 0.0:
             continue
-        if _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1]) == 0.0:
+        if _side_ahead(dyn, events, e, state.clock[TIME], state.y, state.dy) == 0.0:
             return e
     return -1
 
 
 @internal
-def turn_side(events, e, state):
-    """The side of an event that has just passed zero: none where its value stays there."""
-    stays = _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1]) == 0.0
+def turn_side(dyn, events, e, state):
+    """Turn the side of an event that has just passed zero; none where its value stays there."""
+    stays = _side_ahead(dyn, events, e, state.clock[TIME], state.y, state.dy) == 0.0
     events.number[e, SIDE] = 0.0 if stays else -events.number[e, SIDE]
 
 
 @lazy(None)
 def begin_sides(events, state):
-    """On which side all events are at the start."""
+    """Find on which side all events are at the start."""
     for e in range(events.table.shape[0]):
         events.number[e, SIDE] = _side(events, e, state.clock[TIME], state.y)
 
 
 @lazy(None)
-def find_sides(events, state):
-    """To which side those go that are zero; none of those that stay so."""
+def find_sides(dyn, events, state):
+    """Find to which side events go that are zero; none where they stay so."""
     for e in range(events.table.shape[0]):
         if events.number[e, SIDE] == 0.0:
-            events.number[e, SIDE] = _side_ahead(events, e, state.clock[TIME], state.y, state.dy[1])
+            events.number[e, SIDE] = _side_ahead(dyn, events, e, state.clock[TIME], state.y, state.dy)
+
+
+@at_address(SIGNATURE)
+def turned(t, inputs, outputs):
+    """Put out the angle of one frame (rad)."""
+    outputs[0] = inputs[2]
+
+
+@at_address(SIGNATURE)
+def turning(t, inputs, outputs):
+    """Put out the angular velocity of one frame (rad/s)."""
+    outputs[0] = inputs[5]
+
+
+@at_address(SIGNATURE)
+def distance(t, inputs, outputs):
+    """Put out the distance of two frames (m)."""
+    outputs[0] = math.hypot(inputs[3] - inputs[0], inputs[4] - inputs[1])

@@ -12,8 +12,8 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import inlined, lazy
+from mbsd.dynamics.formulation import bends, derivative
 from mbsd.dynamics.integrators.dop853.dense import interpolant, interpolate
-from mbsd.dynamics.integrators.formulation import derivative
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
 from mbsd.dynamics.integrators.step_size import allowed
 from mbsd.dynamics.state import EVALUATIONS, TIME
@@ -57,7 +57,7 @@ REACH = 6.0
 
 @inlined
 def nearness(switch, settings):
-    """How far (m) beyond a switch the next step may go."""
+    """Return how far (m) beyond a switch the next step may go."""
     if switch[0, CUTS] == 1.0:
         return max(TIGHT, WIDE * settings.relative) * switch[0, SIZE]
     return TIGHT * switch[0, SIZE]
@@ -75,6 +75,8 @@ def step_after(dyn, scratch, state, settings, t):
     trial = scratch.dense[7]
     gain = scratch.stages[LANDED]
     changed = scratch.stages[15]
+    bend_of = scratch.dense[6, 0]
+    bends(dyn, y, gain, bend_of)
     reach = REACH * settings.relative**0.125
     h = settings.longest
     wanted = h
@@ -83,7 +85,7 @@ def step_after(dyn, scratch, state, settings, t):
         way = 0.0
         bend = 0.0
         for c in range(3, y.shape[1]):
-            trial[0, c] = y[0, c] + h * (y[1, c] + 0.5 * h * gain[1, c])
+            trial[0, c] = y[0, c] + h * (gain[0, c] + 0.5 * h * bend_of[c])
             trial[1, c] = y[1, c] + h * gain[1, c]
             way += ((trial[0, c] - y[0, c]) / settings.absolute[0, c]) ** 2
         power = derivative(dyn, scratch, t + h, trial, changed, scratch.multipliers)
@@ -113,7 +115,7 @@ def step_after(dyn, scratch, state, settings, t):
 
 @lazy(float)
 def crossing(dyn, scratch, state, settings, h, reached, work):
-    """What part of the step that was tried is to be taken again, below 1; 1: all is well; 2: it ends at a switch.
+    """Return the part below 1 of the tried step that is to be taken again; 1: all is well; 2: it ends at a switch.
 
     The state evaluated last is the step's end, before and, for 1 and 2, after.
     """

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from mbsd.compiling.jit import apart, internal, lazy
+from mbsd.dynamics.formulation import derivative, join_rows, keep_row, record, record_all
 from mbsd.dynamics.integrators.dop853.tableau import A, C, D
-from mbsd.dynamics.integrators.formulation import derivative, join_rows, keep_row, record, record_all
 from mbsd.dynamics.state import NEXT, TIME, WORK
 
 BESIDE = 1e-3
@@ -13,7 +13,7 @@ BESIDE = 1e-3
 
 @apart
 def interpolant(dyn, scratch, state, h, work):
-    """Coefficients of the dense output of the step that ends in scratch.state and does ``work`` (J)."""
+    """Find coefficients of the dense output of the step that ends in scratch.state and does ``work`` (J)."""
     power = scratch.power
     k = scratch.stages
     dense = scratch.dense
@@ -61,7 +61,7 @@ def interpolant(dyn, scratch, state, h, work):
 
 @internal
 def interpolate(dense, dense_work, y, x, out):
-    """out (2, n) at the part x of the step that began at y; returns the work so far (J).
+    """Fill out (2, n) at the part x of the step that began at y; returns the work so far (J).
 
     Not inlined: numba 0.68 mixes up its copies where it is called more than once.
     """

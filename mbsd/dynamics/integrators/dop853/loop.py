@@ -16,11 +16,11 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import inlined, shared
+from mbsd.dynamics.formulation import accelerate, begin_run, derivative, project, rates, record_here, settle
 from mbsd.dynamics.integrators.dop853.crossing import LANDED, crossing, nearness
 from mbsd.dynamics.integrators.dop853.dense import interpolant, write_outputs
 from mbsd.dynamics.integrators.dop853.sums import sum_stages, sum_step
 from mbsd.dynamics.integrators.dop853.tableau import B, C
-from mbsd.dynamics.integrators.formulation import accelerate, begin_run, derivative, project, record_here, settle
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.integrators.step_size import first_step
 from mbsd.dynamics.state import (
@@ -95,7 +95,7 @@ def take_state(state, scratch, reached, work):
 
 @inlined
 def choose_step(state, settings, h, error, rejected, last):
-    """The length of the next step, from the errors of this one and the one before."""
+    """Choose the length of the next step from the errors of this one and the one before."""
     growth = 10.0
     if error > 0.0:
         growth = math.log(error)
@@ -157,8 +157,7 @@ def stages(dyn, scratch, state, settings, t, h, reached):
             if not scratch.report[2] <= max(CONTRACTION * scratch.report[1], ROUNDING):
                 shorter = 0.5
                 break
-        for c in range(3, y.shape[1]):
-            k[s, 0, c] = trial[1, c]
+        rates(dyn, trial[0], trial[1], k[s, 0])
         state.count[EVALUATIONS] += 1
         at = t + C[s] * h if s < 12 else reached
         scratch.power[s] = accelerate(dyn, scratch, at, trial, k[s, 1], scratch.multipliers)
@@ -269,6 +268,7 @@ DOP853 = register(
         order=8,
         fixed_step=False,
         independent=True,
+        general=True,
         meets_switches=True,
     )
 )

@@ -18,7 +18,7 @@ FEW = 9
 
 @inlined
 def sum_stages(y, k, s, h, trial):
-    """The state of stage s, from the derivatives k of those before it."""
+    """Find the state of stage s from the derivatives k of those before it."""
     n3 = y.shape[1]
     if n3 < FEW:  # sums stay in registers
         for c in range(3, n3):
@@ -69,7 +69,7 @@ def sum_stages(y, k, s, h, trial):
 
 @inlined
 def sum_step(y, k, h, settings, trial):
-    """The state at the end of a step; returns its error relative to what is allowed."""
+    """Find the state at the end of a step; returns its error relative to what is allowed."""
     n3 = y.shape[1]
     fifth = 0.0
     third = 0.0

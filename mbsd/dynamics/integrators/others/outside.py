@@ -22,10 +22,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from mbsd.dynamics.formulation import derivative, project, record_output
 from mbsd.dynamics.integrators.kind import Option
-from mbsd.dynamics.reference.acceleration import derivative
 from mbsd.dynamics.reference.arrays import Dynamics, Scratch
-from mbsd.dynamics.reference.projection import project
 from mbsd.dynamics.state import (
     ACCEPTED,
     EVALUATIONS,
@@ -42,7 +41,6 @@ from mbsd.dynamics.state import (
     Output,
     Settings,
     State,
-    record,
     record_here,
 )
 
@@ -72,7 +70,7 @@ class Stepper(Protocol):
         ...
 
     def between(self, t: float) -> np.ndarray:
-        """y at a time (s) within the last step."""
+        """Return y at a time (s) within the last step."""
         ...
 
 
@@ -88,7 +86,7 @@ class Rates:
         self.count = 0
 
     def __call__(self, t: float, y: np.ndarray) -> np.ndarray:
-        """(2 n + 1,)"""
+        """Return y' (2 n + 1,) at y and t (s)."""
         self.trial[:, 3:] = y[:-1].reshape(2, -1)
         if self.pull is not None:
             project(self.dyn, self.scratch, t, self.trial, 2)
@@ -102,7 +100,7 @@ class Rates:
         return out
 
     def projected(self, t: float, y: np.ndarray) -> np.ndarray:
-        """(2 n + 1,) on the constraints."""
+        """Return y (2 n + 1,) on the constraints."""
         self.trial[:, 3:] = y[:-1].reshape(2, -1)
         project(self.dyn, self.scratch, t, self.trial, 2)
         return np.append(self.trial[:, 3:], y[-1])
@@ -125,14 +123,14 @@ _under = _Under()
 
 
 def tolerances(settings: Settings) -> tuple[float, np.ndarray]:
-    """Relative and absolute (2 n + 1,)."""
+    """Return the relative tolerance and the absolute ones (2 n + 1,)."""
     return settings.relative, np.append(settings.absolute[:, 3:], FREE)
 
 
 def advance_with(
     make: Maker, dyn: Dynamics, scratch: Scratch, state: State, out: Output, settings: Settings, end: float, steps: int
 ) -> int:
-    """``advance`` of an Integrator, by the library's solver that ``make`` makes."""
+    """Advance an Integrator by the library's solver that ``make`` makes."""
     if state.count[STARTED] == 0:
         state.clock[STEP] = 0.0
         _settle(dyn, scratch, state, float(state.clock[TIME]))
@@ -179,7 +177,7 @@ def _march(scratch: Scratch, stepper: Stepper, rates: Rates, state: State, out: 
         while state.count[NEXT] < len(out.t) and out.t[state.count[NEXT]] < state.clock[TIME]:
             y = stepper.between(float(out.t[state.count[NEXT]]))
             scratch.state[:, 3:] = y[:-1].reshape(2, -1)
-            record(rates.dyn, scratch, out, state.count[NEXT], y[-1])
+            record_output(rates.dyn, scratch, out, state.count[NEXT], y[-1])
             rates.count += 1
             state.count[NEXT] += 1
         if done:
@@ -194,7 +192,7 @@ def _key(make: Maker, scratch: Scratch, settings: Settings, state: State, end: f
 def _going_on(
     make: Maker, dyn: Dynamics, scratch: Scratch, state: State, settings: Settings, end: float
 ) -> tuple[Rates, Stepper]:
-    """The solver under way if it paused exactly here, else a new one."""
+    """Return the solver under way if it paused exactly here, else a new one."""
     key = _key(make, scratch, settings, state, end)
     held = _under.key
     same = len(held) > 0 and all(a is b for a, b in zip(held[:3], key[:3], strict=True)) and held[3:] == key[3:]

@@ -17,6 +17,8 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, internal, kernel
+from mbsd.dynamics.formulation import begin_run, derivative, project, record_output
+from mbsd.dynamics.integrators.full_matrix import differentiate, too_large
 from mbsd.dynamics.integrators.kind import Integrator, register
 from mbsd.dynamics.integrators.radau.newton import (
     AFTER,
@@ -30,9 +32,6 @@ from mbsd.dynamics.integrators.radau.newton import (
 )
 from mbsd.dynamics.integrators.radau.tableau import WEIGHTS, D, E
 from mbsd.dynamics.integrators.step_size import first_step
-from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.projection import project
-from mbsd.dynamics.reference.tangents import differentiate, too_large
 from mbsd.dynamics.state import (
     ACCEPTED,
     EVALUATIONS,
@@ -46,8 +45,6 @@ from mbsd.dynamics.state import (
     STEP_TOO_SMALL,
     TIME,
     WORK,
-    begin,
-    record,
     record_here,
 )
 
@@ -65,7 +62,7 @@ ROUNDING = 1e-9
 
 @internal
 def _extrapolate(scratch, ratio):
-    """First guess of Z from the polynomial of the step before, which was 1 / ratio as long."""
+    """Guess Z from the polynomial of the step before, which was 1 / ratio as long."""
     k = scratch.stages
     for part in range(2):
         for c in range(3, k.shape[2]):
@@ -84,7 +81,7 @@ def _extrapolate(scratch, ratio):
 
 @apart
 def _estimate(dyn, scratch, state, settings, h, again):
-    """Error of the step in tolerances; ``again`` filters it once more, after a step was refused."""
+    """Return the error of the step in tolerances; ``again`` filters it once more, after a step was refused."""
     k = scratch.stages
     y = state.y
     err = k[ERROR_ROW]
@@ -96,7 +93,7 @@ def _estimate(dyn, scratch, state, settings, h, again):
                 ahead += E[i] * k[Z + i, part, c]
             k[OTHER, part, c] = ahead / h
             err[part, c] = state.dy[part, c] + ahead / h
-    solve_real(scratch, h, err)
+    solve_real(dyn, scratch, y[0], h, err)
     size = norm(settings, y, k[AFTER], err)
     if again and size > 1.0:
         for part in range(2):
@@ -107,7 +104,7 @@ def _estimate(dyn, scratch, state, settings, h, again):
         for part in range(2):
             for c in range(3, n3):
                 err[part, c] = k[0, part, c] + k[OTHER, part, c]
-        solve_real(scratch, h, err)
+        solve_real(dyn, scratch, y[0], h, err)
         size = norm(settings, y, k[AFTER], err)
     return size
 
@@ -130,7 +127,7 @@ def _outputs(dyn, scratch, state, out, h, reached):
                 for i in range(3):
                     value += x * (D[i, 0] + x * (D[i, 1] + x * D[i, 2])) * k[Z + i, part, c]
                 scratch.state[part, c] = value
-        record(dyn, scratch, out, at, state.clock[WORK] + work)
+        record_output(dyn, scratch, out, at, state.clock[WORK] + work)
         state.count[EVALUATIONS] += 1
         state.count[NEXT] = at + 1
 
@@ -142,7 +139,7 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
     k = scratch.stages
     n3 = y.shape[1]
     newton = max(2.3e-15 / settings.relative, min(0.03, math.sqrt(settings.relative)))
-    begin(dyn, scratch, state)
+    begin_run(dyn, scratch, state)
     if state.clock[STEP] == 0.0:
         state.clock[STEP] = first_step(dyn, scratch, state, settings, 0.25)
     accepted = 0
@@ -241,4 +238,6 @@ def advance(dyn, scratch, state, out, settings, end, max_steps):
         refused = False
 
 
-RADAU = register(Integrator("radau", advance, STAGES, order=5, fixed_step=False, matrices=(4, 2), refusal=too_large))
+RADAU = register(
+    Integrator("radau", advance, STAGES, order=5, fixed_step=False, general=True, matrices=(4, 2), refusal=too_large)
+)

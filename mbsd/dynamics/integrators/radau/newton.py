@@ -1,10 +1,11 @@
-"""Newton's method for the three stages of Radau IIA: linear equations decoupled, and halved by q' = v.
+"""Newton's method for the three stages of Radau IIA: linear equations decoupled, and halved by q' = N(q) v.
 
-    y' = f(t, y),  y = (q, v),  f = (v, a):     (mu 1 - f_y) x = r   is
-    (mu 1 - B - A / mu) x_v = r_v + A r_q / mu,      x_q = (r_q + x_v) / mu
+    y' = f(t, y),  y = (q, v),  f = (N v, a):     (mu 1 - f_y) x = r   is
+    (mu 1 - B - A / mu) x_v = r_v + A s / mu,      x_q = (r_q + N x_v) / mu,      N s = r_q
 
 once with the real eigenvalue mu = REAL / h, once with the complex one (PART + i TURN) / h, kept as a real matrix of
-twice the size. A = da/dq, B = da/dv.
+twice the size. A = da/dq N, how accelerations change where q moves along each velocity, B = da/dv. Where N changes with
+q, what that gives is left out: Newton's method needs no more than that.
 
 Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8.
 """
@@ -14,10 +15,10 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, inlined, internal
+from mbsd.dynamics.formulation import derivative, rates, speeds
+from mbsd.dynamics.integrators.full_matrix import factor_full, solve_full
 from mbsd.dynamics.integrators.radau.tableau import PART, REAL, TI, TURN, C, T
 from mbsd.dynamics.integrators.step_size import allowed
-from mbsd.dynamics.reference.acceleration import derivative
-from mbsd.dynamics.reference.full_matrix import factor_full, solve_full
 from mbsd.dynamics.state import EVALUATIONS, TIME
 
 Z, F, W = 1, 4, 7
@@ -54,8 +55,13 @@ def factor_both(scratch, h, size):
 
 
 @internal
-def solve_real(scratch, h, x):
-    """x (2, 3 nb) becomes the solution with the real eigenvalue."""
+def solve_real(dyn, scratch, q, h, x):
+    """Solve for x (2, n), in place, with the real eigenvalue at q (n,)."""
+    way = scratch.change[0]
+    turned = scratch.change[1]
+    for c in range(3, x.shape[1]):
+        way[c] = x[0, c]
+    speeds(dyn, q, way)
     size = x.shape[1] - 3
     a = scratch.full.value[0]
     side = scratch.full.side[2]
@@ -63,17 +69,26 @@ def solve_real(scratch, h, x):
     for i in range(size):
         total = 0.0
         for j in range(size):
-            total += a[i, j] * x[0, j + 3]
+            total += a[i, j] * way[j + 3]
         side[i] = x[1, i + 3] + total / mu
     solve_full(scratch.full, 2, size)
     for i in range(size):
         x[1, i + 3] = side[i]
-        x[0, i + 3] = (x[0, i + 3] + side[i]) / mu
+    rates(dyn, q, x[1], turned)
+    for i in range(size):
+        x[0, i + 3] = (x[0, i + 3] + turned[i + 3]) / mu
 
 
 @internal
-def solve_complex(scratch, h, x, z):
-    """x + i z (2, 3 nb each) becomes the solution with the complex eigenvalue."""
+def solve_complex(dyn, scratch, q, h, x, z):
+    """Solve for x + i z (2, n each), in place, with the complex eigenvalue at q (n,)."""
+    way = scratch.change[0]
+    turned = scratch.change[1]
+    for c in range(3, x.shape[1]):
+        way[c] = x[0, c]
+        turned[c] = z[0, c]
+    speeds(dyn, q, way)
+    speeds(dyn, q, turned)
     size = x.shape[1] - 3
     a = scratch.full.value[0]
     side = scratch.full.side[3]
@@ -84,23 +99,26 @@ def solve_complex(scratch, h, x, z):
         total = 0.0
         other = 0.0
         for j in range(size):
-            total += a[i, j] * x[0, j + 3]
-            other += a[i, j] * z[0, j + 3]
+            total += a[i, j] * way[j + 3]
+            other += a[i, j] * turned[j + 3]
         side[i] = x[1, i + 3] + (part * total + turn * other) / square
         side[i + size] = z[1, i + 3] + (part * other - turn * total) / square
     solve_full(scratch.full, 3, 2 * size)
     for i in range(size):
         x[1, i + 3] = side[i]
         z[1, i + 3] = side[i + size]
-        total = x[0, i + 3] + side[i]
-        other = z[0, i + 3] + side[i + size]
+    rates(dyn, q, x[1], way)
+    rates(dyn, q, z[1], turned)
+    for i in range(size):
+        total = x[0, i + 3] + way[i + 3]
+        other = z[0, i + 3] + turned[i + 3]
         x[0, i + 3] = (part * total + turn * other) / square
         z[0, i + 3] = (part * other - turn * total) / square
 
 
 @inlined
 def norm(settings, y, after, x):
-    """Root mean square of x (2, 3 nb) in tolerances between two states."""
+    """Return the root mean square of x (2, n) in tolerances between two states."""
     total = 0.0
     for part in range(2):
         for c in range(3, y.shape[1]):
@@ -148,8 +166,8 @@ def find_stages(dyn, scratch, state, settings, h, tolerance):
                 k[F, part, c] = first - REAL / h * k[W, part, c]
                 k[F + 1, part, c] = second - (PART * k[W + 1, part, c] - TURN * k[W + 2, part, c]) / h
                 k[F + 2, part, c] = third - (PART * k[W + 2, part, c] + TURN * k[W + 1, part, c]) / h
-        solve_real(scratch, h, k[F])
-        solve_complex(scratch, h, k[F + 1], k[F + 2])
+        solve_real(dyn, scratch, y[0], h, k[F])
+        solve_complex(dyn, scratch, y[0], h, k[F + 1], k[F + 2])
         size = 0.0
         for i in range(3):
             size += norm(settings, y, y, k[F + i]) ** 2

@@ -1,1 +1,1 @@
-"""What the formulas of all groups share: points that bodies carry, branches, and what a group is solved for."""
+"""Shared parts of the formulas of all groups: points that bodies carry, branches, and cases of solution."""

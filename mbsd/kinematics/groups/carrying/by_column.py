@@ -2,7 +2,7 @@
 
 P' = r' + omega s_perp,   in the last column also - omega^2 s: the convective accelerations
 
-B: the rates of all bodies for each independent coordinate (mbsd/dynamics/embedding/arrays.py).
+B: the rates of all bodies for each independent coordinate (mbsd/dynamics/independent/arrays.py).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a group is solved for, and what its formulas in kinds/ need to know of it: one formula serves all three.
+"""Cases of solution of a group, and what its formulas in kinds/ need of each: one formula serves all three.
 
     PoseAlone      poses of many designs, whose drivers' angles are tabulated          no columns
     AlongLaws      a driven motion: rates in time, then accelerations                  1 column, and the last
@@ -56,7 +56,7 @@ class AlongLaws(NamedTuple):
 
 
 class PerCoordinate(NamedTuple):
-    """All bodies in independent coordinates (mbsd/dynamics/embedding/arrays.py)."""
+    """All bodies in independent coordinates (mbsd/dynamics/independent/arrays.py)."""
 
     group: Any
     number: Any

@@ -4,40 +4,30 @@
     correct   G du = -F,  G = J B;  B the rates of the bodies for unit rates of the unknowns
     then      G u' = f' - J v,   G u'' = gamma + f'' - J a      v, a of the block with its unknowns held
 
-It is reached by its machine address, and compiled when a plan with blocks is first solved.
+It is compiled when a plan with blocks is first solved.
 """
 
 from __future__ import annotations
 
-from numba import carray
-
-from mbsd.compiling.jit import COMPILED, at_address
+from mbsd.compiling.jit import lazy
 from mbsd.kinematics.groups.blocks import (
     BODIES,
     BODY,
     EQUATIONS,
-    LARGEST,
-    LAWS,
     MOTION,
-    MOVING,
-    NEAR,
     SIZE,
     STRIDE,
 )
 from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, SOLVED
-from mbsd.kinematics.groups.newton.call import PYTHON, SIGNATURE
 from mbsd.kinematics.groups.newton.fused import fused
 from mbsd.kinematics.groups.newton.guard import in_doubt
 from mbsd.kinematics.groups.newton.iteration import iterate
 from mbsd.kinematics.groups.newton.matrix import held, solve
-from mbsd.kinematics.groups.newton.records import Block, History, Motion, Work
+from mbsd.kinematics.groups.newton.records import Motion
 from mbsd.kinematics.groups.newton.rows import bend_of, move, read_unknowns
 from mbsd.kinematics.law_step import jumps
 from mbsd.kinematics.newton import ROUNDING
 from mbsd.kinematics.predictor import quintic_factors, quintic_value
-
-LONG = 1 << 40
-"""For arrays whose length does not matter."""
 
 
 @fused
@@ -51,8 +41,8 @@ def predict(k, block, history):
             q[k, c] = history.start[c] if k == 0 else quintic_value(factors, k, q, history.v, history.a, c)
 
 
-@fused
-def solve_arrays(k, block, history, work):
+@lazy(int)
+def solve_block(k, block, history, work):
     """Fill row k of q, v, a (T, 3 nb) for the bodies of one block; returns SOLVED, or why not."""
     n = block.head[EQUATIONS]
     rows = block.rows
@@ -87,60 +77,3 @@ def solve_arrays(k, block, history, work):
     solve(work.matrix, work.solution[1], n, unknown[2])
     move(block, unknown, True, motion, work.point)
     return in_doubt(k, block, history, h, per_metre, first, second) if k > 0 else SOLVED
-
-
-def _at_address(
-    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
-    unknown, jac, out, du, scratch,
-):  # fmt: skip
-    """The same with pointers."""
-    sizes = carray(head, (MOVING + 1,))
-    count = sizes[BODIES]
-    n = sizes[EQUATIONS]
-    bodies = sizes[MOVING]
-    known = k + 1
-    block = Block(
-        sizes,
-        carray(tree, (count, 5)),
-        carray(rows, (n, 9)),
-        carray(near, (sizes[NEAR],)),
-        carray(frame, (count, 7)),
-        carray(arms, (n, 9)),
-        carray(numbers, (LONG,)),
-    )
-    history = History(
-        carray(times, (known,)),
-        carray(drives, (known, sizes[LAWS], 3)),
-        carray(q, (known, 3 * bodies)),
-        carray(v, (known, 3 * bodies)),
-        carray(a, (known, 3 * bodies)),
-        carray(turn, (bodies, 2)),
-        carray(start, (3 * bodies,)),
-        carray(determinant, (known, 1)),
-    )
-    work = Work(
-        carray(unknown, (3, LARGEST)),
-        carray(jac, (LARGEST, 6)),
-        carray(out, (LARGEST, 10)),
-        carray(du, (2, LARGEST)),
-        carray(scratch, (LONG,)),
-        carray(point, (4, 8)),
-    )
-    return solve_arrays(k, block, history, work)
-
-
-def _from_arrays(
-    k, head, tree, rows, near, frame, arms, times, drives, q, v, a, turn, start, numbers, determinant, point,
-    unknown, jac, out, du, scratch,
-):  # fmt: skip
-    """The same with arrays, where nothing is compiled."""
-    block = Block(head, tree, rows, near, frame, arms, numbers)
-    history = History(times, drives, q, v, a, turn, start, determinant)
-    return solve_arrays(k, block, history, Work(unknown, jac, out, du, scratch, point))
-
-
-if COMPILED:
-    ADDRESS = at_address(SIGNATURE)(_at_address).address
-else:
-    PYTHON[:] = [_from_arrays]
-    ADDRESS = 0

@@ -77,7 +77,7 @@ def extent(q, last, body, per_metre):
 
 @fused
 def turns_too_far(head, tree, q, v, a, k, h, per_metre):
-    """Whether the rates at both ends do not explain the step of some body, or one that carries others winds on."""
+    """Return True if rates at both ends do not explain the step of a body, or one that carries others winds on."""
     for e in range(head[BODIES]):
         b = 3 * tree[e, BODY]
         for c in range(b, b + 3):

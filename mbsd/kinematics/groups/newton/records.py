@@ -1,4 +1,4 @@
-"""What the kernels of a block hand on: its tables, the motion that they fill, and their scratch."""
+"""Records that kernels of a block hand on: its tables, the motion that they fill, and their scratch."""
 
 from __future__ import annotations
 

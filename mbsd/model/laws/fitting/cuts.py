@@ -32,7 +32,7 @@ class Cut:
 
 
 def given_cuts(breaks: Sequence[float], first: float, last: float) -> list[Cut]:
-    """Those of the author's breaks that lie between ``first`` and ``last`` (s)."""
+    """Return the author's breaks between ``first`` and ``last`` (s)."""
     beside = BESIDE * (last - first) + 4 * finest(first, last) / CLOSE
     return [Cut(b - beside, b, b + beside) for b in sorted(set(breaks)) if first + 2 * beside < b < last - 2 * beside]
 

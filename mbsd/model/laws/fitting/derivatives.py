@@ -1,4 +1,4 @@
-"""Whether the derivatives that a law gives are those of f.
+"""Checks that the derivatives that a law gives are those of f.
 
 Between two times a and b, h = b - a apart,
 
@@ -67,7 +67,7 @@ def refuse_between(law: Rows, looks: np.ndarray, rows: np.ndarray) -> None:
 
 
 def stands_still(looks: np.ndarray, rows: np.ndarray) -> bool:
-    """Whether f is one number at ``looks`` (n,) and its derivatives rounding, as in the dwell after a rise."""
+    """Return True if f is one number at ``looks`` (n,) and its derivatives rounding, as in the dwell after a rise."""
     size, long = np.abs(rows).max(axis=0), looks[-1] - looks[0]
     moves = max(size[1] * long, size[2] * long**2)
     return bool(np.ptp(rows[:, 0]) <= ROUNDING * size[0] and moves <= STILL * size[0])
@@ -134,7 +134,7 @@ def _wrong(
     order: int,
     straight: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Whether the derivative of f or f' (order 0 or 1) is off on pieces; its slope there; what the law gives."""
+    """Return True if the derivative of f or f' (order 0 or 1) is off on pieces; its slope there; what the law gives."""
     width = at[:, 1] - at[:, 0]
     slope = (right[:, order] - left[:, order]) / width
     given = (left[:, order + 1] + 4 * middle[:, order + 1] + right[:, order + 1]) / 6  # Simpson's mean

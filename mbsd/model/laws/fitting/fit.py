@@ -114,7 +114,7 @@ def _points(leaves: Leaves, sampled: Sampled, load: bool) -> list[Cut]:
 
 
 def _shrinks(leaves: Leaves, core: int) -> bool:
-    """Whether pieces grow away from this one on both sides, as halving towards a point leaves them."""
+    """Return True if pieces grow away from this one on both sides, as halving towards a point leaves them."""
     mine = np.flatnonzero(leaves.stretch == leaves.stretch[core])
     beside = [k for k in (core - ASIDE, core + ASIDE) if mine[0] <= k <= mine[-1]]
     return all(leaves.width[k] >= GROWN * leaves.width[core] for k in beside)

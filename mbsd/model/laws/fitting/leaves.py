@@ -161,7 +161,7 @@ class Tree:
         return Leaves(*(part[order] for part in whole))
 
     def _look_for_scatter(self, depth: int, begin: np.ndarray, tail: np.ndarray) -> None:
-        """Whether all pieces of this level are off by as much as those of the level before: no halving cures that."""
+        """Return True if all pieces of this level are off as much as those of the last one: no halving cures that."""
         level = float(np.median(tail))
         small = (SMALL_LOAD if self.load else SMALL) * self.size
         if depth >= LEVEL and SCATTER * self.before < level < small and level > 10 * ROUNDING * self.size:

@@ -13,8 +13,8 @@ import psutil
 import pytest
 
 from studio.live.processes.trees import MARK
+from tests.studio.live.arm import ARM
 from tests.studio.live.served import WAIT, processes_of
-from tools.fixtures.arm import ARM
 
 BEGINS = """
 import ctypes

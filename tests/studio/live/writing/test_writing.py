@@ -9,8 +9,8 @@ import pytest
 
 from studio.live.writing import writer
 from studio.live.writing.replacing import replace
+from tests.studio.live.arm import ARM
 from tests.studio.live.served import Page, Served, served
-from tools.fixtures.arm import ARM
 
 FIELDS = "    length: float = 0.2  # of the crank\n    speed: float = tau\n"
 DECIDES = {

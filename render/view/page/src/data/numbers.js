@@ -1,6 +1,6 @@
 /**
  * Numbers with units as people write them: engineering prefixes, few digits, a true minus sign, no exponents. The rules
- * are those of shared/contract/quantity.py; the cases in tests/shared/quantities.json hold both to the same answers.
+ * are those of mbsd/base/quantity.py; the cases in tests/shared/quantities.json hold both to the same answers.
  */
 const PREFIXES = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T" };
 const DOWN = ["m", "m/s", "s"];

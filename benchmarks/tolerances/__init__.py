@@ -1,1 +1,0 @@
-"""Four-bars whose lengths stray: how far the rocker turns at most, a hundred thousand times."""

@@ -1,1 +1,0 @@
-"""Rows of J that come and go during a run: of contacts and of joints that stick."""

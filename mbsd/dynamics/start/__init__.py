@@ -1,1 +1,0 @@
-"""Start, rank and mobility of large mechanisms."""

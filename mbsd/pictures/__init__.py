@@ -1,1 +1,0 @@
-"""What a drawing gives its user: a picture, a page or a film that a notebook shows and a script keeps."""

@@ -1,0 +1,1 @@
+"""The page in Firefox and in Safari's browser: `make view-engines`. CONTRIBUTING.md says what it needs."""

@@ -1,0 +1,1 @@
+"""Studies of engines for docs/engines.md and out/engines/."""

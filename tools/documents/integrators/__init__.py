@@ -1,0 +1,1 @@
+"""Measured integrators for docs/integrators.md."""

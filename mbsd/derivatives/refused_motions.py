@@ -12,7 +12,7 @@ from mbsd.base.errors import ModelError
 from mbsd.derivatives.driven.tangents import fits_alone
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import Variant, Variants
-from mbsd.dynamics.prepare.mass_ratio import USUAL
+from mbsd.dynamics.prepare.inertia import USUAL
 from mbsd.dynamics.repeated import Course
 from mbsd.equations.constraints.relative import AT
 from mbsd.equations.relative.equation import WRAPS

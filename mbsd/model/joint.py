@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mbsd.base.arguments import adding
+from mbsd.base.names import Suggesting
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
@@ -165,7 +166,7 @@ def register(kind: JointKind) -> JointKind:
 
 
 @dataclass(frozen=True, eq=False)
-class Joint(WithFunctions):
+class Joint(Suggesting, WithFunctions):
     """A joint or driver between marker i (first body) and marker j (second body)."""
 
     kind: JointKind

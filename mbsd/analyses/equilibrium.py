@@ -22,6 +22,7 @@ from mbsd.arrays.packing import pack
 from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.start_state import held, started_at
 from mbsd.base.errors import ModelError, SingularPoseError
+from mbsd.base.names import Suggesting
 from mbsd.equations.assembly import tabulate
 from mbsd.kinematics.limits.closed_contacts import refuse_resting
 from mbsd.kinematics.pose.close import assemble
@@ -33,7 +34,7 @@ from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Sta
 
 
 @dataclass(frozen=True, eq=False)
-class Equilibrium:
+class Equilibrium(Suggesting):
     """A pose at rest where everything balances; views give single numbers."""
 
     solution: Solution

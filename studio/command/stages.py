@@ -1,4 +1,4 @@
-"""The stages of a machine as processes: which program each is, and what it takes."""
+"""Stages of a mechanism as processes: the program of each, and the options that it takes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ class Stage:
     """Whether it loads what parts and pictures need of the system."""
 
     def words(self, operand: str, said: Mapping[str, str], checked: bool = True) -> list[str]:
-        """Its command line; ``operand`` is empty where it takes none, and behind ``--`` where it is not ``checked``."""
+        """Return the command line.
+
+        ``operand`` is empty for a stage that takes none, and follows ``--`` unless it is ``checked``.
+        """
         python = os.environ.get(PYTHON) or sys.executable
         words = [python, "-m", self.room, *filter(None, (self.name, operand if checked else "")), *self.also]
         for option in self.options:

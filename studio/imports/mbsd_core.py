@@ -1,4 +1,6 @@
-"""Planar mechanisms of mbsd-core as JSON (``mechanism_to_json``, schema 1): bodies, pins, slides, motors, gravity; SI.
+"""Planar mechanisms of mbsd-core as JSON (``mechanism_to_json``, schema 1), in SI units.
+
+Read are bodies, pins, slides, motors and gravity.
 
 Such a file holds no pose. One that closes all joints is looked for as that program does by itself: by Newton's method
 from all bodies at the origin, else from random poses.
@@ -33,7 +35,10 @@ def is_mbsd_core(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """Return the mechanism of such a file. Raises UserError where it is damaged, spatial, or closes in no pose."""
+    """Return the mechanism of such a file.
+
+    Raises UserError if it is damaged, spatial, or closes in no pose.
+    """
     data = parsed_json(text)
     _refuse_others(data)
     return _read(data, name)
@@ -105,19 +110,19 @@ def _read(data: dict[str, Any], name: str) -> Sketch:
 
 
 def _body(number: Any, words: list[str]) -> int:
-    """The number of a body. Raises UserError where there is none."""
+    """Return the number of a body. Raises UserError if there is none."""
     if not isinstance(number, int) or not 0 <= number < len(words):
         raise UserError(f"there is no body {number}; they are numbered 0 to {len(words) - 1}")
     return number
 
 
 def _closed(count: int, pins: Any, slides: Any, turned: list[tuple[int, float]]) -> np.ndarray:
-    """(count, 3) poses in which everything closes. Raises UserError where none comes out."""
+    """Return (count, 3) poses in which everything closes. Raises UserError if none is found."""
     size = max([1e-9, *(abs(float(c)) for joint in (*pins, *slides) for key in joint if key.startswith("point")
                         for c in joint[key])])  # fmt: skip
 
     def gaps(q: np.ndarray) -> np.ndarray:
-        """Residuals (rows, k) of the coordinates (3 n, k)."""
+        """Return residuals (rows, k) of the coordinates (3 n, k)."""
         poses = np.concatenate([np.zeros((1, 3, q.shape[1])), q.reshape(-1, 3, q.shape[1])])
         out: list[Any] = []
         for pin in pins:
@@ -144,7 +149,10 @@ def _closed(count: int, pins: Any, slides: Any, turned: list[tuple[int, float]])
 
 
 def _newton(gaps: Any, q: np.ndarray, size: float) -> np.ndarray | None:
-    """A closed pose near q (3 n,) by steps of least length; derivatives by complex steps."""
+    """Return a closed pose near q (3 n,), by steps of least length; None without one.
+
+    Derivatives are taken by complex steps.
+    """
     for _ in range(PASSES):
         here = gaps(q[:, None])[:, 0]
         if np.abs(here).max(initial=0.0) < CLOSED * size:

@@ -1,4 +1,4 @@
-"""Pages and their pictures one mechanism after the other: what is fresh is left, what fails is reported at the end."""
+"""Pages and their pictures, one mechanism after the other: fresh ones are kept, failures listed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ WIDTH = 120
 
 
 def run(names: Sequence[str]) -> int:
-    """Make what is missing of pages and pictures; 1 if anything could not be made. A call goes on from the last one."""
+    """Write missing pages and pictures; 1 if anything failed. A call goes on from the last one."""
     browser = pictures.chromium()
     version = pictures.version_of(browser) if browser else ""
     current = _current(names)
@@ -48,7 +48,7 @@ def run(names: Sequence[str]) -> int:
 
 
 def tell_fresh(names: Sequence[str]) -> int:
-    """Print the names whose page has nothing to do; mechanism.py of each is run for its parameters."""
+    """Print the names whose page is current; mechanism.py of each is run for its parameters."""
     from mechanisms.stages.parts import stage as parts
     from mechanisms.stages.shot import stage as shot
     from mechanisms.stages.solve import stage as solve
@@ -66,7 +66,7 @@ def tell_fresh(names: Sequence[str]) -> int:
 
 
 def _current(names: Sequence[str]) -> set[str]:
-    """Asked in a process of its own, for mechanism.py may do anything there."""
+    """Return names whose page is current, from a process of its own, since mechanism.py runs there."""
     words = [sys.executable, "-m", "studio.pages", "--fresh", "--only", ",".join(names)]
     try:
         done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=SILENCE, check=False)
@@ -81,7 +81,7 @@ def _is_pictured(name: str, version: str) -> bool:
 
 
 def _made(name: str, is_current: bool, browser: str | None, version: str) -> str:
-    """What went wrong, or nothing."""
+    """Write a page and its picture; return what went wrong, or ""."""
     if not is_current:
         for module, step, *more in STEPS:
             words = [sys.executable, "-m", module, step, name, *more]

@@ -1,4 +1,4 @@
-"""The page of a machine as the site has it: that of ``make view`` with the designs that its sliders move through."""
+"""Page of a mechanism on the site: the page of ``mbsd view`` with designs for its sliders."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PATIENCE = 900.0
 
 
 def write_machine_page(name: str, target: Path) -> bool:
-    """Write the page unless it stands for the same inputs; whether it has sliders.
+    """Write the page unless it is current; return True if it has sliders.
 
     Raises UserError.
     """
@@ -46,7 +46,7 @@ def _script(table: bytes) -> str:
 
 
 def _designs(name: str) -> Path:
-    """The table of designs, made in a process of its own, for mechanism.py may do anything there.
+    """Return the table of designs, built in a process of its own, since mechanism.py runs there.
 
     Empty where no number can be moved; missing where the process failed, which is reported and tried again.
     """

@@ -18,7 +18,7 @@ from shared.stage.paths import Out
 
 
 def preset_words(preset: Preset) -> str:
-    """A preset as a word of the command line."""
+    """Return a preset as a word of the command line."""
     return ",".join(str(int(field) if isinstance(field, bool) else field) for field in astuple(preset))
 
 

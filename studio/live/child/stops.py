@@ -1,4 +1,4 @@
-"""Where a driven motion stops: the last moment at which the links close, with the motion up to there."""
+"""The stop of a driven motion: the last moment at which the links close, with the motion up to there."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ OPENS = (AssemblyError, BranchError, LimitError, SingularPoseError)
 
 @dataclass(frozen=True)
 class Stop:
-    """Where and why."""
+    """Place and reason of a stop."""
 
     time: float
     """s"""
@@ -33,7 +33,7 @@ class Stop:
 
 
 def until_it_stops(name: str, module: Any, m: Mechanism, solve: Callable[[], Solution]) -> tuple[Solution, Stop | None]:
-    """What ``solve`` returns, or where the links of a driven mechanism open on the way, the motion up to there.
+    """Return the solution of ``solve``, or the motion up to the moment when the links open.
 
     Raises UserError as ``solve`` does where there is no motion at all, or the author solves it himself.
     """

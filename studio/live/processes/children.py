@@ -26,7 +26,7 @@ PATIENCE = 3.0
 
 
 class Child:
-    """One process; it does one request after the other."""
+    """One process; it handles one request after the other."""
 
     def __init__(self, begin: Callable[[], Awaitable[Link]], heard: Heard, limit: float, most_bytes: int) -> None:
         self._begin, self._heard, self._limit, self._most_bytes = begin, heard, limit, most_bytes
@@ -42,7 +42,10 @@ class Child:
         """Done when the process and all that it has begun have ended."""
 
     def ask(self, number: int, request: dict[str, Any], payload: bytes = b"") -> None:
-        """Send one request; its answer, or what ended the child, is heard. Its time begins with the process."""
+        """Send one request; its answer, or the reason of the child's end, is reported.
+
+        Its time begins with the process.
+        """
         self.busy, self._waiting = True, number
         frame = asked({"id": number, **request}, payload)
         if self._link is None:
@@ -51,7 +54,7 @@ class Child:
             self._send(self._link, frame)
 
     def kill(self) -> None:
-        """End it now; nothing more is heard of it."""
+        """End the process now; nothing more is reported of it."""
         self.ended = True
         self._killed.set()
         self._stop_clock()
@@ -82,7 +85,7 @@ class Child:
             await self._awaited(link)
 
     async def _until_it_ends(self, link: Link) -> str:
-        """Wait for its end, by ``kill`` or while nobody wanted it to; returns a sentence on it."""
+        """Wait for the end of the process, by ``kill`` or by itself; return a sentence on it."""
         hearing = asyncio.ensure_future(self._hear(link))
         words = asyncio.ensure_future(link.words.readline())
         killed = asyncio.ensure_future(self._killed.wait())
@@ -127,7 +130,10 @@ class Child:
         )
 
     def _ending(self, words: bytes | None) -> str:
-        """A sentence on its end, from the keeper's last words; none if it runs on, empty if the keeper was killed."""
+        """Return a sentence on its end, from the keeper's last words.
+
+        It says so if the keeper was killed from outside.
+        """
         if words == b"":
             return (
                 "the process of mechanism.py was ended from outside, with the one that watches over it; save again, "
@@ -144,20 +150,20 @@ class Child:
         return f"mechanism.py ended the process it ran in ({how}); no file of a mechanism should do that"
 
     def _over(self, text: str) -> None:
-        """End it, if it has not been ended, and say why."""
+        """End the process, unless it has ended, and report the reason."""
         if self.ended:
             return
         self.kill()
         self._heard(self, {"kind": "error", "id": self._waiting, "text": text}, b"")
 
     def _let_go(self, link: Link) -> None:
-        """Have the keeper end all of it."""
+        """Ask the keeper to end the process and all below it."""
         with suppress(OSError, RuntimeError):
             if link.control.can_write_eof() and not link.control.is_closing():
                 link.control.write_eof()
 
     async def _awaited(self, link: Link) -> None:
-        """Wait for the keeper; one that does not end is ended with all that is below it."""
+        """Wait for the keeper; one that does not end is killed with all that is below it."""
         try:
             await asyncio.wait_for(link.words.read(), PATIENCE)
         except TimeoutError:

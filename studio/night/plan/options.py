@@ -1,4 +1,4 @@
-"""What a user asks of a night: which mechanisms, at which preset, and what is stated of the cost."""
+"""Options of a night: its mechanisms, its preset, and the cost to state."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from shared.stage.paths import all_mechanisms, known_name, unfit_names
 
 @dataclass(frozen=True)
 class Options:
-    """One night."""
+    """Options of one night."""
 
     names: tuple[str, ...]
     """Mechanisms and variants in the order in which their films are made."""
@@ -50,7 +50,10 @@ def options(
     aspect: str = "",
     sound: str = "",
 ) -> Options:
-    """Options from words as the Makefile has them. Raises UserError for unfit words and without mechanisms."""
+    """Return options from words of the Makefile.
+
+    Raises UserError for invalid words and without mechanisms.
+    """
     wanted = only_of(only)
     has_sound(sound)
     return Options(
@@ -68,12 +71,15 @@ def options(
 
 
 def only_of(words: str) -> tuple[str, ...]:
-    """The mechanisms of ``ONLY=four-bar,geneva_drive``, each once; raises UserError for one that is not there."""
+    """Return the mechanisms of ``ONLY=four-bar,geneva_drive``, each once.
+
+    Raises UserError for an unknown one.
+    """
     return tuple(dict.fromkeys(known_name(word) for word in re.split(r"[,\s]+", words) if word))
 
 
 def watts_of(words: str) -> float | None:
-    """The power of ``WATTS=85`` (W); raises UserError if it is no positive number."""
+    """Return the power of ``WATTS=85`` (W); raises UserError if it is no positive number."""
     if not words.strip():
         return None
     try:

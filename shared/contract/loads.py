@@ -1,4 +1,4 @@
-"""What acts in a motion, as data.json has it: forces, rigid contacts, and how they look."""
+"""Loads of a motion in data.json: forces, rigid contacts, and how they look."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ over a pin, a rope."""
 
 
 class Shape(Strict, kw_only=True):
-    """What a picture needs of a joint, force or contact and cannot know from poses: markers, wheels, curves.
+    """Data for a picture of a joint, force or contact beyond poses: markers, wheels, curves.
 
     Fields that do not concern the kind keep their defaults.
     """
@@ -49,7 +49,7 @@ class Shape(Strict, kw_only=True):
 
 
 class Acts(Strict, kw_only=True):
-    """Where a joint or contact acts that does not act at its second marker, and with which torque there."""
+    """Place and torque of a joint or contact that does not act at its second marker."""
 
     x: Series
     """m"""
@@ -59,7 +59,7 @@ class Acts(Strict, kw_only=True):
 
 
 class Action(Strict, kw_only=True):
-    """What a force does to one body over time: N along the world's axes, N m about the point (x, y) (m)."""
+    """Force on one body over time: N in the world's axes, N m about the point (x, y) (m)."""
 
     body: str
     x: Series
@@ -70,7 +70,7 @@ class Action(Strict, kw_only=True):
 
 
 class GasMotion(Strict, kw_only=True):
-    """The gas that makes a force on a piston, over time, and what each cycle of its crank gives."""
+    """Gas behind a force on a piston, over time, with the results of each cycle of its crank."""
 
     pressure: Series
     """Absolute (Pa)."""
@@ -91,7 +91,7 @@ class GasMotion(Strict, kw_only=True):
 
 
 class HydraulicMotion(Strict, kw_only=True):
-    """A hydraulic cylinder over time; chamber A is that of the whole piston."""
+    """Hydraulic cylinder over time; chamber A is that of the whole piston."""
 
     pressure_a: Series
     """Absolute (Pa)."""

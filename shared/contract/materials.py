@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Material:
-    """What a piece is made of. ``finish`` picks the film's shader; the numbers tune it."""
+    """Material of a piece. ``finish`` picks the film's shader; the numbers tune it."""
 
     density: float
     """kg/m^3."""

@@ -29,14 +29,14 @@ class Mass(Strict, kw_only=True, omit_defaults=True):
 
 
 class Held(Strict, kw_only=True):
-    """Where the film draws a spring that is fixed to a piece (m): height of its axis, radius of its coil."""
+    """Place where the film draws a spring fixed to a piece (m): height of its axis, radius of its coil."""
 
     z: float
     radius: Positive
 
 
 class Rolling(Strict, kw_only=True):
-    """A roller that turns about (x, y) of its body's frame (m) as it rolls without slip in a joint."""
+    """Roller about (x, y) of its body's frame (m) that rolls without slip in a joint."""
 
     joint: str
     x: float
@@ -68,7 +68,7 @@ class Piece(Strict, kw_only=True):
 
 
 class End(Strict, kw_only=True):
-    """A place (m) of a body of data.json, or of ground, in its frame: where a rod has its eye."""
+    """Eye of a rod: a place (m) of a body of data.json, or of ground, in its frame."""
 
     body: str
     x: float
@@ -88,7 +88,7 @@ class BodyParts(Strict, kw_only=True):
 
 
 class Parts(Strict, kw_only=True):
-    """parts.json: the solids of one mechanism."""
+    """Solids of one mechanism: parts.json."""
 
     schema: Literal["mbsd.parts"] = "mbsd.parts"
     schema_version: Literal[1] = 1

@@ -1,4 +1,4 @@
-"""Keeps what a builder made of the same numbers, since screws, washers and bushings occur many times."""
+"""Cache of built solids, since screws, washers and bushings of the same numbers occur many times."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import cadquery as cq
 
 
 def built_once[**P](builder: Callable[P, cq.Workplane]) -> Callable[P, cq.Workplane]:
-    """Build the solid of ``builder`` once for the same arguments; each call returns a Workplane of its own."""
+    """Return a builder that builds once for the same arguments; each call gives its own Workplane."""
 
     @cache
     def solid(*args: P.args, **kwargs: P.kwargs) -> cq.Shape:

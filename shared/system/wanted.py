@@ -21,7 +21,7 @@ LIBRARIES = {
 
 @dataclass(frozen=True)
 class Program:
-    """A program: the names under which it is looked for, and the packages that bring it."""
+    """Program with the names under which it is looked for, and the packages that bring it."""
 
     debian: str
     homebrew: str = ""

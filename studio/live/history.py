@@ -52,7 +52,8 @@ class History:
     def written(self, values: dict[str, float], before: dict[str, float]) -> None:
         """Rebase all states after the file took these values in place of ``before``.
 
-        Each state gives the same mechanism as before. So a number that was set to another value meanwhile stays, and undoing goes on to what the file held before.
+        Each state gives the same mechanism as before. So a number that was set to another value meanwhile stays, and
+        undoing goes on to the value that the file held before.
         """
 
         def beside(state: dict[str, float]) -> dict[str, float]:

@@ -11,7 +11,7 @@ from shared.stage.files import sources_hash
 from shared.stage.paths import ROOT, SOLVER
 
 PACKAGES = ("bpy", "distributed", "msgspec", "numpy", "pillow")
-"""Those whose version decides what comes out of a picture, or how machines speak with each other."""
+"""Packages whose version decides the pixels of a picture, or how machines talk to each other."""
 
 
 @functools.cache

@@ -27,7 +27,7 @@ UNIT_TOLERANCE = 1e-9
 _NO_SERIES = {"redundant", "events", "start_changes", "notes", "shape", "indicated_work", "order", "harmonics"}
 """Fields with lists that are not of time."""
 _UNFIT = re.compile(r"[/\\\x00-\x1f\x7f]")
-"""What the name of a body, joint, driver or point cannot hold, because files are named after it."""
+"""Characters that no name of a body, joint, driver or point may hold, as files are named after it."""
 
 
 def refuse_other_words(field: str, words: Mapping[str, str], expected: Mapping[str, str], path: Path | str) -> None:

@@ -1,4 +1,4 @@
-"""Materials by name: density for the physics, appearance for the film. parts.py names one for each piece.
+"""Materials by name: density for physics, appearance for the film. parts.py names one for each piece.
 
 Densities are handbook values (kg/m^3); colours are linear RGB. Inks of anodised aluminium are those of the solver's
 drawings (mbsd/drawing/inks.py).

@@ -115,7 +115,7 @@ class DriverMotion(Strict, kw_only=True):
     effort_unit: EffortUnit = "N m"
     look: Look = ""
     actions: list[Action] = []
-    """What it does to its first body and to its second, each where it acts; none in files of versions 1 and 2."""
+    """Actions on its first and on its second body, each where it acts; none in files of versions 1 and 2."""
     value: Series
     effort: Series
     power: Series
@@ -203,7 +203,7 @@ class Motion(Strict, kw_only=True):
     provenance: Provenance
     gravity: tuple[float, float]
     analysis: Literal["sweep", "simulation"] = "sweep"
-    """Whether drivers or forces move it."""
+    """Kind of the motion: moved by drivers or by forces."""
     period: Positive | None
     """Every pose repeats after this time (s), and ``time`` spans it exactly, both ends included; else null."""
     time: Series
@@ -222,7 +222,7 @@ class Motion(Strict, kw_only=True):
     events: list[EventMark] = []
     """In the order of their times."""
     start_changes: list[str] = []
-    """What was changed of the given start to make it consistent, a sentence each."""
+    """Changes of the given start that made it consistent, a sentence each."""
     notes: list[str] = []
     """Times left out because efforts do not exist there, a sentence each."""
     diagnostics: Diagnostics

@@ -60,11 +60,11 @@ class Piece(Strict, kw_only=True):
     holds: dict[str, Held] = {}
     """By the names of forces: springs, dampers and actuators that have an end here."""
     buy: str = ""
-    """What to buy, such as "circlip 8x0.8 DIN 471"; empty if the piece is to be made."""
+    """Name in a shop, such as "circlip 8x0.8 DIN 471"; empty if the piece is to be made."""
     rolls: Rolling | None = None
     """Null of what does not turn against its body."""
     dressing: bool = False
-    """Whether it shows what the machine works on, and is none of the mass of its body."""
+    """True if it shows what the machine works on, and is none of the mass of its body."""
 
 
 class End(Strict, kw_only=True):

@@ -54,7 +54,7 @@ class Camera(_Strict, frozen=True):
     orbit: Annotated[float, msgspec.Meta(ge=0, le=45)] = 0.0
     """Degrees the camera swings to each side, once a turn, so that the film still loops."""
     follow: bool | None = None
-    """Whether the camera goes along with the machine, damped. Null follows what goes away and does not come back: a
+    """True if the camera goes along with the machine, damped. Null follows what goes away and does not come back: a
     car, a walker, a projectile."""
 
 
@@ -71,7 +71,7 @@ class Trail(_Strict, frozen=True):
     z: float | None = None
     """Height (m); null is just above the body that carries the point."""
     ink: bool = False
-    """Whether it lies on something bright, such as paper: it is then as deep as ink in every look, and never shines."""
+    """True if it lies on something bright, such as paper: it is then as deep as ink in every look, and never shines."""
 
 
 class Label(_Strict, frozen=True):
@@ -98,7 +98,7 @@ class Title(_Strict, frozen=True):
 
 
 Source = Literal["impacts", "knocks", "mesh", "gas", "motors", "friction", "springs"]
-"""What makes sound: blows, pins that change sides in their bores, teeth, combustion, drivers, what rubs, springs."""
+"""Sources of sound: blows, pins that change sides in their bores, teeth, combustion, drivers, what rubs, springs."""
 
 
 class Sound(_Strict, frozen=True):
@@ -120,10 +120,10 @@ class Story(_Strict, frozen=True):
     shots: Annotated[tuple[str, ...], msgspec.Meta(min_length=1, max_length=12)] | None = None
     """Names of :data:`STORY_SHOTS` in the order of the film; null is all of them, as far as the motion has them."""
     event: str | None = None
-    """What time stops for: words of a moment, "rocker turns back", or a joint, driver or point at its peak; null is
+    """Moment at which time stops: words of a moment, "rocker turns back", or a joint, driver or point at its peak; null is
     the first that the motion has of impacts, dead points, peaks."""
     caption: Annotated[str, msgspec.Meta(min_length=1, max_length=200)] | None = None
-    """What is written there instead of the words of the report."""
+    """Text there in place of the words of the report."""
     joint: str | None = None
     """Joint of the macro; null is a joint of the event, or the one that lies on top."""
     curves: Annotated[tuple[str, ...], msgspec.Meta(max_length=3)] | None = None
@@ -164,7 +164,7 @@ class Section(_Strict, frozen=True):
     """Bodies, or pieces as "body/piece", that are cut; () is all of them from the front alone, and from other sides
     what stands still. What moves is cut as it stands at the start."""
     fixed: bool = False
-    """Whether planes stay where they are while bodies move through them, so that each moment has a cut of its own: all
+    """True if planes stay where they are while bodies move through them, so that each moment has a cut of its own: all
     bodies are cut then, or those of ``only``, and parts are those of their reach over the whole motion."""
 
 
@@ -197,7 +197,7 @@ class Shot(_Strict, frozen=True):
     """null trails every traced point; () trails none."""
     labels: tuple[Label, ...] = ()
     show: tuple[Quantity, ...] = ()
-    """What arrows show: velocities and accelerations of traced points and centres of mass, forces (springs, loads,
+    """Quantities of arrows: velocities and accelerations of traced points and centres of mass, forces (springs, loads,
     contacts by penalty, weights), reactions (of joints and rigid contacts)."""
     title: Title | None = None
     """null writes nothing but the rate of a motion without a period that is not in real time."""
@@ -210,9 +210,9 @@ class Shot(_Strict, frozen=True):
     """Bodies, or pieces as "body/piece", that are seen through as tinted glass is, such as covers."""
     sound: Sound = Sound()
     poster: Unit = 0.3
-    """Which moment the poster shows, as a part of the motion."""
+    """Moment of the poster, as a fraction of the motion."""
     story: Story = Story()
-    """What STORY=explain shows other than by itself."""
+    """Changes of the story (``STORY=explain``)."""
 
 
 def read_shot(path: Path) -> Shot:

@@ -44,7 +44,7 @@ class Stroke(_Strict, kw_only=True, omit_defaults=True):
     dash: list[Positive]
     """Lengths of strokes and gaps in line widths; empty: solid."""
     sign: Literal["centre of mass"] | None = None
-    """What the stroke marks, where pictures show it on demand."""
+    """Mark that pictures show on demand."""
 
 
 class Name(_Strict, kw_only=True):

@@ -33,7 +33,7 @@ class Bodies(dict[str, list[Solid]]):
     def __init__(self, *args: Mapping[str, list[Solid]], **bodies: list[Solid]) -> None:
         super().__init__(*args, **bodies)
         self.along = False
-        """Whether heights of the solids are the places z of the model, so that what masses have along z counts."""
+        """True if heights of the solids are the places z of the model, so that what masses have along z counts."""
         self.stand: Callable[[Mapping[str, list[Solid]]], list[Solid]] | None = None
         """Makes the solids of ground with a stand, once all solids are there; None where ground has what it needs."""
         self.mount: tuple[str, tuple[float, float, float]] | None = None

@@ -1,4 +1,4 @@
-"""Rounded limbs: solids along x through elliptical sections, with domed ends, and the balls of joints (mm)."""
+"""Rounded limbs: solids along x through elliptical sections, domed ends, and balls of joints (mm)."""
 
 from __future__ import annotations
 

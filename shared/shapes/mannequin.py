@@ -1,4 +1,4 @@
-"""A jointed mannequin, seen from its side: limbs with balls that turn in sockets, a torso, a head (mm).
+"""Jointed mannequin in side view: limbs with balls in sockets, a torso, a head (mm).
 
 Each function gives the solids of a limb in its own frame: the origin in the proximal joint, x towards the distal one.
 The front of thigh and shank is where y is positive; the front of the torso where y is negative. Sizes across are those

@@ -31,7 +31,7 @@ class Pivot:
     groove_width: float = 0.9
     fit: Fit = Fit()
     washer_buy: str = ""
-    """What to buy for a washer and for a circlip; empty if these sizes are no standard's."""
+    """Names of a washer and of a circlip in shops; empty if no standard has these sizes."""
     clip_buy: str = ""
 
     @property

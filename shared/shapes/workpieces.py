@@ -70,7 +70,7 @@ CUP = (
 )  # fmt: skip
 """Profile of a cup of radius 1: it is open at its upper end."""
 TEA = ((0.0, 0.265), (0.495, 0.265), (0.745, 0.72, 0.84, 1.1), (0.0, 1.1))
-"""What is in it."""
+"""Profile of the tea in the cup."""
 
 
 def _box(box: Box, low: float, high: float) -> cq.Workplane:

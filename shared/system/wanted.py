@@ -31,7 +31,7 @@ class Program:
     variable: str = ""
     """Environment variable with a path that takes precedence."""
     for_tests: bool = True
-    """Whether `make test` needs it."""
+    """True if `make test` needs it."""
 
 
 PROGRAMS = {

@@ -27,13 +27,13 @@ class Option:
     default: str = ""
     choices: tuple[str, ...] = ()
     kept: bool = False
-    """Whether mbsd.toml may say it."""
+    """True if mbsd.toml may give it."""
     flag: bool = False
-    """Whether it is said without a value."""
+    """True if it is given without a value."""
     valued: bool = False
-    """Whether a stage takes this flag as ``=1``."""
+    """True if a stage takes this flag as ``=1``."""
     joint: str = ""
-    """What joins several values, each given by the option once more; empty if it takes one."""
+    """Text between several values, each from another use of the option; empty if it takes one."""
 
     @property
     def variable(self) -> str:

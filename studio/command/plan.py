@@ -28,7 +28,7 @@ MADE = {
     "shot": "the description of the film, checked: out/<name>/shot.json",
     "usd": "the scene as OpenUSD: out/<name>/export/",
 }
-"""What a stage or command makes."""
+"""Result of a stage or command, in words."""
 CONDITIONS = {
     "--if-needed=motion": "only if mechanism.py leaves a mass to them",
     "--if-needed=model": "of full size, only if the motion needs their masses",

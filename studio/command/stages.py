@@ -23,9 +23,9 @@ class Stage:
     also: tuple[str, ...] = ()
     """Words that are always said."""
     starts_stages: bool = False
-    """Whether it starts stages itself, by the interpreter that it is given."""
+    """True if it starts stages itself, by the interpreter that it is given."""
     solids: bool = False
-    """Whether it loads what parts and pictures need of the system."""
+    """True if it loads the system libraries of parts and pictures."""
 
     def words(self, operand: str, said: Mapping[str, str], checked: bool = True) -> list[str]:
         """Return the command line.
@@ -52,7 +52,7 @@ SHOT = Stage("mechanisms", "shot")
 PRINT = Stage("mechanisms", "print", ("bed", "gap"), solids=True)
 PARTS_FOR_MODEL = Stage("mechanisms", "parts", also=("--if-needed=model",))
 PARTS_FOR_PROOF = Stage("mechanisms", "parts", also=("--if-needed=proof",))
-"""Those of the machine, where a model at a scale or its proof needs their masses."""
+"""Parts of full size, if a scaled model or its proof needs their masses."""
 MODEL = Stage("mechanisms", "parts", ("scale", "anyway"), solids=True)
 MODEL_CLEARANCE = Stage("mechanisms", "clearance", ("scale",), solids=True)
 MODEL_PRINT = Stage("mechanisms", "print", (*PRINT.options, "scale"), solids=True)

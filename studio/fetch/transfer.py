@@ -20,7 +20,7 @@ from shared.system import missing
 SSH = "ssh -o ConnectTimeout=20 -o ServerAliveInterval=20 -o ServerAliveCountMax=6"
 """A machine that is gone is given up after two minutes. $RSYNC_RSH, if set, takes its place."""
 KINDS = ("*.mp4", "*.srt")
-"""What is brought."""
+"""Patterns of the files that are fetched."""
 FILE = re.compile(r"^file (\d+) (\d+) (.*)$")
 
 

@@ -12,7 +12,7 @@ from studio.imports.sketch import GROUND, Gears, Link, Load, Motor, Pin, Place, 
 NEAR = 1e-9
 """Places closer than this part of the mechanism's size are one."""
 ROUNDING = 1e-13
-"""What is less than this part of the numbers that a place is computed from is zero."""
+"""Fraction of the numbers behind a place, below which a result counts as zero."""
 
 
 def mechanism_py(sketch: Sketch, name: str) -> str:

@@ -28,12 +28,12 @@ class Board:
         self.payload: bytes | None = None
         """Payload of the last good motion."""
         self.solid: bytes | None = None
-        """What the page says of the parts of the last good motion of the file, with the numbers of that motion."""
+        """Payload of the parts of the last good motion of the file, with the numbers of that motion."""
         self.error: str | None = None
         self._stop: dict[str, Any] | None = None
         self._lines: list[str] = []
         self._again = False
-        """Whether the same files are being solved once more."""
+        """True if the same files are being solved once more."""
 
     def tell(self, header: dict[str, Any], payload: bytes = b"", replaces: bool = False) -> None:
         """Send all pages a message."""

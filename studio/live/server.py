@@ -1,4 +1,4 @@
-"""The server of the live page: Starlette on loopback, a websocket for each page, one session for all of them."""
+"""Server of the live page: Starlette on loopback, a websocket for each page, one session for all."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ class Session:
         self._wished: dict[str, Any] | None = None
         self._parts_ready = self._solid_wanted = self._words_wanted = False
         self._wordless = False
-        """Whether the process of these files ended while it described its numbers: it is not asked again."""
+        """True if the process of these files ended while it described its numbers: it is not asked again."""
         self._opened: dict[str, float] = {}
         """Numbers with which the files are being solved."""
         self._began = 0.0

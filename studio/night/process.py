@@ -36,7 +36,7 @@ class Process:
         self.error = ""
         """The last line that begins with ``error:``."""
         self.hung = False
-        """Whether it was killed because it gave no sign of life."""
+        """True if it was killed because it gave no sign of life."""
         self._rest = b""
         self._popen = subprocess.Popen(
             list(command),

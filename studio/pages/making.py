@@ -13,7 +13,7 @@ from shared.stage.paths import ROOT, Out
 from shared.system import missing
 
 STEPS = (("mechanisms", "parts", "--or-none"), ("mechanisms", "solve"), ("mechanisms", "shot"), ("render", "view"))
-"""What make view-<name> runs."""
+"""Stages that ``mbsd view <name>`` runs."""
 SILENCE = 300.0
 """Seconds that all mechanisms may take to be asked whether they have anything to do."""
 WIDTH = 120

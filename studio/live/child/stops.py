@@ -29,7 +29,7 @@ class Stop:
     drivers: dict[str, float]
     """Their values there: rad, or m."""
     text: str
-    """What the solver says."""
+    """Message of the solver."""
 
 
 def until_it_stops(name: str, module: Any, m: Mechanism, solve: Callable[[], Solution]) -> tuple[Solution, Stop | None]:

@@ -1,4 +1,4 @@
-"""Children of the server: processes with the author's code, forked from a warm one, each with a deadline.
+"""Children of the server: processes with the author's code, forked from a warm one, with deadlines.
 
 A child that loops is ended when its time is up, one that crashes is named by what ended it. The server waits for none
 of them: it asks without waiting, and a task hears the answers.

@@ -15,7 +15,7 @@ from studio.live.processes.trees import end_marked
 from studio.live.processes.warm_process import Failed, Link, WarmProcess
 
 WARM = "studio.live.child.warm"
-"""What the warm process loads; its ``serve`` runs in each process."""
+"""Module that the warm process loads; its ``serve`` runs in each process."""
 MEMORY_PART = 0.5
 """Fraction of the machine's memory that a child may take with all that it begins."""
 TRIES = 3

@@ -22,11 +22,11 @@ class Options:
     """Mechanisms and variants in the order in which their films are made."""
     preset: Preset = PRESETS["preview"]
     show: str = ""
-    """What SHOW asks for in place of the shots."""
+    """Value of SHOW, which replaces the choice of the shots."""
     spectra: str = ""
-    """What SPECTRA asks for; spectra of what a mechanism has not are left out."""
+    """Value of SPECTRA; spectra of things that a mechanism lacks are left out."""
     sound: str = ""
-    """What SOUND asks for: on, off, or nothing, which is on."""
+    """Value of SOUND: on, off, or empty, which is on."""
     watts: float | None = None
     """Power of the machine while it renders (W)."""
     python: str = sys.executable
@@ -34,9 +34,9 @@ class Options:
     unfit: tuple[str, ...] = ()
     """Folders with a mechanism.py whose name is none."""
     whole: bool = False
-    """Whether these are all mechanisms, rather than those of ONLY."""
+    """True if these are all mechanisms, rather than those of ONLY."""
     anyway: bool = False
-    """Whether it begins on a disk that is surely too small."""
+    """True if it begins on a disk that is surely too small."""
 
 
 def options(

@@ -16,7 +16,7 @@ class Step:
     needs: tuple[str, ...] = ()
     """Steps of the same mechanism that have to be done before."""
     renders: bool = False
-    """Whether it takes the one place of the render; the others run beside it."""
+    """True if it takes the one place of the render; the others run beside it."""
     rank: int = 0
     """Among the steps that could run beside the render the lowest rank comes first."""
 

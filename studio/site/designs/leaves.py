@@ -13,7 +13,7 @@ ROWS = 91
 DENSE = 32
 """Points of a curve of the skeleton that has more."""
 LEFT_OUT = ("marks", "clearance", "solid", "trails", "gravity", "mechanism", "title", "frame", "couple")
-"""What does not change with a design, or is not shown of one between the stored ones."""
+"""Fields that do not change with a design, or are not shown between the stored ones."""
 
 Path = tuple[str | int, ...]
 

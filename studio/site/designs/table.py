@@ -22,7 +22,7 @@ SHAPES = ((3, 5), (3, 4), (2, 7), (2, 5), (1, 9))
 LARGEST = 1_600_000
 """Bytes of the table, compressed."""
 PLACES, EFFORTS = 4e-3, 0.06
-"""What a design between the nodes may be wrong by: parts of the machine's size, and of its largest effort."""
+"""Largest errors between the nodes, relative to the machine's size and to its largest effort."""
 CHECKS = 6
 """Designs between the nodes that are solved and compared."""
 NARROWINGS = 4

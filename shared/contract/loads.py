@@ -114,7 +114,7 @@ class HydraulicMotion(Strict, kw_only=True):
 
 
 class ForceMotion(Strict, kw_only=True):
-    """One force over time: spring, damper, motor, load, contact by penalty, friction, a function of the user."""
+    """One force over time: spring, damper, motor, load, contact by penalty, friction, user's function."""
 
     kind: str
     actions: list[Action]

@@ -120,7 +120,7 @@ class Story(_Strict, frozen=True):
     shots: Annotated[tuple[str, ...], msgspec.Meta(min_length=1, max_length=12)] | None = None
     """Names of :data:`STORY_SHOTS` in the order of the film; null is all of them, as far as the motion has them."""
     event: str | None = None
-    """Moment at which time stops: words of a moment, "rocker turns back", or a joint, driver or point at its peak; null is
+    """Moment of a stop: words of a moment, "rocker turns back", or a joint, driver or point at its peak; null is
     the first that the motion has of impacts, dead points, peaks."""
     caption: Annotated[str, msgspec.Meta(min_length=1, max_length=200)] | None = None
     """Text there in place of the words of the report."""

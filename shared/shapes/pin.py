@@ -27,7 +27,7 @@ class Head:
 
 @dataclass(frozen=True)
 class Groove:
-    """A groove for a circlip (mm): from z to z + width above the pin's lower end, ``depth`` into the radius."""
+    """Groove for a circlip (mm): z to z + width above the pin's lower end, ``depth`` into the radius."""
 
     z: float
     width: float

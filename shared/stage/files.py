@@ -26,7 +26,9 @@ OF_THE_DISK = (*FULL, *FORBIDDEN, *IN_THE_WAY, errno.EIO, errno.ENODEV, errno.ES
 
 @contextmanager
 def whole_file(path: Path, put: Callable[[Path, Path], object] = os.replace) -> Iterator[Path]:
-    """Yield a temporary path with the target's suffix; on success it replaces ``path``, else it is removed.
+    """Yield a temporary path with the target's suffix; it replaces ``path`` on success.
+
+    Else it is removed.
 
     ``put`` brings the temporary file to its place; what it leaves under the temporary name is removed.
 

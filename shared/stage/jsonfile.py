@@ -55,7 +55,7 @@ def read[T: msgspec.Struct](path: Path, kind: type[T]) -> T:
 
 
 def decode[T: msgspec.Struct](content: bytes, kind: type[T], path: Path | str) -> T:
-    """Decode and check bytes that came from ``path``; raises UserError naming the file, the field and the remedy."""
+    """Decode and check bytes from ``path``; raises UserError naming the file, the field and the remedy."""
     try:
         content.decode()  # msgspec looks at the bytes of a text only where it is asked for
         header = msgspec.json.decode(content, type=_Header)

@@ -76,7 +76,7 @@ class Once(argparse.Action):
 
 
 def parser(make: bool = False) -> argparse.ArgumentParser:
-    """Return the whole command line; with ``make`` the defaults are the variables that the Makefile exports."""
+    """Return the command line; with ``make`` the defaults are the variables that the Makefile exports."""
     top = Parser(
         "mbsd", description="Planar mechanisms: from one short file to physics, parts and film.", epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -39,7 +39,7 @@ CONDITIONS = {
 
 
 def plan_line(words: Sequence[str]) -> str:
-    """Return one line on a stage: its command as a user types it, and what it makes, in which file, and when.
+    """Return one line on a stage: its command as a user types it, and its result, with file and condition.
 
     ``words`` is the command line of the stage, ``python -m ROOM NAME ...``.
     """

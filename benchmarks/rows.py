@@ -30,7 +30,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Bar:
-    """What a problem asks for: at least ``wanted`` (at most, if ``most``), and what was reached against which peer."""
+    """Bar of a problem: at least ``wanted`` (at most, if ``most``), and what was reached against which peer."""
 
     problem: str
     wanted: float

@@ -2,5 +2,5 @@
 
 from shared.stage.paths import ROOT
 
-FRAME_SOURCES = tuple(ROOT / "render" / f"{name}.py" for name in ("shaking", "crank", "magnitudes"))
+FRAME_SOURCES = (ROOT / "render" / "magnitudes.py",)
 """Sources of what the frame feels: stages that show it are made again when these change."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from render.presets import ASPECTS, PRESETS, WIDE, Preset, preset_named
-from render.shown import show_words
+from render.presets import ASPECTS, PRESETS, WIDE, Preset, preset_named, show_words
 from shared.stage.console import run_cli
 from shared.stage.paths import mechanism_name
 
@@ -29,51 +28,11 @@ COMMANDS = {
 
 def main() -> int | None:
     """Read the command line and run one stage; each is imported only when it is asked for."""
-    parser = argparse.ArgumentParser(prog="python -m render", description="From data.json, parts and shot to pictures.")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for command, text in COMMANDS.items():
-        sub = commands.add_parser(command, aliases=[command.replace("-", "_")] if "-" in command else [], help=text)
-        sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
-        if command not in ("plots", "compare", "report", "glb", "usd", "view"):
-            sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
-            sub.add_argument("--aspect", default="", help=f"{', '.join(ASPECTS)}; {WIDE} if not given")
-        if command not in ("plots", "compare", "report", "glb", "usd", "view", "exploded"):
-            sub.add_argument(
-                "--show", default="", help="what to show: reactions,velocities,title; as shot.py says if not given"
-            )
-        if command == "film":
-            sub.add_argument("--story", default="loop", help="loop, explain or compare; loop if not given")
-            sub.add_argument("--loop", type=float, default=0.0, help="seconds of a film that ends as it begins")
-        if command in ("plots", "compare"):
-            sub.add_argument(
-                "--spectra", default="", help="'shaking force', joints, ...; as mechanism.py says if not given"
-            )
-            sub.add_argument(
-                "--every",
-                action="store_true",
-                help="one of every mechanism: leave out spectra of what this one has not",
-            )
-        if command == "usd":
-            sub.add_argument("--format", default="usd", help="usd (.usdc) or usdz; usd if not given")
-        if command == "film":
-            sub.add_argument("--sound", default="", help="on or off; on if not given")
-        if command == "still":
-            sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
-    commands.add_parser("gallery", help="docs/gallery/: every mechanism that has a poster")
-    reel = commands.add_parser("showreel", help="the finished films, each under its title, as one")
-    reel.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
-    reel.add_argument("--aspect", default="", help=f"of the films: {', '.join(ASPECTS)}; {WIDE} if not given")
-    reel.add_argument("--only", default="", help="these films in this order: four_bar,geneva_drive; all if not given")
-    reel.add_argument(
-        "--show", default="", help="the films that show this; those that show what shot.py says if not given"
-    )
-    reel.add_argument("--story", default="explain", help="explain: stories where they are made; loop: none")
-    commands.add_parser("overview", help="a table of the runs that its standard input tells of")
-    arguments = parser.parse_args()
+    arguments = _parser().parse_args()
     if arguments.command == "overview":
-        from render.report import overview
+        from render.report import facts
 
-        return overview.run()
+        return facts.run()
     if arguments.command == "gallery":
         from render import gallery
 
@@ -112,6 +71,50 @@ def main() -> int | None:
     return _picture(command, name, preset_named(arguments.preset, arguments.aspect), arguments)
 
 
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m render", description="From data.json, parts and shot to pictures.")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for command, text in COMMANDS.items():
+        sub = commands.add_parser(command, aliases=[command.replace("-", "_")] if "-" in command else [], help=text)
+        sub.add_argument("name", help="mechanism; four-bar and four_bar are one")
+        if command not in ("plots", "compare", "report", "glb", "usd", "view"):
+            sub.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
+            sub.add_argument("--aspect", default="", help=f"{', '.join(ASPECTS)}; {WIDE} if not given")
+        if command not in ("plots", "compare", "report", "glb", "usd", "view", "exploded"):
+            sub.add_argument(
+                "--show",
+                default="",
+                help="arrows and title: reactions,velocities,title; as in shot.py if not given",
+            )
+        if command == "film":
+            sub.add_argument("--story", default="loop", help="loop, explain or compare; loop if not given")
+            sub.add_argument("--loop", type=float, default=0.0, help="seconds of a film that ends as it begins")
+        if command in ("plots", "compare"):
+            sub.add_argument(
+                "--spectra", default="", help="'shaking force', joints, ...; as mechanism.py says if not given"
+            )
+            sub.add_argument(
+                "--every",
+                action="store_true",
+                help="one of every mechanism: leave out spectra of quantities that this one lacks",
+            )
+        if command == "usd":
+            sub.add_argument("--format", default="usd", help="usd (.usdc) or usdz; usd if not given")
+        if command == "film":
+            sub.add_argument("--sound", default="", help="on or off; on if not given")
+        if command == "still":
+            sub.add_argument("--frame", type=int, default=0, help="number of the frame, from 0")
+    commands.add_parser("gallery", help="docs/gallery/: every mechanism that has a poster")
+    reel = commands.add_parser("showreel", help="the finished films, each under its title, as one")
+    reel.add_argument("--preset", default="preview", help=f"{', '.join(PRESETS)}; preview if not given")
+    reel.add_argument("--aspect", default="", help=f"of the films: {', '.join(ASPECTS)}; {WIDE} if not given")
+    reel.add_argument("--only", default="", help="these films in this order: four_bar,geneva_drive; all if not given")
+    reel.add_argument("--show", default="", help="quantities that the films show; as shot.py says if not given")
+    reel.add_argument("--story", default="explain", help="explain: stories where they are made; loop: none")
+    commands.add_parser("overview", help="a table of the runs that standard input lists")
+    return parser
+
+
 def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namespace) -> None:
     if command == "exploded":
         from render.frames.story import apart
@@ -134,9 +137,9 @@ def _picture(command: str, name: str, preset: Preset, arguments: argparse.Namesp
 
         still.still(name, preset, arguments.frame, show)
     elif command == "contact":
-        from render.frames import contact
+        from render.frames import still
 
-        contact.run(name, preset, show)
+        still.run(name, preset, show)
     elif command == "poster":
         from render.frames import still
 

@@ -78,7 +78,7 @@ def clearance_files(out: Out) -> list[Path]:
 
 
 def current_clearance(out: Out, parts: Parts | None, stage: str) -> Clearance | None:
-    """The clearance of a machine with parts, unless motion or parts have changed since, which ``stage`` reports.
+    """Return the clearance of a machine with parts, unless motion or parts have changed since, which ``stage`` reports.
 
     Raises UserError for a file that cannot be read.
     """

@@ -24,7 +24,7 @@ def font_of(size: float, bold: bool = False) -> Any:
 
 
 def width_of(words: str, bold: bool = False) -> float:
-    """Width of a line of words, in heights of its letters."""
+    """Return the width of a line of words, in heights of its letters."""
     return _measuring(bold).getlength(words) / MEASURED
 
 

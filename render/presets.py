@@ -1,4 +1,4 @@
-"""Presets say how large a picture is, in which aspect, and with how many samples. The active one is always printed."""
+"""Presets of pictures: size, quality and aspect; and the arrows that a picture shows."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ from dataclasses import dataclass, replace
 
 from shared.stage.errors import UserError
 from shared.stage.face import said
+from shared.stage.suggestions import did_you_mean
+
+# Presets say how large a picture is, in which aspect, and with how many samples. The active one is always printed.
 
 
 @dataclass(frozen=True)
@@ -37,18 +40,18 @@ class Preset:
 
     @property
     def suffix(self) -> str:
-        """What names of files get where the picture is not 16:9: ``-9x16``, else empty."""
+        """Suffix of file names if the picture is not 16:9: ``-9x16``, else empty."""
         _, dash, shape = self.name.partition("-")
         return dash + shape
 
     @property
-    def asked(self) -> str:
+    def request(self) -> str:
         """The words that ask for it: ``PRESET=preview ASPECT=9:16`` of make, ``--preset preview`` of mbsd."""
         base, _, shape = self.name.partition("-")
         return said(preset=base, **({"aspect": shape.replace("x", ":")} if shape else {}))
 
     def framed(self, aspect: str) -> Preset:
-        """The same in another aspect of :data:`ASPECTS`: its shorter side keeps its pixels.
+        """Return the same in another aspect of :data:`ASPECTS`: its shorter side keeps its pixels.
 
         Raises UserError with the known aspects.
         """
@@ -82,7 +85,8 @@ ASPECT = 16 / 9
 
 
 def preset_named(name: str, aspect: str = "") -> Preset:
-    """The preset of that name, in an aspect of :data:`ASPECTS`, which the name may bring along: ``preview-9x16``.
+    """Return the preset of that name, in an aspect of :data:`ASPECTS`, which the name may bring along:
+    ``preview-9x16``.
 
     Raises UserError with the known names.
     """
@@ -93,8 +97,52 @@ def preset_named(name: str, aspect: str = "") -> Preset:
 
 
 def _sides(aspect: str) -> tuple[int, int]:
-    """Width and height of an aspect that is written as ``9:16`` or ``9x16``."""
+    """Return the width and height of an aspect that is written as ``9:16`` or ``9x16``."""
     try:
         return ASPECTS[aspect.strip().replace("x", ":")]
     except KeyError:
         raise UserError(f"there is no ASPECT={aspect}; there is: {', '.join(ASPECTS)}") from None
+
+
+# Reads SHOW=...: the arrows and the title that a picture gets instead of those of the shot.
+
+WORDS = ("velocities", "accelerations", "forces", "reactions", "title")
+"""In the order in which they stand in the names of files."""
+
+
+MEANT = {
+    "forces": ("weights", "springs", "dampers", "contacts", "loads", "torques", "frictions"),
+    "reactions": ("constraints", "joints", "contacts"),
+    "velocities": ("speeds",),
+    "title": ("titles", "names", "rates", "numbers"),
+}
+"""Other words of a request, by what they show."""
+
+
+def show_words(text: str) -> str:
+    """Return the words of SHOW in their order, each once, commas between them; raises UserError for one that is
+    none.
+    """
+    asked = [word.strip() for word in text.split(",") if word.strip()]
+    for word in asked:
+        if word not in WORDS:
+            raise UserError(
+                f"SHOW={text!r}: {word!r} is no quantity; choose of: {', '.join(WORDS)}; commas join several, and "
+                f"without SHOW a picture has what the shot says{_meant(word)}"
+            )
+    return ",".join(word for word in WORDS if word in asked)
+
+
+def _meant(word: str) -> str:
+    """Return the word that shows what is asked for, or one that is alike."""
+    meant = [shows for shows, others in MEANT.items() if word.lower().removesuffix("s") + "s" in others]
+    if meant:
+        return f"; these are among {' and '.join(meant)}"
+    return did_you_mean(word, WORDS)
+
+
+def has_sound(text: str) -> bool:
+    """Return True if SOUND asks for a film with sound, as an empty one does; raises UserError for another word."""
+    if text not in ("", "on", "off"):
+        raise UserError(f"SOUND={text!r} is neither on nor off; without SOUND a film has its sound")
+    return text != "off"

@@ -30,7 +30,7 @@ def _device() -> str:
         lacking = missing_libraries()
         remedy = sentence(lacking) if lacking else "rm -r .venv and make install bring it anew"
         raise UserError(f"Blender cannot be loaded: {error}; {remedy}") from error
-    from render.blender.worker.device import choose
+    from render.blender.worker.settings import choose
 
     return f"{choose(bpy.context.scene)}, Blender {bpy.app.version_string}"
 

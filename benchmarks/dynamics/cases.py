@@ -21,7 +21,7 @@ class Case:
     errors: Callable[[Record], dict[str, float]]
 
     def met(self, errors: dict[str, float]) -> bool:
-        """Whether all errors are within their limits."""
+        """Return True if all errors are within their limits."""
         return all(errors[name] <= limit for name, limit in self.limits.items())
 
     def excess(self, errors: dict[str, float]) -> float:

@@ -60,7 +60,7 @@ class Pinned:
 
 @dataclass(frozen=True)
 class Record:
-    """What a code found: times (n,), poses and velocities of all centres of mass (n, bodies, 3)."""
+    """Motion computed by a code: times (n,), poses and velocities of all centres of mass (n, bodies, 3)."""
 
     times: np.ndarray
     poses: np.ndarray

@@ -1,1 +1,1 @@
-"""What a film costs: beside the renderer alone, a plain script, a run that was killed, one core, nothing to do."""
+"""Cost of a film beside the renderer alone, a plain script, a run that was killed, one core, nothing to do."""

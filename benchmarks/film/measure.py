@@ -69,7 +69,7 @@ def plain(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
 
 
 def resumed(name: str, preset: Preset, frames: int, folder: Path) -> Bar:
-    """What is left after a SIGKILL at half of the pictures, against the whole."""
+    """Time the rest of a run after a SIGKILL at half of the pictures, against the whole."""
     cut = Film(name, preset, frames, folder)
     seconds, _ = _whole(name, preset, frames)
     cut.run_half()

@@ -21,12 +21,12 @@ def main() -> None:
     import bpy
 
     from render.blender.job import Job
-    from render.blender.scene.built_scene import build
-    from render.blender.worker import device
+    from render.blender.scene.built_scene import build_scene as build
+    from render.blender.worker import settings
 
     job = msgspec.json.decode(Path(sys.argv[1]).read_bytes(), type=Job)
     built = build(job)
-    device.choose(built.scene)
+    settings.choose(built.scene)
     scene: Any = built.scene
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = (
         job.width,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -20,10 +20,9 @@ from mbsd.dynamics.measures.kinds import Measure
 from mbsd.dynamics.simulate import output_times, refuse_bad_steps
 from mbsd.kinematics.sweep import sweep, sweep_times
 from mbsd.model.mechanism import Model
-from mbsd.numbers.names import Number, number_named, with_values
+from mbsd.numbers.names import Number, number_named, twin_of, with_values
 from mbsd.results.solution import Solution
 from mbsd.synthesis.built import built, refuse_build
-from mbsd.synthesis.ends import refuse_ends
 from mbsd.synthesis.wishes import Bounds, Condition, function_of_values
 
 Span = tuple[float | None, int, Any]
@@ -167,3 +166,24 @@ class Moves:
             f"{self.m.name}: optimise: {label} is {shown(what)}; give a measure of mbsd.measures, a function "
             "of a solution, or the name of a number that varies"
         )
+
+
+def refuse_ends(m: Model, bounds: Bounds, numbers: Sequence[Number]) -> None:
+    """Raise ModelError for two names of one number, and for bounds at whose ends the mechanism refuses the number."""
+    for k, number in enumerate(numbers):
+        for end in (bounds.low[k], bounds.high[k]):
+            try:
+                other = with_values(m, [number], [float(end)])
+            except ModelError as error:
+                said = str(error).removeprefix(f"{m.name}: ")
+                raise ModelError(
+                    f"{m.name}: optimise: '{number.name}' may be from {bounds.low[k]:g} to {bounds.high[k]:g}, and the "
+                    f"mechanism refuses {end:g}: {said}"
+                ) from error
+            if end == number.value:
+                continue
+            twin = twin_of(number, other, float(end), numbers[k + 1 :])
+            if twin is not None:
+                raise ModelError(
+                    f"{m.name}: optimise: '{number.name}' and '{twin.name}' are the same number; leave out one of them"
+                )

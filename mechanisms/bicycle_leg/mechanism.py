@@ -1,4 +1,4 @@
-"""What a leg gives to the pedal: the muscles of hip and knee drive thigh and shank, and they drive the crank.
+"""A leg that pedals: the muscles of hip and knee drive thigh and shank, and these drive the crank.
 The bicycle keeps 60 turns a minute, and what it takes from the leg is the torque at the crank: large where the leg
 stretches, and below zero while the muscles rest and the leg has to be lifted.
 """

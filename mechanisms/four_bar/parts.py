@@ -1,4 +1,6 @@
-"""What the four-bar's parts have of their own: the rocker is above the coupler, which is marked B and C at its pins."""
+"""Parts of the four-bar, automatic but for two wishes: the rocker is above the coupler, which is marked B and C at its
+pins.
+"""
 
 from __future__ import annotations
 

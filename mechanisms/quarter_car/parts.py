@@ -42,7 +42,7 @@ def parts(p: Params) -> Bodies:
 
 
 def _driver(low: float, high: float) -> cq.Workplane:
-    """What one sees of him through the window."""
+    """Return the driver as far as one sees him through the window."""
     window = cq.Workplane().polyline([(mm(x), mm(y)) for x, y in WINDOW]).close().extrude(high - low)
     inside = window.edges("|Z").fillet(ROUND).translate((0, 0, low))
     head, shoulders = (extruded(circle(*(mm(value) for value in part)), high - low, low) for part in DRIVER)

@@ -53,7 +53,7 @@ def parts(p: Params) -> Bodies:
 
 
 def _along(shape: cq.Workplane, x: float, z: float) -> cq.Workplane:
-    """What stands along z, along x from (x, 0, z)."""
+    """Return a shape that stands along z turned along x, from (x, 0, z)."""
     return shape.rotate((0, 0, 0), (0, 1, 0), 90.0).translate((x, 0.0, z))
 
 

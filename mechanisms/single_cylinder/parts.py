@@ -6,7 +6,7 @@ from shared.shapes.bodies import Bodies
 
 
 def parts(p: Params) -> Bodies:
-    """What :func:`automatic` makes, and the flywheel."""
+    """Return the bodies of :func:`automatic`, and the flywheel."""
     made = automatic(build(p))
     made.flywheel("crank")
     return made.solids()

@@ -70,8 +70,8 @@ def tell_current(names: Iterable[str]) -> None:
 
 def is_current(name: str) -> bool:
     """Return True if motion, parts and shot that are there follow from the author's files as they are."""
+    from mechanisms.stages import shot as shot
     from mechanisms.stages.parts import stage as parts
-    from mechanisms.stages.shot import stage as shot
     from mechanisms.stages.solve import stage as solve
 
     out = Out(name)
@@ -86,7 +86,7 @@ def is_current(name: str) -> bool:
 
 
 def _all_names() -> list[str]:
-    """Mechanisms, each followed by its variants."""
+    """Return mechanisms, each followed by its variants."""
     names = []
     for name in mechanism_names():
         names += [name, *(f"{name}-{variant}" for variant in variants_in(mechanism_file(name)))]
@@ -95,7 +95,7 @@ def _all_names() -> list[str]:
 
 def _entry(name: str) -> dict[str, object]:
     out = Out(name)
-    made = _made(out)
+    made = _products(out)
     return {
         "name": name,
         "title": _title(name),
@@ -107,7 +107,7 @@ def _entry(name: str) -> dict[str, object]:
 
 
 def _title(name: str) -> str:
-    """First line of mechanism.py's docstring, read without running the file."""
+    """Return the first line of mechanism.py's docstring, read without running the file."""
     try:
         docstring = ast.get_docstring(ast.parse(mechanism_file(name).read_bytes()))
     except SyntaxError as error:
@@ -126,13 +126,13 @@ def _freedom(name: str) -> str:
 def _made_words(name: str) -> str:
     """``made: parts, motion; of an older version: poster``."""
     out = Out(name)
-    made = _made(out)
+    made = _products(out)
     older = _older(out, made)
     words = f"made: {', '.join(word for word in made if word not in older) or 'nothing yet'}"
     return f"{words}; of an older version: {', '.join(older)}" if older else words
 
 
-def _made(out: Out) -> dict[str, Path]:
+def _products(out: Out) -> dict[str, Path]:
     """Return what is there of a mechanism, with the file that stands for it."""
     files = {
         "parts": out.parts,
@@ -153,7 +153,7 @@ def _made(out: Out) -> dict[str, Path]:
 
 def _older(out: Out, made: Mapping[str, Path]) -> list[str]:
     """Return the results that are older than what they were made of."""
-    from mechanisms.stages.shot import stage as shot
+    from mechanisms.stages import shot as shot
     from mechanisms.stages.solve import stage as solve
 
     stale = set() if _is_fresh(solve.is_fresh, out) else {out.motion, out.skeleton, out.animation("", ".mp4")}

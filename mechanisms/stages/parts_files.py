@@ -29,7 +29,7 @@ _TIMESTAMP = re.compile(rb"(FILE_NAME\('[^']*',)'[^']*'")
 
 
 def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
-    """Binary STL of a ``cadquery.Solid``, in mm, its triangles in an order of their own.
+    """Return binary STL of a ``cadquery.Solid``, in mm, its triangles in an order of their own.
 
     ``tolerance`` (mm) is :data:`TOLERANCE` by default. The mesh gets finer until it is closed and holds the solid's
     volume to :data:`VOLUME_GOAL`; the finest need only be closed. Where none is, the last that was tried is written.
@@ -46,7 +46,7 @@ def stl_bytes(solid: Any, tolerance: float | None = None) -> bytes:
 
 
 def binary_stl(corners: np.ndarray) -> bytes:
-    """Binary STL of triangles, (n, 3, 3) as float32, in their order."""
+    """Return binary STL of triangles, (n, 3, 3) as float32, in their order."""
     triangles = np.zeros(len(corners), dtype=TRIANGLE)
     triangles["corners"] = corners
     triangles["normal"] = _normals(corners.astype(float))
@@ -76,12 +76,12 @@ def step_bytes(solid: Any, name: str) -> bytes:
 
 
 def read_triangles(stl: bytes) -> np.ndarray:
-    """(n, 3, 3): the corners (mm) of the triangles of a binary STL, as float64."""
+    """Return (n, 3, 3): the corners (mm) of the triangles of a binary STL, as float64."""
     return np.frombuffer(stl, dtype=TRIANGLE, offset=HEAD)["corners"].astype(float)
 
 
 def read_mesh(stl: bytes) -> Any:
-    """The ``trimesh.Trimesh`` of a binary STL, equal corners joined."""
+    """Return the ``trimesh.Trimesh`` of a binary STL, equal corners joined."""
     import io
 
     import trimesh

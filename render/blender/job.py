@@ -1,4 +1,4 @@
-"""What the parent asks of the Blender process, one JSON file; and what it answers, one JSON line at a time."""
+"""The job of a Blender process: what the parent asks, one JSON file; and the answers, one JSON line at a time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Picture(msgspec.Struct, kw_only=True, frozen=True):
     folder: str
     key: str
     name: str
-    """What messages call it: ``frame 12``."""
+    """Name in messages: ``frame 12``."""
 
 
 class Job(msgspec.Struct, kw_only=True, frozen=True):
@@ -39,7 +39,7 @@ class Job(msgspec.Struct, kw_only=True, frozen=True):
 
     @property
     def drawn(self) -> bool:
-        """Whether the look draws lines instead of light."""
+        """True if the look draws lines instead of light."""
         return self.scene.studio.look.drawing is not None and self.flat is None
 
 
@@ -48,7 +48,7 @@ class Answer(msgspec.Struct, kw_only=True, frozen=True, omit_defaults=True):
 
     device: str = ""
     doing: str = ""
-    """What it is about to do, after the word "Blender"."""
+    """Next step, in words after "Blender"."""
     path: str = ""
     """A file that is whole."""
     key: str = ""

@@ -1,1 +1,1 @@
-"""What is in the picture at each moment: bodies, camera, clock. Without Blender."""
+"""The content of the picture at each moment: bodies, camera, clock. Without Blender."""

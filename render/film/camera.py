@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.clock import Clock
-from render.film.composing.filling import View, held, outermost
+from render.film.composing import View, held, outermost
 from render.film.framing import CameraPose, Empty, axes, depth_of_field, half_field, in_studio, in_world, lifted, orbit
 from render.film.scene import Point
 from render.presets import ASPECT
@@ -22,13 +22,13 @@ LYING, STANDING = (-16.0, 42.0), (-24.0, 10.0)
 """Azimuth and elevation (degrees) where a shot says none: of what lies on a desk, and, at eye level, of what stands."""
 TALL = 9 / 16
 LYING_TALL, STANDING_TALL = (-6.0, 15.0), (-12.0, 2.0)
-"""What is added to these in a picture that is 9:16, and in part in those between: from higher up what lies is taller,
+"""Degrees added to these in a picture that is 9:16, and in part in those between: from higher up what lies is taller,
 and from farther aside what stands is narrower."""
 
 
 def angles(shot: Camera, mount: Mount, aspect: float = ASPECT) -> tuple[float, float]:
-    """Azimuth and elevation (rad) of the camera; what the shot does not say follows from how the machine stands, and
-    from the ``aspect`` of the picture.
+    """Return the azimuth and elevation (rad) of the camera; what the shot does not say follows from how the machine
+    stands, and from the ``aspect`` of the picture.
     """
     lies = mount.kind == "desk"
     part = min(max((ASPECT - aspect) / (ASPECT - TALL), 0.0), 1.0)
@@ -40,7 +40,7 @@ def angles(shot: Camera, mount: Mount, aspect: float = ASPECT) -> tuple[float, f
 
 
 class Subject:
-    """What a film is about, in points (n, 3) of the world (m)."""
+    """The subject of a film, in points (n, 3) of the world (m)."""
 
     def __init__(self, machine: Array, around: Array, drawn: Array, sharp: Array, way: Array | None = None) -> None:
         """All of the ``machine`` over the motion, what stands ``around`` it, arrows that are ``drawn`` about it, and
@@ -72,7 +72,9 @@ class FilmCamera:
         self.way = None if subject.way is None else in_studio(subject.way, self.up)
 
     def pose(self, frame: int) -> CameraPose:
-        """At a frame: it stands still, swings about the middle once in each showing of the motion, or goes along."""
+        """Return the pose at a frame: it stands still, swings about the middle once in each showing of the motion, or
+        goes along.
+        """
         swing = math.radians(self.shot.orbit)
         azimuth = self.azimuth + swing * math.sin(math.tau * self.clock.phase(frame))
         at = np.zeros(3) if self.way is None else self.way[frame % self.clock.frames]
@@ -81,8 +83,8 @@ class FilmCamera:
         return self._posed(azimuth, at)
 
     def looks(self) -> list[CameraPose]:
-        """Some of its poses that say where things are in the picture, of what is followed as it stands at the start of
-        its way.
+        """Return some of its poses that say where things are in the picture, of what is followed as it stands at the
+        start of its way.
         """
         if not self.shot.orbit:
             return [self._still]
@@ -90,7 +92,9 @@ class FilmCamera:
         return [self._posed(self.azimuth + swing * part, np.zeros(3)) for part in np.linspace(-1, 1, 5)]
 
     def _moved(self, by: Array) -> CameraPose:
-        """As it stands, moved by (3,) m of the studio: what is in focus is measured once, not a frame."""
+        """Return the camera as it stands, moved by (3,) m of the studio: what is in focus is measured once, not a
+        frame.
+        """
         if not by.any():
             return self._still
         position = np.array(self._still.position) + in_world(by, self.up)
@@ -102,7 +106,9 @@ class FilmCamera:
         return self._posed(self.azimuth, np.zeros(3))
 
     def _posed(self, azimuth: float, by: Array) -> CameraPose:
-        """At an azimuth (rad), where the shot has its own or swings about the middle, moved by (3,) m."""
+        """Return the camera at an azimuth (rad), where the shot has its own or swings about the middle, moved by (3,)
+        m.
+        """
         elevation = self.elevation
         position, target, distance = self._stand
         if self.shot.orbit:
@@ -144,6 +150,6 @@ class FilmCamera:
 
 
 def point(vector: Array) -> Point:
-    """Three floats of a vector (3,)."""
+    """Return three floats of a vector (3,)."""
     x, y, z = (float(value) for value in vector)
     return x, y, z

@@ -10,28 +10,24 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.arrows import writing
-from render.film.arrows.arcs import Arcs
-from render.film.arrows.arrows import Arrows
-from render.film.arrows.torques import rounding, torques
-from render.film.arrows.vectors import vectors
+from render.film import arrows, composing
+from render.film.arrows import Arcs, Arrows
 from render.film.camera import FilmCamera, Subject, angles, point
 from render.film.clock import Clock
-from render.film.composing import following, layout, room
-from render.film.composing.layout import Box
+from render.film.composing import Box
 from render.film.framing import CameraPose, axes, in_studio
-from render.film.heights import Heights, trail_heights
+from render.film.heights import Heights, SweptSpace, trail_heights
 from render.film.pieces import piece_specs, refuse_mismatch
 from render.film.poses import Poses
-from render.film.rolling.rollers import Rollers
+from render.film.rollers import Rollers
 from render.film.scene import Card, LabelSpec, LegendRow, LineSpec, Plane, Scene, State, StudioSpec, Writing
 from render.film.section import between_bodies
-from render.film.swept import SweptSpace
 from render.film.tubes.belts import Belt, belts
 from render.film.tubes.spirals import Spiral, spirals
 from render.film.tubes.stretched import Stretched, stretched
 from render.film.tubes.trails import Trails, trails_of
-from render.looks.chosen import look_of
+from render.film.vectors import rounding, torques, vectors
+from render.looks import look_of
 from render.presets import ASPECT
 from shared.contract import Held, Motion, Parts
 from shared.contract.shot import Names, Shot, refuse_unknown
@@ -60,7 +56,7 @@ class Film:
         self.trails = Trails(self.poses, self.clock, shot, paths, self.size)
         self.rollers = Rollers(self.poses, parts)
         self.heights = Heights(self.poses, parts, self.space, self.clock)
-        self.number = writing.number(motion, shot)
+        self.number = arrows.number(motion, shot)
         self.look = look_of(shot, motion, parts.mount, self.space.size)
 
     @cached_property
@@ -86,7 +82,7 @@ class Film:
 
     @cached_property
     def studio(self) -> StudioSpec:
-        """What stands around the machine."""
+        """Studio around the machine."""
         up, azimuth = self.parts.mount.up, angles(self.shot.camera, self.parts.mount, self.aspect)[0]
         middle, points = in_studio(self.space.middle, up), in_studio(self.space.all, up)
         right, away = np.abs((points - middle) @ axes(azimuth, 0.0)[::2].T).max(axis=0)
@@ -102,8 +98,8 @@ class Film:
         )
 
     def state(self, frame: float, camera: CameraPose | None = None) -> State:
-        """What frame ``frame`` shows; frames before 0 or after the first showing go on with the loop. With a ``camera``
-        of its own, it may lie between two frames.
+        """Return the state that frame ``frame`` shows; frames before 0 or after the first showing go on with the loop.
+        With a ``camera`` of its own, it may lie between two frames.
         """
         at = self.clock.moment(frame)
         arrows, arcs = self._arrow_heights
@@ -113,17 +109,19 @@ class Film:
             labels=[self.heights.words(label, at) for label in self.shot.labels],
             camera=camera or self.camera(int(frame)),
             tubes=[path for arrow in self.drawn for path in arrow.paths(self.poses, at)],
-            arrows=self.arrows.at(at.time, arrows),
-            arcs=self.arcs.at(at.time, arcs),
+            arrows=self.arrows.ends_at(at.time, arrows),
+            arcs=self.arcs.sweeps_at(at.time, arcs),
             number=self.number(at.time),
         )
 
     def camera(self, frame: int) -> CameraPose:
-        """Where the camera is at a frame."""
+        """Return where the camera is at a frame."""
         return self._camera.pose(frame)
 
     def way(self, frame: float) -> Array:
-        """How far (3,) what is followed has come at a frame, in the world (m); nothing where the camera stands."""
+        """Return how far (3,) what is followed has come at a frame, in the world (m); nothing where the camera
+        stands.
+        """
         if self._way is None:
             return np.zeros(3)
         at = np.arange(len(self._way))
@@ -131,7 +129,7 @@ class Film:
 
     @property
     def subject(self) -> Subject:
-        """What is filmed, in points; those of what is followed are as seen from its way."""
+        """Subject of the film, in points; a subject that is followed has them as seen from its path."""
         return self._subject
 
     @cached_property
@@ -208,9 +206,9 @@ class Film:
         if follow is False:
             return None
         places = self._places
-        if not places.shape[1] or not (follow or following.travels(places, clock.repeats)):
+        if not places.shape[1] or not (follow or composing.travels(places, clock.repeats)):
             return None
-        return following.way(places, clock.frames, self.shot.fps, clock.repeats)
+        return composing.way(places, clock.frames, self.shot.fps, clock.repeats)
 
     @cached_property
     def _times(self) -> Array:
@@ -252,7 +250,7 @@ class Film:
 
     @cached_property
     def _subject(self) -> Subject:
-        """What is filmed."""
+        """Return the subject of the film."""
         if self._way is None:
             machine = np.concatenate([self.space.machine, self._tubes])
             return Subject(machine, self.space.around, self._drawn, machine)
@@ -264,21 +262,21 @@ class Film:
         """It is as near as what is written over the picture lets it be."""
         camera = self._camera_with(0.0, 0.0)
         above = 0.0
-        for above in room.PARTS:
+        for above in composing.PARTS:
             camera = self._camera_with(above, 0.0)
-            if room.is_free(camera.looks(), self._seen_moving, self._over, self.aspect):
+            if composing.is_free(camera.looks(), self._seen_moving, self._over, self.aspect):
                 break
-        for below in room.PARTS:
+        for below in composing.PARTS:
             camera = self._camera_with(above, below)
             if self._has_a_free_corner(camera):
                 break
         return camera
 
     def _has_a_free_corner(self, camera: FilmCamera) -> bool:
-        """Whether nothing moves where the legend may be."""
-        places = self._places_of(layout.cards(self._legend(camera), self._words, self.aspect)).values()
+        """Return True if nothing moves where the legend may be."""
+        places = self._places_of(composing.cards(self._legend(camera), self._words, self.aspect)).values()
         looks, moving = camera.looks(), self._seen_moving
-        return not places or any(room.is_free(looks, moving, place, self.aspect) for place in places)
+        return not places or any(composing.is_free(looks, moving, place, self.aspect) for place in places)
 
     def _camera_with(self, above: float, below: float) -> FilmCamera:
         empty = above, below
@@ -288,24 +286,24 @@ class Film:
         return [*self.arrows.legend(camera.width), *self.arcs.legend()]
 
     def _places_of(self, cards: Mapping[str, Card]) -> dict[str, Box]:
-        return {corner: layout.in_picture(layout.around(card), self.aspect) for corner, card in cards.items()}
+        return {corner: composing.in_picture(composing.around(card), self.aspect) for corner, card in cards.items()}
 
     @cached_property
     def _lines(self) -> list[LineSpec]:
-        """What is written at the upper left."""
+        """Return the lines of text at the upper left."""
         numbers = sorted({self.number(float(time)) for time in self._times} - {""})
-        title, rate = writing.title(self.motion, self.shot), writing.rate(self.clock, self.shot)
-        return layout.lines(title, numbers, rate, self.aspect)
+        title, rate = arrows.title(self.motion, self.shot), arrows.rate(self.clock, self.shot)
+        return composing.lines(title, numbers, rate, self.aspect)
 
     @cached_property
     def _words(self) -> Box:
-        return layout.box_of(self._lines)
+        return composing.box_of(self._lines)
 
     @cached_property
     def _over(self) -> Box:
         """The place of the words, in parts of the picture, of which what moves keeps clear; a rate alone is small."""
-        box = self._words if self.shot.title is not None else layout.box_of([])
-        return layout.in_picture(box, self.aspect)
+        box = self._words if self.shot.title is not None else composing.box_of([])
+        return composing.in_picture(box, self.aspect)
 
     @cached_property
     def _seen_moving(self) -> Array:
@@ -315,10 +313,10 @@ class Film:
 
     def _writing(self) -> Writing:
         legend = self._legend(self._camera)
-        cards = layout.cards(legend, self._words, self.aspect)
+        cards = composing.cards(legend, self._words, self.aspect)
         card, looks = None, self._camera.looks()
         if cards:
             standing = self.space.standing if self._way is None else np.zeros((0, 3))
             places = self._places_of(cards)
-            card = cards[room.emptiest(looks, self._seen_moving, standing, places, self.aspect)]
+            card = cards[composing.emptiest(looks, self._seen_moving, standing, places, self.aspect)]
         return Writing(lines=self._lines, legend=legend, card=card, on_bright=not self.look.dark)

@@ -43,7 +43,7 @@ class CameraPose(msgspec.Struct, kw_only=True, frozen=True):
 
 
 def studio(up: Vector) -> Array:
-    """Rows right, away and up (3, 3) of the studio in the world: ``up`` is z, or a unit vector in the plane."""
+    """Return rows right, away and up (3, 3) of the studio in the world: ``up`` is z, or a unit vector in the plane."""
     if up == Z:
         return np.eye(3)
     x, y, _ = up
@@ -51,24 +51,24 @@ def studio(up: Vector) -> Array:
 
 
 def axes(azimuth: float, elevation: float, up: Vector = Z) -> Array:
-    """Rows right, up, forward (3, 3) of a camera at these angles (rad)."""
+    """Return rows right, up, forward (3, 3) of a camera at these angles (rad)."""
     ca, sa, ce, se = math.cos(azimuth), math.sin(azimuth), math.cos(elevation), math.sin(elevation)
     rows = np.array([[ca, sa, 0.0], [-sa * se, ca * se, ce], [-sa * ce, ca * ce, -se]])
     return rows if up == Z else rows @ studio(up)
 
 
 def in_studio(points: Array, up: Vector) -> Array:
-    """Points (..., 3) of the world in the axes of the studio."""
+    """Return points (..., 3) of the world in the axes of the studio."""
     return points if up == Z else points @ studio(up).T
 
 
 def in_world(points: Array, up: Vector) -> Array:
-    """Points (..., 3) of the studio in the axes of the world."""
+    """Return points (..., 3) of the studio in the axes of the world."""
     return points if up == Z else points @ studio(up)
 
 
 def half_field(lens: float, aspect: float = ASPECT) -> tuple[float, float]:
-    """Tangents of half the field of view, across and up."""
+    """Return tangents of half the field of view, across and up."""
     half = SENSOR / (2 * lens)
     return half * min(1.0, aspect), half / max(1.0, aspect)
 
@@ -83,7 +83,8 @@ def fit(
     aspect: float = ASPECT,
     aside: float = 0.0,
 ) -> tuple[Array, float]:
-    """The closest camera position (3,) that has all ``points`` (n, 3) in the frame, and its distance to their middle.
+    """Return the closest camera position (3,) that has all ``points`` (n, 3) in the frame, and its distance to their
+    middle.
 
     ``empty`` are the parts of the frame's height that stay empty at its top and at its bottom beside the margin,
     ``aside`` is that of its width at its right.
@@ -114,7 +115,7 @@ def orbit(
     empty: Empty = (0.0, 0.0),
     aspect: float = ASPECT,
 ) -> float:
-    """The smallest distance to ``target`` from which a camera that turns about it keeps all points in the frame.
+    """Return the smallest distance to ``target`` from which a camera that turns about it keeps all points in the frame.
 
     ``empty`` are the parts of the frame's height that stay empty at its top and at its bottom beside the margin; the
     camera is to stand :func:`lifted` for them.
@@ -133,18 +134,23 @@ def orbit(
 
 
 def lifted(lens: float, margin: float, empty: Empty, aspect: float = ASPECT) -> float:
-    """How far a camera stands higher, across its sight and in distances to its target, for parts that stay empty."""
+    """Return how far a camera stands higher, across its sight and in distances to its target, for parts that stay
+    empty.
+    """
     above, below = (_cut(part, margin, lens, aspect) for part in empty)
     return above - below
 
 
 def _cut(part: float, margin: float, lens: float, aspect: float) -> float:
-    """Tangent of half of what a part of the frame's height takes; a third of what the margins leave is never taken."""
+    """Return the tangent of half of what a part of the frame's height takes; a third of what the margins leave is never
+    taken.
+    """
     return min(part, (1 - 2 * margin) / 3) * half_field(lens, aspect)[1]
 
 
 def depth_of_field(near: float, far: float, lens: float, blur: float) -> tuple[float, float]:
-    """Focus distance (m) and f-stop that blur ``near`` and ``far`` (m) alike, by ``blur`` pixels of a 1280 wide frame.
+    """Return the focus distance (m) and f-stop that blur ``near`` and ``far`` (m) alike, by ``blur`` pixels of a 1280
+    wide frame.
 
     Thin lens: a point at d is a disc of diameter F^2 |d - s| / (N d (s - F)) when focused at s.
     """
@@ -157,7 +163,7 @@ def depth_of_field(near: float, far: float, lens: float, blur: float) -> tuple[f
 
 
 def project(camera: CameraPose, points: Array, width: float, height: float) -> Array:
-    """Pixel coordinates (n, 2), right and down, of world points (n, 3)."""
+    """Return the pixel coordinates (n, 2), right and down, of world points (n, 3)."""
     u, v, w = (
         (np.atleast_2d(points) - np.array(camera.position)) @ axes(camera.azimuth, camera.elevation, camera.up).T
     ).T
@@ -166,8 +172,8 @@ def project(camera: CameraPose, points: Array, width: float, height: float) -> A
 
 
 def _between(across: Array, depth: Array, below: float, above: float) -> tuple[float, float]:
-    """Where the camera must be across, and how far forward it may go, to hold both sides, at these tangents; the former
-    for a camera at no depth.
+    """Return where the camera must be across, and how far forward it may go, to hold both sides, at these tangents; the
+    former for a camera at no depth.
     """
     low, high = float((across + below * depth).min()), float((across - above * depth).max())
     return (low + high) / 2, (low - high) / (below + above)

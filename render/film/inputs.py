@@ -1,4 +1,4 @@
-"""What the picture stages read, and the key that tells whether any of it changed. Cheap to import."""
+"""Inputs of the picture stages, and the key that changes with them. Cheap to import."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def refuse_missing(out: Out) -> None:
 
 
 def stage_key(out: Out, preset: Preset, *more: object) -> str:
-    """Key of a picture stage: the three files, our sources, the preset, Blender's version."""
+    """Return the key of a picture stage: the three files, our sources, the preset, Blender's version."""
     refuse_missing(out)
     return key_of(out.motion, out.parts, out.shot, picture_sources(), preset, blender_version(), *more)
 
 
 def named(path: Path, show: str, suffix: str = "") -> Path:
-    """The path of a picture that shows what SHOW asks for: ``poster-forces-title.png`` beside ``poster.png``.
+    """Return the path of a picture that shows what SHOW asks for: ``poster-forces-title.png`` beside ``poster.png``.
 
     ``suffix`` is that of a preset in another aspect, where the path has not the preset's name: ``poster-9x16.png``.
     """
@@ -47,7 +47,7 @@ def named(path: Path, show: str, suffix: str = "") -> Path:
 
 
 def encoder_version() -> str:
-    """Version of the package that brings ffmpeg; empty where the system's own is used."""
+    """Return the version of the package that brings ffmpeg; empty where the system's own is used."""
     try:
         return recalled(("version", "imageio-ffmpeg"), lambda: metadata.version("imageio-ffmpeg"))
     except metadata.PackageNotFoundError:
@@ -55,14 +55,14 @@ def encoder_version() -> str:
 
 
 def picture_sources() -> str:
-    """Hash of the sources that make pictures; the plots are not among them."""
+    """Return the hash of the sources that make pictures; the plots are not among them."""
     room = Path(__file__).parents[1]
-    rooms = [room / name for name in ("presets.py", "letters.py", "looks", "film", "frames", "blender")]
+    rooms = [room / name for name in ("presets.py", "letters.py", "looks.py", "film", "frames", "blender")]
     return sources_hash(*rooms, *contract_sources(*SHARED))
 
 
 def blender_version() -> str:
-    """Version of bpy, without its two seconds of import."""
+    """Return the version of bpy, without its two seconds of import."""
     try:
         return recalled(("version", "bpy"), lambda: metadata.version("bpy"))
     except metadata.PackageNotFoundError:

@@ -1,9 +1,10 @@
-"""The solids of a film: which there are, how they look, and that they are those of its motion."""
+"""Pieces of a picture, and how far they are lifted as a machine comes apart."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 
@@ -11,22 +12,25 @@ from render.film.scene import PieceSpec, SurfaceSpec
 from render.film.section import WHOLE, cuts_of
 from shared.contract import Motion, Parts, Piece
 from shared.contract.materials import MATERIALS
+from shared.contract.mount import Vector, Z
 from shared.contract.shot import Shot, Surface
 from shared.stage.errors import UserError
 from shared.stage.files import file_hash
 from shared.stage.suggestions import did_you_mean
+
+# The solids of a film: which there are, how they look, and that they are those of its motion.
 
 COLOURED, KEPT = 0.05, 0.06
 """Difference of linear RGB from which on a surface is coloured, and the part of its own colour that it keeps."""
 TINT, PANE = 0.6, 0.06
 """How much of its colour a transparent piece keeps, and its roughness."""
 GREY, DARKEST = 0.9, 0.14
-"""What a coloured surface is beside arrows, in its lightness, and that at least."""
+"""Lightness of a coloured surface beside arrows, as a part of its own, and the least."""
 
 
 def piece_specs(parts: Parts, shot: Shot, folder: Path, motion: Motion | None = None) -> list[PieceSpec]:
-    """All solids, whose STL files are in ``folder``, as far as the shot's section leaves them; ``motion`` says where
-    bodies stand that a section names.
+    """Return all solids, whose STL files are in ``folder``, as far as the shot's section leaves them; ``motion`` says
+    where bodies stand that a section names.
 
     Raises UserError for a material that is not known, and for a section that cuts nothing.
     """
@@ -83,13 +87,15 @@ def _surface(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> 
 
 
 def as_pane(surface: SurfaceSpec) -> SurfaceSpec:
-    """A pane of glass in a light tint of the surface's colour."""
+    """Return a pane of glass in a light tint of the surface's colour."""
     red, green, blue = (TINT * channel + (1 - TINT) for channel in surface.colour)
     return SurfaceSpec(colour=(red, green, blue), finish="glass", roughness=PANE)
 
 
 def neutral(surface: SurfaceSpec) -> SurfaceSpec:
-    """The surface as grey as it is light: beside arrows no body has a colour, signal colours belong to quantities."""
+    """Return the surface as grey as it is light: beside arrows no body has a colour, signal colours belong to
+    quantities.
+    """
     light = sum(part * channel for part, channel in zip((0.2126, 0.7152, 0.0722), surface.colour, strict=True))
     grey = GREY * max(light, DARKEST) if max(surface.colour) - min(surface.colour) > COLOURED else light
     red, green, blue = (KEPT * channel + (1 - KEPT) * grey for channel in surface.colour)
@@ -104,3 +110,54 @@ def _chosen(mechanism: str, shot: Shot, body: str, name: str, piece: Piece) -> S
         raise UserError(f"{mechanism}: piece {body}/{name} is of '{chosen}'; known: {', '.join(MATERIALS)}")
     material = MATERIALS[chosen]
     return SurfaceSpec(colour=material.colour, finish=material.finish, roughness=material.roughness)
+
+
+# How a machine comes apart: which piece is lifted along which axis, in which order, how far; from parts.json alone.
+#
+# Pieces of a planar machine are put together along the normal of its plane, the lowest first. A piece belongs to the
+# layer of its middle: a pin between two links is put into the lower one before the upper one is put on it.
+
+SAME = 0.03
+"""Pieces whose middles are nearer than this part of the height of the stack are of one layer."""
+STEP = 0.085
+"""From one layer to the next, as a part of the machine's size, ..."""
+MOST = 0.6
+"""... and all of them together."""
+
+
+class Lift(NamedTuple):
+    """One piece of an exploded machine."""
+
+    body: str
+    piece: str
+    order: int
+    """When it is put together, from 0 on; pieces of one layer have the same."""
+    axis: Vector
+    """Unit vector of the frame of ground along which it is lifted."""
+    distance: float
+    """m"""
+
+    @property
+    def name(self) -> str:
+        """``body/piece``."""
+        return f"{self.body}/{self.piece}"
+
+
+def exploded(parts: Parts, size: float) -> list[Lift]:
+    """Return all pieces in the order in which they are put together; ``size`` (m) is that of the machine.
+
+    What is lowest stays where it is. A machine of a single layer comes apart nowhere: all its distances are 0.
+    """
+    middles = sorted(
+        (sum(piece.z_range) / 2, body, name)
+        for body, solids in parts.bodies.items()
+        for name, piece in solids.pieces.items()
+    )
+    if not middles:
+        return []
+    apart, layers, last = SAME * (middles[-1][0] - middles[0][0]), [], -1e300
+    for middle, _, _ in middles:
+        layers.append((layers[-1] if layers else 0) + (bool(layers) and middle - last > apart))
+        last = middle
+    step = size * min(STEP, MOST / max(layers[-1], 1))
+    return [Lift(body, name, layer, Z, step * layer) for layer, (_, body, name) in zip(layers, middles, strict=True)]

@@ -10,7 +10,7 @@ from typing import Literal
 import msgspec
 
 from render.film.framing import CameraPose
-from render.looks.look import Look
+from render.looks import Look
 from shared.contract.mount import Z
 from shared.contract.signals import Head
 
@@ -45,7 +45,7 @@ class PieceSpec(msgspec.Struct, kw_only=True, frozen=True):
     cut: tuple[Plane, ...] = ()
     """Planes of the body's frame beyond all of which a section has cut it away."""
     fixed: bool = False
-    """Whether these are planes of the world instead, through which the piece moves."""
+    """True if these are planes of the world instead, through which the piece moves."""
 
 
 class TrailSpec(msgspec.Struct, kw_only=True, frozen=True):
@@ -156,7 +156,7 @@ class Card(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Writing(msgspec.Struct, kw_only=True, frozen=True):
-    """What is written over the picture: lines at the upper left, a legend on its card."""
+    """Text over the picture: lines at the upper left, a legend on its card."""
 
     lines: list[LineSpec] = []
     legend: list[LegendRow] = []
@@ -183,7 +183,7 @@ class StudioSpec(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class Scene(msgspec.Struct, kw_only=True, frozen=True):
-    """What stays the same over the film."""
+    """The scene: all that stays the same over the film."""
 
     mechanism: str
     fps: int
@@ -198,7 +198,7 @@ class Scene(msgspec.Struct, kw_only=True, frozen=True):
 
 
 class State(msgspec.Struct, kw_only=True, frozen=True):
-    """What one frame changes: x, y, theta of every body; paths, places, arrows, the camera."""
+    """The state of one frame: x, y, theta of every body; paths, places, arrows, the camera."""
 
     bodies: dict[str, Point]
     trails: list[list[Point]]
@@ -212,4 +212,4 @@ class State(msgspec.Struct, kw_only=True, frozen=True):
     lifts: dict[str, float] = {}
     """By ``body/piece``: how far a piece is lifted along z (m); those that are not named are where they belong."""
     hidden: Hidden = ""
-    """What is not shown: trails, or all but the solids (trails, tubes, labels)."""
+    """Hidden objects: trails, or all but the solids (trails, tubes, labels)."""

@@ -1,28 +1,70 @@
-"""A section: what is beyond a plane, or beyond several at once, is cut away; a quarter has two.
-
-Bodies of a planar machine turn about the normal of its plane alone, so a plane across that normal cuts each of them in
-the same way at every moment. Other planes cut what stands still, as in a model of an engine in a museum; bodies that
-are named are cut as they stand at the start of the motion, and carry their cut with them. Planes that are fixed stay
-where they are instead: what moves through them has another cut at every moment, what moves along them has the same.
-Springs, ropes and belts hang between bodies, and are cut where all that moves is.
-"""
+"""Sections: hatches, and the plane that cuts a machine."""
 
 from __future__ import annotations
 
 import math
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.scene import Plane
+from render.film.scene import Colour, Plane, Point
 from render.film.solids import prism, read_corners
 from shared.contract import Motion, Parts, Piece
 from shared.contract.shot import Section
 from shared.stage.errors import UserError
+
+# Hatches of cut faces: stripes in light and dark of a piece's colour, which lean otherwise than its neighbours'.
+
+STRIPE = 0.05
+"""Width of a light and a dark stripe, as a part of the machine's radius."""
+LIGHT = 0.55
+"""Part of that which is light."""
+MATT = 0.7
+"""Roughness of a cut face."""
+
+
+class Hatch(NamedTuple):
+    """Stripes across a ``way``: a point is in the light as long as (point . way / period) mod 1 < LIGHT."""
+
+    way: Point
+    period: float
+    """In radii of the machine."""
+
+
+def hatch_of(name: str, plane: Plane) -> Hatch:
+    """Return the hatch of a piece, ``body/piece``, in a plane along z or across it: slope and width follow its name."""
+    x, y, z, _ = plane
+    kind = zlib.crc32(name.encode()) % 4
+    lean = -1.0 if kind % 2 else 1.0
+    way = (1.0, lean, 0.0) if z else (-y, x, lean)  # in a face that stands up, along it and z
+    return Hatch(way, STRIPE * (1 + kind // 2 / 3))
+
+
+def light_of(colour: Colour) -> Colour:
+    """Return the light tone of a cut face (linear RGB)."""
+    red, green, blue = (0.5 * part + 0.32 for part in colour)
+    return red, green, blue
+
+
+def dark_of(colour: Colour) -> Colour:
+    """Return the dark tone of a cut face (linear RGB)."""
+    red, green, blue = (0.3 * part + 0.015 for part in colour)
+    return red, green, blue
+
+
+# A section: what is beyond a plane, or beyond several at once, is cut away; a quarter has two.
+#
+# Bodies of a planar machine turn about the normal of its plane alone, so a plane across that normal cuts each of them
+# in the same way at every moment. Other planes cut what stands still, as in a model of an engine in a museum; bodies
+# that are named are cut as they stand at the start of the motion, and carry their cut with them. Planes that are fixed
+# stay where they are instead: what moves through them has another cut at every moment, what moves along them has the
+# same. Springs, ropes and belts hang between bodies, and are cut where all that moves is.
 
 Array = NDArray[np.float64]
 Key = tuple[str, str]
@@ -59,12 +101,12 @@ WHOLE = Cut()
 
 
 def section_of(section: Section | float) -> Section:
-    """What a shot says as a Section; a number is a part of the depth, from the front."""
+    """Return the wish of a shot as a Section; a number is a part of the depth, from the front."""
     return section if isinstance(section, Section) else Section(front=section)
 
 
 def cuts_of(parts: Parts, asked: Section | float, folder: Path, motion: Motion | None) -> dict[Key, Cut]:
-    """How each piece is cut that is cut at all; ``motion`` is asked where bodies stand and what they go through.
+    """Return how each piece is cut that is cut at all; ``motion`` is asked where bodies stand and what they go through.
 
     Raises UserError for a section that cuts no piece open.
     """
@@ -78,8 +120,8 @@ def cuts_of(parts: Parts, asked: Section | float, folder: Path, motion: Motion |
 
 
 def between_bodies(parts: Parts, asked: Section | float, folder: Path, motion: Motion | None) -> tuple[Plane, ...]:
-    """The planes of the world beyond all of which springs, ropes and belts are cut away: those of a section that cuts
-    everything that moves where it is, from the front or by fixed planes; none of one that names its pieces.
+    """Return the planes of the world beyond all of which springs, ropes and belts are cut away: those of a section that
+    cuts everything that moves where it is, from the front or by fixed planes; none of one that names its pieces.
     """
     section = section_of(asked)
     if section.only or not (section.fixed or section == Section(front=section.front)):
@@ -91,7 +133,7 @@ def between_bodies(parts: Parts, asked: Section | float, folder: Path, motion: M
 def _planned(
     parts: Parts, section: Section, folder: Path, motion: Motion | None
 ) -> tuple[dict[str, float], list[_Solid], list[tuple[Normal, float]]]:
-    """Sides with their parts, the solids that they may cut, and a plane for each."""
+    """Return sides with their parts, the solids that they may cut, and a plane for each."""
     depths = {side: getattr(section, side) for side in WAYS if getattr(section, side)}
     if not depths:
         return depths, [], []
@@ -103,13 +145,15 @@ def _planned(
 
 
 def seen_from(section: Section | float, azimuth: float) -> float:
-    """The azimuth (degrees) from which the cut faces are seen of a machine that is looked at from another one."""
+    """Return the azimuth (degrees) from which the cut faces are seen of a machine that is looked at from another
+    one.
+    """
     asked = section_of(section)
     return max(azimuth, ASIDE) if asked.right else min(azimuth, -ASIDE) if asked.left else azimuth
 
 
 def in_body(plane: Plane, pose: Pose) -> Plane:
-    """A plane of the world in the frame of a body that stands there."""
+    """Return a plane of the world in the frame of a body that stands there."""
     (x, y, z, place), (u, v, theta) = plane, pose
     c, s = math.cos(theta), math.sin(theta)
     return c * x + s * y, c * y - s * x, z, place - x * u - y * v
@@ -123,7 +167,7 @@ class _Solid:
         self._reach: dict[Normal, tuple[float, float]] = {}
 
     def reach(self, normal: Normal) -> tuple[float, float]:
-        """Least and largest place along a normal of the world (m)."""
+        """Return the least and largest place along a normal of the world (m)."""
         if normal == WAYS["front"]:
             return self._piece.z_range
         if normal not in self._reach:
@@ -131,7 +175,7 @@ class _Solid:
         return self._reach[normal]
 
     def cut(self, planes: list[tuple[Normal, float]]) -> Cut:
-        """By these planes of the world, each a normal and how far along it."""
+        """Return the cut by these planes of the world, each a normal and how far along it."""
         gone = all(self.reach(normal)[0] >= place for normal, place in planes)
         world = tuple((*normal, place) for normal, place in planes)
         if self._goes_through(planes):
@@ -147,7 +191,7 @@ class _Solid:
         return float((along + least).min()), float((along + most).max())
 
     def _extents(self, ways: Array) -> tuple[Array, Array]:
-        """Least and largest place (n,) of its outline along ways (n, 2) of its body (m)."""
+        """Return the least and largest place (n,) of its outline along ways (n, 2) of its body (m)."""
         rolls = self._piece.rolls
         if rolls is not None and len(self._poses) > 1:  # it turns against its body
             centre = np.array([rolls.x, rolls.y])
@@ -163,7 +207,7 @@ class _Solid:
         return corners[: len(corners) // 2]
 
     def _goes_through(self, planes: list[tuple[Normal, float]]) -> bool:
-        """Whether its cut is another one at other moments."""
+        """Return True if its cut is another one at other moments."""
         u, v, theta = self._poses.T
         if len(self._poses) == 1 or all(normal == WAYS["front"] for normal, _ in planes):
             return False
@@ -172,8 +216,8 @@ class _Solid:
 
 
 def _cut(parts: Parts, section: Section, depths: dict[str, float], moves: bool) -> Iterator[tuple[Key, Piece]]:
-    """The pieces that are cut: those that are named; else all from the front, or by planes through which bodies move,
-    and from other sides what stands still.
+    """Return the pieces that are cut: those that are named; else all from the front, or by planes through which bodies
+    move, and from other sides what stands still.
 
     Raises UserError where nothing stands still.
     """
@@ -186,21 +230,21 @@ def _cut(parts: Parts, section: Section, depths: dict[str, float], moves: bool) 
     still = [(key, piece) for key, piece in every if key[0] == "ground"]
     if not still:
         raise UserError(
-            f"{parts.mechanism}: shot.section cuts from {' and '.join(depths)}, which is what stands still, and ground "
+            f"{parts.mechanism}: shot.section cuts from {' and '.join(depths)} what stands still; ground "
             f"has no solids; name bodies in section.only: {', '.join(parts.bodies)}, or say fixed=True"
         )
     return iter(still)
 
 
 def _plane(normal: Normal, part: float, solids: list[_Solid]) -> tuple[Normal, float]:
-    """A plane with this normal, beyond which the ``part`` of the reach of all pieces is."""
+    """Return a plane with this normal, beyond which the ``part`` of the reach of all pieces is."""
     reaches = [solid.reach(normal) for solid in solids]
     low, high = min(low for low, _ in reaches), max(high for _, high in reaches)
     return normal, high - part * (high - low)
 
 
 def _poses(motion: Motion | None, body: str, whole: bool) -> Array:
-    """Where a body stands (n, 3): at the start, or over the ``whole`` motion."""
+    """Return where a body stands (n, 3): at the start, or over the ``whole`` motion."""
     if motion is None or body not in motion.bodies:
         return np.zeros((1, 3))
     moved = motion.bodies[body]
@@ -209,7 +253,7 @@ def _poses(motion: Motion | None, body: str, whole: bool) -> Array:
 
 
 def _nothing(mechanism: str, asked: Section | float, solids: list[_Solid], depths: dict[str, float]) -> str:
-    """What is wrong, and where the middles of pieces are from each side."""
+    """Return the error for a section that cuts nothing, with the middles of pieces from each side."""
     words = []
     for side in depths:
         reaches = [solid.reach(WAYS[side]) for solid in solids]

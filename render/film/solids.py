@@ -20,7 +20,7 @@ _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attrib
 
 
 def read_triangles(path: Path) -> Array:
-    """Corners (n, 3, 3) in m of the triangles of a binary STL; raises UserError if the file is not whole."""
+    """Return corners (n, 3, 3) in m of the triangles of a binary STL; raises UserError if the file is not whole."""
     content = path.read_bytes()
     count = int.from_bytes(content[80:84], "little") if len(content) >= 84 else -1
     if len(content) != 84 + _TRIANGLE.itemsize * count or count < 1:
@@ -29,19 +29,19 @@ def read_triangles(path: Path) -> Array:
 
 
 def read_corners(path: Path) -> Array:
-    """Corners (3 n, 3) in m of all triangles of a binary STL; raises UserError if the file is not whole."""
+    """Return corners (3 n, 3) in m of all triangles of a binary STL; raises UserError if the file is not whole."""
     return read_triangles(path).reshape(-1, 3)
 
 
 def prism(vertices: Array) -> Array:
-    """The upright prism around vertices (n, 3): the convex outline in x, y at the lowest and the highest z."""
+    """Return the upright prism around vertices (n, 3): the convex outline in x, y at the lowest and the highest z."""
     outline = _convex_outline(vertices[:, :2])
     heights = vertices[:, 2].min(), vertices[:, 2].max()
     return np.concatenate([np.column_stack([outline, np.full(len(outline), z)]) for z in heights])
 
 
 def outermost(points: Array) -> Array:
-    """Those of points (n, 3) that are farthest in some direction: within two thousandths of their size, if they are
+    """Return the points (n, 3) that are farthest in some direction: within two thousandths of their size, if they are
     longer in the plane than high, all are inside.
     """
     angles = np.linspace(0.0, 2 * np.pi, DIRECTIONS, endpoint=False)
@@ -51,7 +51,7 @@ def outermost(points: Array) -> Array:
 
 
 def swept(outline: Array, poses: Array) -> Array:
-    """All places (m * n, 3) of points (n, 3) over poses (m, 3) of x, y, theta."""
+    """Return all places (m * n, 3) of points (n, 3) over poses (m, 3) of x, y, theta."""
     cosine, sine = np.cos(poses[:, 2])[:, None], np.sin(poses[:, 2])[:, None]
     x = poses[:, 0, None] + cosine * outline[:, 0] - sine * outline[:, 1]
     y = poses[:, 1, None] + sine * outline[:, 0] + cosine * outline[:, 1]
@@ -60,7 +60,7 @@ def swept(outline: Array, poses: Array) -> Array:
 
 
 def _convex_outline(points: Array) -> Array:
-    """Corners of the convex hull of points (n, 2), by Andrew's monotone chain."""
+    """Return corners of the convex hull of points (n, 2), by Andrew's monotone chain."""
     ordered = np.unique(_not_inside(points), axis=0)
     if len(ordered) < 3:
         return ordered
@@ -80,7 +80,7 @@ def _convex_outline(points: Array) -> Array:
 
 
 def _not_inside(points: Array) -> Array:
-    """Those of points (n, 2) that are not inside a polygon of outermost ones (Akl, Toussaint 1978): most are."""
+    """Return the points (n, 2) outside a polygon of outermost ones (Akl, Toussaint 1978); most are inside."""
     ways = _around(SIDES)
     corners = points[(ways @ points.T).argmax(axis=1)]
     inside = np.full(len(points), bool((corners != corners[0]).any()))
@@ -92,6 +92,6 @@ def _not_inside(points: Array) -> Array:
 
 
 def _around(count: int) -> Array:
-    """So many directions (n, 2) in the plane."""
+    """Return so many directions (n, 2) in the plane."""
     angles = np.linspace(0.0, 2 * np.pi, count, endpoint=False)
     return np.stack([np.cos(angles), np.sin(angles)], axis=1)

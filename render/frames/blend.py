@@ -30,7 +30,7 @@ USUAL_PLACES = (
 
 
 def save(name: str, preset: Preset, show: str = "") -> Path:
-    """The stage: out/<mechanism>/<mechanism>.blend with the motion once on its timeline."""
+    """Return the stage: out/<mechanism>/<mechanism>.blend with the motion once on its timeline."""
     out = Out(name)
     target = named(out.scene, show, preset.suffix)
     stage = Stage(out, target.stem.replace(out.name, "scene", 1), stage_key(out, preset, show), [target])
@@ -74,7 +74,7 @@ def open_in_blender(name: str, preset: Preset, show: str = "") -> None:
 
 
 def find_blender() -> str:
-    """An installed Blender: $BLENDER, the PATH, then the usual places of Linux and macOS."""
+    """Return an installed Blender: $BLENDER, the PATH, then the usual places of Linux and macOS."""
     named = os.environ.get("BLENDER")
     if named:
         if os.access(named, os.X_OK):

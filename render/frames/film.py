@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from render.film.inputs import encoder_version, named, read_film, stage_key
-from render.presets import Preset
-from render.shown import has_sound
+from render.presets import Preset, has_sound
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import sources_hash, write_bytes
@@ -42,10 +41,10 @@ def run(name: str, preset: Preset, show: str = "", sound: str = "") -> None:
     index = jsonfile.read(store.index, FrameIndex)
     silent = _silent_film(out, preset, show, store, index)
     if heard:
-        from render.frames import muxing
+        from render.frames import encode
 
         waves = write_sound(out, preset, show, wav_of(film))
-        muxing.mux(silent, waves, len(index.frames), preset, index.fps, film)
+        encode.mux(silent, waves, len(index.frames), preset, index.fps, film)
     else:
         wav_of(film).unlink(missing_ok=True)
         write_bytes(film, silent.read_bytes())
@@ -56,19 +55,18 @@ def run(name: str, preset: Preset, show: str = "", sound: str = "") -> None:
 
 
 def is_fresh(name: str, preset: Preset, show: str = "", sound: str = "") -> bool:
-    """Whether there is nothing to do. Raises UserError where motion, parts or shot are missing."""
+    """Return True if there is nothing to do. Raises UserError where motion, parts or shot are missing."""
     return _stage(Out(name), preset, show, has_sound(sound)).is_fresh()
 
 
 def wav_of(film: Path) -> Path:
-    """The WAV file beside a film."""
+    """Return the WAV file beside a film."""
     return film.with_suffix(".wav")
 
 
 def write_sound(out: Out, preset: Preset, show: str, target: Path) -> Path:
-    """The sound of a film as a WAV file, written whole."""
-    from render.sound.sound import sound_of
-    from render.sound.wave_file import wav
+    """Return the sound of a film as a WAV file, written whole."""
+    from render.sound.sound import sound_of, wav
 
     write_bytes(target, wav(sound_of(read_film(out, show, preset.aspect))))
     return target
@@ -82,13 +80,13 @@ def _stage(out: Out, preset: Preset, show: str, heard: bool) -> Stage:
 
 
 def sound_key() -> str:
-    """What decides the sound beside the files and the clock."""
+    """Return the key of the sound, without the files and the clock."""
     room = Path(__file__).parents[1]
-    return key_of(sources_hash(room / "sound", Path(__file__).with_name("muxing.py")), versions("numpy"))
+    return key_of(sources_hash(room / "sound", Path(__file__).with_name("encode.py")), versions("numpy"))
 
 
 def _silent_film(out: Out, preset: Preset, show: str, store: FrameStore, index: FrameIndex) -> Path:
-    """The pictures encoded, in the folder of the frames; not again, where these have not changed."""
+    """Return the pictures encoded, in the folder of the frames; not again, where these have not changed."""
     from render.frames import encode
 
     film = named(out.film(preset.name), show)
@@ -102,7 +100,7 @@ def _silent_film(out: Out, preset: Preset, show: str, store: FrameStore, index: 
 
 
 def _pictures(mechanism: str, store: FrameStore, names: Sequence[str]) -> Iterator[bytes]:
-    """The pictures in order, each compared with the hash in its name; the bytes compared are the bytes filmed."""
+    """Yield the pictures in order, each compared with the hash in its name; the bytes compared are the bytes filmed."""
     for number, name in enumerate(names):
         content = store.read(name)
         if content is None:

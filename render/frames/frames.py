@@ -1,7 +1,8 @@
-"""Renders the pictures a film still lacks. A picture that is there already is not rendered again."""
+"""The frames of a film: their keys, and the rendering of those that are missing."""
 
 from __future__ import annotations
 
+import hashlib
 import math
 import shutil
 import time
@@ -9,21 +10,81 @@ from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
+
+import msgspec
 
 from render.blender.child import blender
 from render.blender.job import Answer, Job, Picture
 from render.film.film import Film
+from render.film.framing import SENSOR, studio
 from render.film.inputs import blender_version, read_film, stage_key
 from render.film.scene import Scene, State
-from render.frames.keys import frame_key, scene_key
+from render.film.solids import MILLIMETRE
 from render.frames.store import FrameIndex, FrameStore, Timing
 from render.presets import Preset
 from shared.cluster.address import address
+from shared.contract.mount import Z
 from shared.stage import jsonfile
 from shared.stage.console import duration, progress, say, warn
 from shared.stage.errors import UserError
+from shared.stage.files import sources_hash
 from shared.stage.paths import Out, out_root
 from shared.stage.stages import Stage
+
+# The name of a picture is a hash of what it shows, so no picture is rendered twice and no wrong one is kept.
+
+DIGITS = 9
+"""Poses count to a nanometre and a nanoradian."""
+BLENDER = Path(__file__).parents[1] / "blender"
+LETTERS = Path(__file__).parents[1] / "letters.py"
+"""The font of what Blender's side writes."""
+HATCHES = Path(__file__).parents[1] / "film" / "section.py"
+"""Stripes of its cut faces."""
+BLENDER_SOURCES = ("job.py", "picture_file.py", "scene", "worker")
+"""Sources that run in Blender; the other files of the room start it, and decide nothing that is seen."""
+
+
+def scene_key(scene: Scene, preset: Preset, blender: str) -> str:
+    """Return everything that all frames have in common; STL files count by content.
+
+    ``blender`` is the version of bpy. Of other rooms, Blender's side takes the letters and these numbers.
+    """
+    plain = _rounded(msgspec.to_builtins(scene))
+    for piece in plain["pieces"]:
+        del piece["stl"]
+    shown = {key: part for key, part in plain.items() if key not in ("mechanism", "fps")}
+    picture = [preset.width, preset.height, preset.samples, preset.motion_blur]
+    turned = studio(scene.studio.up).tolist()
+    return _hash([shown, picture, _sources(), blender, SENSOR, MILLIMETRE, Z, turned])
+
+
+def frame_key(scene: str, states: Sequence[State]) -> str:
+    """Return one frame of the scene with that key: its state alone, or with both neighbours' where the shutter blurs
+    them.
+    """
+    return _hash([scene, [_rounded(msgspec.to_builtins(state)) for state in states]])[:32]
+
+
+def _sources() -> str:
+    return sources_hash(*(BLENDER / name for name in BLENDER_SOURCES), LETTERS, HATCHES)
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return round(value, DIGITS) + 0.0  # -0.0 and 0.0 are one place
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(item) for item in value]
+    return value
+
+
+def _hash(value: Any) -> str:
+    return hashlib.sha256(msgspec.json.encode(value, order="sorted")).hexdigest()
+
+
+# Renders the pictures a film still lacks. A picture that is there already is not rendered again.
 
 FEWEST_SAMPLES = 500_000
 """In one picture, for its time to say something about another size."""
@@ -70,7 +131,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
 
 
 def picture_of(pictures: Pictures, store: FrameStore, frame: int) -> Path:
-    """The file of a rendered frame; raises UserError if something removed or changed it meanwhile."""
+    """Return the file of a rendered frame; raises UserError if something removed or changed it meanwhile."""
     path = store.find(pictures.key(frame))
     if path is None:
         raise UserError(
@@ -82,7 +143,7 @@ def picture_of(pictures: Pictures, store: FrameStore, frame: int) -> Path:
 
 @dataclass
 class Tally:
-    """What a run made, and in how many seconds of Blender's own."""
+    """Frames that a run made, and the seconds that Blender took."""
 
     device: str = ""
     rendered: int = 0
@@ -124,26 +185,26 @@ class Pictures:
 
     @property
     def shown(self) -> Scene:
-        """What all of them have in common."""
+        """Scene that all frames share."""
         return self.film.scene
 
     def around(self, frame: int) -> tuple[int, int, int]:
-        """The frame between those that its shutter sees."""
+        """Return the frame between those that its shutter sees."""
         return self.film.clock.around(frame)
 
     def state(self, frame: int) -> State:
-        """The state a frame shows."""
+        """Return the state a frame shows."""
         if frame not in self._states:
             self._states[frame] = self.film.state(frame)
         return self._states[frame]
 
     def key(self, frame: int) -> str:
-        """The name of the picture a frame shows."""
+        """Return the name of the picture a frame shows."""
         around = self.around(frame) if self.preset.motion_blur else (frame,)
         return frame_key(self.scene, [self.state(f) for f in around])
 
     def job(self, frames: Sequence[int], store: FrameStore) -> Job:
-        """The work order for these frames; a blurred frame has its neighbours beside it on the timeline."""
+        """Return the work order for these frames; a blurred frame has its neighbours beside it on the timeline."""
         states: list[State] = []
         pictures = []
         for frame in frames:
@@ -197,16 +258,16 @@ def render(pictures: Pictures, store: FrameStore, frames: Sequence[int], what: s
 
 
 def _makers(job: Job, store: FrameStore, longest: float) -> AbstractContextManager[Iterator[Answer]]:
-    """A Blender process here, or the workers of the CLUSTER."""
+    """Return a Blender process here, or the workers of the CLUSTER."""
     if not address():
         return blender(job, longest)
-    from render.frames import on_cluster
+    from render.frames import cluster
 
-    return on_cluster.workers(job, store)
+    return cluster.workers(job, store)
 
 
 def _forecast(preset: Preset, store: FrameStore) -> tuple[float, str] | None:
-    """Seconds a picture, and where the number is from; None if nothing comparable was rendered here yet.
+    """Return seconds a picture, and where the number is from; None if nothing comparable was rendered here yet.
 
     The last run of this preset counts, else the run nearest in size, scaled by samples. Below a certain size it is
     not the samples that take the time, so postage stamps do not count.

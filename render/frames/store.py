@@ -15,8 +15,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from render.blender.picture_file import is_as_named
-from render.blender.received_picture import fault_of_chunks
+from render.blender.picture_file import fault_of_chunks, is_as_named
 from shared.stage import jsonfile, locks
 from shared.stage.console import say
 from shared.stage.errors import Busy, UserError
@@ -74,7 +73,9 @@ class FrameStore:
         self.timing = folder / "timing.json"
 
     def find(self, key: str) -> Path | None:
-        """The picture with this key, if it is there and has the bytes that its name tells; a damaged one is removed."""
+        """Return the picture with this key, if it is there and has the bytes that its name tells; a damaged one is
+        removed.
+        """
         for path in sorted(self.folder.glob(f"{key}-*.png")):
             try:
                 if self._is_picture(path, path.read_bytes()):
@@ -88,7 +89,7 @@ class FrameStore:
         return None
 
     def read(self, name: str) -> bytes | None:
-        """The bytes of the picture with this file name, if they are those that were rendered; else None."""
+        """Return the bytes of the picture with this file name, if they are those that were rendered; else None."""
         path = self.folder / name
         with suppress(OSError):
             content = path.read_bytes()
@@ -96,7 +97,7 @@ class FrameStore:
                 return content
         return None
 
-    def put(self, name: str, content: bytes) -> None:
+    def keep(self, name: str, content: bytes) -> None:
         """Keep a picture that was made elsewhere. Raises UserError if these are not its bytes, or the disk is full."""
         path = self.folder / name
         if not self._is_picture(path, content):
@@ -119,7 +120,7 @@ class FrameStore:
         except OSError as error:
             raise UserError(refusal(lock, error)) from error
         try:
-            self._take(handle)
+            self._lock(handle)
             self._sweep()
             yield
         finally:
@@ -127,7 +128,7 @@ class FrameStore:
                 self._sweep()
             os.close(handle)
 
-    def _take(self, handle: int) -> None:
+    def _lock(self, handle: int) -> None:
         end, announced = time.monotonic() + WAIT, False
         try:
             while not locks.take(handle):
@@ -149,7 +150,7 @@ class FrameStore:
         return len(unused[spare:])
 
     def read_timing(self) -> Timing | None:
-        """The timing of the last run, if there was one."""
+        """Return the timing of the last run, if there was one."""
         try:
             return jsonfile.read(self.timing, Timing)
         except UserError:

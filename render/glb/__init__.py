@@ -31,7 +31,7 @@ def run(name: str) -> None:
 
 
 def is_fresh(name: str) -> bool:
-    """Whether there is nothing to do. Raises UserError where motion, parts or shot are missing."""
+    """Return True if there is nothing to do. Raises UserError where motion, parts or shot are missing."""
     return _stage(Out(name)).is_fresh()
 
 
@@ -40,7 +40,7 @@ def _stage(out: Out) -> Stage:
 
 
 def glb_key(out: Out) -> str:
-    """What decides a GLB. Raises UserError where motion, parts or shot are missing."""
+    """Return the key of a GLB. Raises UserError if motion, parts or shot are missing."""
     refuse_missing(out)
     sources = [ROOT / "render" / name for name in ("presets.py", "film", "blender/scene/tubes.py")]
     shared = contract_sources(*SHARED)

@@ -17,21 +17,17 @@ import numpy as np
 from render.film.film import Film
 from render.film.scene import PieceSpec
 from render.film.solids import read_triangles
-from render.glb.animation import Animation
-from render.glb.belts import add_belt
 from render.glb.cut import faces_of, front_of, pieces_of
-from render.glb.document import INDICES, VERTICES, Document
-from render.glb.materials import CLEARCOAT, Paints
-from render.glb.mesh import smooth
-from render.glb.springs import Springs
+from render.glb.document import CLEARCOAT, INDICES, VERTICES, Animation, Document, Paints, smooth
+from render.glb.tubes import Springs, add_belt
 from shared.contract.mount import Vector, Z
 
 Quaternion = tuple[float, float, float, float]
 
 
 def turn(up: Vector) -> Quaternion:
-    """The quaternion x, y, z, w with which ``up``, z or a unit vector in the plane, becomes y of glTF: a quarter turn
-    about x, backwards, or a turn about z.
+    """Return the quaternion x, y, z, w with which ``up``, z or a unit vector in the plane, becomes y of glTF: a quarter
+    turn about x, backwards, or a turn about z.
     """
     if up == Z:
         return -(0.5**0.5), 0.0, 0.0, 0.5**0.5
@@ -40,12 +36,12 @@ def turn(up: Vector) -> Quaternion:
 
 
 def glb(film: Film) -> bytes:
-    """The file's bytes, the same each time."""
+    """Return the file's bytes, the same each time."""
     return _content(film, pieces_of(film), front_of(film))
 
 
 def tubes(film: Film) -> bytes:
-    """A file with springs, ropes and belts alone."""
+    """Return a file with springs, ropes and belts alone."""
     return _content(film, [])
 
 
@@ -58,8 +54,8 @@ def _content(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -
 
 
 def scene_of(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -> tuple[Document, Animation]:
-    """The scene with these pieces and all springs, ropes and belts as far as they are not higher than ``front`` (m),
-    and what its nodes do.
+    """Return the scene with these pieces and all springs, ropes and belts as far as they are not higher than ``front``
+    (m), and what its nodes do.
     """
     document, motion = Document(), film.motion
     paints, animation = Paints(document), Animation(document, motion)
@@ -102,10 +98,12 @@ def scene_of(film: Film, pieces: Sequence[PieceSpec], front: float = math.inf) -
 
 
 def mesh_of(document: Document, piece: PieceSpec, paints: Paints, radius: float) -> int:
-    """The number of a piece's mesh in the document, as far as a section leaves it in a machine of this radius (m)."""
+    """Return the number of a piece's mesh in the document, as far as a section leaves it in a machine of this radius
+    (m).
+    """
     triangles = read_triangles(Path(piece.stl))
     faces = faces_of(triangles, piece, radius) if piece.cut else [(triangles, piece.surface)]
-    primitives = [_primitive(document, part, piece, paints.of(surface)) for part, surface in faces if len(part)]
+    primitives = [_primitive(document, part, piece, paints.number_of(surface)) for part, surface in faces if len(part)]
     return document.add("meshes", {"name": f"{piece.body}/{piece.name}", "primitives": primitives})
 
 

@@ -8,15 +8,13 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from render.film.exploded import exploded
 from render.film.film import Film
 from render.film.inputs import read_film
-from render.film.story.lifting import lifted
+from render.film.pieces import exploded
+from render.film.story.ramps import lifted
 from render.glb import glb_key
-from render.glb.animation import about_z
 from render.glb.build import mesh_of, turn
-from render.glb.document import Document
-from render.glb.materials import CLEARCOAT, Paints
+from render.glb.document import CLEARCOAT, Document, Paints, about_z
 from shared.stage.console import say
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out
@@ -44,7 +42,7 @@ def run(name: str) -> None:
 
 
 def exploded_glb(film: Film) -> bytes:
-    """The file's bytes, the same each time."""
+    """Return the file's bytes, the same each time."""
     document = Document()
     paints = Paints(document)
     lifts = exploded(film.parts, film.size)
@@ -84,12 +82,12 @@ _LAST = 2 * (TOGETHER + LIFTS) + APART
 
 
 def _apart(time: float) -> float:
-    """How far all is apart, 0 .. 1."""
+    """Return how far all is apart, 0 .. 1."""
     return min(max(min(time - TOGETHER, _LAST - TOGETHER - time) / LIFTS, 0.0), 1.0)
 
 
 def _body(document: Document, film: Film, name: str) -> int:
-    """A node where the body is at the start of the motion."""
+    """Return a node where the body is at the start of the motion."""
     x, y, theta = film.poses.body(name, film.clock.moment(0))
     rotation = about_z(np.array([theta]))[0].astype(np.float32).tolist()
     return document.add("nodes", {"name": name, "translation": [x, y, 0.0], "rotation": rotation, "children": []})

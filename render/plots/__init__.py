@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 from pathlib import Path
 
 from render import FRAME_SOURCES
-from render.plots.asked import spectra_asked
 from shared.contract import Motion, read_motion
 from shared.contract.quantity import counted
 from shared.contract.skeleton import read_skeleton
@@ -13,7 +13,7 @@ from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.files import sources_hash, whole_file
-from shared.stage.paths import ROOT, Out, variant_of
+from shared.stage.paths import ROOT, Out, mechanism_file, shown_file, variant_of
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 READ = [
@@ -58,7 +58,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
 
 
 def is_fresh(name: str, spectra: str = "", every: bool = False) -> bool:
-    """Whether there is nothing to do, by the names of the last drawing: the same motion has the same plots.
+    """Return True if there is nothing to do, by the names of the last drawing: the same motion has the same plots.
 
     Raises UserError for a SPECTRA in mechanism.py that is none, OSError where the motion is missing.
     """
@@ -77,7 +77,7 @@ def _stage(out: Out, names: list[str]) -> Stage:
 
 
 def plots_of(motion: Motion) -> list[str]:
-    """Names of the plots that this motion has something to show in."""
+    """Return names of the plots that this motion has something to show in."""
     names = ["path", "bodies", "energy"]
     if motion.joints:
         names += ["reactions", "hodographs"]
@@ -90,7 +90,7 @@ def plots_of(motion: Motion) -> list[str]:
     if any(force.hydraulics is not None for force in motion.forces.values()):
         names.append("hydraulics")
     if motion.analysis == "simulation":
-        from render.crank import crank_of
+        from render.magnitudes import crank_of
 
         names += ["turns"] * (crank_of(motion) is not None)
     names += [f"point-{point}" for point in motion.points]
@@ -98,7 +98,7 @@ def plots_of(motion: Motion) -> list[str]:
 
 
 def _spectra(motion: Motion, name: str, words: str, every: bool) -> list[str]:
-    """Plots of the spectra that are asked for; a variant may lack what mechanism.py names."""
+    """Return plots of the spectra that are asked for; a variant may lack what mechanism.py names."""
     asked = spectra_asked(name, words)
     if not asked:
         return []
@@ -112,3 +112,40 @@ def _spectra(motion: Motion, name: str, words: str, every: bool) -> list[str]:
 
 def _only_slides(theta: list[float]) -> bool:
     return max(theta) - min(theta) < 1e-9
+
+
+# Reads which spectra are wanted: ``SPECTRA = ("shaking force", "motor")`` in mechanism.py, or SPECTRA=... of make.
+
+FORM = 'write names in quotes: SPECTRA = ("shaking force", "motor")'
+
+
+def spectra_asked(name: str, words: str = "") -> list[str]:
+    """Return names of quantities, each once: those of ``words``, commas between them, else those of mechanism.py.
+
+    The file is read without running it. Raises UserError where its SPECTRA is no plain tuple or list of texts.
+    """
+    if words.strip():
+        return list(dict.fromkeys(word.strip() for word in words.split(",") if word.strip()))
+    file = mechanism_file(name)
+    try:
+        tree = ast.parse(file.read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return []
+    for statement in tree.body:
+        targets = getattr(statement, "targets", [getattr(statement, "target", None)])
+        if any(isinstance(target, ast.Name) and target.id == "SPECTRA" for target in targets):
+            return _names(statement, f"{shown_file(name)}:{statement.lineno}")
+    return []
+
+
+def _names(statement: ast.stmt, where: str) -> list[str]:
+    value = getattr(statement, "value", None)
+    given = None
+    if value is not None:
+        try:
+            given = ast.literal_eval(value)
+        except ValueError:
+            given = None
+    if not isinstance(given, tuple | list) or not all(isinstance(name, str) for name in given):
+        raise UserError(f"{where}: SPECTRA is not a list of names that can be read without running the file; {FORM}")
+    return list(dict.fromkeys(given))

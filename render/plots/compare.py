@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from render.plots import READ
-from render.plots.asked import spectra_asked
+from render.plots import READ, spectra_asked
 from shared.contract import Motion, read_motion
 from shared.contract.quantity import counted
 from shared.stage.console import say
@@ -43,8 +42,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     if stage.is_fresh():
         say("compare", f"{owner}: nothing to do")
         return
-    from render.plots.pages.beside import figures
-    from render.plots.pages.beside_spectra import spectra_figure
+    from render.plots.pages.comparison import figures, spectra_figure
     from render.plots.quantities import refuse_unknown_in_all
 
     motions: dict[str, Motion] = {variant: read_motion(file) for variant, file in files.items()}

@@ -5,14 +5,10 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from render.plots.pages.energy import energy
-from render.plots.pages.frame import frame
-from render.plots.pages.gas import gas
-from render.plots.pages.hydraulics import hydraulics
-from render.plots.pages.loads import forces, hodographs, reactions
-from render.plots.pages.path import path
-from render.plots.pages.rates import bodies, point, slider
+from render.plots.pages.forces import forces, frame, hodographs, reactions
+from render.plots.pages.motion import bodies, path, point, slider, turns
+from render.plots.pages.pressures import gas, hydraulics
 from render.plots.pages.spectra import spectrum_page
-from render.plots.pages.turns import turns
 from render.plots.quantities import known_names
 from render.plots.style import house_style
 from shared.contract import Motion
@@ -20,7 +16,7 @@ from shared.contract.skeleton import Skeleton
 
 
 def spectrum_of(motion: Motion, name: str) -> Figure:
-    """Spectrum of the quantity whose name has hyphens for spaces in ``name``."""
+    """Return the spectrum of the quantity whose name has hyphens for spaces in ``name``."""
     return spectrum_page(motion, next(known for known in known_names(motion) if known.replace(" ", "-") == name))
 
 

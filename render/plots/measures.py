@@ -1,16 +1,22 @@
-"""What an axis measures: its words with the unit, its numbers with the prefix that they need, ticks of angles, cuts."""
+"""Measures of a page: its panels, the time that a plot shows, and marks of moments."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
 from render.plots.style import QUIET, SIZE
+from render.report.transmission import marks
+from shared.contract import Motion
 from shared.contract.quantity import angle_step, figures, labelled, prefixed, written
+
+# Quantities of an axis: its words with the unit, its numbers with the prefix that they need, ticks of angles, cuts.
 
 TICKS = 5
 """On an axis at most, about; of angles one more."""
@@ -52,7 +58,7 @@ def dress_plane(
 
 
 def turned(x: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Curve of an angle (T,) in degrees over x (T,): within one turn, broken where the next one begins.
+    """Return the curve of an angle (T,) in degrees over x (T,): within one turn, broken where the next one begins.
 
     What makes no whole turn is moved by whole turns alone, so that its middle is within half a turn of zero.
     """
@@ -68,7 +74,7 @@ def turned(x: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cut(axes: Axes, curves: Sequence[np.ndarray], margin: np.ndarray | None, unit: str) -> bool:
-    """Limit the vertical axis where curves (T,) go far beyond their usual near a singular pose, and say so.
+    """Return the limit the vertical axis where curves (T,) go far beyond their usual near a singular pose, and say so.
 
     ``margin`` (T,): how far each pose is from a singular one. Returns whether it was cut.
     """
@@ -87,3 +93,100 @@ def cut(axes: Axes, curves: Sequence[np.ndarray], margin: np.ndarray | None, uni
         bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5, "alpha": 0.85},
     )  # fmt: skip
     return True
+
+
+# The horizontal axis: the driver's angle where one angle drives the mechanism one way, time otherwise.
+
+MOST_TICKS = 9
+
+
+@dataclass(frozen=True)
+class Horizon:
+    """Values of the horizontal axis, rising, and what they are called."""
+
+    values: np.ndarray
+    words: str
+    unit: str
+    """s or °"""
+    note: str = ""
+    """After the label."""
+    margin: np.ndarray | None = None
+    """(T,) how far each pose is from a singular one."""
+
+    @property
+    def degrees(self) -> bool:
+        """True if it is an angle."""
+        return self.unit == "°"
+
+    def dress(self, axes: Axes) -> None:
+        """Set limits, ticks and the label of the lowest axes."""
+        axes.set_xlim(self.values[0], self.values[-1])
+        dress_axis(axes.xaxis, self.words, self.unit, MOST_TICKS)
+        axes.set_xlabel(axes.get_xlabel() + self.note)
+
+
+def horizon(motion: Motion) -> Horizon:
+    """Return the driver's angle in degrees if there is one driver, it is an angle and it never turns back; else time in
+    s.
+
+    A driver that turns clockwise has its angle counted that way, so that what comes later is always at the right.
+    """
+    margin = np.asarray(motion.diagnostics.singularity_margin)
+    if len(motion.drivers) == 1:
+        ((name, driver),) = motion.drivers.items()
+        angle = np.degrees(driver.value)
+        moves = np.diff(angle)[np.diff(motion.time) > 0]  # both rows of an event have the same angle
+        if driver.unit == "rad" and (np.all(moves > 0) or np.all(moves < 0)):
+            clockwise = bool(np.all(moves < 0))
+            angle = -angle if clockwise else angle
+            angle = angle - 360.0 * round(float(angle[0]) / 360.0)
+            words = f"{name} angle, clockwise" if clockwise else f"{name} angle"
+            return Horizon(angle, words.replace("_", " "), "°", _pace(motion, angle), margin)
+    return Horizon(np.asarray(motion.time), "time", "s", "", margin)
+
+
+def _pace(motion: Motion, angle: np.ndarray) -> str:
+    """Return how long a turn takes, of a driver that turns evenly."""
+    even = np.interp(motion.time, [motion.time[0], motion.time[-1]], [angle[0], angle[-1]])
+    if np.abs(angle - even).max() > 1e-6 * np.ptp(angle):
+        return ""
+    return f"; a turn takes {written(float(360 * (motion.time[-1] - motion.time[0]) / np.ptp(angle)), 's', 4)}"
+
+
+# Marks on the plots, over time or angle, what happens at one moment of a motion: dead points, impacts and others.
+
+MOST = 12
+"""Events on a page; of more, the first."""
+LETTER_SIZE, LETTER_WIDTH = 8.5, 0.56
+"""Size of the words (points), and the width of a letter in it."""
+SPACE = 8.0
+"""Points between the words of two marks at least; where there is less, the first has words alone."""
+
+
+def mark(figure: Figure, over: Horizon, motion: Motion) -> None:
+    """A dotted line through all axes at each mark, with its words above the first axes where there is room."""
+    first, *_ = figure.axes
+    width = first.get_position().width * figure.get_size_inches()[0] * 72.0
+    low, high = first.get_xlim()
+    taken: list[tuple[float, float]] = []
+    for at, words in marks(motion)[:MOST]:
+        x = float(np.interp(at, motion.time, over.values))
+        for axes in figure.axes:
+            axes.axvline(x, color=QUIET, linewidth=0.9, linestyle=(0, (1, 2)), zorder=1.5)
+        begin, end = _within(width, width * (x - low) / (high - low), LETTER_WIDTH * LETTER_SIZE * len(words))
+        if all(end + SPACE < start or begin > stop + SPACE for start, stop in taken):
+            taken.append((begin, end))
+            _write(first, 0.5 * (begin + end) / width, words)
+
+
+def _within(width: float, middle: float, length: float) -> tuple[float, float]:
+    """Return where words of this length about ``middle`` begin and end, moved into the width of the axes (points)."""
+    begin = max(min(middle - 0.5 * length, width - length), 0.0)
+    return begin, begin + length
+
+
+def _write(axes: Axes, middle: float, words: str) -> None:
+    axes.text(
+        middle, 1.015, words.replace("_", " "), transform=axes.transAxes, color=QUIET, fontsize=LETTER_SIZE,
+        ha="center", va="bottom",
+    )  # fmt: skip

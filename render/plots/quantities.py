@@ -1,4 +1,4 @@
-"""Quantities of a motion by the names that SPECTRA gives them: what the machine does to its frame, and parts of it."""
+"""Quantities that pages and spectra show, by name, and the words that ask for them."""
 
 from __future__ import annotations
 
@@ -7,11 +7,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from render.magnitudes import NOISE, force_scale, speed_scale, torque_scale, without_noise
-from render.shaking import couple_floor, force_floor, moment_floor, shaking
+from render.magnitudes import (
+    NOISE,
+    couple_floor,
+    force_floor,
+    force_scale,
+    moment_floor,
+    shaking,
+    speed_scale,
+    torque_scale,
+    without_noise,
+)
 from shared.contract import Motion
 from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean
+
+# Quantities of a motion by the names that SPECTRA gives them: what the machine does to its frame, and parts of it.
 
 SHAKING = ("shaking force", "shaking moment")
 COUPLE = "shaking couple"
@@ -25,13 +36,13 @@ class Quantity:
 
     name: str
     says: str
-    """What it is, for the page's second line."""
+    """Description for the page's second line."""
     symbol: str
     unit: str
     components: dict[str, np.ndarray]
     """(T,) each, by the name of its line."""
     floor: float
-    """What is rounding."""
+    """Values below are rounding."""
 
     @property
     def rows(self) -> np.ndarray:
@@ -57,14 +68,14 @@ def refuse_unknown_in_all(motions: Sequence[Motion], names: Sequence[str]) -> No
 
 
 def known_names(motion: Motion) -> list[str]:
-    """All names of quantities."""
+    """Return all names of quantities."""
     whole = [*SHAKING, *([COUPLE] if motion.couple else [])]
     own = [motion.joints, motion.drivers, motion.forces, motion.points, motion.bodies]
     return list(dict.fromkeys([*whole, *(name for group in own for name in group)]))
 
 
 def quantity(motion: Motion, name: str) -> Quantity:
-    """By a name of :func:`known_names`."""
+    """Return the quantity with a name of :func:`known_names`."""
     if name in SHAKING or (name == COUPLE and motion.couple):
         return _shaking_quantity(motion, name)
     weak = {"N": NOISE * force_scale(motion), "N m": NOISE * torque_scale(motion)}
@@ -84,7 +95,7 @@ def quantity(motion: Motion, name: str) -> Quantity:
 
 
 def _moving(motion: Motion, name: str) -> Quantity:
-    """The acceleration of a point, or of a body: of its angle where it turns."""
+    """Return the acceleration of a point, or of a body: of its angle where it turns."""
     moving = motion.points.get(name) or motion.bodies[name]
     fastest = speed_scale(motion)
     if name not in motion.points and np.ptp(motion.bodies[name].theta) > NOISE:
@@ -97,7 +108,7 @@ def _moving(motion: Motion, name: str) -> Quantity:
 
 
 def _shaking_quantity(motion: Motion, name: str) -> Quantity:
-    """What inertia puts on the frame."""
+    """Return the forces and moments of inertia on the frame."""
     shaken = shaking(motion)
     if name == "shaking force":
         says = "force of inertia on the frame, \N{MINUS SIGN}Σ m a"
@@ -113,7 +124,7 @@ def _shaking_quantity(motion: Motion, name: str) -> Quantity:
 
 
 def _xy(x: Sequence[float] | np.ndarray, y: Sequence[float] | np.ndarray) -> dict[str, np.ndarray]:
-    """Both components; one that is always zero is left out."""
+    """Return both components; one that is always zero is left out."""
     both = {"x": np.asarray(x), "y": np.asarray(y)}
     largest = max(float(np.abs(values).max()) for values in both.values())
     return {axis: v for axis, v in both.items() if np.abs(v).max() > NOISE * largest} or {"x": both["x"]}

@@ -9,9 +9,8 @@ from render import FRAME_SOURCES
 from render.freshness import clearance_files, current_clearance
 from render.report import sections
 from render.report.loads import load_section
-from render.report.moments import event_section
 from render.report.orders import orders_section
-from render.report.transmission_words import transmission_section
+from render.report.transmission import event_section, transmission_section
 from render.report.travel import travel_section
 from shared.contract import Motion, Parts, read_motion, read_parts
 from shared.contract.clearance import Clearance
@@ -40,7 +39,7 @@ def run(name: str) -> None:
 
 
 def is_fresh(name: str) -> bool:
-    """Whether there is nothing to do."""
+    """Return True if there is nothing to do."""
     out = Out(name)
     return out.motion.is_file() and _stage(out, description(out.name)).is_fresh()
 
@@ -52,7 +51,7 @@ def _stage(out: Out, said: str) -> Stage:
 
 
 def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, said: str = "") -> str:
-    """The whole document, Markdown."""
+    """Return the whole document, Markdown."""
     title = motion.mechanism.replace("_", " ").replace("-", ": ")
     lines = [f"# {title[:1].upper()}{title[1:]}", ""]
     lines += [said, ""] if said else []
@@ -78,7 +77,7 @@ def report(motion: Motion, parts: Parts | None, clearance: Clearance | None, sai
 
 
 def description(name: str) -> str:
-    """The docstring of mechanism.py, read without running it; empty where there is none."""
+    """Return the docstring of mechanism.py, read without running it; empty where there is none."""
     try:
         return ast.get_docstring(ast.parse(mechanism_file(name).read_bytes())) or ""
     except (SyntaxError, OSError):

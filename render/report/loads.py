@@ -1,4 +1,4 @@
-"""Loads in a report: reactions, drivers, forces, gas, contacts."""
+"""Loads in the report: reactions, gas and oil."""
 
 from __future__ import annotations
 
@@ -6,17 +6,82 @@ import math
 
 import numpy as np
 
-from render.report.gas import gas_section
-from render.report.hydraulics import hydraulics_section
-from render.report.written import Amounts, first_peak, moment, table, written
+from render.magnitudes import NOISE
+from render.report.written import Amounts, degrees, first_peak, moment, table, written
 from shared.contract import Motion
+
+# Gas in cylinders: peak pressure, indicated work of each cycle, mean effective pressure.
+
+
+def gas_section(motion: Motion) -> list[str]:
+    """Return a row for each force that comes from gas behind a piston."""
+    rows, amount = [], Amounts(motion)
+    for name, force in motion.forces.items():
+        gas = force.gas
+        if gas is None:
+            continue
+        pressure = np.array(gas.pressure)
+        k = first_peak(pressure)
+        at = moment(motion.time[k])
+        if gas.crank_angle is not None and gas.cycle_angle is not None:
+            turned = (gas.crank_angle[k] + math.pi) % gas.cycle_angle - math.pi
+            at = f"{degrees(turned)} after the top, {at}"
+        rounding = NOISE * max(gas.volume)
+        low, high = (1e6 * (end if end > rounding else 0.0) for end in (min(gas.volume), max(gas.volume)))
+        work = gas.indicated_work or []
+        mean = float(np.mean(work)) if work else None
+        rows.append([
+            name, written(float(pressure[k]), "Pa"), at, written(float(pressure.min()), "Pa"),
+            f"{written(low, 'cm³')} to {written(high, 'cm³')}",
+            "" if mean is None else str(len(work)),
+            "" if mean is None else amount(mean, "J"),
+            "" if mean is None or gas.displaced is None else written(mean / gas.displaced, "Pa"),
+        ])  # fmt: skip
+    if not rows:
+        return []
+    head = [
+        "gas", "peak pressure", "at", "least pressure", "volume", "cycles", "indicated work of a cycle",
+        "mean effective pressure",
+    ]  # fmt: skip
+    return ["### Gas", "", *table(head, rows), ""]
+
+
+# Hydraulic cylinders: highest pressures, oil and energy taken from the supply, and where that goes.
+
+
+def hydraulics_section(motion: Motion) -> list[str]:
+    """Return a row for each hydraulic cylinder."""
+    rows, time, amount = [], np.array(motion.time), Amounts(motion)
+    for name, force in motion.forces.items():
+        cylinder = force.hydraulics
+        if cylinder is None:
+            continue
+        cells = [name]
+        for pressure in (np.array(cylinder.pressure_a), np.array(cylinder.pressure_b)):
+            k = first_peak(pressure)
+            cells.append(f"{written(float(pressure.min()), 'Pa')} to {written(float(pressure[k]), 'Pa')}")
+            cells.append(moment(time[k]))
+        taken = 1e3 * float(np.trapezoid(np.maximum(cylinder.supply_flow, 0.0), time))
+        energies = [
+            float(np.trapezoid(part, time))
+            for part in (cylinder.supply_power, cylinder.valve_loss, cylinder.piston_power)
+        ]
+        rows.append([*cells, written(taken, "l"), *(amount(energy, "J") for energy in energies)])
+    if not rows:
+        return []
+    head = ["hydraulic cylinder", "chamber A", "at", "chamber B", "at", "oil taken", "supplied", "lost in the valve",
+            "given to the piston"]  # fmt: skip
+    return ["### Hydraulics", "", *table(head, rows), ""]
+
+
+# Loads in a report: reactions, drivers, forces, gas, contacts.
 
 ROUNDING = 1e-9
 """Fraction of what power could do all the time: less is no work."""
 
 
 def load_section(motion: Motion) -> list[str]:
-    """Reactions, drivers, forces, gas, contacts."""
+    """Return reactions, drivers, forces, gas, contacts."""
     time, amount = np.array(motion.time), Amounts(motion)
     lines: list[str] = []
     forces = {name: np.hypot(joint.fx, joint.fy) for name, joint in motion.joints.items()}
@@ -94,14 +159,14 @@ def _rms(values: np.ndarray, time: np.ndarray) -> float:
 
 
 def _powers(power: np.ndarray, amount: Amounts) -> tuple[str, str]:
-    """The highest and the lowest; rounding beside the larger one is nothing."""
+    """Return the highest and the lowest; rounding beside the larger one is nothing."""
     floor = ROUNDING * float(np.abs(power).max(initial=0.0))
     most, least = (amount(value if abs(value) > floor else 0.0, "W") for value in (power.max(), power.min()))
     return most, least
 
 
 def _work(power: np.ndarray, time: np.ndarray, amount: Amounts) -> str:
-    """Work over all the time; rounding counts as none."""
+    """Return the work over all the time; rounding counts as none."""
     work = float(np.trapezoid(power, time))
     most = float(np.abs(power).max(initial=0.0)) * float(time[-1] - time[0])
     return amount(work if abs(work) > ROUNDING * most else 0.0, "J")

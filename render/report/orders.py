@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from render.magnitudes import floor_of, force_floor
 from render.report.written import Amounts, table, written
-from render.shaking import floor_of, force_floor
 from shared.contract import Motion
 from shared.contract.vibration import Harmonics
 
@@ -17,7 +17,7 @@ VECTORS = ("shaking force", "shaking couple")
 
 
 def orders_section(motion: Motion) -> list[str]:
-    """A table with a row for each order that counts."""
+    """Return a table with a row for each order that counts."""
     vibration = motion.vibration
     if vibration is None:
         return []
@@ -70,7 +70,7 @@ def _cells(name: str, harmonics: Harmonics, size: np.ndarray, k: int) -> list[st
 
 
 def _mean(motion: Motion) -> str:
-    """Root mean squares, and how far the centre of mass goes."""
+    """Return the root mean squares, and how far the centre of mass goes."""
     vibration = motion.vibration
     assert vibration is not None
     force = float(np.sqrt(np.mean(np.square(vibration.fx) + np.square(vibration.fy))))

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from render.crank import crank_of, driven_bodies
+from render.magnitudes import crank_of, driven_bodies, shaking
 from render.report.written import Amounts, counted, first_peak, listed, moment, speed, table, turning, written
-from render.shaking import shaking
 from shared.contract import Motion, Parts
 from shared.contract.clearance import Clearance
 from shared.contract.quantity import figures
@@ -15,7 +14,7 @@ G = 9.80665
 
 
 def motion_section(motion: Motion) -> list[str]:
-    """Mobility, what was solved, how well it closes."""
+    """Return the mobility, what was solved, how well it closes."""
     diagnostics, span = motion.diagnostics, motion.time[-1] - motion.time[0]
     drivers = listed(list(motion.drivers)) if motion.drivers else ""
     moved = f"driven by {drivers}" if drivers else "moved by forces alone"
@@ -47,7 +46,7 @@ def motion_section(motion: Motion) -> list[str]:
 
 
 def speed_section(motion: Motion) -> list[str]:
-    """Peak speeds and accelerations of centres of mass and traced points, peak turning."""
+    """Return the peak speeds and accelerations of centres of mass and traced points, peak turning."""
     time, rows, centres, amount = motion.time, [], {}, Amounts(motion)
     for name, body in motion.bodies.items():
         theta, omega, alpha = (np.array(part) for part in (body.theta, body.omega, body.alpha))
@@ -75,7 +74,7 @@ def speed_section(motion: Motion) -> list[str]:
 
 
 def _last_turn(motion: Motion) -> list[str]:
-    """How evenly a crank turns that forces turn: after the run-up, over its last turn."""
+    """Return how evenly a crank turns that forces turn: after the run-up, over its last turn."""
     crank = crank_of(motion)
     if crank is None or crank.turns < 2 or crank.body in driven_bodies(motion):
         return []
@@ -92,7 +91,7 @@ def _last_turn(motion: Motion) -> list[str]:
 
 
 def frame_section(motion: Motion) -> list[str]:
-    """What inertia does to the frame, of machines with bodies in different places along the normal of the plane."""
+    """Return the lines on inertia forces on the frame, for bodies in different places along the normal of the plane."""
     shaken = shaking(motion)
     if shaken.mx is None or shaken.my is None:
         return []
@@ -106,7 +105,7 @@ def frame_section(motion: Motion) -> list[str]:
 
 
 def energy_section(motion: Motion) -> list[str]:
-    """Kinetic and potential energy, and how well the balance holds."""
+    """Return kinetic and potential energy, and how well the balance holds."""
     amount = Amounts(motion)
     kinetic, potential = np.array(motion.energy.kinetic), np.array(motion.energy.potential)
     total = kinetic + potential
@@ -140,7 +139,7 @@ def energy_section(motion: Motion) -> list[str]:
 
 
 def mass_section(motion: Motion, parts: Parts | None) -> list[str]:
-    """Masses and where they are from."""
+    """Return masses and where they are from."""
     words = {"mechanism": "mechanism.py", "parts": "the parts", "estimate": "an estimate"}
     rows = [
         [name, written(body.mass, "kg"), _place(body.com), written(body.inertia, "kg m²"), words[body.mass_from]]
@@ -159,7 +158,7 @@ def mass_section(motion: Motion, parts: Parts | None) -> list[str]:
 
 
 def clearance_section(clearance: Clearance | None) -> list[str]:
-    """The least gap between two parts, and what was not compared."""
+    """Return the least gap between two parts, and what was not compared."""
     if clearance is None:
         return ["It was not checked: there is no clearance.json of this motion."]
     lines = [_nearest(clearance)]

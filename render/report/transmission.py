@@ -1,21 +1,25 @@
-"""Transmission angle and dead points of four-bars and slider-cranks, from where their pins are.
-
-    four-bar        pins A B C D round the loop; mu: angle at C between coupler and follower
-    slider-crank    mu: angle at C between the rod and the normal of the guide
-    dead points     A, B, C in one line: the follower turns back there, and could not drive the crank from there
-
-mu near 90 degrees passes the force on best; 40 degrees is a usual limit (VDI 2123, VDI 2126).
-"""
+"""Transmission angles and moments of a motion: found, and put into words."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from render.crank import crank_of
-from shared.contract import Motion
+from render.magnitudes import crank_of
+from render.report.written import Amounts, degrees, listed, moment, table, written
+from shared.contract import EventMark, Motion
+from shared.contract.quantity import figures
+
+# Transmission angle and dead points of four-bars and slider-cranks, from where their pins are.
+#
+#     four-bar        pins A B C D round the loop; mu: angle at C between coupler and follower
+#     slider-crank    mu: angle at C between the rod and the normal of the guide
+#     dead points     A, B, C in one line: the follower turns back there, and could not drive the crank from there
+#
+# mu near 90 degrees passes the force on best; 40 degrees is a usual limit (VDI 2123, VDI 2126).
 
 LEAST = np.radians(40.0)
 """Transmission angle that is usually asked for."""
@@ -33,7 +37,7 @@ class Loop:
     coupler: str
     follower: str
     slides: bool
-    """Whether the follower slides."""
+    """True if the follower slides."""
     pins: np.ndarray
     """(T, 4, 2) A B C D (m); of a slider-crank D is C moved along the guide's normal."""
     angle: np.ndarray
@@ -48,7 +52,9 @@ class Loop:
         return np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
 
     def dead_points(self, time: np.ndarray) -> list[tuple[float, float]]:
-        """Time (s) and angle of the crank (rad, 0 .. 2 pi) at each; one on the seam of a period once, at its start."""
+        """Return the time (s) and angle of the crank (rad, 0 .. 2 pi) at each; one on the seam of a period once, at its
+        start.
+        """
         a, b, c = (self.pins[:, k] for k in (0, 1, 2))
         first, second = b - a, c - b
         turn = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
@@ -71,7 +77,7 @@ class Loop:
 
     @property
     def travel(self) -> float:
-        """What the follower does: the angle it swings through (rad), or its stroke (m)."""
+        """Travel of the follower: the angle it swings through (rad), or its stroke (m)."""
         c, d = self.pins[:, 2], self.pins[:, 3]
         if self.slides:
             normal = (d - c)[0] / np.hypot(*(d - c)[0])
@@ -87,7 +93,9 @@ class Loop:
 
 
 def loops(motion: Motion) -> list[Loop]:
-    """All loops of a mechanism whose crank a driver turns against ground, or which forces turn round and round."""
+    """Return all loops of a mechanism whose crank a driver turns against ground, or which forces turn round and
+    round.
+    """
     out = []
     pins: dict[frozenset[str], np.ndarray] = {}
     for joint in motion.joints.values():
@@ -113,7 +121,9 @@ def loops(motion: Motion) -> list[Loop]:
 
 
 def _driven(motion: Motion) -> list[str]:
-    """Bodies that a driver turns against ground; of files that do not tell, those whose angle is the driver's."""
+    """Return bodies that a driver turns against ground; of files that do not tell, those whose angle is the
+    driver's.
+    """
     out = []
     for driver in motion.drivers.values():
         if driver.unit != "rad":
@@ -127,13 +137,13 @@ def _driven(motion: Motion) -> list[str]:
 
 
 def _turning(motion: Motion) -> list[str]:
-    """The crank of a motion that forces make."""
+    """Return the crank of a motion that forces make."""
     crank = crank_of(motion) if motion.analysis == "simulation" else None
     return [] if crank is None else [crank.body]
 
 
 def _normal(c: np.ndarray) -> np.ndarray:
-    """(2,) unit normal of the way that a slider goes on ground."""
+    """Return (2,) unit normal of the way that a slider goes on ground."""
     middle = c - c.mean(axis=0)
     along = np.linalg.svd(middle, full_matrices=False)[2][0]
     return np.array([-along[1], along[0]])
@@ -144,3 +154,123 @@ def _loop(
 ) -> Loop:
     arm = pins[1] - pins[0]
     return Loop(crank, coupler, follower, slides, np.stack(pins, axis=1), np.unwrap(np.arctan2(*arm.T[::-1])))
+
+
+# Transmission angle, dead points, stroke and Grashof's condition in sentences.
+
+ALIKE = 1.005
+"""Ways whose times have a smaller ratio take equally long."""
+SAME = math.radians(1.0)
+"""Dead points whose angles differ by less are one."""
+
+
+def transmission_section(motion: Motion) -> list[str]:
+    """Return the section on every four-bar and slider-crank in the mechanism."""
+    lines: list[str] = []
+    for loop in loops(motion):
+        lines += [*_loop_lines(loop, np.array(motion.time)), ""]
+    return lines[:-1]
+
+
+def _different(dead: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return the dead points of the first turn: later ones are at the same angles of the crank."""
+    first: list[tuple[float, float]] = []
+    for at, angle in dead:
+        if all(abs(math.remainder(angle - other, 2 * math.pi)) > SAME for _, other in first):
+            first.append((at, angle))
+    return first
+
+
+def _loop_lines(loop: Loop, time: np.ndarray) -> list[str]:
+    mu = loop.transmission
+    k = int(mu.argmin())
+    kind = "slider-crank" if loop.slides else "four-bar"
+    lines = [
+        f"{loop.crank}, {loop.coupler} and {loop.follower} are a {kind}. Its transmission angle lies between "
+        f"{degrees(mu.min())} (crank at {degrees(loop.angle[k] % (2 * math.pi))}, t = {moment(time[k])}) and "
+        f"{degrees(mu.max())}"
+        + (f"; {degrees(LEAST)} are usually asked for." if mu.min() < LEAST else ".")
+    ]  # fmt: skip
+    passed = loop.dead_points(time)
+    dead = _different(passed)
+    if dead:
+        places = listed([f"{degrees(angle)} (t = {moment(at)})" for at, angle in dead[:4]])
+        travel = written(loop.travel, "m") if loop.slides else degrees(loop.travel)
+        does = f"strokes {travel}" if loop.slides else f"swings {travel}"
+        lines.append(
+            f"{loop.coupler} and {loop.crank} are in line with the crank at {places}: there the {loop.follower} turns "
+            f"back, and could not drive. The {loop.follower} {does}."
+        )
+        if len(passed) == 2 and np.ptp(loop.angle) > 1.9 * math.pi:
+            way = (dead[1][0] - dead[0][0]) / (time[-1] - time[0])
+            ratio = max(way, 1 - way) / min(way, 1 - way)
+            ways = f"One way takes {figures(ratio, 3)} times as long as the other."
+            lines[-1] += f" {ways if ratio > ALIKE else 'Both ways take equally long.'}"
+    else:
+        lines.append(f"There is no dead point in this motion: {loop.crank} and {loop.coupler} are never in line.")
+    if not loop.slides:
+        short, *middle, long = sorted(loop.lengths)
+        turns = (
+            "some link can turn fully (Grashof)" if short + long <= sum(middle) else "no link can turn fully (Grashof)"
+        )
+        lines.append(
+            f"Shortest and longest link are {written(short + long, 'm', 4)} together, the two others "
+            f"{written(sum(middle), 'm', 4)}: {turns}."
+        )
+    return [" ".join(lines)]
+
+
+# Events at one moment of a motion: dead points, impacts and others. Plots and the page mark them, the report
+# lists them.
+
+STEP = 1e-6
+"""Fraction of the motion: times that are nearer are one."""
+FEW = 6
+"""Dead points at most; of a crank that turns and turns they would say nothing."""
+MOST = 24
+"""Rows of the list of events; of more, those of one name and kind share a row."""
+
+
+def marks(motion: Motion) -> list[tuple[float, str]]:
+    """Return times (s) and words, in their order: dead points of driven cranks, and all events but the end."""
+    time = np.asarray(motion.time)
+    moments = [(at, f"{loop.follower} turns back") for loop in loops(motion) for at, _ in loop.dead_points(time)]
+    if motion.period:  # what is at the start of a period is at its end
+        close = STEP * (time[-1] - time[0])
+        ends = (time[0], time[-1])
+        moments += [
+            (other, words) for at, words in moments for end, other in (ends, ends[::-1]) if abs(at - end) < close
+        ]
+    moments = moments if len(moments) <= FEW else []
+    moments += [(event.time, f"{event.name}: {event.what}") for event in motion.events if event.what != "end"]
+    return sorted(set(moments))
+
+
+def event_section(motion: Motion) -> list[str]:
+    """Return a table of all events with their times; of many, those of one name and kind are grouped."""
+    if not motion.events:
+        return []
+    amount = Amounts(motion)
+    if len(motion.events) <= MOST:
+        rows = [
+            [f"{event.name}: {event.what}", moment(event.time), _impulse(motion, [event]), amount(event.energy, "J")]
+            for event in motion.events
+        ]
+        return table(["event", "at", "impulse", "change of kinetic energy"], rows)
+    groups: dict[str, list[EventMark]] = {}
+    for event in motion.events:
+        groups.setdefault(f"{event.name}: {event.what}", []).append(event)
+    rows = [
+        [words, str(len(group)), moment(group[0].time), moment(group[-1].time), _impulse(motion, group)]
+        for words, group in groups.items()
+    ]
+    lines = [f"{len(motion.events)} events, in groups; data.json has each.", ""]
+    return [*lines, *table(["event", "how often", "first at", "last at", "largest impulse"], rows)]
+
+
+def _impulse(motion: Motion, events: list[EventMark]) -> str:
+    """Return the largest impulse of impacts, in words; empty for other events."""
+    size = max(abs(event.impulse) for event in events)
+    contact = motion.contacts.get(events[0].name)
+    unit = "N m s" if contact is not None and contact.effort_unit == "N m" else "N s"
+    return written(size, unit) if size else ""

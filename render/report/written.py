@@ -40,7 +40,7 @@ def turning(value: float) -> str:
 
 
 def degrees(value: float) -> str:
-    """Degrees from radians."""
+    """Return degrees from radians."""
     return f"{math.degrees(value):.1f}°".replace("-", MINUS)
 
 
@@ -55,11 +55,11 @@ def listed(words: Sequence[str]) -> str:
 
 
 def first_peak(values: np.ndarray) -> int:
-    """Where the largest value is; the first of several that are as large but for rounding."""
+    """Return where the largest value is; the first of several that are as large but for rounding."""
     return int(np.argmax(values >= values.max() - 1e-9 * abs(values.max())))
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Lines of a table; the first column is words, the others numbers."""
+    """Return lines of a table; the first column is words, the others numbers."""
     lines = [f"| {' | '.join(head)} |", f"|---|{'---:|' * (len(head) - 1)}"]
     return [*lines, *(f"| {' | '.join(row)} |" for row in rows)]

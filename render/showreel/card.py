@@ -44,7 +44,7 @@ class Title:
 
 
 def pictures(first: Image, title: Title, fps: int) -> Iterator[bytes]:
-    """PNGs of a title of :data:`SECONDS`; ``first`` is the film's first picture, to which they lead."""
+    """Yield PNGs of a title of :data:`SECONDS`; ``first`` is the film's first picture, to which they lead."""
     sharp = np.asarray(first.convert("RGB")).astype(np.float32)
     behind, words = _behind(first), _words(first.size, title)
     count, fade = number(fps), max(1, round(FADE * fps))
@@ -61,7 +61,7 @@ def pictures(first: Image, title: Title, fps: int) -> Iterator[bytes]:
 
 
 def number(fps: int) -> int:
-    """Pictures of a title."""
+    """Return pictures of a title."""
     return round(SECONDS * fps)
 
 
@@ -71,7 +71,7 @@ def _eased(part: float) -> float:
 
 
 def _behind(first: Image) -> np.ndarray:
-    """The picture out of focus and dark, darkest on the left, where the words stand."""
+    """Return the picture out of focus and dark, darkest on the left, where the words stand."""
     from PIL import ImageFilter
 
     soft = np.asarray(first.convert("RGB").filter(ImageFilter.GaussianBlur(BLUR * first.width))).astype(np.float32)
@@ -81,7 +81,7 @@ def _behind(first: Image) -> np.ndarray:
 
 
 def _words(size: tuple[int, int], title: Title) -> np.ndarray:
-    """Name, a short line and what it is: RGBA, floats 0..255."""
+    """Return the name, a short line and what it is: RGBA, floats 0..255."""
     from PIL import Image, ImageDraw
 
     wide, high = size
@@ -101,7 +101,7 @@ def _words(size: tuple[int, int], title: Title) -> np.ndarray:
 
 
 def _lines(said: str, letters: int, most: int) -> list[str]:
-    """As many whole sentences as fit into so many lines of so many letters."""
+    """Return as many whole sentences as fit into so many lines of so many letters."""
     sentences = re.split(r"(?<=[.!?])\s+(?=[A-Z0-9])", said)
     for count in range(len(sentences), 0, -1):
         lines = textwrap.wrap(" ".join(sentences[:count]), letters)
@@ -111,7 +111,7 @@ def _lines(said: str, letters: int, most: int) -> list[str]:
 
 
 def _fitting(draw: Any, words: str, size: float, width: float) -> Any:
-    """Bold letters of this height, or smaller ones where the words would be too wide."""
+    """Return bold letters of this height, or smaller ones where the words would be too wide."""
     font = font_of(size, bold=True)
     length = draw.textlength(words, font=font)
     return font if length <= width else font_of(size * width / length, bold=True)

@@ -1,15 +1,15 @@
-"""Which films, in which order, and out/films/showreel-<preset>.mp4 with its .srt."""
+"""The showreel: films in their order as out/films/showreel-<preset>.mp4, with its .srt."""
 
 from __future__ import annotations
 
 from contextlib import suppress
 from pathlib import Path
 
-from render.blender.scratch import scratch_folder
+from render.blender.process import scratch_folder
 from render.film.inputs import named
 from render.frames.story.stage import film_of
 from render.freshness import Freshness
-from render.gallery.page import sentences
+from render.gallery import sentences
 from render.presets import Preset
 from render.report import description
 from render.showreel.card import Title
@@ -45,10 +45,10 @@ def run(preset: Preset, only: str = "", show: str = "", story: str = "explain") 
     }
     left = [name for name in names if name not in there]
     if only.strip() and len(films) < len(there):
-        raise UserError("showreel: films that are asked for are older than their machines, as said above")
+        raise UserError("showreel: requested films are older than their machines, as said above; make them again")
     if not films or (only.strip() and left):
         wanted = ", ".join(left) if only.strip() else "any mechanism"
-        remedy = f"{to_run('film', (left or ['<name>'])[0])} {preset.asked}"
+        remedy = f"{to_run('film', (left or ['<name>'])[0])} {preset.request}"
         raise UserError(f"showreel: there is no film of {wanted} at {preset.name}; {remedy}")
     if any("-" not in name for name in left):
         missing = [name for name in left if "-" not in name]  # a variant's film is one that somebody asked for
@@ -81,18 +81,20 @@ def _is_older(freshness: Freshness, name: str, film: Path, preset: Preset) -> bo
     """Return True if a film shows the machine as it was, which is reported."""
     why = freshness.why_older(Out(name), film)
     if why:
-        warn(NAME, f"{film.name} is left out, being of an older version: {why}; {to_run('film', name)} {preset.asked}")
+        warn(
+            NAME, f"{film.name} is left out, being of an older version: {why}; {to_run('film', name)} {preset.request}"
+        )
     return bool(why)
 
 
 def _film(name: str, preset: Preset, show: str, story: str) -> Path:
-    """The story of a mechanism if it is made and asked for, else its loop."""
+    """Return the story of a mechanism if it is made and asked for, else its loop."""
     explains = film_of(Out(name), preset.name, show)
     return explains if story == "explain" and explains.is_file() else _loop(name, preset, show)
 
 
 def _has_title(name: str) -> bool:
-    """Whether the story of a mechanism begins with its title."""
+    """Return True if the story of a mechanism begins with its title."""
     shots = read_shot(Out(name).shot).story.shots
     return shots is None or shots[0] == "title"
 
@@ -102,7 +104,7 @@ def _loop(name: str, preset: Preset, show: str) -> Path:
 
 
 def title_of(name: str) -> Title:
-    """Words for a mechanism or variant; what it is comes from mechanism.py."""
+    """Return words for a mechanism or variant; what it is comes from mechanism.py."""
     owner, _, variant = name.partition("-")
     words = owner.replace("_", " ") + (f": {variant.replace('_', ' ')}" if variant else "")
     return Title(words[:1].upper() + words[1:], sentences(description(owner)))

@@ -21,10 +21,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from render.sound.chance import octave_noise
-from render.sound.fourier import irfft, rfft
 from render.sound.ringing import Modes
 from render.sound.setting import RATE, Setting
+from render.sound.waves import irfft, octave_noise, rfft
 
 Array = NDArray[np.float64]
 Spectrum = NDArray[np.complex128]
@@ -98,7 +97,7 @@ class Desk:
                 rows += power * share
 
     def stems(self) -> dict[str, Spectrum]:
-        """(2, N // 2 + 1) the spectrum of what each source is heard as (Pa)."""
+        """Return (2, N // 2 + 1) the spectrum of what each source is heard as (Pa)."""
         bank: dict[int, Array] = {}
         for source, rows in self._powers.items():
             wave = self._waves.setdefault(source, np.zeros((2, self.setting.samples)))
@@ -120,7 +119,9 @@ class Desk:
         return octave_noise(self.setting.samples, float(OCTAVES[k]), self.setting.streams + k)
 
     def _blows(self, blows: Sequence[Blows]) -> Spectrum:
-        """(2, N // 2 + 1) the spectrum of all strikes of a body; those that come from one place are summed first."""
+        """Return (2, N // 2 + 1) the spectrum of all strikes of a body; those that come from one place are summed
+        first.
+        """
         film, impulse, tau, side = (np.concatenate(row) for row in zip(*blows, strict=True))
         gains = _gains(side)
         if np.ptp(side) < NARROW:
@@ -128,7 +129,7 @@ class Desk:
         return np.stack([rfft(self._pulses(film, gain * impulse, tau)) for gain in gains])
 
     def _pulses(self, film: Array, impulse: Array, tau: Array) -> Array:
-        """(N,) half sines of these areas; those that last about as long are made together."""
+        """Return (N,) half sines of these areas; those that last about as long are made together."""
         count = self.setting.samples
         wave, place = np.zeros(count), film / self.setting.seconds * count
         width = np.maximum(tau, SHORTEST) * RATE
@@ -147,7 +148,7 @@ class Desk:
         return wave
 
     def _fine(self, values: Array) -> Array:
-        """(N,) of (M + 1,), straight in between."""
+        """Return (N,) of (M + 1,), straight in between."""
         first, part = self._between
         return values[first] + part * np.diff(values)[first]
 
@@ -159,7 +160,7 @@ class Desk:
         return first, rest / count
 
     def _soft(self, level: Array) -> Array:
-        """Smoothed round the ring."""
+        """Return the smoothed round the ring."""
         width = max(3, round(SOFT * self.setting.steps / self.setting.seconds))
         bell = np.hanning(width + 2)[1:-1]
         ring, full = level[:-1], np.zeros(len(level) - 1)
@@ -169,12 +170,12 @@ class Desk:
 
 
 def _audible(frequency: Array) -> Array:
-    """(n,) how much of a harmonic at these frequencies (Hz) is heard, 0 .. 1."""
+    """Return (n,) how much of a harmonic at these frequencies (Hz) is heard, 0 .. 1."""
     (low, begun), (going, gone) = LOW, HIGH
     return np.clip((frequency - low) / (begun - low), 0, 1) * np.clip((gone - frequency) / (gone - going), 0, 1)
 
 
 def _gains(side: Array) -> Array:
-    """(2, n) of left and right."""
+    """Return (2, n) of left and right."""
     angle = (1 + side) * np.pi / 4
     return np.stack([np.cos(angle), np.sin(angle)])

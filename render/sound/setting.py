@@ -1,4 +1,4 @@
-"""What sources read: the motion on the film's time, who is heard, and where in the picture things are.
+"""Setting of all sources of sound: the motion on the film's time, who is heard, and where in the picture things are.
 
 Sources work on series over the times of data.json, and bring them to the film by :meth:`Setting.series`; what happens
 at one moment is at the film seconds that :meth:`Setting.when` gives. Both follow the film's TimeMap and nothing else: a
@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.film.camera import angles
+from render.film.clock import TimeMap
 from render.film.film import Film
 from render.film.framing import axes
-from render.film.time_map import TimeMap
-from render.sound.fourier import quick_length
 from render.sound.ringing import Modes, modes_of
+from render.sound.waves import quick_length
 from shared.stage.errors import UserError
 
 Array = NDArray[np.float64]
@@ -71,25 +71,25 @@ class Setting:
         self.steps = max(16, round(self.seconds * CONTROL))
         self.at = np.linspace(0.0, self.seconds, self.steps + 1)
         """(M + 1,) film seconds of what changes slowly, both ends included."""
-        self.model, self.rate = self.map.at(self.at)
+        self.model, self.rate = self.map.moments_at(self.at)
         """(M + 1,) moments of the motion (s), and its rate there."""
 
     def heard(self, items: Mapping[str, Item]) -> Iterator[tuple[str, Item]]:
-        """Those that the shot does not silence, by name."""
+        """Yield the items that the shot does not silence, by name."""
         silent = self.film.shot.sound.silent
         return ((name, item) for name, item in items.items() if name not in silent)
 
     def series(self, values: Array) -> Array:
-        """(M + 1,) a series (T,) of the motion on the film's time."""
+        """Return (M + 1,) a series (T,) of the motion on the film's time."""
         return np.interp(self.model, self.time, values)
 
     def when(self, times: Array) -> tuple[Array, NDArray[np.intp]]:
-        """Film seconds at which moments (n,) of the motion are shown, and the index of each."""
+        """Return the film seconds at which moments (n,) of the motion are shown, and the index of each."""
         film, index = self.map.when(np.asarray(times, float))
         return np.minimum(film, self.seconds), index
 
     def continued(self, way: Array) -> Array:
-        """A way or phase (M + 1,) that goes on, at the speed around it, where the film jumps to another moment.
+        """Return a way or phase (M + 1,) that goes on, at the speed around it, where the film jumps to another moment.
 
         Else a jump would be heard as a burst of all that lies between.
         """
@@ -109,24 +109,24 @@ class Setting:
         return np.abs(np.diff(self.model) - passed) > step * np.abs(np.diff(self.rate)) + 1e-9 * np.ptp(self.time)
 
     def closed(self, phase: Array) -> Array:
-        """A phase (M + 1,) in cycles, so stretched that a film that loops has a whole number of them."""
+        """Return a phase (M + 1,) in cycles, so stretched that a film that loops has a whole number of them."""
         cycles = float(phase[-1] - phase[0])
         if not self.map.closes or abs(cycles) < 0.5:
             return phase
         return phase[0] + (phase - phase[0]) * (round(cycles) / cycles)
 
     def angle(self, body: str) -> Array:
-        """(M + 1,) the angle of a body (rad), as exactly as the film shows it; 0 of ground."""
+        """Return (M + 1,) the angle of a body (rad), as exactly as the film shows it; 0 of ground."""
         return self.film.poses.over(body, self.model)[:, 2]
 
     def place(self, body: str, x: float, y: float) -> Array:
-        """(M + 1, 2) where a point (x, y) of a body's frame is (m)."""
+        """Return (M + 1, 2) where a point (x, y) of a body's frame is (m)."""
         pose = self.film.poses.over(body, self.model)
         c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
         return pose[:, :2] + np.stack([c * x - s * y, s * x + c * y], axis=1)
 
     def modes(self, body: str) -> Modes | None:
-        """What a body, or ground, rings with; None of one without solids."""
+        """Return the modes of a body, or of ground; None for one without solids."""
         if body not in self._modes:
             solids = self.film.parts.bodies.get(body)
             self._modes[body] = modes_of(solids) if solids else None
@@ -137,17 +137,17 @@ class Setting:
         return {}
 
     def mass(self, *bodies: str) -> float:
-        """Mass (kg) that two bodies have as they push on each other; ground does not move."""
+        """Return the mass (kg) that two bodies have as they push on each other; ground does not move."""
         masses = [self.motion.bodies[name].mass for name in bodies if name in self.motion.bodies]
         return 1.0 / sum(1.0 / max(mass, 1e-6) for mass in masses) if masses else 1.0
 
     def slip(self, bodies: tuple[str, str], x: Array, y: Array) -> Array:
-        """(T,) speed (m/s) at which the second body slides on the first at places (T,) of the world (m)."""
+        """Return (T,) speed (m/s) at which the second body slides on the first at places (T,) of the world (m)."""
         first, second = (self._velocity(body, x, y) for body in bodies)
         return np.hypot(*(second - first))
 
     def turning(self, bodies: tuple[str, str]) -> Array:
-        """(T,) angular velocity of the second body against the first (rad/s)."""
+        """Return (T,) angular velocity of the second body against the first (rad/s)."""
         first, second = (
             np.asarray(self.motion.bodies[name].omega) if name in self.motion.bodies else np.zeros(len(self.time))
             for name in bodies
@@ -167,7 +167,7 @@ class Setting:
         )
 
     def side(self, x: Array, y: Array) -> Array:
-        """(M + 1,) where places (T,) of the world are heard: -1 at the left, 1 at the right.
+        """Return (M + 1,) where places (T,) of the world are heard: -1 at the left, 1 at the right.
 
         The edges of what moves are at the edges; the camera's distance, which is costly, is not asked for.
         """
@@ -175,7 +175,7 @@ class Setting:
         return self._laid(np.clip((self.series(right[0] * x + right[1] * y) - middle) / half, -1.0, 1.0))
 
     def side_of(self, body: str) -> Array:
-        """(M + 1,) the same of a body's centre of mass; the middle of ground."""
+        """Return (M + 1,) the same of a body's centre of mass; the middle of ground."""
         if body not in self.motion.bodies:
             return self._laid(np.zeros(self.steps + 1))
         moved = self.motion.bodies[body]
@@ -184,7 +184,7 @@ class Setting:
         return self.side(np.asarray(moved.x) + c * x - s * y, np.asarray(moved.y) + s * x + c * y)
 
     def _laid(self, side: Array) -> Array:
-        """Sides (n,) in the machine's picture as they are heard in the whole one."""
+        """Return sides (n,) in the machine's picture as they are heard in the whole one."""
         low, high = self.within
         return (low + (high - low) * (side + 1) / 2) * WIDEST
 
@@ -197,7 +197,7 @@ class Setting:
         low, high = float(along.min()), float(along.max())
         if film.travel is None:
             return right, (low + high) / 2, max((high - low) / 2, 1e-9)
-        moments, _ = film.clock.time_map.at(np.arange(len(film.travel)) / film.shot.fps)
+        moments, _ = film.clock.time_map.moments_at(np.arange(len(film.travel)) / film.shot.fps)
         way = np.interp(self.model, moments, film.travel @ right)
         return right, way + float(right @ film.space.middle - way.mean()), max(film.size / 2, 1e-9)
 

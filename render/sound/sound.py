@@ -1,16 +1,23 @@
-"""The sound of a whole film."""
+"""The sound of a film, alone or in a story, and its wave file."""
 
 from __future__ import annotations
+
+import io
+import wave
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from render.film.clock import TimeMap
 from render.film.film import Film
-from render.film.time_map import TimeMap
 from render.sound.desk import Desk, Spectrum
 from render.sound.mix import mixed
 from render.sound.setting import RATE, Setting
 from render.sound.sources import gas, impacts, knocks, mesh, motor, sliding, springs
+
+# The sound of a whole film.
 
 Array = NDArray[np.float64]
 SOURCES = (impacts, knocks, mesh, gas, motor, sliding, springs)
@@ -18,7 +25,7 @@ SOURCES = (impacts, knocks, mesh, gas, motor, sliding, springs)
 
 
 def sound_of(film: Film, time_map: TimeMap | None = None) -> Array:
-    """(2, n) the sound of a film at 48 kHz, 1 being full scale: that of a showing, as often as it is shown.
+    """Return (2, n) the sound of a film at 48 kHz, 1 being full scale: that of a showing, as often as it is shown.
 
     With a ``time_map`` it is that of another film of the same motion, once.
     """
@@ -32,9 +39,54 @@ def sound_of(film: Film, time_map: TimeMap | None = None) -> Array:
 
 
 def stems_of(setting: Setting) -> dict[str, Spectrum]:
-    """(2, N // 2 + 1) the spectrum of what each source of a machine is heard as in a showing (Pa at 1 m)."""
+    """Return (2, N // 2 + 1) the spectrum of what each source of a machine is heard as in a showing (Pa at 1 m)."""
     desk = Desk(setting)
     for source in SOURCES:
         if source.NAME not in setting.film.shot.sound.without:
             source.play(setting, desk)
     return desk.stems()
+
+
+# The sound of machines beside each other: each where its picture is, and as loud beside the other as it is.
+
+STREAMS = 100
+"""From the streams of chance of a machine to those of the next: equal noises would be heard as one in the middle."""
+
+
+class Heard(NamedTuple):
+    """A machine that is heard."""
+
+    film: Film
+    time_map: TimeMap
+    within: tuple[float, float]
+    """Where its picture begins and ends in the whole one, -1 at the left edge, 1 at the right."""
+
+
+def sound_of_all(machines: Sequence[Heard]) -> Array:
+    """Return (2, n) the sound of machines whose time maps are of one length, at 48 kHz, 1 being full scale.
+
+    Sources of one kind are balanced and levelled as one, so the louder machine is the louder one in the film.
+    """
+    settings = [Setting(*machine, streams=STREAMS * k) for k, machine in enumerate(machines)]
+    stems: dict[str, Spectrum] = {}
+    for setting in settings:
+        for name, stem in stems_of(setting).items():
+            stems[name] = stems[name] + stem if name in stems else stem
+    return mixed(stems, settings[0].samples, 1)[:, : settings[0].heard_samples]
+
+
+# A wave as the bytes of a WAV file: two channels of 16 bits.
+
+FULL = 32767
+
+
+def wav(sound: NDArray[np.float64]) -> bytes:
+    """Return the file of waves (2, n), 1 being full scale; what is beyond is cut."""
+    samples = np.rint(np.clip(sound, -1.0, 1.0) * FULL).astype("<i2")
+    buffer = io.BytesIO()
+    with wave.open(buffer, "wb") as file:
+        file.setnchannels(2)
+        file.setsampwidth(2)
+        file.setframerate(RATE)
+        file.writeframes(samples.T.tobytes())
+    return buffer.getvalue()

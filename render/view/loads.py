@@ -1,32 +1,127 @@
-"""Arrows, arcs and clearances of the page: the same ones and the same scales as in the film.
-
-arrows    full: length of the largest (m); longest: cut at so many of it; tiny: left out below this part of it;
-          scales {unit: {largest, reference, cut, words}}; list [{quantity, row, name, unit, place, value (2 T,), z}];
-          row: of the legend, which has the colour and the head (shared/contract/signals.py)
-arcs      full: sweep of the largest (rad); scale as above or null; list [{quantity, row, name, place (2 T,),
-          value (T,), radius, z}]
-clearance limit (m), pairs [{bodies, pieces, gap (as proven), time, at, on}] nearest first; at (m) is where,
-              in the frame of the body `on` or in the world, or null
-"""
+"""Loads of a page: arrows, torques, and gaps of contacts."""
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
-from render.film.arrows.arcs import FULL_TURN, SIGNAL, Arcs
-from render.film.arrows.arrows import FULL, Arrows
-from render.film.arrows.scales import LONGEST, TINY, Scale
-from render.film.arrows.torques import rounding, torques
-from render.film.arrows.vectors import vectors
+from render.film.arrows import FULL, FULL_TURN, SIGNAL, Arcs, Arrows
 from render.film.film import Film
 from render.film.heights import Heights
-from render.view.gaps import gap_places
+from render.film.poses import Moment
+from render.film.solids import read_triangles
+from render.film.vectors import LONGEST, TINY, Scale, rounding, torques, vectors
 from shared.contract import Motion
 from shared.contract.clearance import Clearance
 from shared.contract.quantity import written
 from shared.contract.shot import Quantity
+
+# Where two pieces come nearest: the middle of the gap, from points all over both surfaces.
+
+Array = NDArray[np.float64]
+MOST = 12
+"""Pairs whose place is looked for: the nearest ones."""
+FINE = 250
+"""Points are at most the larger piece's size apart, divided by this, as long as there are no more than POINTS."""
+POINTS = 80_000
+
+
+@dataclass(frozen=True)
+class GapPlace:
+    """Where a gap is: in the frame of a body where it is the same in every pose, else in the world (m)."""
+
+    at: tuple[float, float, float]
+    body: str | None
+
+
+def gap_places(film: Film, clearance: Clearance) -> list[GapPlace | None]:
+    """Return points for each pair, at the time of its least gap; None beyond MOST, for missing pieces, and between
+    layers.
+    """
+    out: list[GapPlace | None] = []
+    for number, pair in enumerate(clearance.pairs):
+        pieces = [
+            film.parts.bodies[body].pieces.get(piece) if body in film.parts.bodies else None
+            for body, piece in zip(pair.bodies, pair.pieces, strict=True)
+        ]
+        if number >= MOST or None in pieces or pair.proof == "layers":
+            out.append(None)
+            continue
+        at = Moment(float(film.poses.time[0]) if pair.time is None else pair.time, 0)
+        poses = [film.poses.body(body, at) for body in pair.bodies]
+        surfaces = [
+            _placed(read_triangles(film.folder / piece.stl), pose)
+            for pose, piece in zip(poses, pieces, strict=True)
+            if piece is not None
+        ]
+        x, y, z = (float(value) for value in middle(*surfaces))
+        if pair.time is None:
+            x, y = _seen(x, y, poses[1])
+        out.append(GapPlace((x, y, z), pair.bodies[1] if pair.time is None else None))
+    return out
+
+
+def middle(first: Array, second: Array) -> Array:
+    """Return (3,) halfway between the two nearest points of triangles (n, 3, 3) and (m, 3, 3)."""
+    size = max(float(np.ptp(faces.reshape(-1, 3), axis=0).max()) for faces in (first, second))
+    # Far triangles of a large piece need no points: those within reach of the other's box alone.
+    near = [_overlapping(faces, other, size / 4) for faces, other in ((first, second), (second, first))]
+    a, b = (_points(faces, size / FINE) for faces in near)
+    distance, index = KDTree(b).query(a)
+    k = int(np.argmin(distance))
+    return (a[k] + b[int(np.asarray(index)[k])]) / 2
+
+
+def _overlapping(faces: Array, other: Array, reach: float) -> Array:
+    corners = other.reshape(-1, 3)
+    low, high = corners.min(axis=0) - reach, corners.max(axis=0) + reach
+    there = ((faces.max(axis=1) >= low) & (faces.min(axis=1) <= high)).all(axis=1)
+    return faces[there] if there.any() else faces
+
+
+def _points(triangles: Array, apart: float) -> Array:
+    """Return (k, 3) corners, and places inside of triangles that are larger than ``apart``."""
+    edges = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max(axis=1)
+    parts = np.clip(np.ceil(edges / apart), 1, 200).astype(int)
+    total = int(((parts + 1) * (parts + 2) // 2).sum())
+    if total > POINTS:
+        parts = np.maximum(1, (parts / math.sqrt(total / POINTS)).astype(int))
+    out = []
+    for count in np.unique(parts):
+        i, j = (values.ravel() for values in np.meshgrid(np.arange(count + 1), np.arange(count + 1)))
+        inside = i + j <= count
+        weights = np.stack([i, j, count - i - j], axis=1)[inside] / count
+        out.append(np.einsum("kc,ncd->nkd", weights, triangles[parts == count]).reshape(-1, 3))
+    return np.concatenate(out)
+
+
+def _placed(triangles: Array, pose: tuple[float, float, float]) -> Array:
+    x, y, theta = pose
+    c, s = math.cos(theta), math.sin(theta)
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return triangles @ turn + np.array([x, y, 0.0])
+
+
+def _seen(x: float, y: float, pose: tuple[float, float, float]) -> tuple[float, float]:
+    """Return a place of the world in a body's frame."""
+    u, v, c, s = x - pose[0], y - pose[1], math.cos(pose[2]), math.sin(pose[2])
+    return c * u + s * v, c * v - s * u
+
+
+# Arrows, arcs and clearances of the page: the same ones and the same scales as in the film.
+#
+# arrows    full: length of the largest (m); longest: cut at so many of it; tiny: left out below this part of it;
+#           scales {unit: {largest, reference, cut, words}}; list [{quantity, row, name, unit, place, value (2 T,), z}];
+#           row: of the legend, which has the colour and the head (shared/contract/signals.py)
+# arcs      full: sweep of the largest (rad); scale as above or null; list [{quantity, row, name, place (2 T,),
+#           value (T,), radius, z}]
+# clearance limit (m), pairs [{bodies, pieces, gap (as proven), time, at, on}] nearest first; at (m) is where,
+#               in the frame of the body `on` or in the world, or null
 
 ALL: tuple[Quantity, ...] = ("velocities", "accelerations", "forces", "reactions")
 PAIRS = 60
@@ -34,7 +129,7 @@ PAIRS = 60
 
 
 def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> dict[str, Any]:
-    """Straight arrows of all quantities; ``size`` (m) of the machine, ``heights`` where it has parts."""
+    """Return straight arrows of all quantities; ``size`` (m) of the machine, ``heights`` where it has parts."""
     arrows = Arrows(np.asarray(motion.time), vectors(motion, ALL), size)
     return {
         "full": FULL * size,
@@ -58,7 +153,7 @@ def arrows_of(motion: Motion, size: float, heights: Heights | None = None) -> di
 
 
 def arcs_of(motion: Motion, size: float, heights: Heights | None = None) -> dict[str, Any]:
-    """Curved arrows: torques of joints, drivers, springs, loads."""
+    """Return curved arrows: torques of joints, drivers, springs, loads."""
     least = rounding(vectors(motion, ("forces", "reactions")), size)
     arcs = Arcs(np.asarray(motion.time), torques(motion, ALL), size, least)
     return {
@@ -81,7 +176,7 @@ def arcs_of(motion: Motion, size: float, heights: Heights | None = None) -> dict
 
 
 def clearance_of(clearance: Clearance, film: Film | None = None) -> dict[str, Any]:
-    """The nearest pairs; with their places where the machine has parts."""
+    """Return the nearest pairs; with their places where the machine has parts."""
     places = gap_places(film, clearance) if film else [None] * len(clearance.pairs)
     return {
         "limit": clearance.limit,

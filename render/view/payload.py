@@ -1,35 +1,4 @@
-"""What the page shows, as one dict of plain values and arrays; binary.py makes bytes of it.
-
-SI units and radians; names are those of data.json. Arrays are float32 unless said; T is the number of times.
-
-    mechanism, title        its name, and in words
-    analysis, gravity       "sweep" or "simulation"; [x, y] (m/s^2)
-    time                    (T,) float64; rows right before and right after an event share a time
-    period                  s, or null: then it plays forwards, holds at its end and begins anew
-    clock                   start, end (s of the motion); seconds: film time of one showing; hold: film time at the end;
-                            fps: of the film, for going on by one frame
-    bodies[name]            x y theta vx vy omega ax ay alpha (T,); mass com inertia; inks: on light and on dark paper
-    joints[name]            kind, bodies; pair: pin, guide, slot or null; x y fx fy torque (T,); at: {body, x, y} of its
-                            second marker
-    drivers[name]           kind, bodies; value effort power (T,); unit, effort_unit
-    points[name]            body; x y vx vy ax ay (T,)
-    forces[name]            kind; value, rate, effort (T,) or null; power potential (T,); unit, effort_unit
-    contacts[name]          kind, bodies; unit, effort_unit; x y fx fy torque gap normal friction (T,)
-    frame                   null, or of a motion with couples that repeats with a crank: fx fy x y (T,), force of
-                            inertia and centre of mass; crank; order (K,), harmonics[name]: unit, size (K,), rounding
-                            left out
-    couple                  null, or mx my (T,) of bodies in different places along the normal of the plane
-    energy                  kinetic potential (T,), work audit (T,) or null
-    margin                  (T,) smallest over largest singular value of the scaled Jacobian
-    marks                   [{time, words, kind: "event" or "dead point"}]
-    skeleton                unit, low, high (m); strokes, names, times: see skeleton()
-    arrows, arcs            see loads.py
-    trails                  [{point, colour (linear) or null: as the theme has it, tail (turns), radius, z}]
-    clearance               null, or limit and pairs: see loads.py
-    solid                   null, or the parts: see solid.py
-
-A server may send the same dict again, or some of its keys alone: what is given replaces what was there.
-"""
+"""The data of a page."""
 
 from __future__ import annotations
 
@@ -41,15 +10,48 @@ from typing import Any
 import numpy as np
 
 from render.film.clock import Clock
-from render.film.markers import local_place
+from render.film.film import Film
+from render.film.poses import local_place
 from render.film.tubes.trails import colour_of, trails_of
-from render.magnitudes import floors, without_noise
-from render.report.moments import marks
-from render.shaking import floor_of, shaking
-from render.view.loads import arcs_of, arrows_of
-from shared.contract import JointMotion, Motion
-from shared.contract.shot import Shot
-from shared.contract.skeleton import Carrier, Moving, Stroke
+from render.freshness import current_clearance
+from render.magnitudes import floor_of, floors, shaking, without_noise
+from render.report.transmission import marks
+from render.view.loads import arcs_of, arrows_of, clearance_of
+from render.view.solid import with_parts
+from shared.contract import JointMotion, Motion, read_motion, read_parts
+from shared.contract.shot import Shot, read_shot
+from shared.contract.skeleton import Carrier, Moving, Stroke, read_skeleton
+from shared.contract.spanning import with_rods
+from shared.stage.errors import UserError
+from shared.stage.face import to_run
+from shared.stage.paths import Out
+
+# The content of the page, as one dict of plain values and arrays; document.py makes bytes of it.
+#
+# SI units and radians; names are those of data.json. Arrays are float32 unless said; T is the number of times.
+#
+#     mechanism, title        its name, and in words
+#     analysis, gravity       "sweep" or "simulation"; [x, y] (m/s^2)
+#     time                    (T,) float64; rows right before and right after an event share a time
+#     period                  s, or null: then it plays forwards, holds at its end and begins anew
+#     clock                   start, end (s of the motion); seconds: film time of one showing; hold: film time at the
+#     end;                         fps: of the film, for going on by one frame bodies[name]            x y theta vx vy
+#     omega ax ay alpha (T,); mass com inertia; inks: on light and on dark paper joints[name]            kind, bodies;
+#     pair: pin, guide, slot or null; x y fx fy torque (T,); at: {body, x, y} of its                         second
+#     marker drivers[name]           kind, bodies; value effort power (T,); unit, effort_unit points[name]
+#     body; x y vx vy ax ay (T,) forces[name]            kind; value, rate, effort (T,) or null; power potential (T,);
+#     unit, effort_unit contacts[name]          kind, bodies; unit, effort_unit; x y fx fy torque gap normal friction
+#     (T,) frame                   null, or of a motion with couples that repeats with a crank: fx fy x y (T,), force of
+#     inertia and centre of mass; crank; order (K,), harmonics[name]: unit, size (K,), rounding
+#     left out couple                  null, or mx my (T,) of bodies in different places along the normal of the plane
+#     energy                  kinetic potential (T,), work audit (T,) or null margin                  (T,) smallest over
+#     largest singular value of the scaled Jacobian marks                   [{time, words, kind: "event" or "dead
+#     point"}] skeleton                unit, low, high (m); strokes, names, times: see skeleton() arrows, arcs
+#     see loads.py trails                  [{point, colour (linear) or null: as the theme has it, tail (turns), radius,
+#     z}] clearance               null, or limit and pairs: see loads.py solid                   null, or the parts: see
+#     solid.py
+#
+# A server may send the same dict again, or some of its keys alone: what is given replaces what was there.
 
 UNITS = {
     "vx": "m/s", "vy": "m/s", "omega": "rad/s", "ax": "m/s²", "ay": "m/s²", "fx": "N", "fy": "N", "torque": "N m",
@@ -61,7 +63,7 @@ EFFORTS = ("effort", "normal", "friction")
 
 
 def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bool = True) -> dict[str, Any]:
-    """Everything but the parts; arrows and arcs only if ``arrows``.
+    """Return everything but the parts; arrows and arcs only if ``arrows``.
 
     ``motion`` may have more bodies than the skeleton: rods of the parts.
     """
@@ -128,8 +130,8 @@ def payload(motion: Motion, moving: Moving, shot: Shot | None = None, arrows: bo
 
 
 def skeleton(moving: Moving) -> dict[str, Any]:
-    """Strokes {points (2 n,), closed, ink, fill, alpha, width, order, dash, sign, carrier, shapes (k, 2 n)}, in the
-    order in which they are drawn; names {text, at, clearance, ink, carrier}; carriers {kind, ends: [{body, x, y}]}.
+    """Return strokes {points (2 n,), closed, ink, fill, alpha, width, order, dash, sign, carrier, shapes (k, 2 n)}, in
+    the order in which they are drawn; names {text, at, clearance, ink, carrier}; carriers {kind, ends: [{body, x, y}]}.
     """
     return {
         "unit": moving.unit,
@@ -155,7 +157,7 @@ def skeleton(moving: Moving) -> dict[str, Any]:
 
 
 def title_of(mechanism: str) -> str:
-    """The name in words: ``Four bar``, ``Slider crank: no gravity``."""
+    """Return the name in words: ``Four bar``, ``Slider crank: no gravity``."""
     words = mechanism.replace("_", " ").replace("-", ": ")
     return words[:1].upper() + words[1:]
 
@@ -180,13 +182,13 @@ def _floor(thing: Any, name: str, quiet: Mapping[str, float]) -> float:
 
 
 def couple_of(motion: Motion) -> dict[str, Any] | None:
-    """What inertia does to the frame about axes in the plane, rounding as zero."""
+    """Return the moments of inertia on the frame about axes in the plane, with rounding set to zero."""
     shaken = shaking(motion)
     return None if shaken.mx is None else _series(shaken, "mx", "my")
 
 
 def frame_of(motion: Motion) -> dict[str, Any] | None:
-    """Force of inertia, centre of mass, and the largest size of each harmonic."""
+    """Return the force of inertia, centre of mass, and the largest size of each harmonic."""
     vibration = motion.vibration
     if vibration is None or motion.couple is None:
         return None
@@ -251,3 +253,28 @@ def _stroke(stroke: Stroke) -> dict[str, Any]:
         "dash": list(stroke.dash),
         "sign": stroke.sign,
     }
+
+
+# Reads what the page shows from out/<name>/: the motion and its skeleton, and what else is there.
+
+
+def read_payload(out: Out) -> dict[str, Any]:
+    """Return the whole payload of a mechanism. Raises UserError for files that do not fit together."""
+    motion, skeleton = read_motion(out.motion, out.name), read_skeleton(out.skeleton)
+    if skeleton.moving is None:
+        raise UserError(f"{out.name}: {out.skeleton} is of an earlier version; run {to_run('solve', out.name)} again")
+    if skeleton.provenance.inputs != motion.provenance.inputs:
+        raise UserError(
+            f"{out.name}: {out.skeleton} is not of the motion in {out.motion}; run {to_run('solve', out.name)} again"
+        )
+    shot = read_shot(out.shot) if out.shot.is_file() else Shot()
+    parts = read_parts(out.parts, out.name) if out.parts.is_file() else None
+    motion = with_rods(motion, parts) if parts else motion
+    page = payload(motion, skeleton.moving, shot)
+    film = Film(motion, parts, shot, out.parts_folder) if parts else None
+    if film is not None:
+        page = with_parts(page, film)
+    clearance = current_clearance(out, parts, "view")
+    if clearance is not None:
+        page["clearance"] = clearance_of(clearance, film)
+    return page

@@ -21,12 +21,12 @@ MINUTES = 5
 
 
 def chromium() -> str | None:
-    """The browser's program: $CHROMIUM, or the first one in PATH."""
+    """Return the browser's program: $CHROMIUM, or the first one in PATH."""
     return missing.program("chromium")
 
 
 def version_of(browser: str) -> str:
-    """What the program says of its version. Raises UserError where it says nothing."""
+    """Return the version that a browser reports. Raises UserError if it reports none."""
     try:
         done = subprocess.run([browser, "--version"], capture_output=True, text=True, timeout=60, check=False)
     except (OSError, subprocess.TimeoutExpired) as error:
@@ -37,18 +37,20 @@ def version_of(browser: str) -> str:
 
 
 def stage_of(out: Out, version: str) -> Stage:
-    """The picture's stage: the page's bytes, the browser's version and the script that takes the picture decide."""
+    """Return the picture's stage: the page's bytes, the browser's version and the script that takes the picture
+    decide.
+    """
     scripts = [PAGE / "browser" / name for name in ("picture.cjs", "browser.cjs")]
     key = key_of(out.view, version, *scripts, *(PAGE / name for name in LOCKED), LOOKS)
     return Stage(out, "view_picture", key, [picture_of(out)])
 
 
 def picture_of(out: Out) -> Path:
-    """The file."""
+    """Return the file."""
     return out.view.with_suffix(".png")
 
 
-def take(out: Out, browser: str) -> None:
+def take_picture(out: Out, browser: str) -> None:
     """Write view.png. Raises UserError with what the page or the browser complained of; then there is none."""
     picture_of(out).unlink(missing_ok=True)
     with tempfile.TemporaryDirectory(prefix="mbsd-page-") as folder:

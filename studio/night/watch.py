@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import signal
 
-from render.blender.patience import Patience
+from render.blender.process import Patience
 from studio.night.process import Process
 
 STAGE = 3600.0

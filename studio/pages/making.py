@@ -49,8 +49,8 @@ def run(names: Sequence[str]) -> int:
 
 def tell_fresh(names: Sequence[str]) -> int:
     """Print the names whose page is current; mechanism.py of each is run for its parameters."""
+    from mechanisms.stages import shot as shot
     from mechanisms.stages.parts import stage as parts
-    from mechanisms.stages.shot import stage as shot
     from mechanisms.stages.solve import stage as solve
     from render import view
     from shared.stage.memory import remembered
@@ -95,7 +95,7 @@ def _made(name: str, is_current: bool, browser: str | None, version: str) -> str
     try:
         stage = pictures.stage_of(out, version)
         if not stage.is_fresh():
-            pictures.take(out, browser)
+            pictures.take_picture(out, browser)
             stage.done()
     except UserError as error:
         return f"picture: {error}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from render.freshness import current_clearance
-from render.gallery.page import sentences
+from render.gallery import sentences
 from render.report import description
 from render.report.facts import facts
 from render.view.payload import title_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from render.frames.running_ffmpeg import run_ffmpeg
+from render.frames.encode import run_ffmpeg
 from render.frames.story.stage import film_of as story_of
 from render.presets import PRESETS
 from shared.stage.files import whole_file

@@ -7,11 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-from render.view.binary import encode
 from render.view.bundle import bundle, sources_key
-from render.view.document import document
-from render.view.inputs import read_payload
-from render.view.sketch import sketch
+from render.view.document import document, encode, sketch
+from render.view.payload import read_payload
 from shared.stage.console import warn
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out, mechanism_file

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from render.freshness import Freshness
-from render.gallery.posters import small_poster
+from render.gallery import small_poster
 from shared.contract.quantity import counted
 from shared.stage import locks
 from shared.stage.console import progress, say, warn

@@ -8,8 +8,7 @@ from __future__ import annotations
 import argparse
 import os
 
-from render.presets import ASPECTS, PRESETS, WIDE, preset_named
-from render.shown import show_words
+from render.presets import ASPECTS, PRESETS, WIDE, preset_named, show_words
 from shared.stage.console import run_cli
 from shared.stage.paths import known_name
 from studio.verify import verify

@@ -7,7 +7,7 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
-from render.frames import encode, muxing
+from render.frames import encode
 from render.frames.store import FrameIndex, FrameStore
 from render.presets import Preset
 from shared.stage.errors import UserError
@@ -34,7 +34,7 @@ def compared(
     silent = again if sound is None else again.with_suffix(".silent.mp4")
     encode.encode(_pictures(store, index), len(index.frames), preset, index.fps, silent)
     if sound is not None:
-        muxing.mux(silent, sound, len(index.frames), preset, index.fps, again)
+        encode.mux(silent, sound, len(index.frames), preset, index.fps, again)
     try:
         old, new = decoded(film), decoded(again)
     except UserError as error:

@@ -14,7 +14,7 @@ from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
-from render.blender.scratch import scratch_folder
+from render.blender.process import scratch_folder
 from render.film.inputs import named
 from render.frames.film import wav_of, write_sound
 from render.frames.store import FrameIndex, FrameStore
@@ -68,7 +68,7 @@ def _compared(out: Out, preset: Preset, frames: str, show: str, scratch: Path) -
     again_in = partial(_stage, root)
     findings += [*(products.of_print(out, made, again_in) if solids else []), *products.of_exports(out, made, again_in)]
     if index is None or not solids:
-        hint = f"{to_run('film', out.name)} {preset.asked} first"
+        hint = f"{to_run('film', out.name)} {preset.request} first"
         return [*findings, Finding("frames and film", "missing", f"none of {preset.name} are there; {hint}")]
     return [*findings, *_of_pictures(out, preset, index, wanted, show, scratch)]
 

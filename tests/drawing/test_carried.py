@@ -16,7 +16,7 @@ from mbsd.drawing.carriers import Frames
 from mbsd.drawing.pose import tracks_of
 from mbsd.drawing.view.carried import Moving, drawn_at, moving
 from mbsd.drawing.view.curves import resampled
-from tools.models import genevas, linkages, random_linkages
+from tools.models import guided, linkages, random_linkages
 
 SLACK = 0.02
 """How far two curves may be apart that count as one, in units of the symbols."""
@@ -67,7 +67,7 @@ def geared() -> Solution:
 MADE: dict[str, Callable[[], Solution]] = {
     "four_bar": lambda: linkages.four_bar(0.12, 0.04, 0.12, 0.09).sweep(duration=1.0, steps=120),
     "slider_crank": lambda: linkages.slider_crank().sweep(duration=1.0, steps=120),
-    "geneva": lambda: genevas.geneva(4).sweep(duration=1.0, steps=120),
+    "geneva": lambda: guided.geneva(4).sweep(duration=1.0, steps=120),
     "hung": hung,
     "geared": geared,
 }

@@ -17,7 +17,7 @@ from mbsd.dynamics.reference.arrays import scratch_for
 from mbsd.equations.joint_friction import X, tabulate_friction
 from mbsd.testing.forces import motion
 from tools.models.rough import pusher
-from tools.models.slider_cranks import slider_crank
+from tools.models.sticking import slider_crank
 
 G = 9.80665
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism
-from tools.models.genevas import two_genevas
+from tools.models.guided import two_genevas
 
 
 def free_geneva(slots: int, gravity: tuple[float, float] | None, speed: float = 10.0) -> Mechanism:

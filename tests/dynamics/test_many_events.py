@@ -19,8 +19,7 @@ from mbsd.dynamics.events import packing as made
 from mbsd.dynamics.simulate import request_for
 from mbsd.measures import final, first, largest, samples, smallest
 from tests.dynamics.many_models import air
-from tools.models.genevas import free
-from tools.models.loose_gears import loose_gears
+from tools.models.guided import free_geneva, loose_gears
 from tools.models.releases import sling
 from tools.models.repeated_joints import cranks
 from tools.models.rough_contacts import ball as rough_ball
@@ -120,7 +119,7 @@ def test_a_turned_world_and_tight_tolerances_meet_them_too(direction: int) -> No
 
 def test_starts_vary_and_rows_end_early_by_the_steps_of_whole_ones() -> None:
     degrees = np.linspace(-170.0, 170.0, 12)
-    m = free(5)
+    m = free_geneva(5)
     early = {"far": first("wheel.theta", above=1.5), "late": first("crank.theta", below=-9.0, give="wheel.omega")}
     short, whole = (
         m.simulate_many(
@@ -135,7 +134,7 @@ def test_starts_vary_and_rows_end_early_by_the_steps_of_whole_ones() -> None:
 
 
 def test_a_row_that_cannot_start_has_its_reason_beside_others() -> None:
-    many = free(5).simulate_many(
+    many = free_geneva(5).simulate_many(
         1.0, vary={"index": {"radius": [0.1 * math.sin(math.pi / 5), 0.07]}}, measure={"end": final("wheel.theta")},
         steps=4, formulation="independent",
     )  # fmt: skip

@@ -12,7 +12,7 @@ from mbsd.base.errors import MechanismError
 from mbsd.measures import final
 from mbsd.studies.simulated import simulated
 from tests.dynamics.many_models import STEPS, door, pendulum
-from tools.models.crossing_curves import EIGHT, coaster
+from tools.models.guided import EIGHT, coaster
 from tools.models.stops import barrier
 
 

@@ -10,8 +10,7 @@ from scipy.integrate import solve_ivp
 
 from mbsd import Mechanism, ModelError, constant_rate, harmonic, polynomial
 from mbsd.results.solution import Solution
-from tools.models.slider_cranks import slider_crank
-from tools.models.sticking import loaded_lever
+from tools.models.sticking import loaded_lever, slider_crank
 
 G = 9.80665
 

@@ -110,13 +110,16 @@ m.simulate(1.0, steps=20)
 from mbsd.dynamics.independent import equations, groups
 from mbsd.kinematics.groups.carrying.cases import PerCoordinate
 from mbsd.kinematics.groups.kinds import rrp
-from mbsd.dynamics.reference import acceleration, projection
+from mbsd.dynamics import formulation
+from mbsd.dynamics.reference import projection
+from mbsd.dynamics.reference.arrays import Dynamics
 from mbsd.equations import user_forces
 from mbsd.equations.constraints import relative
 from mbsd.dynamics.integrators.dop853 import crossing
 unused = [
-    acceleration.derivative, projection.project, groups.bridge.kernel, equations.reduced.kernel, equations.write_alone,
-    rrp.solve_rrp.of(PerCoordinate).kernel, relative.rows.kernel, user_forces.apply_user_forces.kernel,
+    formulation.derivative.kernel_of(Dynamics), projection.project, groups.bridge.kernel, equations.reduced.kernel,
+    equations.write_alone,
+    rrp.solve_rrp.kernel_of(PerCoordinate).kernel, relative.rows.kernel, user_forces.apply_user_forces.kernel,
     crossing.crossing.kernel,
 ]
 import sys

@@ -12,7 +12,7 @@ from mbsd import Mechanism, SingularPoseError, constant_rate, cycloidal, functio
 from mbsd.base.errors import BranchError, LimitError, MechanismError, ModelError
 from mbsd.kinematics.march import March, march_along
 from mbsd.kinematics.prepare import prepare
-from tools.models.genevas import geneva
+from tools.models.guided import geneva
 from tools.models.random_linkages import driven_linkage
 
 GROUND, CRANK, COUPLER, ROCKER = 0.30, 0.10, 0.25, 0.15

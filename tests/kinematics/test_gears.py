@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import AssemblyError, Mechanism, MobilityError, ModelError, SimulationError, constant_rate
-from tools.models.loose_gears import loose_gears
+from tools.models.guided import loose_gears
 
 PLANETARY = json.loads((Path(__file__).parents[1] / "published" / "reference" / "analytic_planetary.json").read_text())
 SUN, PLANET, RING = 0.020, 0.030, 0.080  # radii in the ratio of the teeth

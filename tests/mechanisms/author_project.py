@@ -10,13 +10,13 @@ from types import ModuleType
 import pytest
 
 import mechanisms
-from mechanisms.stages.loading import loaded_files, loading
+from mechanisms.stages.loading import inputs, loading
 from shared.stage import paths
 from shared.stage.paths import ROOT
 
 HEAD = "from pathlib import Path\nfrom shared.shot import Shot\nHERE = Path(__file__).parent\n"
 
-assert loaded_files.ROOT == ROOT  # loaded before a project of a test's own takes its place
+assert inputs.ROOT == ROOT  # loaded before a project of a test's own takes its place
 
 
 class Project:

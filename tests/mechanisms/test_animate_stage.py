@@ -11,7 +11,7 @@ import pytest
 
 from mbsd.drawing.animation.words import QUANTITIES as DRAWN
 from mbsd.results.solution import Solution
-from mechanisms.stages.animate import stage as animate_stage
+from mechanisms.stages import animate as animate_stage
 from mechanisms.stages.parts import stage as parts_stage
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
@@ -57,7 +57,7 @@ def test_make_hands_the_view_over_as_it_is() -> None:
 KILLED = """
 import os, signal
 from mbsd.drawing.animation import encoders
-from mechanisms.stages.animate import stage
+from mechanisms.stages import animate as stage
 run = encoders._run
 def killed(path, command, pictures):
     run(path, command, pictures)  # the first round is a whole film of its own

@@ -12,9 +12,7 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import stage as solve_stage
-from mechanisms.stages.solve.bare_motion import bare_solution
-from mechanisms.stages.solve.estimated_masses import HALF_WIDTH, THICKNESS, estimated_masses
-from mechanisms.stages.solve.masses import give_masses
+from mechanisms.stages.solve.masses import HALF_WIDTH, THICKNESS, bare_solution, estimated_masses, give_masses
 from shared.contract import read_motion
 from shared.stage.errors import UserError
 from shared.stage.paths import Out

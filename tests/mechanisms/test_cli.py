@@ -13,8 +13,8 @@ import msgspec
 import pytest
 
 import mechanisms
+from mechanisms.stages import shot as shot_stage
 from mechanisms.stages.loading import loading
-from mechanisms.stages.shot import stage as shot_stage
 from shared.contract import Parts, Provenance, write_motion, write_parts
 from shared.contract.shot import read_shot
 from shared.stage import paths

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cadquery as cq
 import pytest
 
-from mechanisms.stages.parts.described_body import described_body
+from mechanisms.stages.parts.bodies import described_body
 from shared.shapes.bodies import Bodies
 from shared.shapes.solid import Solid
 from shared.shapes.workpieces import CUP, TEA, block, crate, pen, prism, sheet, standing

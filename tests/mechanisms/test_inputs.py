@@ -12,11 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from mechanisms.stages.loading import inputs, loaded_files
-from mechanisms.stages.loading.inputs import Inputs, observed
-from mechanisms.stages.loading.recording import recording
-from mechanisms.stages.parts.plain_values import plain_text
-from mechanisms.stages.shot import stage as shot_stage
+from mechanisms.stages import shot as shot_stage
+from mechanisms.stages.loading import inputs
+from mechanisms.stages.loading.inputs import Inputs, observed, recording
+from mechanisms.stages.parts.memory import plain_text
 from shared.contract.shot import read_shot
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
@@ -278,8 +277,8 @@ def test_the_solver_is_hashed_once_however_many_of_its_modules_are_loaded(monkey
     import mechanisms.automatic as face
 
     asked: list[str] = []
-    monkeypatch.setattr(loaded_files, "sources_state", lambda name: asked.append(name) or "hash")
-    imported = loaded_files.loaded_inputs(Path(face.__file__), "mechanisms", set(sys.modules))
+    monkeypatch.setattr(inputs, "sources_state", lambda name: asked.append(name) or "hash")
+    imported = inputs.loaded_inputs(Path(face.__file__), "mechanisms", set(sys.modules))
     assert "mbsd" in imported.sources
     assert len(imported.modules) > 20
     assert sorted(asked) == sorted(imported.sources)

@@ -10,11 +10,11 @@ import cadquery as cq
 import pytest
 
 from mbsd import Mechanism
+from mechanisms.stages import shot as shot_stage
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.clearance import stage as clearance_stage
 from mechanisms.stages.parts import stage as parts_stage
-from mechanisms.stages.parts.returned_parts import refuse_unfit
-from mechanisms.stages.shot import stage as shot_stage
+from mechanisms.stages.parts.bodies import refuse_unfit
 from mechanisms.stages.solve import stage as solve_stage
 from render import report
 from render.film.film import Film

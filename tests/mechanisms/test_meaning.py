@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mbsd.dependencies.meaning import looks_at_itself, meaning
-from mechanisms.stages.shot import stage as shot_stage
+from mechanisms.stages import shot as shot_stage
 from mechanisms.stages.solve import stage as solve_stage
 from shared.stage.paths import Out
 from tests.mechanisms.author_project import Project, put

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mechanisms.stages.loading import loading
-from mechanisms.stages.parts.mesh_check import VOLUME_TOLERANCE
+from mechanisms.stages.parts.meshes import VOLUME_TOLERANCE
 from mechanisms.stages.parts_files import read_mesh
 from render import glb
 from render.film.inputs import read_film

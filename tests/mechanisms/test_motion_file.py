@@ -14,8 +14,7 @@ import pytest
 
 from mbsd import Mechanism, constant_rate, curve
 from mbsd.results.solution import Solution
-from mechanisms.stages.solve.motion_file import to_motion
-from mechanisms.stages.solve.shapes import shape_of
+from mechanisms.stages.solve.motion_file import shape_of, to_motion
 from shared import contract
 from shared.stage import jsonfile
 from shared.stage.errors import UserError

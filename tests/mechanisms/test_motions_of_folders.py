@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mechanisms.stages.solve.bare_motion import bare_solution
+from mechanisms.stages.solve.masses import bare_solution
 from tests.mechanisms.every_folder import folders_and_variants
 
 

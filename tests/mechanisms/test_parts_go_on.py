@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mechanisms.stages.parts import described_body, kept_pieces, remembered
+from mechanisms.stages.parts import bodies, memory
 from mechanisms.stages.parts import stage as parts_stage
 from mechanisms.stages.parts_files import stl_bytes
 from shared.stage import console
@@ -36,7 +36,7 @@ def meshed(monkeypatch: pytest.MonkeyPatch, stop_after: int | None = None) -> li
 
 
 def test_what_was_stopped_goes_on_from_there(press: Press, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept_pieces.KeptPieces.__init__, "__defaults__", (0.0,))
+    monkeypatch.setattr(memory.KeptPieces.__init__, "__defaults__", (0.0,))
     total = sum(map(len, solids().values()))
     meshed(monkeypatch, stop_after=7)
     with pytest.raises(KeyboardInterrupt):
@@ -53,8 +53,8 @@ def test_what_was_stopped_goes_on_from_there(press: Press, monkeypatch: pytest.M
 def test_kept_pieces_are_those_that_are_made(press: Press, monkeypatch: pytest.MonkeyPatch) -> None:
     press.make()
     plain = {path.name: path.read_bytes() for path in press.out.parts_folder.iterdir()}
-    monkeypatch.setattr(kept_pieces.KeptPieces.__init__, "__defaults__", (0.0,))
-    monkeypatch.setattr(kept_pieces.KeptPieces, "clear", lambda self: None)
+    monkeypatch.setattr(memory.KeptPieces.__init__, "__defaults__", (0.0,))
+    monkeypatch.setattr(memory.KeptPieces, "clear", lambda self: None)
     for _ in range(2):
         press.out.parts.unlink()
         press.make()
@@ -62,7 +62,7 @@ def test_kept_pieces_are_those_that_are_made(press: Press, monkeypatch: pytest.M
 
 
 def test_a_damaged_piece_is_made_again(press: Press, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept_pieces.KeptPieces.__init__, "__defaults__", (0.0,))
+    monkeypatch.setattr(memory.KeptPieces.__init__, "__defaults__", (0.0,))
     meshed(monkeypatch, stop_after=3)
     with pytest.raises(KeyboardInterrupt):
         press.make()
@@ -93,7 +93,7 @@ class Refusing:
 
 
 def test_a_refusal_that_took_long_is_not_looked_for_again(press: Press, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(remembered, "LONG", 0.0)
+    monkeypatch.setattr(memory, "LONG", 0.0)
     refusing = Refusing(press)
     with pytest.raises(UserError, match=r"^four_bar: no order of layers$"):
         press.make()
@@ -109,7 +109,7 @@ def test_a_refusal_that_took_long_is_not_looked_for_again(press: Press, monkeypa
 
 def test_a_change_is_looked_at_anew(press: Press, monkeypatch: pytest.MonkeyPatch) -> None:
     """Another density, as another parameter or file, is in the key; and parts that are made end it."""
-    monkeypatch.setattr(remembered, "LONG", 0.0)
+    monkeypatch.setattr(memory, "LONG", 0.0)
     refusing = Refusing(press)
     with pytest.raises(UserError):
         press.make()
@@ -129,7 +129,7 @@ def test_what_is_refused_soon_or_by_the_disk_is_tried_again(press: Press, monkey
         with pytest.raises(UserError, match=r"^four_bar: no order of layers$"):
             press.make()
     assert soon.runs == 2
-    monkeypatch.setattr(remembered, "LONG", 0.0)
+    monkeypatch.setattr(memory, "LONG", 0.0)
     full = Refusing(press, "cannot write x: free some disk space")
     for _ in range(2):
         with pytest.raises(UserError, match=r"space$"):
@@ -185,10 +185,10 @@ def test_what_takes_long_is_shown_with_what_is_left(
 
 def test_the_stage_describes_a_piece_by_its_shape_alone(tmp_path: Path) -> None:
     """Two shapes that are made alike have one key; a moved one and another name have others."""
-    kept = kept_pieces.KeptPieces(tmp_path, "program")
+    kept = memory.KeptPieces(tmp_path, "program")
     plate, screw, *_ = solids()["ground"]
     same = solids()["ground"][0]
     keys = [kept.key(piece.shape.solids().vals()[0], piece, False) for piece in (plate, same)]
     assert keys[0] == keys[1]
     assert kept.key(screw.shape.solids().vals()[0], screw, False) not in keys
-    assert described_body.described_body("m", "ground", [plate], {}, None, kept=kept).mass.mass > 0
+    assert bodies.described_body("m", "ground", [plate], {}, None, kept=kept).mass.mass > 0

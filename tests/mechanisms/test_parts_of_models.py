@@ -8,7 +8,7 @@ import pytest
 
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.loading import loading
-from mechanisms.stages.parts.of_models import needs_machine, needs_masses
+from mechanisms.stages.parts.automatic_solids import needs_machine, needs_masses
 from mechanisms.stages.solve import solving
 from shared.stage.errors import UserError
 

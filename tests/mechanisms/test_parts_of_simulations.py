@@ -12,8 +12,8 @@ from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic import automatic
 from mechanisms.stages.loading import loading
 from mechanisms.stages.parts import automatic_solids
-from mechanisms.stages.solve import bare_motion
-from mechanisms.stages.solve.bare_motion import bare_solution
+from mechanisms.stages.solve import masses
+from mechanisms.stages.solve.masses import bare_solution
 from shared.shapes.solid import Solid
 
 
@@ -85,10 +85,10 @@ def test_where_masses_decide_nothing_parts_are_made_once(
 
 
 def test_given_masses_count_before_those_of_the_parts(monkeypatch: pytest.MonkeyPatch) -> None:
-    from mechanisms.stages.parts.mass_properties import mass_of
+    from mechanisms.stages.parts.meshes import mass_of
 
     mass = mass_of(cq.Workplane().box(10, 10, 10).val(), 7850.0)
     _Author(monkeypatch, mass=0.5)
-    assert bare_motion.bare_solution("arm", {"arm": mass}).mechanism.bodies["arm"].mass == 0.5
+    assert masses.bare_solution("arm", {"arm": mass}).mechanism.bodies["arm"].mass == 0.5
     _Author(monkeypatch)
-    assert bare_motion.bare_solution("arm", {"arm": mass}).mechanism.bodies["arm"].mass == pytest.approx(0.00785)
+    assert masses.bare_solution("arm", {"arm": mass}).mechanism.bodies["arm"].mass == pytest.approx(0.00785)

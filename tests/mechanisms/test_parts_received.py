@@ -13,7 +13,7 @@ import pytest
 
 from mbsd.dealing.wrong_answer import WrongAnswer
 from mechanisms.stages.loading.inputs import Inputs
-from mechanisms.stages.parts.described_body import described_body
+from mechanisms.stages.parts.bodies import described_body
 from mechanisms.stages.parts.on_cluster import answer
 from mechanisms.stages.parts.on_cluster.answer import Made
 from mechanisms.stages.parts.on_cluster.solids_check import refuse_wrong

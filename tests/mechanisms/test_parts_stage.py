@@ -16,9 +16,8 @@ import pytest
 
 from mechanisms.stages.loading.inputs import Inputs
 from mechanisms.stages.parts import stage as parts_stage
-from mechanisms.stages.parts.mass_properties import mass_of
-from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
-from mechanisms.stages.parts.traced_params import traced
+from mechanisms.stages.parts.memory import traced
+from mechanisms.stages.parts.meshes import check_mesh, mass_of, only_solid
 from mechanisms.stages.parts_files import TOLERANCE, binary_stl, read_mesh, stl_bytes
 from shared.contract import read_parts
 from shared.shapes import outline

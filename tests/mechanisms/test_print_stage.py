@@ -19,7 +19,7 @@ import pytest
 
 from mechanisms.stages.parts_files import read_mesh
 from mechanisms.stages.print import stage as print_stage
-from mechanisms.stages.print.lists import Made, markdown, table
+from mechanisms.stages.print.making import Made, markdown, table
 from shared.contract import read_parts
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT

@@ -17,11 +17,8 @@ from hypothesis import strategies as st
 from hypothesis.strategies import floats, integers, lists, tuples
 
 from mechanisms.stages.parts_files import read_triangles, step_bytes, stl_bytes
-from mechanisms.stages.print.alike import groups, is_equal
-from mechanisms.stages.print.flat import sheet_of
-from mechanisms.stages.print.laying import Laid, fitting, laid
-from mechanisms.stages.print.outlines import dxf, layer_of, section
-from mechanisms.stages.print.packing import packed
+from mechanisms.stages.print.laying import Laid, fitting, groups, is_equal, laid, sheet_of
+from mechanisms.stages.print.plates import dxf, layer_of, packed, section
 from shared.shapes.base import foot, pedestal
 from shared.shapes.link import Eye, link
 from shared.shapes.pin import Head, bushing, pin, washer

@@ -9,7 +9,7 @@ import pytest
 
 from mbsd import Mechanism, Solution, polynomial
 from mechanisms.stages.clearance.path import paths
-from mechanisms.stages.solve import refined_times, solving
+from mechanisms.stages.solve import refinement, solving
 from mechanisms.stages.solve.motion_file import to_motion
 
 SIZE, PROVEN = 0.2, 0.2
@@ -51,7 +51,7 @@ def test_a_truss_that_snaps_through_has_rows_for_the_proof() -> None:
 
 
 def test_of_too_many_steps_the_worst_are_divided(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(refined_times, "MOST", 400)
+    monkeypatch.setattr(refinement, "MOST", 400)
     m = _truss()
     solution = solving.motion_of("truss", SimpleNamespace(DURATION=0.5), m, None)
     assert 380 < len(np.unique(solution.t)) <= 400
@@ -64,5 +64,5 @@ def test_steps_of_ones_own_that_are_too_long_are_told(own: str, capsys: pytest.C
     given = {"STEPS": 300} if own == "STEPS" else {"motion": lambda m, p: m.simulate(0.5, 300)}
     assert len(solving.motion_of("truss", SimpleNamespace(DURATION=0.5, **given), m, None).t) == 301
     said = " ".join("".join(capsys.readouterr()).split())
-    assert "too long for what moves fast within, first at t = " in said
+    assert "too long for the fastest bodies, first at t = " in said
     assert f"leave out {own}, so that rows are added there" in said

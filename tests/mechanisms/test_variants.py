@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mechanisms.stages.loading.variants import checked_variants, constant, replaced
+from mechanisms.stages.loading.loading import checked_variants, constant, replaced
 from mechanisms.stages.new import new
 from mechanisms.stages.solve import stage as solve_stage
 from shared.contract import read_motion

@@ -6,7 +6,7 @@ import cadquery as cq
 import pytest
 
 from mechanisms.stages.parts_files import read_triangles, stl_bytes
-from mechanisms.stages.print.walls import thinnest
+from mechanisms.stages.print.making import thinnest
 from shared.shapes.build import extruded
 from shared.shapes.outline import circle
 

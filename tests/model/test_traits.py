@@ -31,7 +31,7 @@ from mbsd.model.joint import KINDS
 from mbsd.testing import check_joint, contact_kinds, force_kinds, joint_kinds
 from mbsd.testing.forces import example
 from shared.stage.paths import ROOT
-from tools.models.genevas import geneva
+from tools.models.guided import geneva
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import pytest
 
 from mbsd import AssemblyError, Mechanism, constant_rate, curve
 from mbsd.results.solution import Solution
-from tools.models.genevas import geneva
+from tools.models.guided import geneva
 
 FOLDER = Path(__file__).parent / "reference"
 

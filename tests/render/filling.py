@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from render.film.composing import layout
+from render.film import composing
 from render.film.film import Film
 from render.film.framing import project
 
@@ -41,7 +41,7 @@ def boxes(film: Film) -> list[Box]:
     if writing.card is not None:
         card = writing.card
         rectangles.append((card.left, card.top, card.left + card.wide, card.top + card.high))
-    return [layout.in_picture(box, film.aspect) for box in rectangles]
+    return [composing.in_picture(box, film.aspect) for box in rectangles]
 
 
 def refuse_overlaps(rectangles: list[Box]) -> None:

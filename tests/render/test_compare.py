@@ -11,7 +11,7 @@ from matplotlib.text import Text
 
 from mechanisms.stages.solve.motion_file import to_motion
 from render.plots import compare
-from render.plots.pages import beside
+from render.plots.pages import comparison
 from shared.contract import Motion, write_motion
 from shared.stage import paths
 from shared.stage.errors import UserError
@@ -56,7 +56,7 @@ def test_the_pages_are_drawn_once(solved: dict[str, Motion], capsys: pytest.Capt
 
 def test_each_panel_holds_the_lines_of_all_motions(solved: dict[str, Motion]) -> None:
     motions = {"as it is": solved["four_bar"], "faster": solved["four_bar-faster"]}
-    figure = beside.figures("four_bar", motions)["drivers"]
+    figure = comparison.figures("four_bar", motions)["drivers"]
     torque = figure.axes[0]
     assert torque.get_title(loc="left") == "motor, torque / (mN m)"
     for line, motion in zip(torque.lines, motions.values(), strict=True):
@@ -75,9 +75,9 @@ def test_of_many_panels_those_that_differ_most_are_shown(solved: dict[str, Motio
         "as it is": msgspec.structs.replace(motion, joints=many),
         "other": msgspec.structs.replace(motion, joints=many | {"j17": other}),
     }
-    figure = beside.figures("many", motions)["reactions"]
+    figure = comparison.figures("many", motions)["reactions"]
     titles = [axes.get_title(loc="left") for axes in figure.axes if axes.get_visible()]
-    assert len(titles) == beside.PANELS
+    assert len(titles) == comparison.PANELS
     assert "j17, reaction / N" in titles
     assert any("11 more that differ less" in text.get_text() for text in figure.texts)
 
@@ -93,7 +93,7 @@ def test_a_variant_without_a_driver_or_force_leaves_its_lines_out() -> None:
             m.torsion_spring("twist", m.ground, bar, stiffness=0.5)
         return to_motion(m.simulate(0.3, steps=30), None, "", {}, {"bar": "mechanism"})
 
-    figure = beside.figures("arm", {"as it is": arm(True), "no spring": arm(False)})["forces"]
+    figure = comparison.figures("arm", {"as it is": arm(True), "no spring": arm(False)})["forces"]
     assert [len(axes.lines) for axes in figure.axes] == [1, 1]
 
 

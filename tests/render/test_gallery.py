@@ -11,8 +11,7 @@ import pytest
 from PIL import Image
 
 from render import freshness, gallery
-from render.gallery.page import sentences
-from render.gallery.posters import LARGEST, ON_STRIP, small_poster, strip, unlike
+from render.gallery import LARGEST, ON_STRIP, sentences, small_poster, strip, unlike
 from render.report.facts import facts
 from render.report.written import speed
 from shared.contract import Action, ForceMotion, write_motion

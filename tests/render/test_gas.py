@@ -13,8 +13,8 @@ from mbsd import GasView, Mechanism, constant_rate, harmonic
 from mechanisms.stages.solve.motion_file import to_motion
 from render.plots import plots_of
 from render.plots.figures import WHOLE
-from render.plots.inks import apart
-from render.plots.pages.gas import gas
+from render.plots.pages.pressures import gas
+from render.plots.style import apart
 from render.report import report
 from shared.contract import Motion, read_motion, write_motion
 from shared.stage.errors import UserError

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from render import glb
-from render.glb.mesh import smooth
+from render.glb.document import smooth
 from shared.contract import mounted, read_motion
 from shared.contract.materials import MATERIALS
 from shared.stage.errors import UserError

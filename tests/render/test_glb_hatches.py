@@ -9,10 +9,9 @@ import pytest
 import trimesh
 
 from render.film.film import Film
-from render.film.hatches import LIGHT, Hatch, dark_of, hatch_of, light_of
+from render.film.section import LIGHT, Hatch, dark_of, hatch_of, light_of
 from render.film.solids import read_triangles
-from render.glb.cut import faces_of, pieces_of
-from render.glb.stripes import along_rim, striped
+from render.glb.cut import along_rim, faces_of, pieces_of, striped
 from shared.contract import read_motion, read_parts
 from shared.contract.shot import Section, Shot
 from tools.fixtures import film_fixture

@@ -21,9 +21,8 @@ from mbsd.model.joint import KINDS, JointKind
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.skeleton_file import moving_of
-from render.crank import crank_of
-from render.film.arrows.torques import torques
-from render.film.arrows.vectors import vectors
+from render.film.vectors import torques, vectors
+from render.magnitudes import crank_of
 from render.plots import plots_of
 from render.plots.figures import WHOLE
 from render.report.transmission import loops

@@ -11,12 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from render.blender.scene.worked import sunk
-from render.blender.worker.drawing import drawn
-from render.looks.chosen import Family, chosen
-from render.looks.looks import LOOKS
+from render.blender.scene.pieces import sunk
+from render.blender.worker.picture import drawn
+from render.looks import LOOKS, Family, chosen
 from render.presets import PRESETS
-from render.view.looks import looks_of
+from render.view.solid import looks_of
 from shared.contract.mount import Kind, mounted
 from shared.contract.shot import LookName
 from shared.stage.paths import ROOT, mechanism_names

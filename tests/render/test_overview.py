@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from render.report import overview
+from render.report import facts
 from render.report.facts import fastest
 from shared.contract import Provenance, read_motion
 from shared.contract.clearance import Clearance, PairClearance, write_clearance
@@ -37,7 +37,7 @@ def made(out_root: Path) -> None:
 
 @pytest.mark.usefixtures("made")
 def test_a_row_has_the_numbers_of_what_was_done(capsys: pytest.CaptureFixture[str]) -> None:
-    overview.run(["four_bar 125 done\n", "broken 3 failed\n", "cleaned 1 done\n"])
+    facts.run(["four_bar 125 done\n", "broken 3 failed\n", "cleaned 1 done\n"])
     said = capsys.readouterr().out.splitlines()
     rows = {line.split()[0]: line for line in said if line.split()}
     assert rows["mechanism"].split("  ")
@@ -47,12 +47,12 @@ def test_a_row_has_the_numbers_of_what_was_done(capsys: pytest.CaptureFixture[st
         assert word in four_bar
     assert rows["broken"].split() == ["broken", "3.0", "s", "failed"]
     assert rows["cleaned"].split() == ["cleaned", "1.0", "s", "done"]
-    assert max(map(len, said)) <= overview.WIDTH
+    assert max(map(len, said)) <= facts.WIDTH
 
 
 @pytest.mark.usefixtures("made")
 def test_what_a_failed_run_left_is_not_told() -> None:
-    assert overview.row_of("four_bar 2 failed") == ["four_bar", "2.0 s", "", "", "", "", "failed"]
+    assert facts.row_of("four_bar 2 failed") == ["four_bar", "2.0 s", "", "", "", "", "failed"]
 
 
 def test_the_fastest_place_counts_centres_of_mass(out_root: Path) -> None:
@@ -69,9 +69,9 @@ def test_rounding_is_no_effort() -> None:
     [(name, driver)] = MOTION.drivers.items()
     noise = msgspec.structs.replace(driver, effort=[2e-18 * (-1) ** k for k in range(len(driver.effort))])
     idle = msgspec.structs.replace(MOTION, drivers={name: noise})
-    assert overview._effort(idle) == f"0 N m ({name})"
+    assert facts._effort(idle) == f"0 N m ({name})"
     small = msgspec.structs.replace(driver, effort=[1e-7 for _ in driver.effort])
-    assert overview._effort(msgspec.structs.replace(MOTION, drivers={name: small})) == f"100 nN m ({name})"
+    assert facts._effort(msgspec.structs.replace(MOTION, drivers={name: small})) == f"100 nN m ({name})"
 
 
 def test_a_driver_that_pushes_by_nothing_leaves_the_place_to_a_motor() -> None:
@@ -86,7 +86,7 @@ def test_a_driver_that_pushes_by_nothing_leaves_the_place_to_a_motor() -> None:
     [(name, driver)] = MOTION.drivers.items()
     idle = msgspec.structs.replace(driver, effort=zeros)
     moved = msgspec.structs.replace(MOTION, drivers={name: idle}, forces={"turner": motor})
-    assert overview._effort(moved) == "500 mN m (turner)"
-    assert overview._effort(msgspec.structs.replace(MOTION, forces={"turner": motor})).endswith(f"({name})")
+    assert facts._effort(moved) == "500 mN m (turner)"
+    assert facts._effort(msgspec.structs.replace(MOTION, forces={"turner": motor})).endswith(f"({name})")
     still = msgspec.structs.replace(motor, effort=zeros)
-    assert overview._effort(msgspec.structs.replace(moved, forces={"turner": still})) == f"0 N m ({name})"
+    assert facts._effort(msgspec.structs.replace(moved, forces={"turner": still})) == f"0 N m ({name})"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from render import plots
-from render.plots.horizon import horizon
+from render.plots.measures import horizon
 from tests.render.plotted import MOTION, NAMES, figure, overlaps, shown
 from tools.models.motions import plain_skeleton
 

@@ -37,8 +37,8 @@ def test_no_two_shapes_share_a_file(out_root: str) -> None:
         assert len(set(paths)) == len(made)
     assert named(out.poster, "", made[0].suffix) == out.poster
     assert named(out.poster, "forces", made[-1].suffix).name == "poster-9x16-forces.png"
-    assert made[-1].asked == "PRESET=preview ASPECT=9:16"
-    assert made[0].asked == "PRESET=preview"
+    assert made[-1].request == "PRESET=preview ASPECT=9:16"
+    assert made[0].request == "PRESET=preview"
 
 
 @pytest.mark.parametrize("aspect", ["3:2", "16/9", "9:16:1", "x"])

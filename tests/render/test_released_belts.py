@@ -9,10 +9,8 @@ from mbsd import Mechanism
 from mechanisms.stages.solve.motion_file import to_motion
 from render.film.poses import Moment, Poses
 from render.film.tubes.belts import belts
-from render.glb.animation import Animation
-from render.glb.belts import add_belt
-from render.glb.document import Document
-from render.glb.materials import Paints
+from render.glb.document import Animation, Document, Paints
+from render.glb.tubes import add_belt
 from render.report.travel import releases
 from shared.contract import Held, Motion
 

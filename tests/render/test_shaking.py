@@ -9,12 +9,12 @@ import pytest
 
 from mbsd import Mechanism, harmonic
 from mechanisms.stages.solve.motion_file import to_motion
+from render.magnitudes import shaking
 from render.plots import plots_of
-from render.plots.pages.frame import frame
+from render.plots.pages.forces import frame
 from render.plots.quantities import known_names, quantity
 from render.plots.style import house_style
 from render.report import report
-from render.shaking import shaking
 from render.view.payload import couple_of, frame_of
 from shared.contract import Motion, read_motion, write_motion
 from tests.results.test_couples import two_cylinders

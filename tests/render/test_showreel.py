@@ -13,13 +13,13 @@ from PIL import Image, ImageDraw
 
 from render import freshness
 from render.film.story.frame import Caption
-from render.film.story.subtitles import captions_of, srt
-from render.frames import encode, muxing
+from render.film.story.words import captions_of, srt
+from render.frames import encode
 from render.presets import Preset
-from render.showreel import card, reel_words, showreel
+from render.showreel import card, join, showreel
 from render.showreel.card import Title
-from render.showreel.clip import read_clip
-from render.sound.wave_file import wav
+from render.showreel.join import read_clip
+from render.sound.sound import wav
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 from shared.stage.stages import Stage, key_of
@@ -89,10 +89,10 @@ def test_films_of_older_versions_are_left_out(
     said = capsys.readouterr()
     assert "pendulum-tiny.mp4 is left out, being of an older version: it is of an older data.json" in said.err
     assert "1 film of" in said.out
-    with pytest.raises(UserError, match="films that are asked for are older"):
+    with pytest.raises(UserError, match="requested films are older"):
         showreel.run(TINY, "pendulum")
     monkeypatch.setattr(freshness, "current_names", lambda names: {"pendulum"})
-    with pytest.raises(UserError, match="films that are asked for are older"):
+    with pytest.raises(UserError, match="requested films are older"):
         showreel.run(TINY, "four-bar")
     assert "the machine has changed since it was solved" in capsys.readouterr().err
 
@@ -103,7 +103,7 @@ def test_films_are_heard_under_their_pictures(out_root: Path) -> None:
     silent, t = path.rename(path.with_suffix(".silent.mp4")), np.arange(48_000) / 48_000
     tone = 0.3 * np.sin(2 * np.pi * 500 * t)
     path.with_suffix(".wav").write_bytes(wav(np.stack([tone, tone])))
-    muxing.mux(silent, path.with_suffix(".wav"), 30, TINY, 30, path)
+    encode.mux(silent, path.with_suffix(".wav"), 30, TINY, 30, path)
     silent.unlink()
     target = showreel.run(TINY, "pendulum,four_bar")
     command = [encode.ffmpeg(), "-v", "error", "-i", str(target), "-map", "0:a:0", "-f", "s16le", "-"]
@@ -142,9 +142,9 @@ def test_subtitles_go_with_their_films_and_are_refused_before_any_is_joined(out_
     first, second = film(out_root, "four_bar", 6), film(out_root, "pendulum", 6)
     first.with_suffix(".srt").write_text(srt([Caption(0.0, 0.1, "It turns.")]))
     target, chapters = out_root / "reel.srt", [[read_clip(first)], [read_clip(second)]]
-    assert reel_words.write_subtitles([first, second], chapters, 30, target)
+    assert join.write_subtitles([first, second], chapters, 30, target)
     assert captions_of(target.read_text()) == [Caption(0.0, 0.1, "It turns.")]
-    assert not reel_words.write_subtitles([second], chapters[1:], 30, target)
+    assert not join.write_subtitles([second], chapters[1:], 30, target)
     assert not target.exists(), "no words of films that are no longer in it"
     second.with_suffix(".srt").write_text("1\nsoon --> later\nIt swings.\n")
     with pytest.raises(UserError, match=r"pendulum-tiny\.srt is not a subtitle file .*'1 soon --> later It swings\.'"):

@@ -15,14 +15,11 @@ from matplotlib.text import Text
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.solve.motion_file import to_motion
 from render import plots
-from render.crank import crank_of
-from render.plots import compare, figures
-from render.plots.asked import spectra_asked
-from render.plots.horizon import horizon
-from render.plots.marks import marks
-from render.plots.pages.beside_spectra import spectra_figure
-from render.plots.pages.spectra import stems
-from render.plots.spectrum import Spectrum, spectrum
+from render.magnitudes import crank_of
+from render.plots import compare, figures, spectra_asked
+from render.plots.measures import horizon, marks
+from render.plots.pages.comparison import spectra_figure
+from render.plots.pages.spectra import Spectrum, spectrum, stems
 from shared.contract import Motion, write_motion
 from shared.contract.skeleton import write_skeleton
 from shared.stage import paths

@@ -13,7 +13,7 @@ from mbsd import Mechanism, angle_reaches, constant_rate
 from mechanisms.stages.solve.motion_file import to_motion
 from render.magnitudes import floors
 from render.report import report
-from render.report.moments import event_section
+from render.report.transmission import event_section
 from render.report.travel import releases, stroke
 from render.report.written import Amounts
 from shared.contract import EventMark, Motion

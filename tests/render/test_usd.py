@@ -227,7 +227,7 @@ def test_a_package_knows_no_time() -> None:
 
 
 def test_a_short_motion_has_pictures_enough() -> None:
-    from render.usd.clock import Clock
+    from render.usd.scene import Clock
 
     slow, quick = Clock(np.linspace(3.0, 13.0, 11)), Clock(np.array([0.0, 0.01]))
     assert (slow.rate, slow.codes[1], slow.last) == pytest.approx((24.0, 24.0, 240.0))

@@ -6,7 +6,7 @@ from typing import Any
 
 import cadquery as cq
 
-from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
 
 

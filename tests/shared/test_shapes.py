@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mechanisms.stages.parts.mass_properties import combined, mass_of
-from mechanisms.stages.parts.mesh_check import only_solid
+from mechanisms.stages.parts.meshes import combined, mass_of, only_solid
 from shared.contract import Mass
 from shared.shapes import base, engraving, outline
 from shared.shapes.build import extruded

@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from mechanisms.four_bar.shot import shot as four_bar_shot
-from mechanisms.stages.shot import stage as shot_stage
+from mechanisms.stages import shot as shot_stage
 from shared.contract import ForceMotion, read_motion, read_parts, write_motion
 from shared.contract.shot import (
     Camera,

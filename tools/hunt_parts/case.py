@@ -73,7 +73,7 @@ def outcome_of(subject: Subject, solids: bool = True, engraved: bool = False) ->
 
 def moved(subject: Subject, steps: int = STEPS) -> Solution:
     """The motion, a few turns of it at most. Raises MechanismError where it cannot move so."""
-    from mechanisms.stages.solve.refined_times import swept_closely
+    from mechanisms.stages.solve.refinement import swept_closely
 
     duration = min(subject.duration, MOST * (subject.turn or subject.duration))
     if subject.driven:
@@ -83,7 +83,7 @@ def moved(subject: Subject, steps: int = STEPS) -> Solution:
 
 def parts_of(m: Mechanism, solution: Solution, solids: bool = True, engraved: bool = True) -> Outcome:
     """Plan and build the parts, with an ``engraved`` base or a bare one, and prove that none touch."""
-    from mechanisms.stages.automatic.assembly.kernel_refusals import KERNEL
+    from mechanisms.stages.automatic.assembly import KERNEL
     from mechanisms.stages.automatic.automatic import Automatic
 
     made = Automatic(m, solution)
@@ -112,7 +112,7 @@ def parts_of(m: Mechanism, solution: Solution, solids: bool = True, engraved: bo
 
 
 def _planned(made: Automatic) -> str:
-    """What is to be built, in words. Raises UserError."""
+    """Return what is to be built, in words. Raises UserError."""
     if made.along is not None:
         made.along.refuse()
         count = len(made.along.shafts), len(made.along.cylinders), len(made.along.machine.links)
@@ -133,7 +133,7 @@ def _bridges(made: Automatic) -> str:
 def meshed(bodies: Bodies) -> list[MeshPiece]:
     """The pieces as the clearance stage sees them. Raises UserError for what is no sound solid."""
     from mechanisms.stages.clearance.pieces import MeshPiece
-    from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+    from mechanisms.stages.parts.meshes import check_mesh, only_solid
     from mechanisms.stages.parts_files import read_mesh, read_triangles, stl_bytes
     from shared.shapes.facets import volume_of
 
@@ -165,7 +165,7 @@ def overlapping(pieces: list[MeshPiece]) -> str:
 def proven(m: Mechanism, solution: Solution, bodies: Bodies, pieces: list[MeshPiece]) -> str:
     """The nearest pair. Raises UserError if two pieces of different bodies come too near."""
     from mechanisms.stages.clearance.stage import check
-    from mechanisms.stages.parts.described_body import spans
+    from mechanisms.stages.parts.bodies import spans
     from mechanisms.stages.solve.motion_file import to_motion
     from shared.contract import BodyParts, Mass, Parts, Provenance
 

@@ -1,4 +1,4 @@
-"""What came of the parts of one mechanism."""
+"""Outcome of the parts of one mechanism."""
 
 from __future__ import annotations
 

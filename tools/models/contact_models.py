@@ -1,4 +1,4 @@
-"""What tests of contacts share: a ball, a disc and a box on a floor, times of events, and the balance of energy."""
+"""Models and checks of contacts: a ball, a disc and a box on a floor, times of events, and the balance of energy."""
 
 from __future__ import annotations
 

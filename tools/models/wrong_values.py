@@ -1,4 +1,4 @@
-"""What no argument takes, and what some do: for tests that give everything something wrong."""
+"""Values that no argument takes, and values that some take: for tests that give wrong ones everywhere."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ ARRAYS = ("t", "q", "v", "a", "lam", "wrench", "drives", "margin", "work", "held
 
 
 def outcome(run: Callable[[], Any]) -> Any:
-    """What ``run`` gives, or kind and text of the error that it ends with."""
+    """Return the result of ``run``, or kind and text of the error that it ends with."""
     try:
         return run()
     except MechanismError as error:

@@ -41,7 +41,7 @@ Run = dict[str, list[Numbers | str]]
 
 
 def kept(result: Any) -> Run:
-    """What is kept of a result."""
+    """Return what is kept of a result."""
     run: Run = {}
     for name, value in contents(result):
         plain = value if isinstance(value, str) else Numbers(str(value.dtype), value.shape, value.tobytes())

@@ -1,1 +1,1 @@
-"""What must hold before a version is tagged: looked at in a clean clone, each failure by its name."""
+"""Checks before a version is tagged: made in a clean clone, each failure by its name."""

@@ -17,11 +17,9 @@ from shared.stage.console import run_cli, say, warn
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT
-from tools.release.archives import built, sums
+from tools.release.archives import built, clone, commit_time, sums
 from tools.release.checks import CHECKS, Release
-from tools.release.clone import clone, commit_time
-from tools.release.notes import notes
-from tools.release.versions import wanted_version
+from tools.release.written import notes, wanted_version
 
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 """Versions whose wheels have compiled kernels; uv finds or fetches them."""
@@ -43,12 +41,12 @@ def main() -> int:
         if failed:
             raise UserError(f"release: {len(failed)} of {len(chosen)} checks failed: {', '.join(failed)}")
         if not asked.only:
-            put(release, asked.out, asked.pythons)
+            write(release, asked.out, asked.pythons)
     return 0
 
 
 def passes(name: str, check: object, release: Release) -> bool:
-    """Whether a check holds; its line says what it saw or what is wrong."""
+    """Return True if a check holds; its line says what it saw or what is wrong."""
     assert callable(check)
     try:
         say("release", f"{name}: {check(release)}")
@@ -58,7 +56,7 @@ def passes(name: str, check: object, release: Release) -> bool:
     return True
 
 
-def put(release: Release, out: Path, pythons: Sequence[str]) -> None:
+def write(release: Release, out: Path, pythons: Sequence[str]) -> None:
     """Write the archives, with compiled kernels for these Pythons, their hashes and the notes of the tag."""
     version = wanted_version(release.sources)
     archives = built(release.sources, release.folder / "released", commit_time(release.sources), pythons)

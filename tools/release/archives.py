@@ -1,4 +1,4 @@
-"""The sdist and the wheel of a clone: built, hashed, compared."""
+"""HEAD in a clone of its own; its sdist and wheel, built, hashed and compared."""
 
 from __future__ import annotations
 
@@ -11,6 +11,31 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from shared.stage.errors import UserError
+
+
+def clone(root: Path, folder: Path) -> Path:
+    """Clone the committed files of the clone ``root``, in ``folder``."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    git(root, "clone", "--quiet", "--no-hardlinks", str(root), str(folder))
+    return folder
+
+
+def dirt(root: Path) -> list[str]:
+    """Return files that are changed, or new and not ignored."""
+    return [line[3:] for line in git(root, "status", "--porcelain").splitlines()]
+
+
+def commit_time(root: Path) -> int:
+    """Return the time of HEAD (s since 1970)."""
+    return int(git(root, "log", "-1", "--format=%ct"))
+
+
+def git(root: Path, *words: str) -> str:
+    """Return the answer of git. Raises UserError with its words where it fails."""
+    done = subprocess.run(["git", *words], cwd=root, capture_output=True, text=True)
+    if done.returncode:
+        raise UserError(f"git {words[0]}: {done.stderr.strip()}")
+    return done.stdout
 
 
 def built(sources: Path, out: Path, time: int, pythons: Sequence[str] = (), **environment: str) -> list[Path]:
@@ -36,12 +61,12 @@ def built(sources: Path, out: Path, time: int, pythons: Sequence[str] = (), **en
 
 
 def sums(paths: Sequence[Path]) -> str:
-    """Hashes as ``sha256sum -c`` reads them."""
+    """Return hashes as ``sha256sum -c`` reads them."""
     return "".join(f"{_hash(path)}  {path.name}\n" for path in paths)
 
 
 def differences(first: Sequence[Path], second: Sequence[Path]) -> list[str]:
-    """Names of archives that are in one build alone, or whose bytes differ; of a wheel also which members do."""
+    """Return names of archives that are in one build alone, or whose bytes differ; of a wheel also which members do."""
     ours, theirs = ({path.name: path for path in paths} for paths in (first, second))
     alone = sorted(set(ours) ^ set(theirs))
     other = [name for name in sorted(set(ours) & set(theirs)) if _hash(ours[name]) != _hash(theirs[name])]
@@ -49,7 +74,7 @@ def differences(first: Sequence[Path], second: Sequence[Path]) -> list[str]:
 
 
 def names_in(wheel: Path) -> list[str]:
-    """The files in a wheel."""
+    """Return the names of files in a wheel."""
     with zipfile.ZipFile(wheel) as archive:
         return archive.namelist()
 
@@ -65,7 +90,7 @@ def _members(first: Path, second: Path) -> str:
 
 
 def _checksums(wheel: Path) -> dict[str, object]:
-    """Content, time and mode of each file."""
+    """Return content, time and mode of each file."""
     with zipfile.ZipFile(wheel) as archive:
         return {entry.filename: (entry.CRC, entry.date_time, entry.external_attr) for entry in archive.infolist()}
 

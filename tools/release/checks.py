@@ -10,13 +10,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from shared.stage.errors import UserError
-from tools.release.archives import built, differences, names_in, sums
-from tools.release.citation import faults_of_citation
-from tools.release.clone import clone, commit_time, dirt
+from tools.release.archives import built, clone, commit_time, differences, dirt, names_in, sums
 from tools.release.installed import four_bar_in_a_new_environment
 from tools.release.licences import faults_of_licences
-from tools.release.notes import notes
-from tools.release.versions import disagreements, versions, wanted_version
+from tools.release.written import disagreements, faults_of_citation, notes, versions, wanted_version
 
 
 class Release:
@@ -78,7 +75,7 @@ def same_bytes(release: Release) -> str:
 
 
 def licences(release: Release) -> str:
-    """What the wheel brings of others is in NOTICE.md, and both licence files are in the wheel."""
+    """Check that NOTICE.md names what the wheel brings of others, and that it has both licence files."""
     _refuse(faults_of_licences(names_in(release.wheel), release.sources), "")
     return "LICENSE and NOTICE.md are in the wheel and name all that is not ours"
 
@@ -89,7 +86,7 @@ def installs(release: Release) -> str:
 
 
 def metadata(release: Release) -> str:
-    """What twine would refuse, where it is there."""
+    """Check the metadata by twine, where it is installed."""
     program = [sys.executable, "-m", "twine"] if find_spec("twine") else [shutil.which("twine") or ""]
     if not program[-1]:
         return "twine is not here and was not asked (pip install twine)"

@@ -1,4 +1,4 @@
-"""What is not ours in a wheel, or comes into what it makes, and whether NOTICE.md names it."""
+"""Licences of others in a wheel and in the pages that it makes: NOTICE.md must name them."""
 
 from __future__ import annotations
 

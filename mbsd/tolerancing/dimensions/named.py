@@ -20,13 +20,13 @@ from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.derivatives.numbers.number_steps import size_of, step_of
+from mbsd.model.body import Marker
 from mbsd.model.change import values_of
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, connections
 from mbsd.numbers.names import known_numbers, number_in, place_in
 from mbsd.tolerancing.dimensions.clearance import Clearance
 from mbsd.tolerancing.dimensions.dimension import Column, Dimension, LoosePlay, PushedPlay, Size
-from mbsd.tolerancing.dimensions.reach import refuse_beyond
 from mbsd.tolerancing.dimensions.spreads import spread_of
 
 PIN, PLAY, TOLERANCES = "revolute", "play", "tolerances"
@@ -214,3 +214,22 @@ def _play(m: Model, name: Any, clearance: Any) -> LoosePlay:
         )
     columns = tuple(Column("bore", name, axis) for axis in AXES)
     return LoosePlay(name, columns, clearance.play, clearance=clearance)
+
+
+def refuse_beyond(m: Model, what: str, far: float, marker: Marker) -> None:
+    """Raise ModelError where ``marker`` strays as ``far`` (m) as the farthest other joint of its body is, or farther.
+
+    ``what`` says so in words. A body with no other joint has no such length.
+    """
+    reach = _reach(m, marker)
+    if reach > 0.0 and far >= reach:
+        raise ModelError(
+            f"{m.name}: tolerances: {what} up to {far:g} m, and '{marker.body.name}' reaches {reach:g} m from there to "
+            "its farthest joint; narrow it. Lengths are in metres: 0.02 mm is 2e-5"
+        )
+
+
+def _reach(m: Model, marker: Marker) -> float:
+    """m from a marker to the farthest joint of its body."""
+    others = (other for joint in m.joints.values() for other in (joint.i, joint.j) if other.body is marker.body)
+    return max((math.hypot(other.x - marker.x, other.y - marker.y) for other in others), default=0.0)

@@ -16,8 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mbsd.tolerancing.dimensions.dimension import Dimension
-from mbsd.tolerancing.statistics.derivatives import Evaluate, parts
-from mbsd.tolerancing.statistics.draws import deviations
+from mbsd.tolerancing.statistics.derivatives import Evaluate, deviations, parts
 
 
 @dataclass(frozen=True, eq=False)

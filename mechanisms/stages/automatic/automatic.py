@@ -1,54 +1,84 @@
-"""Parts from the model and its motion: ``automatic(m)`` plans them, ``solids()`` builds them.
-
-def parts(p: Params) -> dict[str, list[Solid]]:
-    made = automatic(build(p))
-    made.material("crank", "steel")
-    made.layer("rocker", 2)
-    return made.solids()
-"""
+"""Automatic parts: from the model and its motion to solids."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.assembly.kernel_refusals import kernel_refusals
-from mechanisms.stages.automatic.assembly.looks import ROD, materials
-from mechanisms.stages.automatic.assembly.marks import Wish, place, refuse_letters
-from mechanisms.stages.automatic.decided import decided
-from mechanisms.stages.automatic.laid_out import laid_out
-from mechanisms.stages.automatic.layout.extents import lengths_of
-from mechanisms.stages.automatic.layout.features import build
-from mechanisms.stages.automatic.layout.items import Need
+from mechanisms.stages.automatic.assembly import ROD, Wish, kernel_refusals, materials, place, refuse_letters
+from mechanisms.stages.automatic.decision import decided
+from mechanisms.stages.automatic.features import laid_out
+from mechanisms.stages.automatic.layout.items import Heights, Need, heights
 from mechanisms.stages.automatic.layout.layout import Layout, Springs
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
-from mechanisms.stages.automatic.layout.order.heights import Heights, heights
-from mechanisms.stages.automatic.layout.printed import printed_sizes
-from mechanisms.stages.automatic.layout.sizes import THINNEST, Sizes, of_pin, refuse_sizes, sizes, thin_pins
-from mechanisms.stages.automatic.pins.rods import places
+from mechanisms.stages.automatic.layout.plan import build
+from mechanisms.stages.automatic.layout.sizes import (
+    THINNEST,
+    Sizes,
+    lengths_of,
+    of_pin,
+    printed_sizes,
+    refuse_sizes,
+    rods_of,
+    sizes,
+    thin_pins,
+)
+from mechanisms.stages.automatic.pins.pins import places
 from mechanisms.stages.automatic.rolling.roads import runs_on_ground
 from mechanisms.stages.automatic.shafts.along import THINNEST_ALONG, Along
-from mechanisms.stages.automatic.shafts.bodies.planes import has_places
-from mechanisms.stages.automatic.standing.held import hold
-from mechanisms.stages.automatic.wished_names import refuse_material, refuse_unknown
-from mechanisms.stages.loading.wished_mount import wished
-from mechanisms.stages.loading.wished_scale import wished_scale
+from mechanisms.stages.automatic.shafts.bodies import has_places
+from mechanisms.stages.automatic.standing import hold
+from mechanisms.stages.loading.wishes import wished, wished_scale
+from shared.contract.materials import MATERIALS
 from shared.contract.mount import Mount, mounted
 from shared.stage.console import Shown
 from shared.stage.errors import UserError
+from shared.stage.suggestions import did_you_mean
 
 if TYPE_CHECKING:
     import cadquery as cq
 
     from mbsd import Mechanism, Solution
-    from mechanisms.stages.automatic.assembly.joined import Joined
+    from mechanisms.stages.automatic.body_shapes import Joined
     from mechanisms.stages.automatic.layout.plan import Plan
     from shared.shapes.bodies import Bodies
     from shared.shapes.fit import Fit
     from shared.shapes.outline import Point
     from shared.shapes.solid import Solid
+
+
+# Names in wishes for parts: bodies and materials that there are.
+
+
+def refuse_unknown(m: Mechanism, body: str, left_out: Collection[str], ground: bool = False) -> None:
+    """Raise UserError unless ``body`` is one that moves, a rod (or ground, where that may be) and is not left out."""
+    if body in left_out:
+        raise UserError(f"{m.name}: '{body}' is left out, so there is nothing of it to shape")
+    names = [*(name for name in m.bodies if ground or name != "ground"), *rods_of(m)]
+    if body not in names:
+        raise UserError(
+            f"{m.name}: there is no body '{body}' to shape; there is: {', '.join(names)}{did_you_mean(body, names)}"
+        )
+
+
+def refuse_material(m: Mechanism, body: str, material: str) -> None:
+    """Raise UserError unless ``material`` is one that there is."""
+    if material not in MATERIALS:
+        raise UserError(
+            f"{m.name}: material of '{body}': there is no '{material}'; there is {', '.join(MATERIALS)}"
+            f"{did_you_mean(material, MATERIALS)}"
+        )
+
+
+# Parts from the model and its motion: ``automatic(m)`` plans them, ``solids()`` builds them.
+#
+# def parts(p: Params) -> dict[str, list[Solid]]:
+#     made = automatic(build(p))
+#     made.material("crank", "steel")
+#     made.layer("rocker", 2)
+#     return made.solids()
 
 
 class Automatic:
@@ -104,7 +134,7 @@ class Automatic:
         ``at`` is the place of the joint whose eye it carries; joints that no outline carries are linked as usual.
         ``sharp`` leaves its edges as they are.
         """
-        from mechanisms.stages.automatic.assembly.joined import Joined
+        from mechanisms.stages.automatic.body_shapes import Joined
 
         self._known(body)
         self._refuse_along("join", "join the outline to the solids (made.replace)")
@@ -180,7 +210,7 @@ class Automatic:
 
     @cached_property
     def along(self) -> Along | None:
-        """The plan of a machine whose bodies have places along the normal of the plane; None of others."""
+        """The plan of a machine whose bodies have places along the normal of the plane; None for others."""
         if not has_places(self.m):
             return None
         plan = Along(self.m, self.solution, self.wishes(), frozenset(self._left_out), frozenset(self._flywheels))
@@ -199,7 +229,9 @@ class Automatic:
 
     @cached_property
     def layout(self) -> Layout:
-        """What is to be built, with styluses as tall as the layers allow. Raises UserError where there are none."""
+        """Return what is to be built, with styluses as tall as the layers allow. Raises UserError if no layers are
+        possible.
+        """
         return self._found[0]
 
     @cached_property
@@ -226,11 +258,11 @@ class Automatic:
         return heights_of
 
     def solids(self, engraved_too: bool = True) -> Bodies:
-        """Every piece by the body it moves with, in mm; the first of each list is the body's main piece. ``on_stand()``
-        adds a stand. ``engraved_too``: the base with its names, rule and dial, which cost as much as a link.
+        """Return every piece by the body it moves with, in mm; the first of each list is the body's main piece.
+        ``on_stand()`` adds a stand. ``engraved_too``: the base with its names, rule and dial, which cost as much as a
+        link.
         """
-        from mechanisms.stages.automatic.assembly.built import built, fitted
-        from mechanisms.stages.automatic.assembly.frame import back_plate
+        from mechanisms.stages.automatic.assembly import back_plate, built, fitted
         from shared.shapes.bodies import Bodies
 
         if self.along is not None:
@@ -257,8 +289,8 @@ class Automatic:
         return made
 
     def _solids_along(self, along: Along) -> Bodies:
-        from mechanisms.stages.automatic.assembly.built import fitted
-        from mechanisms.stages.automatic.shafts.solids.made import plate_of, solids
+        from mechanisms.stages.automatic.assembly import fitted
+        from mechanisms.stages.automatic.shafts.solids import plate_of, solids
         from shared.shapes.bodies import Bodies
 
         made = Bodies(fitted(solids(along, self._materials, self.mount, self._base_under)) | self._replaced)
@@ -276,7 +308,7 @@ class Automatic:
             raise UserError(f"{self.m.name}: {method} is for plates in layers, and bodies here have places z; {remedy}")
 
     def span(self, body: str) -> tuple[float, float]:
-        """Lower and upper face (mm) of the plate of ``body``."""
+        """Return the lower and upper face (mm) of the plate of ``body``."""
         self._known(body)
         if self.along is not None:
             return self.along.span(body)
@@ -284,7 +316,7 @@ class Automatic:
         return self.heights.bottom(body) * scale, self.heights.top(body) * scale
 
     def plan(self) -> Plan:
-        """Eyes, feet and hardware, before plates and base are built."""
+        """Return eyes, feet and hardware, before plates and base are built."""
         from mechanisms.stages.automatic.layout.plan import Plan
 
         rods = dict.fromkeys(self.layout.rods, ROD)
@@ -306,7 +338,7 @@ class Automatic:
         return decided(self._layout, self.wishes(), self._layers)
 
     def wishes(self) -> list[Sizes]:
-        """Sizes of pins and all that goes with them, the most wanted first."""
+        """Return sizes of pins and all that goes with them, the most wanted first."""
         scale, thinnest = wished_scale(), THINNEST_ALONG if has_places(self.m) else THINNEST
         if scale is None and self._pin is not None:
             return [of_pin(self._pin, self._fit)]
@@ -343,15 +375,15 @@ class Automatic:
 def automatic(
     m: Mechanism, pin: float | None = None, solution: Solution | None = None, fit: Fit | None = None
 ) -> Automatic:
-    """Parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder,
-    or of its variant that is made.
+    """Return parts of ``m``, planned from ``solution``; by default from the motion of the mechanism's folder, or of its
+    variant that is made.
 
     ``pin``: diameter (mm) of its pins; by default it follows from the links. ``fit``: clearances (mm), such as
     ``Fit(running=0.3)`` for printed parts; by default they follow from the pins. Raises UserError where it cannot move.
     """
     if solution is None:
         from mechanisms.stages.loading.loading import running
-        from mechanisms.stages.solve.bare_motion import bare_solution
+        from mechanisms.stages.solve.masses import bare_solution
 
         solution = bare_solution(running(m.name))
     return Automatic(m, solution, pin, fit)

@@ -1,38 +1,26 @@
-"""Every kind of joint, force and contact that has automatic parts: importing a line's module enters it."""
+"""All kinds of joints, forces and contacts that have automatic parts: to import a module enters its kinds."""
 
-from mechanisms.stages.automatic.cams import (  # noqa: F401
-    cam_solids,
-    cams,  # cam and roller, cam and flat face
-    geneva,  # Geneva
-    geneva_solids,
-)
+from mechanisms.stages.automatic import cams  # noqa: F401  (cams and Genevas)
 from mechanisms.stages.automatic.pins import (  # noqa: F401
-    bridge_solids,
-    pin_hardware,
-    pins,  # revolute, and the ends of rods
-    pins_with_play,  # clearance joint
-    welds,  # weld
-)
-from mechanisms.stages.automatic.pins.springs import (  # noqa: F401
+    bridges,
+    pin_solids,
+    pins,  # revolute joints, the ends of rods, clearance joints
     springs,  # springs, dampers and actuators between points
-    stud_solids,
+    welds,
 )
 from mechanisms.stages.automatic.rolling import (  # noqa: F401
-    contacts,  # discs on walls and roads, tyres
-    rolling,  # discs on lines and terrains
-    round_solids,
+    contacts,  # discs on lines, terrains, walls and roads; tyres
+    rounds,
 )
 from mechanisms.stages.automatic.slides import (  # noqa: F401
-    crossing_solids,
-    curved_slots,  # point on a curve
-    prismatic,  # prismatic
-    slide_solids,
-    slot_solids,
-    slots,  # pin in slot
+    curved_slots,  # points on curves
+    rails,  # prismatic joints
+    slides,
+    slots,  # pins in slots
 )
 from mechanisms.stages.automatic.wheels import (  # noqa: F401
-    gear_solids,
-    gears,  # gear pair, rack and pinion, belt
-    pulley_solids,
-    rack_solids,
+    gears,  # gear pairs, racks and pinions, belts
+    pulleys,
+    racks,
+    wheels,
 )

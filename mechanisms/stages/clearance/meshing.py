@@ -1,36 +1,108 @@
-"""The least gap of two gears in mesh over any number of turns follows from one tooth pitch.
-
-Wheels that roll on each other repeat: seen from the first wheel, turning the second wheel's centre on by one pitch of
-the first turns the second by one pitch of its own as well. So with teeth that are all alike, one pitch shows all gaps.
-Three things make that a proof for the meshes and the motion at hand:
-
-- Each mesh is replaced by the union of its copies turned by all its pitches, which holds the mesh. It is the same after
-  a turn by a pitch, so poses that differ by pitches have the same gap.
-- The motion is compared with ideal rolling, centres ``d`` apart and angles in the ratio of the teeth. What it is off at
-  most, between samples too, is taken off the gap that is proven.
-- Over one pitch of ideal rolling the search of search.py proves the gap of the two unions.
-
-Copies that coincide are one: those of equal teeth as good as vanish. Where wheels are no such wheels (a sector, teeth
-left out), the unions are larger than the meshes, and the whole motion is searched instead.
-"""
+"""Clearance of pieces that work on each other: teeth, rolling discs, and belts on pulleys."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from mechanisms.stages.clearance.outlines import FIRST
 from mechanisms.stages.clearance.path import BodyPath, RelativePath
-from mechanisms.stages.clearance.pieces import MeshPiece, height_between
-from mechanisms.stages.clearance.rolling import Rolling, rolling
-from mechanisms.stages.clearance.search.least import FIRST
-from mechanisms.stages.clearance.search.search import RESOLUTION, Least, Search
-from mechanisms.stages.clearance.search.sweep import Sweep
-from mechanisms.stages.clearance.tree import FacetTree
-from mechanisms.stages.clearance.unions import extent, order, turned_union
-from shared.contract import Motion
+from mechanisms.stages.clearance.pieces import FacetTree, MeshPiece, extent, height_between, order, turned_union
+from mechanisms.stages.clearance.search import RESOLUTION, Least, Search, Sweep
+from shared.contract import Held, JointMotion, Motion, Parts
+from shared.contract.belt_path import BeltPath
+from shared.contract.belt_section import half_height, half_width
 from shared.shapes.units import mm
+
+# How near the relative motion of two bodies is to ideal rolling: a circle of centres, turning in a fixed ratio.
+
+PARTS = 8
+"""Each interval of data.json is looked at so many times."""
+
+
+@dataclass(frozen=True)
+class Rolling:
+    """Seen from the first body, the centre of the second is at ``distance`` (mm) from a point of it in the direction
+    phi (rad), and the second is turned by ``turn + ratio phi``. No point of it is farther from there than ``off`` (mm).
+    """
+
+    distance: float
+    turn: float
+    off: float
+    times: np.ndarray
+    angles: np.ndarray
+    """(n,): phi at these times (s), not wrapped."""
+
+    @property
+    def start(self) -> float:
+        """The first phi."""
+        return float(self.angles[0])
+
+    @property
+    def span(self) -> float:
+        """How far phi goes."""
+        return float(np.ptp(self.angles))
+
+    def time_of(self, angle: float, pitch: float) -> float:
+        """Return the first time at which phi is ``angle`` or a number of pitches from it."""
+        passed = np.floor((self.angles - angle) / pitch)
+        k = int(np.flatnonzero(np.diff(passed) != 0)[0])
+        low, high = self.angles[k], self.angles[k + 1]
+        there = angle + pitch * max(passed[k], passed[k + 1])
+        part = min(max((there - low) / (high - low), 0.0), 1.0)
+        return float(self.times[k] + part * (self.times[k + 1] - self.times[k]))
+
+
+def rolling(path: RelativePath, about: np.ndarray, ratio: float, reach: float) -> Rolling | None:
+    """Return ideal rolling about the point ``about`` (mm, frame of the first body) with that ratio, next to the motion.
+
+    ``off`` holds for points within ``reach`` (mm) of the second body's centre and for all time: at PARTS times in
+    each interval it is looked at, and between them a function is within h^2 / 8 max |f''| of the larger of its ends.
+    None where the centre passes through ``about``, or samples jump.
+    """
+    mover = path.mover
+    if len(mover.first) + 1 != len(mover.time):
+        return None
+    count = len(mover.first)
+    k = np.repeat(np.arange(count), PARTS)
+    time = np.append((mover.start[:, None] + mover.width[:, None] * np.arange(PARTS) / PARTS).ravel(), mover.time[-1])
+    pose = path.place(np.append(k, count - 1), time)
+    seen = pose[:, :2] - about
+    distance = np.hypot(*seen.T)
+    if distance.min() < 0.01 * distance.max():
+        return None
+    angle = np.unwrap(np.arctan2(seen[:, 1], seen[:, 0]))
+    left = pose[:, 2] - ratio * angle
+    middle, turn = (float(x.min() + x.max()) / 2 for x in (distance, left))
+    h, push, spin = np.diff(time), path.push[k], path.spin[k]
+    speed = np.hypot(*np.diff(seen, axis=0).T) / h + h / 2 * push
+    least = np.minimum(distance[1:], distance[:-1]) - speed * h
+    if least.min() <= 0:
+        return None
+    bend_distance = push + speed**2 / least
+    bend_angle = push / least + 2 * speed**2 / least**2
+    off = np.maximum(np.abs(distance[1:] - middle), np.abs(distance[:-1] - middle)) + h**2 / 8 * bend_distance
+    turned = np.maximum(np.abs(left[1:] - turn), np.abs(left[:-1] - turn)) + h**2 / 8 * (spin + abs(ratio) * bend_angle)
+    return Rolling(middle, turn, float((off + reach * turned).max()), time, angle)
+
+
+# The least gap of two gears in mesh over any number of turns follows from one tooth pitch.
+#
+# Wheels that roll on each other repeat: seen from the first wheel, turning the second wheel's centre on by one pitch of
+# the first turns the second by one pitch of its own as well. So with teeth that are all alike, one pitch shows all
+# gaps. Three things make that a proof for the meshes and the motion at hand:
+#
+# - Each mesh is replaced by the union of its copies turned by all its pitches, which holds the mesh. It is the same
+#   after a turn by a pitch, so poses that differ by pitches have the same gap.
+# - The motion is compared with ideal rolling, centres ``d`` apart and angles in the ratio of the teeth. What it is off
+#   at most, between samples too, is taken off the gap that is proven.
+# - Over one pitch of ideal rolling the search of search.py proves the gap of the two unions.
+#
+# Copies that coincide are one: those of equal teeth as good as vanish. Where wheels are no such wheels (a sector, teeth
+# left out), the unions are larger than the meshes, and the whole motion is searched instead.
 
 STEPS = 24
 """Intervals of a pitch at first."""
@@ -60,7 +132,7 @@ type Meshes = dict[frozenset[str], list[Gears]]
 
 
 def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
-    """The gear pairs of a motion, with the numbers of teeth that data.json has, else those of the meshes."""
+    """Return the gear pairs of a motion, with the numbers of teeth that data.json has, else those of the meshes."""
     by_bodies: Meshes = {}
     for joint in motion.joints.values():
         shape = joint.shape
@@ -78,7 +150,9 @@ def meshes(motion: Motion, pieces: list[MeshPiece]) -> Meshes:
 
 
 def least_in_mesh(sweep: Sweep, known: Meshes, where: dict[str, BodyPath]) -> Least | None:
-    """The least gap of two pieces over the motion, if they are wheels in mesh and one pitch shows it; else None."""
+    """Return the least gap of two pieces over the motion, if they are wheels in mesh and one pitch shows it; else
+    None.
+    """
     pieces = {sweep.mover.body: sweep.mover, sweep.still.body: sweep.still}
     for gears in known.get(frozenset(pieces), []):
         first, second = (pieces[body] for body in gears.bodies)
@@ -128,7 +202,9 @@ def _least(sweep: Sweep, gears: Gears, first: MeshPiece, second: MeshPiece, wher
 
 
 def _one_pitch(ideal: Rolling, gears: Gears, pitch: float, off: float) -> RelativePath:
-    """The second wheel's frame about its centre, while that goes on by a pitch in a second, seen from the first."""
+    """Return the second wheel's frame about its centre, while that goes on by a pitch in a second, seen from the
+    first.
+    """
     time = np.linspace(0.0, 1.0, STEPS + 1)
     angle = ideal.start + pitch * time
     ray = ideal.distance * np.column_stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)])
@@ -138,3 +214,115 @@ def _one_pitch(ideal: Rolling, gears: Gears, pitch: float, off: float) -> Relati
     mover = BodyPath(time, pose, pitch * (across + turn), -(pitch**2) * ray)
     nothing = np.zeros_like(pose)
     return RelativePath(mover, BodyPath(time, nothing, nothing, nothing), np.zeros(2), np.full(STEPS, off))
+
+
+# Belts and chains as the check sees them: the band that they run in, as a solid beside the bodies.
+#
+# A belt lies still against the line of its pulleys' centres, whatever runs round in it. So its band (mm) is a piece of
+# a body of its own: the origin is the first pulley's centre, the x axis goes to the second's. It is as wide and high as
+# all that the film draws of the belt (shared/contract/belt_section.py), strands that cross included.
+
+SAG = 0.02
+"""At most so far (mm) the straight sides of the band's outline leave the arcs; it is wider by as much."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """One belt."""
+
+    piece: MeshPiece
+    path: BodyPath
+    axes: dict[str, tuple[np.ndarray, np.ndarray]]
+    """By body of a pulley: the pulley's centre in the band's frame and in the body's (mm)."""
+    own: frozenset[tuple[str, str]]
+    """Body and name of the pieces that hold the belt: its pulleys, which it touches."""
+
+
+def bands(parts: Parts, motion: Motion, where: Mapping[str, BodyPath]) -> Iterator[Band]:
+    """Yield bands of all belts that pieces hold, as far as their pulleys leave room for a path."""
+    for name, joint in motion.joints.items():
+        own, held = _holding(parts, name)
+        if joint.look != "band" or held is None or joint.shape is None:
+            continue
+        shape = joint.shape
+        if not shape.radius_first or not shape.radius_second:
+            continue
+        path, distance = _path(joint, where)
+        way = BeltPath(mm(shape.radius_first), mm(shape.radius_second), distance, shape.crossed)
+        if not way.has_room:
+            continue
+        chain = bool(shape.teeth)
+        wide, high = (
+            mm(held.radius) * size for size in (half_width(1.0, chain), half_height(1.0, chain, shape.crossed))
+        )
+        triangles = band(way, wide, high) + np.array([0.0, 0.0, mm(held.z)])
+        ends = [np.zeros(2), np.array([distance, 0.0])]
+        axes = {
+            body: (end, np.array([mm(marker[0]), mm(marker[1])]))
+            for body, marker, end in zip(shape.bodies, shape.markers, ends, strict=True)
+        }
+        yield Band(MeshPiece(f"belt {name}", name, triangles), path, axes, own)
+
+
+def band(way: BeltPath, wide: float, high: float) -> np.ndarray:
+    """Return (n, 3, 3): facets round all places within ``wide`` of the belt in the plane, and ``high`` over and under
+    it.
+    """
+    import manifold3d
+
+    starts = np.concatenate([[0.0], np.cumsum(way.parts)])
+    along = [starts[1], starts[3]]  # where strands begin
+    for begins, ends, radius in ((0, 1, way.first), (2, 3, way.second)):
+        steps = math.ceil((starts[ends] - starts[begins]) / (2 * math.sqrt(2 * SAG * radius)))
+        along.extend(np.linspace(starts[begins], starts[ends], max(steps, 8), endpoint=False))
+    points, _ = way.places(np.unique(along))
+    loop = manifold3d.CrossSection([points], manifold3d.FillRule.NonZero)
+    outer, inner = (loop.offset(side * (wide + SAG), manifold3d.JoinType.Miter, 2.0) for side in (1.0, -1.0))
+    solid = (outer - inner).extrude(2 * high).translate((0.0, 0.0, -high))
+    mesh = solid.to_mesh64()
+    return np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts).astype(np.int64)]
+
+
+def _holding(parts: Parts, name: str) -> tuple[frozenset[tuple[str, str]], Held | None]:
+    held = {
+        (body, piece_name): piece.holds[name]
+        for body, solids in parts.bodies.items()
+        for piece_name, piece in solids.pieces.items()
+        if name in piece.holds
+    }
+    return frozenset(held), next(iter(held.values()), None)
+
+
+def _path(joint: JointMotion, where: Mapping[str, BodyPath]) -> tuple[BodyPath, float]:
+    """Return the motion of the first centre and of the line of centres, and the distance of the centres at the start
+    (mm).
+    """
+    assert joint.shape is not None
+    ends = [
+        _centre(where[body], mm(x), mm(y))
+        for body, (x, y, _) in zip(joint.shape.bodies, joint.shape.markers, strict=True)
+    ]
+    (place, rate, acceleration), (d, dv, da) = ends[0], (b - a for a, b in zip(*ends, strict=True))
+    square = (d**2).sum(axis=1)
+    turn = np.unwrap(np.arctan2(d[:, 1], d[:, 0]))
+    spin = _cross(d, dv) / square
+    more = _cross(d, da) / square - 2 * (d * dv).sum(axis=1) * spin / square
+    columns = [np.column_stack([xy, angle]) for xy, angle in ((place, turn), (rate, spin), (acceleration, more))]
+    return BodyPath(where["ground"].time, *columns), float(np.sqrt(square[0]))
+
+
+def _centre(path: BodyPath, x: float, y: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return (n, 2) each: place, velocity and acceleration of a point of a body."""
+    c, s = np.cos(path.pose[:, 2]), np.sin(path.pose[:, 2])
+    arm = np.column_stack([c * x - s * y, s * x + c * y])
+    across = np.column_stack([-arm[:, 1], arm[:, 0]])
+    omega, alpha = path.rate[:, 2:], path.acceleration[:, 2:]
+    return (
+        path.pose[:, :2] + arm,
+        path.rate[:, :2] + omega * across,
+        path.acceleration[:, :2] + alpha * across - omega**2 * arm,
+    )
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

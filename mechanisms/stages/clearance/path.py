@@ -1,19 +1,82 @@
-"""The motion between the samples of data.json, as the film shows it, with bounds of its rates.
-
-Positions, rates and accelerations at both ends of an interval fix one quintic in each coordinate. As Bezier curves they
-lie within the hull of their control points, and so do their derivatives: that bounds speed and acceleration in between.
-Two samples at the same time (right before and after an event) bound no interval.
-"""
+"""The motion of two pieces against each other: its path, the scale, common axes, and pieces that stay far apart."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
+from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
-from shared.contract import Motion
+from shared.contract import Motion, Parts
+from shared.shapes.fit import Fit
 from shared.shapes.units import mm
+
+if TYPE_CHECKING:
+    from mechanisms.stages.clearance.pieces import MeshPiece
+    from shared.contract.loads import Shape
+    from shared.contract.motion import BodyMotion, JointMotion
+    from shared.stage.scale import Scale
+
+
+# The motion of a model at a scale: that of the machine, geometrically similar; angles and times stay. And what a
+# refusal of its parts adds.
+
+LENGTHS = ("x", "y", "vx", "vy", "ax", "ay")
+"""Series of a body that are lengths and their rates."""
+OF_SHAPE = ("radius_first", "radius_second", "pin_radius", "length")
+
+
+def at_scale(motion: Motion, ratio: float) -> Motion:
+    """Return a motion as the proof of clearance reads it, ``ratio`` times as large; loads, masses and energies stay
+    those of the machine.
+    """
+    bodies = {name: _body(body, ratio) for name, body in motion.bodies.items()}
+    joints = {name: _joint(joint, ratio) for name, joint in motion.joints.items()}
+    return msgspec.structs.replace(motion, bodies=bodies, joints=joints)
+
+
+def _body(body: BodyMotion, ratio: float) -> BodyMotion:
+    return msgspec.structs.replace(body, **{name: _times(getattr(body, name), ratio) for name in LENGTHS})
+
+
+def _joint(joint: JointMotion, ratio: float) -> JointMotion:
+    shape = joint.shape and _shape(joint.shape, ratio)
+    return msgspec.structs.replace(joint, x=_times(joint.x, ratio), y=_times(joint.y, ratio), shape=shape)
+
+
+def _shape(shape: Shape, ratio: float) -> Shape:
+    (x, y, a), (u, v, b) = shape.markers
+    lengths = {name: value * ratio for name in OF_SHAPE if (value := getattr(shape, name)) is not None}
+    outline = [(px * ratio, py * ratio) for px, py in shape.outline]
+    markers = (x * ratio, y * ratio, a), (u * ratio, v * ratio, b)
+    return msgspec.structs.replace(shape, markers=markers, outline=outline, **lengths)
+
+
+def _times(values: list[float], ratio: float) -> list[float]:
+    return [value * ratio for value in values]
+
+
+def what_shrinks(scale: Scale) -> str:
+    """Return the end of a refusal of parts at ``scale``: why a parts.py that fits its machine need not fit the
+    model.
+    """
+    running = Fit().running
+    return (
+        f"what a parts.py gives in millimetres, clearances too, shrinks with the machine: Fit(running="
+        f"{running / scale.ratio:.3g}) leaves {running:g} mm at {scale}, and fit_at_scale(pin) of mechanisms.automatic "
+        "chooses for any scale; without a parts.py pins and fits are chosen for the scale"
+    )
+
+
+# The motion between the samples of data.json, as the film shows it, with bounds of its rates.
+#
+# Positions, rates and accelerations at both ends of an interval fix one quintic in each coordinate. As Bezier curves
+# they lie within the hull of their control points, and so do their derivatives: that bounds speed and acceleration in
+# between. Two samples at the same time (right before and after an event) bound no interval.
 
 DIFFERENCE = 0.625
 """Largest value of the two middle Bernstein polynomials of degree five together."""
@@ -61,19 +124,19 @@ class BodyPath:
         return _largest(angle, self.width, 1), _largest(angle, self.width, 2)
 
     def interval(self, time: np.ndarray) -> np.ndarray:
-        """(m,): the interval in which each time lies; of two that meet there, the later."""
+        """Return (m,) the interval in which each time lies; of two that meet there, the later."""
         return np.clip(np.searchsorted(self.start, time, side="right") - 1, 0, len(self.start) - 1)
 
     def within(self, k: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """(m, 3) poses at times that lie in the intervals ``k``."""
+        """Return (m, 3) poses at times that lie in the intervals ``k``."""
         u = ((time - self.start[k]) / self.width[k])[:, None]
         point = self.control[k]
         while point.shape[1] > 1:  # de Casteljau
             point = point[:, :-1] + u[:, :, None] * (point[:, 1:] - point[:, :-1])
         return point[:, 0]
 
-    def at(self, time: np.ndarray) -> np.ndarray:
-        """(m, 3) poses at any times."""
+    def poses_at(self, time: np.ndarray) -> np.ndarray:
+        """Return (m, 3) poses at any times."""
         return self.within(self.interval(time), time)
 
     @cached_property
@@ -94,12 +157,12 @@ class BodyPath:
         return largest[0].max(axis=0), largest[1].max(axis=0)
 
     def interpolation_error(self, reach: float) -> np.ndarray:
-        """(m,): the same for a point ``reach`` mm from the origin (mm)."""
+        """Return (m,) the same for a point ``reach`` mm from the origin (mm)."""
         return self.error[0] + reach * self.error[1]
 
 
 def paths(motion: Motion) -> dict[str, BodyPath]:
-    """The path of every body, ``ground`` included."""
+    """Return the path of every body, ``ground`` included."""
     time = np.array(motion.time)
     still = np.zeros((len(time), 3))
     by_body = {"ground": BodyPath(time, still, still, still)}
@@ -111,14 +174,14 @@ def paths(motion: Motion) -> dict[str, BodyPath]:
 
 
 def relative(pose: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """(m, 3): poses seen from the frame of ``reference``."""
+    """Return (m, 3): poses seen from the frame of ``reference``."""
     c, s = np.cos(reference[:, 2]), np.sin(reference[:, 2])
     dx, dy = pose[:, 0] - reference[:, 0], pose[:, 1] - reference[:, 1]
     return np.column_stack([c * dx + s * dy, c * dy - s * dx, pose[:, 2] - reference[:, 2]])
 
 
 def points(pose: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """(m, 2): where a point (2,) of a body is, at each pose."""
+    """Return (m, 2) where a point (2,) of a body is, at each pose."""
     c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
     x, y = point
     return np.column_stack([pose[:, 0] + c * x - s * y, pose[:, 1] + s * x + c * y])
@@ -149,17 +212,90 @@ class RelativePath:
         """(m,): every mm between a point and the centre adds this to its acceleration (1/s^2)."""
 
     def place(self, k: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """(n, 3): the centre's place (mm) and the angle (rad) in the other's frame, at times in intervals ``k``."""
+        """Return (n, 3) the centre's place (mm) and the angle (rad) in the other's frame, at times in intervals
+        ``k``.
+        """
         pose = self.mover.within(k, time)
         pose[:, :2] = points(pose, self.centre)
         return relative(pose, self.still.within(k, time))
 
     def bend(self, radius: float) -> float:
-        """How far (mm) points within ``radius`` of the centre stray from straight lines in the intervals, in all."""
+        """Return how far (mm) points within ``radius`` of the centre stray from straight lines in the intervals, in
+        all.
+        """
         return float((self.mover.width**2 / 8 * (self.push + radius * self.spin)).sum())
 
 
 def _largest(control: np.ndarray, width: np.ndarray, order: int) -> np.ndarray:
-    """(m,): a bound of a derivative's norm in each interval, from control points (m, 6, d)."""
+    """Return (m,) a bound of a derivative's norm in each interval, from control points (m, 6, d)."""
     factor = {1: 5.0, 2: 20.0}[order] / width**order
     return factor * np.linalg.norm(np.diff(control, n=order, axis=1), axis=2).max(axis=1)
+
+
+# Axes about which two bodies turn against each other, however they move.
+
+type Axes = dict[frozenset[str], dict[str, np.ndarray]]
+"""By pair of bodies: the axis of their joint, as a point (mm) in the frame of either."""
+
+
+def axes_of(motion: Motion, parts: Parts, where: Mapping[str, BodyPath]) -> Axes:
+    """Return axes of bodies that a revolute joint or a rod's end connects, and of those that turn on a common pin."""
+    axes: Axes = {}
+    for joint in motion.joints.values():
+        if joint.kind != "revolute":
+            continue
+        at = np.column_stack([np.array(joint.x) * mm(1), np.array(joint.y) * mm(1), np.zeros(len(joint.x))])
+        seen = {body: relative(at, where[body].pose)[:, :2] for body in joint.bodies}
+        if all(np.ptp(point, axis=0).max() < 1e-4 for point in seen.values()):
+            axes[frozenset(joint.bodies)] = {body: point.mean(axis=0) for body, point in seen.items()}
+    for rod, described in parts.bodies.items():
+        for end in described.spans or ():
+            own = np.array([end.x, end.y]) * mm(1)
+            at = points(where[end.body].pose, own)
+            point = relative(np.column_stack([at, np.zeros(len(at))]), where[rod].pose)[:, :2]
+            if np.ptp(point, axis=0).max() < 1e-4:
+                axes[frozenset((rod, end.body))] = {rod: point.mean(axis=0), end.body: own}
+    return _with_common_pins(axes)
+
+
+def _with_common_pins(axes: Axes) -> Axes:
+    """Also bodies that turn on a common pin without a joint between the two of them."""
+    waiting = list(axes.items())
+    while waiting:
+        pair, at = waiting.pop()
+        for other, there in list(axes.items()):
+            for body in pair & other:
+                ends = pair ^ other
+                if len(ends) == 2 and ends not in axes and np.abs(at[body] - there[body]).max() < 1e-4:
+                    axes[ends] = {end: (at | there)[end] for end in ends}
+                    waiting.append((ends, axes[ends]))
+    return axes
+
+
+# Finds bodies that stay far apart, such as links of a chain that are no neighbours: their pieces need no comparison.
+#
+# Between two outputs a body's origin lies within the box round the control points of its quintic, and its pieces lie
+# within a circle about the origin. Boxes that are apart by the radii and more settle all pieces of two bodies at once.
+
+
+def far_bodies(pieces: Sequence[MeshPiece], where: Mapping[str, BodyPath], reach: float) -> set[frozenset[str]]:
+    """Return pairs of bodies whose pieces are ``reach`` (mm) apart or more over the whole motion."""
+    radius: dict[str, float] = {}
+    for piece in pieces:
+        radius[piece.body] = max(radius.get(piece.body, 0.0), piece.reach)
+    places = {body: where[body].control[:, :, :2] for body in radius}
+    boxes = {body: (place.min(axis=1), place.max(axis=1)) for body, place in places.items()}
+    room = {body: r + where[body].interpolation_error(r) for body, r in radius.items()}
+    pairs = set()
+    for a, b in combinations(radius, 2):
+        (low_a, high_a), (low_b, high_b) = boxes[a], boxes[b]
+        gap = np.maximum(np.maximum(low_b - high_a, low_a - high_b), 0.0)
+        if (np.hypot(gap[:, 0], gap[:, 1]) - room[a] - room[b] >= reach).all():
+            pairs.add(frozenset((a, b)))
+    return pairs
+
+
+def error_of(first: MeshPiece, second: MeshPiece, where: Mapping[str, BodyPath]) -> float:
+    """Return how far two pieces may at most be from where they are taken to be (mm)."""
+    ends = [where[piece.body].interpolation_error(piece.reach) for piece in (first, second)]
+    return float((ends[0] + ends[1]).max(initial=0.0))

@@ -49,7 +49,7 @@ type Slides = dict[frozenset[str], Slide]
 
 
 def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
-    """Slides of bodies that a prismatic joint connects."""
+    """Return slides of bodies that a prismatic joint connects."""
     slides: Slides = {}
     for joint in motion.joints.values():
         if joint.kind != "prismatic":
@@ -73,8 +73,8 @@ def slides_of(motion: Motion, where: Mapping[str, BodyPath]) -> Slides:
 
 
 def slide_gap(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float = np.inf) -> tuple[float, float] | None:
-    """The gap (mm) of the two outlines along the line of their bodies, and what of it is proven; None where there is no
-    such line, or where the outlines overlap.
+    """Return the gap (mm) of the two outlines along the line of their bodies, and what of it is proven; None where
+    there is no such line, or where the outlines overlap.
 
     What the other never comes within ``reach`` (mm) of along the line, as the closed end of a cylinder, is left out;
     None as well where the gap is more than what is left out is away.
@@ -109,11 +109,11 @@ class Sliced:
     """Gap of these slices, mm; infinite where they stay farther than ``away``."""
     away: float
     rest: list[tuple[MeshPiece, MeshPiece]]
-    """What is left: parts of the mover, and what of the other piece they come near to."""
+    """The rest: parts of the mover, and the parts of the other piece that they come near to."""
 
 
 def sliced(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float) -> Sliced | None:
-    """The mover cut across its line; None where there is no line or where that is of no use.
+    """Return the mover cut across its line; None where there is no line or where that is of no use.
 
     All gaps below ``away`` are those of slices that are proven or of the rest.
     """
@@ -147,28 +147,30 @@ def sliced(first: MeshPiece, second: MeshPiece, slides: Slides, reach: float) ->
 
 
 def _in_body(piece: MeshPiece, part: Manifold, way: np.ndarray) -> MeshPiece:
-    """A part of a piece that is seen along a line, in the frame of its body."""
+    """Return a part of a piece that is seen along a line, in the frame of its body."""
     mesh = part.to_mesh()
     corners = (np.asarray(mesh.vert_properties, float)[:, :3] - way[:, 3]) @ way[:, :3]
     return replace(piece, triangles=corners[np.asarray(mesh.tri_verts)])
 
 
 def _along(angle: float, through: np.ndarray) -> np.ndarray:
-    """(3, 4) that gives, of a point of a piece, its place across the line, its height and its place along it (mm)."""
+    """Return (3, 4) that gives, of a point of a piece, its place across the line, its height and its place along it
+    (mm).
+    """
     c, s = np.cos(angle), np.sin(angle)
     x, y = through
     return np.array([[-s, c, 0.0, s * x - c * y], [0.0, 0.0, 1.0, 0.0], [c, s, 0.0, -c * x - s * y]])
 
 
 def _between(piece: Manifold, low: float, high: float) -> Manifold:
-    """What of a piece lies between two places along the line."""
+    """Return the part of a piece between two places along the line."""
     if np.isfinite(low):
         piece = piece.trim_by_plane((0.0, 0.0, 1.0), low)
     return piece.trim_by_plane((0.0, 0.0, -1.0), -high) if np.isfinite(high) else piece
 
 
 def _distance(p: np.ndarray, q: np.ndarray) -> float:
-    """Distance between two closed polygons (n, 2) that do not cross."""
+    """Return the distance between two closed polygons (n, 2) that do not cross."""
     return min(_to_sides(p, q), _to_sides(q, p))
 
 

@@ -2,7 +2,7 @@
 
 Every pair of pieces of two bodies is settled by the first of these that suffices:
 
-1. Circles. Pieces whose circles in the plane stay apart do not meet, nor do those of bodies far apart (far.py).
+1. Circles. Pieces whose circles in the plane stay apart do not meet, nor do those of bodies far apart (path.py).
 2. Layers. The motion is planar, so pieces at different heights stay apart, whatever the motion.
 3. Turn. Bodies with a revolute joint between them turn about one axis: the gap of pieces round it at every angle at
    once (turn.py).
@@ -11,7 +11,7 @@ Every pair of pieces of two bodies is settled by the first of these that suffice
    place at once (slide.py). This covers a piston in its liner. Where slices alone are proven so, as for a
    valve in its guide, the rest is left to the motion.
 5. Motion. The gap of the two meshes over the whole motion, found and proven by branch and bound: of their outlines in
-   the plane (outline_search.py), and where these do not suffice, of their facets (search.py). For gears, over one pitch
+   the plane (outlines.py), and where these do not suffice, of their facets (search.py). For gears, over one pitch
    of their teeth (meshing.py).
 
 What is proven: at every moment of the motion, which between the samples of data.json is the quintic that the film
@@ -41,11 +41,9 @@ from shared.stage.stages import Stage, contract_sources, key_of, versions
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from mechanisms.stages.clearance.axes import Axes
-    from mechanisms.stages.clearance.path import BodyPath
+    from mechanisms.stages.clearance.path import Axes, BodyPath
     from mechanisms.stages.clearance.pieces import MeshPiece
-    from mechanisms.stages.clearance.search.search import Least
-    from mechanisms.stages.clearance.search.sweep import Sweep
+    from mechanisms.stages.clearance.search import Least, Sweep
     from mechanisms.stages.clearance.slide import Slides
 
 LIMIT = 0.05
@@ -76,7 +74,7 @@ def run(name: str, scale: str = "") -> None:
     if stage.is_fresh():
         say("clearance", f"{out.title}: nothing to do")
         return
-    from mechanisms.stages.clearance.at_scale import at_scale, what_shrinks
+    from mechanisms.stages.clearance.path import at_scale, what_shrinks
     from mechanisms.stages.clearance.pieces import read_pieces
 
     reach = REACH if at is None else min(max(REACH * at.ratio, REACH_OF_MODELS), REACH)
@@ -94,12 +92,12 @@ def run(name: str, scale: str = "") -> None:
 
 
 def is_fresh(name: str) -> bool:
-    """Whether there is nothing to do. Raises OSError where parts or motion are missing."""
+    """Return True if there is nothing to do. Raises OSError where parts or motion are missing."""
     return _stage(Out(name), Out(name)).is_fresh()
 
 
 def _stage(out: Out, machine: Out, scale: Scale | None = None) -> Stage:
-    """The stage of the model in ``out``, which moves as its machine does."""
+    """Return the stage of the model in ``out``, which moves as its machine does."""
     scaled = [] if scale is None else [str(scale)]
     key = key_of(out.parts, machine.motion, sources_hash(*SOURCES), versions(*PACKAGES), LIMIT, REACH, *scaled)
     return Stage(out, "clearance", key, [out.clearance])
@@ -117,24 +115,16 @@ def check(
     """Check every pair of ``pieces`` of different bodies; ``limit`` and ``reach`` in mm. Raises as :func:`run`, with
     ``title`` as the name, which is that of the mechanism by default.
     """
-    from mechanisms.stages.clearance import far as bodies
-    from mechanisms.stages.clearance.axes import axes_of
-    from mechanisms.stages.clearance.belts import bands
-    from mechanisms.stages.clearance.meshing import least_in_mesh, meshes
-    from mechanisms.stages.clearance.path import paths
-    from mechanisms.stages.clearance.search.least import least_gap
-    from mechanisms.stages.clearance.search.search import RESOLUTION
-    from mechanisms.stages.clearance.search.sweep import Sweep
+    from mechanisms.stages.clearance import path as bodies
+    from mechanisms.stages.clearance.meshing import bands, least_in_mesh, meshes
+    from mechanisms.stages.clearance.outlines import least_gap
+    from mechanisms.stages.clearance.path import axes_of, paths
+    from mechanisms.stages.clearance.search import RESOLUTION, Sweep
     from mechanisms.stages.clearance.slide import slides_of
     from shared.contract.spanning import with_rods
 
     name, motion = title or parts.mechanism, with_rods(motion, parts)
-    lost = sorted({piece.body for piece in pieces} - {"ground"} - set(motion.bodies))
-    if lost:
-        raise UserError(
-            f"{name}: parts.json has a body '{lost[0]}' that data.json does not move; "
-            "use the names of mechanism.py in parts()"
-        )
+    _refuse_lost(name, pieces, motion)
     where = paths(motion)
     axes, in_mesh = axes_of(motion, parts, where), meshes(motion, pieces)
     slides = slides_of(motion, where)
@@ -185,6 +175,15 @@ def check(
             apart += 1
     if refused:
         raise UserError(_refusal(name, refused, limit))
+    return _clearance_of(parts, key, limit, error, pairs, apart)
+
+
+def _clearance_of(
+    parts: Parts, key: str, limit: float, error: float, pairs: list[PairClearance], apart: int
+) -> Clearance:
+    """Return the document; ``limit`` and ``error`` in mm."""
+    from mechanisms.stages.clearance.search import RESOLUTION
+
     return Clearance(
         mechanism=parts.mechanism,
         provenance=Provenance(inputs=key, versions=versions(*PACKAGES)),
@@ -211,10 +210,20 @@ def _parted(parts: Parts, motion: Motion) -> str:
     return f"; not compared, as an event parts them: {pairs}" if pairs else ""
 
 
+def _refuse_lost(name: str, pieces: list[MeshPiece], motion: Motion) -> None:
+    """Raise UserError for a body of parts.json that does not move in data.json."""
+    lost = sorted({piece.body for piece in pieces} - {"ground"} - set(motion.bodies))
+    if lost:
+        raise UserError(
+            f"{name}: parts.json has a body '{lost[0]}' that data.json does not move; "
+            "use the names of mechanism.py in parts()"
+        )
+
+
 def _turn(
     first: MeshPiece, second: MeshPiece, axes: Axes, sweep: Sweep, limit: float, reach: float
 ) -> PairClearance | None:
-    """The gap at every angle of a pair round the joint between its bodies; None if that is not enough."""
+    """Return the gap at every angle of a pair round the joint between its bodies; None if that is not enough."""
     from mechanisms.stages.clearance.turn import turn_gap
 
     axis = axes.get(frozenset((first.body, second.body)))
@@ -230,7 +239,9 @@ def _turn(
 
 
 def _slide(first: MeshPiece, second: MeshPiece, slides: Slides, limit: float, reach: float) -> PairClearance | None:
-    """The gap at every place along the line of a prismatic joint between two bodies; None if that is not enough."""
+    """Return the gap at every place along the line of a prismatic joint between two bodies; None if that is not
+    enough.
+    """
     from mechanisms.stages.clearance.slide import slide_gap
 
     slid = slide_gap(first, second, slides, reach)
@@ -248,12 +259,13 @@ def _sliced(
     limit: float,
     reach: float,
 ) -> PairClearance | None:
-    """The gap of a pair of which most is proven along a line and the rest by the motion; None if that is not enough.
+    """Return the gap of a pair of which most is proven along a line and the rest by the motion; None if that is not
+    enough.
 
     Only for a pair that stays near: else the motion alone proves it sooner.
     """
-    from mechanisms.stages.clearance.search.least import least_gap
-    from mechanisms.stages.clearance.search.sweep import Sweep
+    from mechanisms.stages.clearance.outlines import least_gap
+    from mechanisms.stages.clearance.search import Sweep
     from mechanisms.stages.clearance.slide import BESIDE, ROUNDING, sliced
 
     near = BESIDE[1] * reach
@@ -297,7 +309,7 @@ def _pair(
 
 
 def _refusal(name: str, refused: list[tuple[Sweep, Least]], limit: float) -> str:
-    """One sentence on the worst pair, a word on the others."""
+    """Return one sentence on the worst pair, a word on the others."""
     refused = sorted(refused, key=lambda item: (-item[0].depth_at(item[1].time), item[1].gap))
     sweep, least = refused[0]
     pair = f"{sweep.mover.body}: {sweep.mover.name} and {sweep.still.body}: {sweep.still.name}"

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechanisms.stages.clearance.distinct import distinct
+from mechanisms.stages.clearance.pieces import distinct
 
 RESOLUTION = 0.004
 """The bound is at most this far (mm) below what is reached, or ROUNDS are over."""
@@ -24,7 +24,7 @@ MANY = 4_000_000
 
 
 def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float = 0.0) -> tuple[float, float]:
-    """The gap (mm) between two meshes (n, 3, 3) that turn about the z axis: what is reached, and what is proven.
+    """Return the gap (mm) between two meshes (n, 3, 3) that turn about the z axis: what is reached, and what is proven.
 
     The first number is the distance of two points that some angle brings there; the second is below the gap at
     every angle, and less than the first by :data:`RESOLUTION` as a rule. Gaps beyond ``reach`` are given as
@@ -58,7 +58,7 @@ def turn_gap(first: np.ndarray, second: np.ndarray, reach: float, limit: float =
 
 
 def _boxes(t: np.ndarray) -> np.ndarray:
-    """(n, 4): least r, largest r, least z, largest z of each triangle, rounded outwards."""
+    """Return (n, 4): least r, largest r, least z, largest z of each triangle, rounded outwards."""
     r = np.hypot(t[:, :, 0], t[:, :, 1])
     z = t[:, :, 2]
     low = np.column_stack([_least_radius(t)[0], z.min(axis=1)])
@@ -68,7 +68,9 @@ def _boxes(t: np.ndarray) -> np.ndarray:
 
 
 def _least_radius(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The least r of each triangle (0 if the axis pierces it), and (n, 2) the nearest point of its edges, in (r, z)."""
+    """Return the least r of each triangle (0 if the axis pierces it), and (n, 2) the nearest point of its edges, in (r,
+    z).
+    """
     p, q = t, np.roll(t, -1, axis=1)
     d = q - p
     length = np.einsum("nij,nij->ni", d[:, :, :2], d[:, :, :2])
@@ -84,8 +86,9 @@ def _least_radius(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _within(t: np.ndarray, other: np.ndarray, reach: float) -> np.ndarray:
-    """Without the triangles that are seen at a glance to be farther from another mesh than ``reach``: by their heights,
-    and by the radii of their corners, which are not farther from any point of a triangle than its longest edge.
+    """Return a piece without the triangles that are seen at a glance to be farther from another mesh than ``reach``: by
+    their heights, and by the radii of their corners, which are not farther from any point of a triangle than its
+    longest edge.
     """
     r, z = np.hypot(t[:, :, 0], t[:, :, 1]), t[:, :, 2]
     radius, height = np.hypot(other[:, :, 0], other[:, :, 1]), other[:, :, 2]
@@ -108,12 +111,12 @@ def _near(t: np.ndarray, box: np.ndarray, other: np.ndarray, reach: float) -> tu
 
 
 def _box_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(n, m): distances between boxes."""
+    """Return (n, m): distances between boxes."""
     return _pair_gap(a[:, None], b[None])
 
 
 def _bounds(a: np.ndarray, b: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
-    """For each box of either set, its distance to the nearest box of the other, or ``enough`` if that is less."""
+    """Return for each box of either set its distance to the nearest box of the other, or ``enough`` if that is less."""
     (first_a, which_a), (first_b, which_b) = distinct(a), distinct(b)
     (a, place_a, hull_a), (b, place_b, hull_b) = _grouped(a[first_a]), _grouped(b[first_b])
     low_a, low_b = np.full(len(a), max(enough, 0.0)), np.full(len(b), max(enough, 0.0))
@@ -127,8 +130,8 @@ def _bounds(a: np.ndarray, b: np.ndarray, enough: float) -> tuple[np.ndarray, np
 
 
 def _grouped(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Boxes in groups of :data:`GROUP` that are near each other, the last box as often as is missing; the place of each
-    of ``boxes`` in them; (groups, 4) the box round each group.
+    """Return boxes in groups of :data:`GROUP` that are near each other, the last box as often as is missing; the place
+    of each of ``boxes`` in them; (groups, 4) the box round each group.
     """
     count = -(-len(boxes) // GROUP)
     strips = max(1, round(count**0.5))
@@ -144,14 +147,14 @@ def _grouped(boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _pair_gap(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Distances of boxes (..., 4)."""
+    """Return distances of boxes (..., 4)."""
     r = np.maximum(np.maximum(a[..., 0] - b[..., 1], b[..., 0] - a[..., 1]), 0.0)
     z = np.maximum(np.maximum(a[..., 2] - b[..., 3], b[..., 2] - a[..., 3]), 0.0)
     return np.hypot(r, z)
 
 
 def _reached(a: np.ndarray, b: np.ndarray) -> float:
-    """The least distance between points of the two surfaces in (r, z): an upper bound."""
+    """Return the least distance between points of the two surfaces in (r, z): an upper bound."""
     from scipy.spatial import KDTree
 
     first, second = sorted((_samples(a), _samples(b)), key=len)
@@ -159,7 +162,7 @@ def _reached(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _samples(t: np.ndarray) -> np.ndarray:
-    """(n, 2) in (r, z): the corners of the triangles, and the points of their edges nearest to the axis.
+    """Return (n, 2) in (r, z): the corners of the triangles, and the points of their edges nearest to the axis.
 
     One point stands for all within :data:`ROUNDING` of each other, as corners of a turned part are.
     """

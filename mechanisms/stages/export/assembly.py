@@ -1,25 +1,48 @@
-"""The solids as a STEP assembly in one pose (mm): a product for each body, its pieces below, with names and colours.
-
-    mechanism ─► body, where it is at the time ─► body/piece, as its author drew it
-
-Pieces of a body's main material have the body's colour in all pictures, others the ink of theirs.
-"""
+"""STEP assemblies of the parts in a pose, and the times and formats that a user asks for."""
 
 from __future__ import annotations
 
 import re
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mechanisms.stages.export.wanted import Wanted
-from mechanisms.stages.solve.body_colours import main_material
+import numpy as np
+
 from mechanisms.stages.solve.motion_file import to_motion
+from mechanisms.stages.solve.skeleton_file import main_material
 from shared.contract import BodyParts, Motion, Parts
 from shared.contract.materials import MATERIALS
 from shared.contract.spanning import with_rods
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
+from shared.stage.paths import Out
+
+# The request of an export: a solved mechanism, the time of a pose, and its parts if there are some.
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """One export."""
+
+    solution: Any
+    time: float
+    """Time of a pose (s)."""
+    out: Out
+    parts: Parts | None
+
+    @property
+    def row(self) -> int:
+        """Number of the output nearest to the time."""
+        return int(np.abs(self.solution.t - self.time).argmin())
+
+
+# The solids as a STEP assembly in one pose (mm): a product for each body, its pieces below, with names and colours.
+#
+#     mechanism ─► body, where it is at the time ─► body/piece, as its author drew it
+#
+# Pieces of a body's main material have the body's colour in all pictures, others the ink of theirs.
 
 MM = 1000.0
 GROUND = "ground"
@@ -32,7 +55,7 @@ _DRAWN = ("band", "coil", "cylinder", "spiral", "cord")
 
 
 def step(wanted: Wanted) -> tuple[bytes, list[str]]:
-    """The file's bytes, and what has no solid.
+    """Return the file's bytes, and what has no solid.
 
     Raises UserError where parts or their files are missing.
     """
@@ -56,7 +79,7 @@ def _parts(wanted: Wanted) -> Parts:
 
 
 def _read(wanted: Wanted, file: str) -> Any:
-    """The shape in a STEP file of the parts."""
+    """Return the shape in a STEP file of the parts."""
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.STEPControl import STEPControl_Reader
 
@@ -70,7 +93,7 @@ def _read(wanted: Wanted, file: str) -> Any:
 
 
 def _inks(motion: Motion, name: str, body: BodyParts) -> dict[str, str]:
-    """The colour of each piece (``#rrggbb``)."""
+    """Return the colour of each piece (``#rrggbb``)."""
     main = main_material(body)
     own = motion.bodies[name].colour if name in motion.bodies and body.spans is None else MATERIALS[main].ink
     return {
@@ -79,7 +102,7 @@ def _inks(motion: Motion, name: str, body: BodyParts) -> dict[str, str]:
 
 
 def _pose(motion: Motion, name: str, row: int) -> tuple[float, float, float]:
-    """Place (mm) and angle (rad) of a body's frame."""
+    """Return the place (mm) and angle (rad) of a body's frame."""
     if name == GROUND:
         return 0.0, 0.0, 0.0
     body = motion.bodies[name]
@@ -87,7 +110,7 @@ def _pose(motion: Motion, name: str, row: int) -> tuple[float, float, float]:
 
 
 def _drawn(motion: Motion) -> list[str]:
-    """What films draw and no part is."""
+    """Return names of what films draw without a part."""
     things = {"joint": motion.joints, "driver": motion.drivers, "force": motion.forces, "contact": motion.contacts}
     return [
         f"{what} '{name}' ({thing.kind}, no solid)"
@@ -131,7 +154,7 @@ class _Document:
         self._colours.SetColor(label, colour, XCAFDoc_ColorType.XCAFDoc_ColorGen)
 
     def content(self) -> bytes:
-        """The file's bytes; when it was written is left out."""
+        """Return the file's bytes; when it was written is left out."""
         import cadquery  # noqa: F401  (it makes the kernel report failures alone)
         from OCP.STEPCAFControl import STEPCAFControl_Writer
         from OCP.STEPControl import STEPControl_StepModelType
@@ -168,7 +191,7 @@ def with_ordered_styles(content: bytes) -> bytes:
         return [int(other) for other in _REFERENCE.findall(styles[number])]
 
     def solids(number: int) -> list[int]:
-        """The numbers before the styles that one of them leads to."""
+        """Return the numbers before the styles that one of them leads to."""
         return sorted(solid for other in within(number) for solid in ([other] if other < lowest else solids(other)))
 
     numbers: dict[int, int] = {}
@@ -192,7 +215,7 @@ def with_ordered_styles(content: bytes) -> bytes:
 
 
 def _in_letters_of_step(content: bytes) -> bytes:
-    """Letters beyond ASCII as ISO 10303-21 (6.4.3) has them; the kernel writes UTF-8."""
+    """Return letters beyond ASCII as ISO 10303-21 (6.4.3) has them; the kernel writes UTF-8."""
 
     def hexadecimal(letters: re.Match[str]) -> str:
         short = max(letters[0]) < "\U00010000"

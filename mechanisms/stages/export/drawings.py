@@ -16,7 +16,9 @@ MARGIN = 0.05
 
 
 def pose_of(solution: Any, time: float) -> tuple[list[Any], dict[str, np.ndarray]]:
-    """Strokes of the skeleton at the output nearest to a time (s), and the path (k, 2) of each traced point, in m."""
+    """Return strokes of the skeleton at the output nearest to a time (s), and the path (k, 2) of each traced point, in
+    m.
+    """
     from mbsd.drawing.strokes import strokes_of
 
     step = int(np.abs(solution.t - time).argmin())
@@ -27,7 +29,7 @@ def pose_of(solution: Any, time: float) -> tuple[list[Any], dict[str, np.ndarray
 
 
 def svg(solution: Any, time: float) -> str:
-    """The drawing as SVG."""
+    """Return the drawing as SVG."""
     strokes, paths = pose_of(solution, time)
     points = np.concatenate([*(stroke.points for stroke in strokes), *paths.values()]) * MM
     low, high = points.min(axis=0), points.max(axis=0)
@@ -60,7 +62,7 @@ def svg(solution: Any, time: float) -> str:
 
 
 def _colours(solution: Any) -> dict[str, str]:
-    """The colour of each role in a drawing; bodies have that of all pictures."""
+    """Return the colour of each role in a drawing; bodies have that of all pictures."""
     from mbsd.drawing.inks import body_inks
     from mbsd.drawing.strokes import ROLES
 
@@ -69,7 +71,7 @@ def _colours(solution: Any) -> dict[str, str]:
 
 
 def dxf(solution: Any, time: float) -> str:
-    """The drawing as DXF (R2010): each body, ground and the paths on a layer of its own."""
+    """Return the drawing as DXF (R2010): each body, ground and the paths on a layer of its own."""
     from ezdxf.filemanagement import new
 
     strokes, paths = pose_of(solution, time)

@@ -10,8 +10,7 @@ import math
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from mechanisms.stages.export.numbers import number, numbers
-from mechanisms.stages.export.tree import GROUND, MESHING, Node, Tree, poses_of, tree_of
+from mechanisms.stages.export.tree import GROUND, MESHING, Node, Tree, number, numbers, poses_of, tree_of
 
 GAIN = 1e4
 """Gain of the drivers' servos, in N m s (or N s/m) for each kg m^2 (kg) of the mechanism."""
@@ -22,7 +21,7 @@ SMALLEST = 1e-9
 
 
 def mjcf(solution: Any) -> tuple[str, list[str]]:
-    """The file's text, and what it leaves out."""
+    """Return the file's text, and what it leaves out."""
     m = solution.mechanism
     tree = tree_of(m, poses_of(solution))
     size = max(float(solution.packed.size), 1e-6)
@@ -54,8 +53,8 @@ class _Sites:
     def __init__(self) -> None:
         self.wanted: list[tuple[str, str, Any]] = []
 
-    def at(self, marker: Any) -> str:
-        """The name of the site of a marker."""
+    def site(self, marker: Any) -> str:
+        """Return the name of the site of a marker."""
         name = f"{marker.body.name} {len(self.wanted)}"
         self.wanted.append((name, marker.body.name, marker))
         return name
@@ -86,7 +85,7 @@ def _bodies(element: Element, tree: Tree, parent: str, size: float, sites: _Site
 
 
 def _joints(below: Element, node: Node) -> list[str]:
-    """The joints of a body: one for each freedom against its parent, in the order in which they act."""
+    """Return the joints of a body: one for each freedom against its parent, in the order in which they act."""
     name = node.body.name
     hinge = {"type": "hinge", "axis": "0 0 1"}
     if node.joint is None:
@@ -140,7 +139,7 @@ class _Writer:
             if joint.kind.name in MESHING:
                 self._mesh(joint, tree)
                 continue
-            first, second = self.sites.at(joint.i), self.sites.at(joint.j)
+            first, second = self.sites.site(joint.i), self.sites.site(joint.j)
             if joint.kind.name == "distance":
                 self._tendon(joint.name, first, second, {})
                 SubElement(self._section("equality"), "tendon", {"tendon1": joint.name, **STIFF})
@@ -173,7 +172,7 @@ class _Writer:
                 p = force.params
                 amounts = {"stiffness": number(p.get("stiffness", 0.0)), "damping": number(p.get("damping", 0.0)),
                            "springlength": number(p.get("free_length", 0.0))}  # fmt: skip
-                self._tendon(name, self.sites.at(force.i), self.sites.at(force.j), amounts)
+                self._tendon(name, self.sites.site(force.i), self.sites.site(force.j), amounts)
             else:
                 self.left_out.append(f"force '{name}' ({force.kind.name})")
 
@@ -216,12 +215,12 @@ class _Writer:
 
 
 def _in_order(tree: Tree, parent: str) -> list[Node]:
-    """Bodies in the order of the file."""
+    """Return bodies in the order of the file."""
     return [node for child in tree.children(parent) for node in (child, *_in_order(tree, child.body.name))]
 
 
 def _speeds(solution: Any, node: Node) -> list[float]:
-    """Rates of a body's joints at the first output."""
+    """Return rates of a body's joints at the first output."""
     view = solution.body(node.body.name)
     if node.joint is None:
         return [float(view.vx[0]), float(view.vy[0]), float(view.omega[0])]
@@ -239,7 +238,7 @@ def _speeds(solution: Any, node: Node) -> list[float]:
 
 
 def _sliding(solution: Any, node: Node) -> float:
-    """How fast the body moves along the guide, seen from its parent."""
+    """Return how fast the body moves along the guide, seen from its parent."""
     joint = node.joint
     assert joint is not None
     own, other = (joint.j, joint.i) if node.own_is_j else (joint.i, joint.j)

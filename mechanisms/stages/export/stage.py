@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from mechanisms.stages.export import assembly, drawings, mjcf, urdf
+from mechanisms.stages.export.assembly import Wanted
 from mechanisms.stages.export.modelica.text import modelica
-from mechanisms.stages.export.wanted import Wanted
 from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.inputs import Inputs, observed
-from mechanisms.stages.loading.recording import recording
+from mechanisms.stages.loading.inputs import Inputs, observed, recording
 from mechanisms.stages.solve import stage as solving
 from shared import contract
 from shared.stage.console import say, warn
@@ -35,7 +34,7 @@ def run(name: str, form: str, time: float = 0.0) -> None:
         raise UserError(
             f"there is no format {form!r} to export; choose one of: {', '.join(FORMATS)}{did_you_mean(form, FORMATS)}"
         )
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    from mechanisms.stages.loading.inputs import loaded_inputs
 
     out, before = Out(name), set(sys.modules)
     parts = _parts(out)
@@ -66,7 +65,7 @@ def is_fresh(name: str, form: str) -> bool:
 
 
 def file_of(out: Out, form: str) -> Path:
-    """Where the file of a format is."""
+    """Return where the file of a format is."""
     return out.folder / "export" / f"{out.name}{FORMATS[form][0]}"
 
 
@@ -75,7 +74,9 @@ def _parts(out: Out) -> contract.Parts | None:
 
 
 def _key(parts: contract.Parts | None, inputs: Inputs, form: str, time: float) -> str:
-    """Hash of all that a file follows from; that of the solids takes them whole, others their masses alone."""
+    """Return the hash of all that a file follows from; that of the solids takes them whole, others their masses
+    alone.
+    """
     solids = parts.provenance.inputs if parts is not None and form == "step" else ""
     return str(key_of(solving.motion_key(parts, inputs), solids, form, time, sources_hash(*SOURCES)))
 
@@ -108,7 +109,7 @@ def _text(write: Callable[..., Any], timed: bool = False) -> Callable[[Wanted], 
 
 
 def _fmu(wanted: Wanted) -> Written:
-    from mechanisms.stages.export.fmu.unit import fmu
+    from mechanisms.stages.export.fmu import fmu
 
     return fmu(wanted.solution)
 
@@ -126,4 +127,4 @@ FORMATS: dict[str, tuple[str, Callable[[Wanted], Written]]] = {
 }
 """By name: the ending of the file, and what writes it."""
 POSED = ("svg", "dxf", "step")
-"""Those of one pose."""
+"""Formats of one pose."""

@@ -1,14 +1,32 @@
-"""A mechanism as a tree of bodies with the joints that close its loops, as simulators of robots describe machines.
-
-From the ground outwards one joint attaches each body; a joint between two bodies that are attached closes a loop. Poses
-are those at the start of a solution, where all loops are closed.
-"""
+"""The mechanism as a tree of bodies, as models of robots have it, and numbers as text."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
 from typing import Any
+
+# Numbers as XML files of other programs have them.
+
+DIGITS = 15
+ROUNDING = 1e-15
+"""Less is written as zero."""
+
+
+def number(value: float) -> str:
+    """Return one number with all the digits that matter."""
+    return f"{value:.{DIGITS}g}"
+
+
+def numbers(*values: float) -> str:
+    """Return several, with spaces between."""
+    return " ".join(number(0.0 if abs(value) < ROUNDING else value) for value in values)
+
+
+# A mechanism as a tree of bodies with the joints that close its loops, as simulators of robots describe machines.
+#
+# From the ground outwards one joint attaches each body; a joint between two bodies that are attached closes a loop.
+# Poses are those at the start of a solution, where all loops are closed.
 
 GROUND = "ground"
 ATTACHING = ("revolute", "prismatic", "pin_in_slot", "weld")
@@ -28,7 +46,7 @@ class Pose:
     angle: float
 
     def seen_from(self, other: Pose) -> Pose:
-        """This frame in the axes of another."""
+        """Return this frame in the axes of another."""
         dx, dy = self.x - other.x, self.y - other.y
         c, s = math.cos(other.angle), math.sin(other.angle)
         return Pose(c * dx + s * dy, c * dy - s * dx, math.remainder(self.angle - other.angle, math.tau))
@@ -43,7 +61,7 @@ class Node:
     joint: Any | None
     """None: nothing holds it, so it moves freely in the plane."""
     own_is_j: bool
-    """Whether the joint's second marker is the one on this body."""
+    """True if the joint's second marker is the one on this body."""
     pose: Pose
 
     @property
@@ -77,15 +95,15 @@ class Tree:
     nodes: list[Node] = field(default_factory=list)
     loops: list[Any] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
-    """What such a description cannot say, by name."""
+    """Elements that such a description cannot express, by name."""
 
     def children(self, parent: str) -> list[Node]:
-        """Those that are attached to a body."""
+        """Return the nodes that are attached to a body."""
         return [node for node in self.nodes if node.parent == parent]
 
 
 def tree_of(m: Any, poses: dict[str, Pose]) -> Tree:
-    """The tree of a mechanism whose bodies stand so at the start."""
+    """Return the tree of a mechanism whose bodies stand so at the start."""
     tree, attached = Tree(), {GROUND}
     waiting = _spanning(m)
     used = {joint.name for joint in waiting}
@@ -116,8 +134,8 @@ def tree_of(m: Any, poses: dict[str, Pose]) -> Tree:
 
 
 def _spanning(m: Any) -> list[Any]:
-    """Joints that connect what they can without a loop: pins that are driven before those that cannot close a loop,
-    other pins last.
+    """Return joints that connect what they can without a loop: pins that are driven before those that cannot close a
+    loop, other pins last.
     """
     driven = {frozenset(driver.bodies) for driver in m.drivers.values() if driver.kind.angular}
 
@@ -143,7 +161,7 @@ def _spanning(m: Any) -> list[Any]:
 
 
 def poses_of(solution: Any) -> dict[str, Pose]:
-    """Where the frames of all bodies are at the first output."""
+    """Return where the frames of all bodies are at the first output."""
     poses = {GROUND: Pose(0.0, 0.0, 0.0)}
     for name in solution.mechanism.bodies:
         if name != GROUND:

@@ -9,12 +9,11 @@ import math
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from mechanisms.stages.export.numbers import number, numbers
-from mechanisms.stages.export.tree import GROUND, Node, poses_of, tree_of
+from mechanisms.stages.export.tree import GROUND, Node, number, numbers, poses_of, tree_of
 
 
 def urdf(solution: Any) -> tuple[str, list[str]]:
-    """The file's text, and what it leaves out."""
+    """Return the file's text, and what it leaves out."""
     m = solution.mechanism
     tree = tree_of(m, poses_of(solution))
     root = Element("robot", name=m.name)

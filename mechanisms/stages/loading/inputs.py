@@ -1,23 +1,33 @@
-"""The inputs of an author's code, named as a project names them: relative to it or to its folder of results.
-
-Their names are kept in a stage's stamp; what they hold goes into its key. Whether anything has changed is then known
-without running that code again, and a copy of the project elsewhere has the same keys; of files outside, the key holds
-the content alone. How inputs are recorded and hashed is in ``mbsd/dependencies/``, which parameter studies use as well.
-"""
+"""Inputs of a stage: files that an author's code reads, recorded while it runs, and their hashes."""
 
 from __future__ import annotations
 
 import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from mbsd.dependencies import inputs as dependencies
+from mbsd.dependencies import recording as recorded_reads
+from mbsd.dependencies.imported import file_of, imported, modules_below, package_of
 from mbsd.dependencies.inputs import Inputs, Places
+from mbsd.dependencies.installed import distributions, is_installed
+from mbsd.dependencies.recorder import Recorder
 from shared.stage import paths
 from shared.stage.files import file_hash, sources_hash
 from shared.stage.memory import recalled
+from shared.stage.paths import MECHANISMS, SOLVER, in_workshop
 
-__all__ = ["PROJECT", "Inputs", "file_state", "name_of", "observed", "package_state", "path_of", "sources_state"]
+# The inputs of an author's code, named as a project names them: relative to it or to its folder of results.
+#
+# Their names are kept in a stage's stamp; what they hold goes into its key. Whether anything has changed is then known
+# without running that code again, and a copy of the project elsewhere has the same keys; of files outside, the key
+# holds the content alone. How inputs are recorded and hashed is in ``mbsd/dependencies/``, which parameter studies use
+# as well.
+
 PICTURES = ("mbsd/drawing",)
 """Sources that decide no number; what they draw has them in its key by their own name."""
 RESULTS = "results:"
@@ -64,14 +74,16 @@ class _Project(Places):
         return file.startswith(PROGRAM)
 
     def acts_for_itself(self, file: str) -> bool:
-        """The stages, except automatic parts, which act for the author."""
+        """Return True for the stages, except automatic parts, which act for the author."""
         return file.startswith(STAGES) or os.path.dirname(file) == DOORS
 
     def hash_of(self, path: Path) -> str:
         return file_hash(path)
 
     def module_state(self, name: str) -> str:
-        """The author's modules count by what they mean; those of the program by their bytes, as in the stages' keys."""
+        """Return the author's modules count by what they mean; those of the program by their bytes, as in the stages'
+        keys.
+        """
         if os.path.dirname(name) == "mechanisms" or name.startswith(OURS):
             return self.file_state(name)
         return recalled(("module", self.path_of(name)), lambda: super(_Project, self).module_state(name))
@@ -96,5 +108,79 @@ sources_state, package_state = PROJECT.sources_state, PROJECT.package_state
 
 
 def observed(names: Any) -> Inputs | None:
-    """What the inputs with these names, from :meth:`Inputs.names`, hold now; None if that is not what ``names`` are."""
+    """Return the inputs with these names, from :meth:`Inputs.names`, as they are now; None if ``names`` are none."""
     return PROJECT.observed(names)
+
+
+# Records what an author's code reads while it runs (mbsd/dependencies/recording.py), as inputs of the project.
+
+
+@contextmanager
+def recording() -> Iterator[Recorder]:
+    """Record what the author's code reads in this block."""
+    with recorded_reads.recording(Recorder(PROJECT)) as recorder:
+        yield recorder
+
+
+# Finds the files that the author's code consists of: the modules it imports, and what those import in turn.
+#
+# In the program's own rooms, a module that the author's code imports counts with those that it imports itself; the
+# solver counts as a whole, without its drawing. Installed packages count by their version.
+
+
+def loaded_inputs(start: Path, package: str, before: set[str], leave_out: Path | None = None) -> Inputs:
+    """Return files, rooms and packages that ``start``, a file of the package ``package``, was made of.
+
+    ``before``: names of the modules that were loaded before it; later ones count although no import
+    statement names them. ``leave_out`` and what only that file imports do not count.
+    """
+    later = [
+        (file, package_of(module))
+        for name, module in list(sys.modules.items())
+        if name not in before and (file := file_of(module)) is not None and _is_authors(file) and file != leave_out
+    ]
+    return modules_below([(start, package), *later], PROJECT, _count, leave_out)
+
+
+def author_files(start: Path, package: str, leave_out: Path) -> list[tuple[Path, str]]:
+    """Return the author's own files that ``start`` was made of, itself included, each with its package."""
+    seen: dict[Path, str] = {}
+    waiting = [(start, package)]
+    while waiting:
+        file, package = waiting.pop()
+        if file in seen or file == leave_out:
+            continue
+        seen[file] = package
+        for module in imported(file, package):
+            below = file_of(module)
+            if below is not None and _is_authors(below):
+                waiting.append((below, package_of(module)))
+    return list(seen.items())
+
+
+def _count(module: ModuleType, inputs: Inputs, waiting: list[tuple[Path, str]]) -> None:
+    top = module.__name__.partition(".")[0]
+    file = file_of(module)
+    if file is None:
+        return
+    if is_installed(str(file)):
+        for name in distributions(top):
+            if name not in inputs.packages:
+                inputs.packages[name] = package_state(name)
+    elif top == "mbsd" and file.is_relative_to(SOLVER):
+        folders = ["mbsd", "mbsd/drawing"] if file.is_relative_to(SOLVER / "drawing") else ["mbsd"]
+        for folder in folders:
+            if folder not in inputs.sources:  # hundreds of modules, and hashing reads all files
+                inputs.sources[folder] = sources_state(folder)
+    else:
+        waiting.append((file, package_of(module)))
+
+
+def _is_authors(file: Path) -> bool:
+    """Return True if a file belongs neither to an installed package nor to the program."""
+    if is_installed(str(file)):
+        return False
+    if in_workshop() and MECHANISMS.is_relative_to(ROOT) and file.is_relative_to(MECHANISMS):
+        return True
+    ours = [ROOT / room for room in ("mbsd", "shared", "render", "tests", "mechanisms/stages")]
+    return file.parent != ROOT / "mechanisms" and not any(file.is_relative_to(room) for room in ours)

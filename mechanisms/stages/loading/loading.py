@@ -1,13 +1,14 @@
-"""Loads one of the files of a mechanism; an error in it is reported with file and line."""
+"""Loading of mechanism.py, parts.py and shot.py, their variants, and errors in an author's code."""
 
 from __future__ import annotations
 
 import dataclasses
 import importlib
+import inspect
 import os
 import sys
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from importlib.abc import MetaPathFinder
@@ -21,14 +22,15 @@ from importlib.machinery import (
 )
 from importlib.util import spec_from_file_location
 from pathlib import Path
-from types import CodeType, ModuleType
+from types import CodeType, FrameType, ModuleType
 from typing import Any, Literal
 
-from mechanisms.stages.loading.recording import is_installed
-from mechanisms.stages.loading.variants import checked_variants, replaced
+from mechanisms.stages.loading.inputs import is_installed
 from shared.stage.errors import UserError
 from shared.stage.paths import (
     MECHANISMS,
+    NAME,
+    NAME_RULE,
     RESERVED,
     ROOT,
     defines,
@@ -38,7 +40,152 @@ from shared.stage.paths import (
     mechanism_folder,
     owner_of,
     shown_file,
+    variant_of,
+    variants_in,
 )
+from shared.stage.suggestions import did_you_mean
+
+# Says in a sentence what the author's code raised: the file, the author's own line, the error, a remedy if known.
+
+OPERATIONS = {
+    "fillet": "a fillet must be smaller than half of the narrowest web beside its edges: make it smaller, round fewer "
+    "edges, or round them before the cuts that narrow the web",
+    "chamfer": "a chamfer must be smaller than the faces beside its edges: make it smaller, or choose fewer edges",
+    "shell": "a shell must be thinner than half of the narrowest wall: make it thinner",
+    "cut": "the two solids may touch along a face or an edge only: move or enlarge the tool a little",
+    "union": "the two solids may touch along an edge only: let them overlap",
+    "revolve": "the profile must be closed and lie on one side of its axis",
+    "extrude": "the outline must be closed and must not cross itself, and the height must not be 0",
+}
+"""CadQuery's operations that fail for geometry, with what to change."""
+SHOWN = 3
+"""Arguments of the failed operation that are quoted at most."""
+
+
+def worded(
+    error: BaseException, lines: Sequence[traceback.FrameSummary], shown: Callable[[Path], str] = Path.as_posix
+) -> str:
+    """``file:line: what was raised, in function(): the author's line``; ``lines`` are the author's, innermost last.
+
+    For the CAD kernel's exceptions, which say no more than "command not done", the operation with its arguments, the
+    line of ``parts()`` that led there and the remedy are added.
+    """
+    last = lines[-1]
+    where = f"{shown(Path(last.filename))}:{last.lineno}"
+    if isinstance(error, SystemExit):
+        what = f"SystemExit: the file ends the program with exit({error.code if error.code is not None else ''})"
+    else:
+        what = f"{type(error).__name__}: {error}".rstrip(": ")
+    within = f"in {last.name}(): " if last.name.isidentifier() else ""
+    text = f"{where}: {what}" + (f", {within or 'at: '}{last.line}" if last.line else "")
+    caller = next((line for line in lines if line.name == "parts" and line is not last), None)
+    if caller is not None and caller.line:
+        text += f" (from line {caller.lineno}: {caller.line.rstrip(',')})"
+    from shared.shapes.kernel import is_of_kernel
+
+    if not is_of_kernel(error):
+        return text
+    operation, arguments = _operation(error)
+    if operation is None:
+        return f"{text}. CadQuery could not make this shape: look for sizes that are zero, negative or too large"
+    return f"{text}. CadQuery could not do {operation}({arguments}): {OPERATIONS[operation]}"
+
+
+def _operation(error: BaseException) -> tuple[str | None, str]:
+    """Return the outermost operation of :data:`OPERATIONS` in the traceback, and its numbers and texts as
+    ``name=value``.
+    """
+    for frame, _ in traceback.walk_tb(error.__traceback__):
+        if frame.f_code.co_name in OPERATIONS and "cadquery" in Path(frame.f_code.co_filename).parts:
+            return frame.f_code.co_name, _arguments(frame)
+    return None, ""
+
+
+def _arguments(frame: FrameType) -> str:
+    code = frame.f_code
+    names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
+    plain = [(name, frame.f_locals.get(name)) for name in names]
+    values = [f"{name}={value:g}" for name, value in plain if isinstance(value, int | float) and value is not True]
+    return ", ".join(values[:SHOWN])
+
+
+# Functions that an author writes for a stage: whether they take what the stage gives them.
+
+
+def refuse_arguments(file: str, function: Callable[..., Any], *given: Any) -> None:
+    """Raise UserError for a function of ``file`` that cannot be called so, as far as its signature says."""
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):
+        return
+    try:
+        signature.bind(*given)
+    except TypeError as error:
+        name = getattr(function, "__name__", "it")
+        count = f"{len(given)} argument{'s' * (len(given) > 1)}"
+        raise UserError(f"{file}: {name}({', '.join(signature.parameters)}) is called with {count}: {error}") from None
+
+
+# Variants of a mechanism: ``VARIANTS = {"no_gravity": {"gravity": 0.0}}`` in mechanism.py, other values of Params.
+#
+# A variant is the same mechanism with some fields of its Params replaced; switches are fields that are True or False.
+# ``DURATION`` and ``STEPS`` may be replaced as well. It is called by its mechanism's name and its own, has results of
+# its own, and goes through all stages as a mechanism does.
+
+CONSTANTS = ("DURATION", "STEPS")
+"""Beside the fields of Params."""
+
+
+def checked_variants(name: str, module: ModuleType) -> dict[str, dict[str, Any]]:
+    """``VARIANTS`` of a mechanism.py; empty where there is none. Raises UserError naming the variant and the field."""
+    file = shown_file(name)
+    given = getattr(module, "VARIANTS", None)
+    if given is None:
+        return {}
+    form = 'VARIANTS = {"no_gravity": {"gravity": 0.0}}'
+    if not isinstance(given, Mapping) or not all(isinstance(values, Mapping) for values in given.values()):
+        raise UserError(f"{file}: VARIANTS must be a dict of dicts by name, as in {form}")
+    for variant in given:
+        if not isinstance(variant, str) or not NAME.fullmatch(variant):
+            raise UserError(f"{file}: {variant!r} cannot name a variant: {NAME_RULE}")
+    known = variants_in(mechanism_file(name))
+    if set(known) != set(given):
+        raise UserError(
+            f"{file}: VARIANTS must be written out with its names in quotes, as in {form}, so that they are known "
+            "without running the file"
+        )
+    kind: Any = getattr(module, "Params", None)
+    if given and not dataclasses.is_dataclass(kind):
+        raise UserError(f"{file}: VARIANTS replace fields of Params, which must be a dataclass")
+    fields = [field.name for field in dataclasses.fields(kind) if field.init]
+    for variant, values in given.items():
+        for field in values:
+            if field not in (*fields, *CONSTANTS):
+                raise UserError(
+                    f"{file}: VARIANTS['{variant}'] has '{field}', which Params has not; it has: {', '.join(fields)}"
+                    f"{did_you_mean(str(field), fields)}"
+                )
+    return {variant: dict(values) for variant, values in given.items()}
+
+
+def replaced(name: str, module: ModuleType, p: Any) -> Any:
+    """``p`` with the fields that the variant ``name`` replaces; ``p`` itself of a mechanism."""
+    values = _values(name, module)
+    fields = {field: value for field, value in values.items() if field not in CONSTANTS}
+    return dataclasses.replace(p, **fields) if fields else p
+
+
+def constant(name: str, module: Any, which: str) -> Any:
+    """``DURATION`` or ``STEPS`` of a mechanism or variant; None where it is not said."""
+    return _values(name, module).get(which, getattr(module, which, None))
+
+
+def _values(name: str, module: Any) -> dict[str, Any]:
+    variant = variant_of(name)
+    return {} if variant is None else checked_variants(name, module)[variant]
+
+
+# Loads one of the files of a mechanism; an error in it is reported with file and line.
 
 File = Literal["mechanism", "parts", "shot", "tolerances"]
 _RUNNING: ContextVar[str | None] = ContextVar("running", default=None)
@@ -89,12 +236,12 @@ def params(name: str) -> Any:
 
 
 def package_of(name: str) -> str:
-    """The Python package of a mechanism's files, which its variants share."""
+    """Return the Python package of a mechanism's files, which its variants share."""
     return f"mechanisms.{owner_of(name)}"
 
 
 def has(name: str, file: File) -> bool:
-    """Whether a mechanism has this file; parts.py and shot.py may be left out."""
+    """Return True if a mechanism has this file; parts.py and shot.py may be left out."""
     path = mechanism_file(name, file)
     return defines(path, file) if file != "mechanism" and is_single_file(name) else path.is_file()
 
@@ -118,8 +265,6 @@ def author_code(name: str) -> Iterator[None]:
         shown = f"{_shown(Path(error.filename))}:{error.lineno}"
         raise UserError(f"{shown}: {error.msg}: {(error.text or '').strip()}") from error
     except (Exception, SystemExit) as error:
-        from mechanisms.stages.loading.author_errors import worded
-
         lines = [frame for frame in traceback.extract_tb(error.__traceback__) if _is_below(frame.filename, folder)]
         if not lines:
             raise
@@ -129,7 +274,7 @@ def author_code(name: str) -> Iterator[None]:
 
 
 def _folder_of(name: str) -> Path:
-    """The folder of a mechanism; where it would be on a worker of a cluster, which has its functions alone."""
+    """Return the folder of a mechanism; where it would be on a worker of a cluster, which has its functions alone."""
     try:
         return mechanism_folder(name) if in_workshop() else MECHANISMS / owner_of(name)
     except UserError:
@@ -137,7 +282,7 @@ def _folder_of(name: str) -> Path:
 
 
 def running(folder: str) -> str:
-    """The name of a folder's mechanism, or of its variant whose files are running just now."""
+    """Return the name of a folder's mechanism, or of its variant whose files are running just now."""
     name = _RUNNING.get()
     return name if name is not None and owner_of(name) == folder else folder
 
@@ -155,7 +300,7 @@ class _SourceOnly(SourceFileLoader):
 
 
 def _author_folder(path: str) -> FileFinder:
-    """Path hook: finds the modules in folders of the author's, below a mechanism or outside of the project.
+    """Find, as a path hook, the modules in folders of the author's, below a mechanism or outside of the project.
 
     Raises ImportError for the program's own folders, those of installed packages and the standard library.
     """
@@ -177,7 +322,7 @@ def _is_below(filename: str, folder: Path) -> bool:
 
 
 def _is_programs(place: str) -> bool:
-    """Whether what lies in a user's folder is an environment's or the program's, as where that folder is a home."""
+    """Return True if a place in a user's folder belongs to an environment or to the program."""
     own = MECHANISMS.is_relative_to(ROOT)
     return is_installed(f"{place}{os.sep}") or (not own and Path(place).is_relative_to(ROOT))
 

@@ -65,7 +65,7 @@ def _write_single(name: str, kind: str) -> None:
 
 
 def file_of(name: str, single: bool) -> Path:
-    """Where the model of a new mechanism goes; raises UserError for a single file in the clone."""
+    """Return where the model of a new mechanism goes; raises UserError for a single file in the clone."""
     if single and not in_workshop():
         raise UserError("a mechanism of the clone is a folder; leave --single out, or work in a folder of your own")
     return MECHANISMS / f"{name}.py" if single else MECHANISMS / name / "mechanism.py"

@@ -1,21 +1,97 @@
-"""The solids of a mechanism without a parts.py: planned from mechanism.py and its motion alone.
-
-A simulated motion follows from the masses of the parts, and these follow from the motion: so it is solved again with
-the masses of the parts, and parts are made for that motion, until they stay as they are.
-Parts of a model at a scale move as the machine does: with its masses.
-"""
+"""Automatic solids of a mechanism, its mount, and the parts of a model at scale."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from mechanisms.stages.loading.wished_scale import wished_scale
-from mechanisms.stages.solve.bare_motion import bare_solution, depends_on_masses
+import msgspec
+
+from mechanisms.stages.loading import loading
+from mechanisms.stages.loading.loading import load, params
+from mechanisms.stages.loading.wishes import wished_scale
+from mechanisms.stages.solve import solving
+from mechanisms.stages.solve.masses import bare_solution, depends_on_masses, leaves_masses
+from mechanisms.stages.solve.solving import build
+from shared.contract import Mount, consistency, mounted
+from shared.stage.errors import UserError
 from shared.stage.paths import Out
 
 if TYPE_CHECKING:
+    from mbsd import Mechanism
     from shared.contract import Mass
+    from shared.contract.mount import Kind
     from shared.shapes.solid import Solid
+
+
+# The solids that a motion or a model at a scale needs: those whose masses mechanism.py does not give.
+#
+# A sweep moves as its drivers say; its forces follow from the masses. A simulation of bodies whose masses mechanism.py
+# does not give moves as the masses of their parts make it, so these parts are made first.
+
+
+def needs_masses(name: str) -> bool:
+    """Return True if mechanism ``name`` leaves the mass of a body to its parts, or cannot be built to see that."""
+    from mbsd import MechanismError
+
+    try:
+        return leaves_masses(_build(name)[0])
+    except (UserError, MechanismError):
+        return True
+
+
+def needs_machine(name: str) -> bool:
+    """Return True if the motion of mechanism ``name`` may depend on the masses of its parts.
+
+    It may, too, where that is not known without solving it: mechanism.py has a ``motion()``, or cannot be built.
+    """
+    from mbsd import MechanismError
+
+    try:
+        m, module = _build(name)
+        return leaves_masses(m) and (hasattr(module, "motion") or m.mobility().dof > len(m.drivers))
+    except (UserError, MechanismError):
+        return True
+
+
+def _build(name: str) -> tuple[Mechanism, Any]:
+    """Return the mechanism, whose bodies have the masses that mechanism.py gives, and its module."""
+    module, p = loading.load(name, "mechanism"), loading.params(name)
+    return solving.build(name, module, p), module
+
+
+# How a machine stands, from what ``parts()`` says, shot.py wishes and the model has.
+
+
+def follows_gravity(bodies: Any, wish: Kind | None) -> bool:
+    """Return True if solids by hand, which say nothing of it, stand because shot.py says so."""
+    return getattr(bodies, "mount", None) is None and wish not in (None, "desk")
+
+
+def mount_of(name: str, bodies: Any, wish: Kind | None) -> Mount:
+    """Return the mount of what ``parts()`` returned; solids by hand lie on a desk unless shot.py says otherwise.
+
+    Raises UserError for one that parts() says and that cannot be.
+    """
+    if follows_gravity(bodies, wish):
+        m = build(name, load(name, "mechanism"), params(name))
+        return mounted(m.gravity or (0.0, 0.0), wish)
+    said = getattr(bodies, "mount", None)
+    if said is None:
+        return Mount()
+    where = f"{name}: parts(): mount is {said!r}"
+    try:
+        mount = msgspec.convert(dict(zip(("kind", "up"), said, strict=True)), Mount)
+    except (msgspec.ValidationError, TypeError, ValueError) as error:
+        raise UserError(f'{where}; write made.mount = "stand", (0.0, 1.0, 0.0) ({error})') from error
+    consistency.refuse_wrong_mount(mount, where)
+    return mount
+
+
+# The solids of a mechanism without a parts.py: planned from mechanism.py and its motion alone.
+#
+# A simulated motion follows from the masses of the parts, and these follow from the motion: so it is solved again with
+# the masses of the parts, and parts are made for that motion, until they stay as they are.
+# Parts of a model at a scale move as the machine does: with its masses.
 
 ROUNDS = 3
 """Rounds of parts made for a motion with the masses of those before."""
@@ -24,7 +100,7 @@ ALIKE = 1e-9
 
 
 def solids_of(name: str) -> dict[str, list[Solid]]:
-    """Every piece by body. Raises UserError where the model cannot move, or has no automatic parts."""
+    """Return every piece by body. Raises UserError where the model cannot move, or has no automatic parts."""
     from mechanisms.stages.automatic.automatic import automatic
 
     if wished_scale() is not None:
@@ -57,8 +133,8 @@ def masses_of_machine(name: str) -> dict[str, Mass]:
 
 
 def _masses(solids: dict[str, list[Solid]]) -> dict[str, Mass]:
-    """Masses of all pieces of each moving body together."""
-    from mechanisms.stages.parts.mass_properties import combined, mass_of
+    """Return masses of all pieces of each moving body together."""
+    from mechanisms.stages.parts.meshes import combined, mass_of
     from shared.contract.materials import MATERIALS
 
     return {

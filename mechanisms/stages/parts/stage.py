@@ -1,4 +1,4 @@
-"""The ``parts`` stage: mechanisms/<name>/parts.py, or the model alone, becomes STL, STEP and parts.json.
+"""The stage ``parts``: mechanisms/<name>/parts.py, or the model alone, becomes STL, STEP and parts.json.
 
 It runs again only if something changed that the solids follow from: parts.py and what it imports or reads, the part
 library, the densities, CadQuery, a parameter that ``parts()`` reads, or ``mount`` of shot.py, whose other fields count
@@ -18,38 +18,37 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from mechanisms.stages.loading.inputs import Inputs, observed
+from mechanisms.stages.loading.inputs import Inputs, Recorder, observed, recording
 from mechanisms.stages.loading.loading import author_code, has, load, package_of, params
-from mechanisms.stages.loading.recording import Recorder, recording
-from mechanisms.stages.loading.wished_mount import of_shot, wishing
-from mechanisms.stages.loading.wished_scale import scaling
-from mechanisms.stages.parts import remembered
-from mechanisms.stages.parts.kept_pieces import KeptPieces
-from mechanisms.stages.parts.of_models import needs_machine, needs_masses
-from mechanisms.stages.parts.plain_values import plain_text
-from mechanisms.stages.parts.traced_params import fields_of, traced
+from mechanisms.stages.loading.wishes import of_shot, scaling, wishing
+from mechanisms.stages.parts import memory
+from mechanisms.stages.parts.automatic_solids import needs_machine, needs_masses
+from mechanisms.stages.parts.memory import KeptPieces, fields_of, plain_text, traced
+from shared import contract
 from shared.cluster.address import address
 from shared.contract import Parts, Provenance, write_parts
 from shared.contract.materials import MATERIALS
 from shared.contract.mount import Kind
 from shared.contract.quantity import counted, written
+from shared.stage import console
 from shared.stage.console import Shown, say, warn
 from shared.stage.errors import UserError
+from shared.stage.face import to_run
 from shared.stage.files import sources_hash, write_bytes
 from shared.stage.paths import ROOT, Out, is_single_file, mechanism_file
 from shared.stage.scale import Scale, scale_of
 from shared.stage.stages import Stage, contract_sources, key_of, versions
 
 _STAGES = ROOT / "mechanisms" / "stages"
-_STAGE = ("stage", "described_body", "mount_of", "returned_parts", "mass_properties", "mesh_check", "traced_params")
+_STAGE = ("stage", "bodies", "automatic_solids", "meshes", "memory")
 SOURCES = [
     ROOT / "shared" / "shapes",
     _STAGES / "parts_files.py",
     *(_STAGES / "parts" / f"{name}.py" for name in _STAGE),
     *contract_sources(),
 ]
-_MOTION = ("bare_motion", "solving", "refined_times", "masses", "estimated_masses")
-_AUTOMATIC = ("automatic", "parts/automatic_solids.py", "loading/variants.py")
+_MOTION = ("solving", "refinement", "masses")
+_AUTOMATIC = ("automatic", "loading/loading.py")
 AUTOMATIC = [
     *SOURCES,
     *(_STAGES / name for name in _AUTOMATIC),
@@ -80,7 +79,7 @@ def run(name: str, scale: str = "", anyway: bool = False) -> None:
         with_machine = needs_machine(out.name)
         wish = _wish(out.name, wish.scale, with_machine)
     if not anyway:
-        remembered.refuse_again(out, lambda reads, inputs: _key(given, reads, inputs, wish))
+        memory.refuse_again(out, lambda reads, inputs: _key(given, reads, inputs, wish))
     made = _of_cluster(out, given, wish, recorder) if address() else None
     made = made or _made_here(out, given, wish, before, recorder)
     count = _write(out, made.files, made.document)
@@ -88,12 +87,12 @@ def run(name: str, scale: str = "", anyway: bool = False) -> None:
     notes = {"parameters": made.reads, "inputs": made.inputs.names(), **({} if with_machine else {MACHINE: False})}
     Stage(out, "parts", made.document.provenance.inputs, outputs).done(**notes)
     _kept_pieces(out).clear()
-    remembered.forget(out)
+    memory.forget(out)
     say("parts", _summary(out.title, made.document, count))
 
 
 class _Wish(NamedTuple):
-    """What an author leaves to the stage, and how the machine is to stand."""
+    """Wishes of an author: what is left to the stage, and how the machine stands."""
 
     by_itself: bool
     """There is no parts.py."""
@@ -102,11 +101,11 @@ class _Wish(NamedTuple):
     scale: Scale | None = None
     """Scale of a model; None for the machine itself."""
     masses: str = ""
-    """Those of the machine, where the motion of its model follows from them."""
+    """Masses of the machine, if the motion of its model follows from them."""
 
 
 def _wish(name: str, scale: Scale | None = None, with_machine: bool = True) -> _Wish:
-    """What is wished; ``with_machine`` where a model depends on the parts of its machine."""
+    """Return the wishes; ``with_machine`` if a model depends on the parts of its machine."""
     from mechanisms.stages.parts.automatic_solids import masses_of_machine
 
     by_itself = not has(name, "parts")
@@ -130,15 +129,15 @@ def _made_here(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
         return _described(out, given, wish, before, recorder, seen)
     except UserError as error:
         seconds = time.monotonic() - began
-        if remembered.is_worth_it(error, seconds) and (wish.by_itself or seen.is_whole):
+        if memory.is_worth_it(error, seconds) and (wish.by_itself or seen.is_whole):
             reads, inputs = sorted(seen.reads), seen.inputs.joined(_of_mechanism(out.name, before, recorder))
-            remembered.remember(out, error, _key(given, reads, inputs, wish), reads, inputs)
+            memory.remember(out, error, _key(given, reads, inputs, wish), reads, inputs)
         raise
 
 
 @dataclass
 class _Seen:
-    """What parts.py was seen to read from its parameters, and what it was made of and read."""
+    """Parameters that parts.py was seen to read, and the files that it was made of and read."""
 
     reads: set[str] = field(default_factory=set)
     inputs: Inputs = field(default_factory=Inputs)
@@ -146,8 +145,8 @@ class _Seen:
 
 
 def _of_mechanism(name: str, before: set[str], recorder: Recorder) -> Inputs:
-    """What mechanism.py was made of and read."""
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    """Return the files that mechanism.py was made of and read."""
+    from mechanisms.stages.loading.inputs import loaded_inputs
 
     return loaded_inputs(mechanism_file(name), package_of(name), before).joined(recorder.inputs())
 
@@ -158,8 +157,8 @@ def _kept_pieces(out: Out) -> KeptPieces:
 
 
 def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder, seen: _Seen) -> _Found:
-    from mechanisms.stages.parts.described_body import described_body
-    from mechanisms.stages.parts.mount_of import follows_gravity, mount_of
+    from mechanisms.stages.parts.automatic_solids import follows_gravity, mount_of
+    from mechanisms.stages.parts.bodies import described_body
     from shared.shapes.bodies import Bodies
 
     name = out.name
@@ -196,7 +195,7 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
 
 
 def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Found | None:
-    """The parts that a worker of the cluster made; None where they did not follow from what is here."""
+    """Return the parts that a worker of the cluster made; None where they did not follow from what is here."""
     from mechanisms.stages.parts.on_cluster.dealt import made_elsewhere
 
     name, known = out.name, observed(_notes(out).get("inputs")) or Inputs()
@@ -216,7 +215,9 @@ def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Found
 
 
 def are_current(name: str) -> bool:
-    """Whether the parts that are there are those of the mechanism as it is. Raises UserError for one without Params."""
+    """Return True if the parts that are there are those of the mechanism as it is. Raises UserError for one without
+    Params.
+    """
     out = Out(name)
     return _is_fresh(out, params(out.name), _wish(out.name))
 
@@ -268,12 +269,12 @@ def _is_fresh(out: Out, given: Any, wish: _Wish) -> bool:
 
 
 def _notes(out: Out) -> dict[str, Any]:
-    """What the stage noted when it was done last."""
+    """Return the notes of the last run of the stage."""
     return Stage(out, "parts", "", []).notes()
 
 
 def _key(given: Any, reads: list[str], inputs: Inputs, wish: _Wish) -> str:
-    """Hash of all that the parts follow from; ``reads`` are the attributes of Params that parts() reads."""
+    """Return the hash of all that the parts follow from; ``reads`` are the attributes of Params that parts() reads."""
     fields = fields_of(given)
     values = {read: plain_text(fields[read]) for read in reads if read in fields}
     densities = {material: MATERIALS[material].density for material in sorted(MATERIALS)}
@@ -282,13 +283,13 @@ def _key(given: Any, reads: list[str], inputs: Inputs, wish: _Wish) -> str:
 
 
 def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
-    """Whether the parts follow from more of mechanism.py than from the values of parameters.
+    """Return True if the parts follow from more of mechanism.py than from the values of parameters.
 
     A property or method of Params can compute anything, a value may have no text that shows it, and parts.py or what
     it imports may use other names of mechanism.py.
     """
-    from mechanisms.stages.loading.loaded_files import author_files
-    from mechanisms.stages.parts.params_use import only_annotates
+    from mechanisms.stages.loading.inputs import author_files
+    from mechanisms.stages.parts.memory import only_annotates
 
     fields, package = fields_of(given), package_of(name)
     if is_single_file(name) or any(read not in fields or plain_text(fields[read]) is None for read in reads):
@@ -299,10 +300,10 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
 
 
 def _build(name: str, given: Any, seen: _Seen) -> dict[str, list[Any]]:
-    """The solids by body; ``seen`` gets what parts.py reads, also where it fails."""
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    """Return the solids by body; ``seen`` gets what parts.py reads, also where it fails."""
+    from mechanisms.stages.loading.inputs import loaded_inputs
+    from mechanisms.stages.parts.bodies import refuse_unfit
     from mechanisms.stages.parts.cad_reads import reported_cad_files
-    from mechanisms.stages.parts.returned_parts import refuse_unfit
 
     if not has(name, "parts"):
         from mechanisms.stages.parts.automatic_solids import solids_of
@@ -351,3 +352,18 @@ def _summary(name: str, document: Parts, count: int) -> str:
         f"{name}: {counted(len(pieces), 'solid')} of {counted(len(document.bodies), 'body')}, {written(moving, 'kg')} "
         f"moving, {counted(triangles, 'triangle')}, {counted(count, 'file')} written"
     )
+
+
+# The parts of a mechanism, for stages that take their masses and colours but go on without them.
+
+
+def current_parts(out: Out, stage: str) -> Parts | None:
+    """Return the parts that are there, unless what they follow from has changed since, which ``stage`` says."""
+
+    if not out.parts.is_file():
+        return None
+    if are_current(out.name):
+        return contract.read_parts(out.parts, out.name)
+    remedy = to_run("parts", out.name)
+    console.say(stage, f"{out.name}: the parts are of an older state, so their masses do not count; {remedy}")
+    return None

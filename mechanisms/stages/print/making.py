@@ -1,19 +1,19 @@
-"""From the pieces of parts.json to plates, outlines and lists."""
+"""Everything that is printed, cut and bought, with its lists."""
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.print.alike import groups
-from mechanisms.stages.print.flat import sheet_of
-from mechanisms.stages.print.laying import fitting, laid
-from mechanisms.stages.print.lists import Bought, Made
-from mechanisms.stages.print.outlines import dxf, file_of, section
-from mechanisms.stages.print.packing import packed
-from mechanisms.stages.print.plate_files import Placed, stl, three_mf
+import numpy as np
+
+from mbsd.base.csv_text import csv_text
+from mechanisms.stages.print.laying import Laid, Sheet, fitting, groups, laid, sheet_of
+from mechanisms.stages.print.plates import Placed, dxf, file_of, packed, section, stl, three_mf
+from shared.contract.quantity import written
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 
@@ -24,8 +24,111 @@ if TYPE_CHECKING:
     from shared.stage.paths import Out
 
 
+# Lists of pieces to make and to buy, for people (Markdown) and for tables (CSV).
+
+HEADER = (
+    "do", "name", "count", "material", "x_mm", "y_mm", "z_mm", "mass_g", "plates", "bed_mm", "outline", "sheet_mm",
+    "above_mm", "pieces",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Made:
+    """Equal pieces that are to be made."""
+
+    names: tuple[str, ...]
+    material: str
+    mass: float
+    """Mass of a single piece (kg)."""
+    piece: Laid
+    sheet: Sheet | None = None
+    outline: str = ""
+    """File of its DXF."""
+    plates: tuple[int, ...] = ()
+    """The plate of each, from 1; empty if the piece is larger than the bed."""
+    bed: str = ""
+    """The least bed that would do, if it is larger."""
+
+    @property
+    def name(self) -> str:
+        """Name of the first piece."""
+        return self.names[0]
+
+
+@dataclass(frozen=True)
+class Bought:
+    """Equal pieces that are to be bought."""
+
+    what: str
+    names: tuple[str, ...]
+    material: str
+
+
+def markdown(title: str, bed: str, made: Sequence[Made], bought: Sequence[Bought]) -> str:
+    """Return the lists as a page."""
+    count = sum(len(part.names) for part in made)
+    mass = sum(len(part.names) * part.mass for part in made)
+    lines = [f"# Pieces of {title}", "", f"## To make: {count}, {written(mass, 'kg')}", ""]
+    lines += [
+        "Sizes as it lies on the bed, masses in the material that is named. Plates are "
+        f"{bed} mm. Where a DXF is named, the piece can be cut from a sheet of this thickness: eased edges, pockets, "
+        "counterbores and engraving are not in it, and what stands above the sheet is listed.",
+        "",
+        "| piece | count | material | x x y x z (mm) | mass | plate | outline |",
+        "|---|--:|---|---|--:|---|---|",
+    ]
+    lines += [f"| {' | '.join(_cells(part))} |" for part in made]
+    lines += ["", f"## To buy: {sum(len(item.names) for item in bought)}", ""]
+    if bought:
+        lines += ["| what | count | for |", "|---|--:|---|"]
+        lines += [f"| {item.what} | {len(item.names)} | {', '.join(item.names)} |" for item in bought]
+    else:
+        lines += ["Nothing: no piece has the sizes of a standard."]
+    return "\n".join(lines) + "\n"
+
+
+def table(made: Sequence[Made], bought: Sequence[Bought]) -> str:
+    """Return the lists as CSV: a row for each kind of piece, ``do`` is make or buy."""
+    rows: list[list[object]] = []
+    for part in made:
+        size = [f"{length:.2f}" for length in part.piece.size]
+        sheet = (f"{part.sheet.thickness:g}", f"{part.sheet.above:.2f}") if part.sheet else ("", "")
+        plates = " ".join(str(plate) for plate in part.plates)
+        row = ["make", part.name, len(part.names), part.material, *size, _grams(part.mass), plates, part.bed]
+        rows.append([*row, part.outline, *sheet, " ".join(part.names)])
+    for item in bought:
+        row = ["buy", item.what, len(item.names), item.material]
+        rows.append([*row, *[""] * (len(HEADER) - len(row) - 1), " ".join(item.names)])
+    return csv_text(HEADER, rows)
+
+
+def _cells(part: Made) -> list[str]:
+    size = " x ".join(f"{length:.2f}" for length in part.piece.size)
+    plates = ", ".join(
+        f"{plate} ({times})" if times > 1 and len(set(part.plates)) > 1 else f"{plate}"
+        for plate, times in sorted(Counter(part.plates).items())
+    )
+    where = plates or f"none: needs a bed of {part.bed} mm"
+    return [part.name, str(len(part.names)), part.material, size, written(part.mass, "kg"), where, _outline(part)]
+
+
+def _outline(part: Made) -> str:
+    if part.sheet is None:
+        return ""
+    words = f"[{part.outline}]({part.outline})"
+    return f"{words}, without {part.sheet.above:.2f} mm above the sheet" if part.sheet.above else words
+
+
+def _grams(mass: float) -> str:
+    """Return a mass (kg) in grams with four digits and without an exponent, as tables read it."""
+    return np.format_float_positional(1000 * mass, 4, unique=False, fractional=False, trim="-")
+
+
+# From the pieces of parts.json to plates, outlines and lists.
+
+
 def bought_of(pieces: Mapping[str, Piece]) -> list[Bought]:
-    """What is to be bought, in the order of the alphabet."""
+    """Return all pieces to buy, in the order of the alphabet."""
     kinds: dict[tuple[str, str], list[str]] = {}
     for name, piece in pieces.items():
         if piece.buy:
@@ -34,7 +137,7 @@ def bought_of(pieces: Mapping[str, Piece]) -> list[Bought]:
 
 
 def made_of(pieces: Mapping[str, Piece], meshes: Sequence[MeshPiece], bed: Bed) -> list[Made]:
-    """What is to be made, equal pieces together, each as it lies on the bed."""
+    """Return all pieces to make, equal pieces together, each as it lies on the bed."""
     down = [laid(mesh.triangles) for mesh in meshes]
     names = [mesh.name for mesh in meshes]
     parts = []
@@ -47,13 +150,13 @@ def made_of(pieces: Mapping[str, Piece], meshes: Sequence[MeshPiece], bed: Bed) 
 
 
 def _bed_for(part: Made, bed: Bed) -> str:
-    """The bed that a piece needs, in whole millimetres."""
+    """Return the bed that a piece needs, in whole millimetres."""
     x, y, z = (math.ceil(length - 1e-6) for length in part.piece.size)
     return f"{x} x {y}" + (f" x {z}" if math.isfinite(bed[2]) else "")
 
 
 def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Made]) -> tuple[list[Made], dict[str, bytes]]:
-    """With the outlines of those that can be cut from a sheet, and the DXF files."""
+    """Return the pieces with the outlines of those that can be cut from a sheet, and the DXF files."""
     parts: list[Made] = []
     files: dict[str, bytes] = {}
     for part in made:
@@ -73,7 +176,9 @@ def outlined(out: Out, pieces: Mapping[str, Piece], made: Iterable[Made]) -> tup
 def plates_of(
     title: str, made: Sequence[Made], bed: Bed, gap: float, stem: str = "plate"
 ) -> tuple[list[Made], dict[str, bytes]]:
-    """With the plates that the pieces lie on, and the files of these, whose names begin with ``stem``."""
+    """Return the pieces with the plates that the pieces lie on, and the files of these, whose names begin with
+    ``stem``.
+    """
     items = [(k, name) for k, part in enumerate(made) if not part.bed for name in part.names]
     places = packed([made[k].piece.size[:2] for k, _ in items], bed[:2], gap)
     plates: dict[int, list[Placed]] = {}
@@ -87,3 +192,50 @@ def plates_of(
         files[f"{stem}_{number + 1}.stl"] = stl(plate)
     on = [tuple(at.plate + 1 for (i, _), at in zip(items, places, strict=True) if i == k) for k in range(len(made))]
     return [replace(part, plates=plates) for part, plates in zip(made, on, strict=True)], files
+
+
+# How thin the walls of a piece are: what a ray from its surface inwards meets first.
+
+NOZZLE = 0.4
+"""Width of a usual nozzle (mm); thinner walls are not printed."""
+RAYS = 150
+"""So many rays are looked at, from the largest facets and from others."""
+SQUARE = 0.94
+"""A ray counts where it meets a face that looks the other way, within 20 degrees: a wall, no edge or wedge."""
+NARROW = 0.35
+"""From facets narrower than this no ray starts (mm): they are sides of engraved lines."""
+SKIN = 1e-4
+"""Rays start so far below the surface (mm)."""
+
+
+def thinnest(triangles: np.ndarray) -> float:
+    """Return the thinnest wall (mm) of a closed mesh (n, 3, 3) that its rays find; infinite where they find none."""
+    across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    size = np.linalg.norm(across, axis=1)
+    sound = size > 1e-9
+    triangles, across, size = triangles[sound], across[sound], size[sound]
+    normals = across / size[:, None]
+    edges = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2)
+    wide = np.flatnonzero(size / edges.max(axis=1) > NARROW)
+    order = wide[np.argsort(-size[wide], kind="stable")]
+    chosen = np.unique(np.concatenate([order[: RAYS // 2], order[:: max(1, len(order) // (RAYS // 2))]]))
+    walls = (_inside(triangles, normals, triangles[k].mean(axis=0), -normals[k]) for k in chosen)
+    return min(walls, default=np.inf)
+
+
+def _inside(triangles: np.ndarray, normals: np.ndarray, start: np.ndarray, way: np.ndarray) -> float:
+    """Return how far it is to the next face along a ray (Moeller and Trumbore 1997); infinite where that leans."""
+    first, second = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    aside = np.cross(way, second)
+    volume = np.einsum("ij,ij->i", first, aside)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        to = start - triangles[:, 0]
+        u = np.einsum("ij,ij->i", to, aside) / volume
+        over = np.cross(to, first)
+        v = over @ way / volume
+        far = np.einsum("ij,ij->i", second, over) / volume
+        hit = (np.abs(volume) > 0) & (u >= 0) & (v >= 0) & (u + v <= 1) & (far > SKIN)
+    if not hit.any():
+        return np.inf
+    at = int(np.argmin(np.where(hit, far, np.inf)))
+    return float(far[at]) if float(normals[at] @ way) > SQUARE else np.inf

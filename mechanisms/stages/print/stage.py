@@ -1,8 +1,4 @@
-"""The ``print`` stage: pieces of parts.json on plates to print, outlines to cut, lists of what to make and what to buy.
-
-It writes ``out/<name>/print/``: plate_1.3mf and plate_1.stl and so on, <piece>_<thickness>mm.dxf, pieces.md and
-pieces.csv. What a piece is called there is what it is called in parts.json; of equal pieces the first gives its name.
-"""
+"""The stage print: from parts.json to plates, outlines and lists."""
 
 from __future__ import annotations
 
@@ -23,8 +19,14 @@ from shared.stage.stages import Stage, key_of, versions
 if TYPE_CHECKING:
     from mechanisms.stages.clearance.pieces import MeshPiece
     from mechanisms.stages.print.laying import Bed
-    from mechanisms.stages.print.lists import Bought, Made
+    from mechanisms.stages.print.making import Bought, Made
     from shared.contract import Parts
+
+
+# The ``print`` stage: pieces of parts.json on plates to print, outlines to cut, lists of what to make and what to buy.
+#
+# It writes ``out/<name>/print/``: plate_1.3mf and plate_1.stl and so on, <piece>_<thickness>mm.dxf, pieces.md and
+# pieces.csv. What a piece is called there is what it is called in parts.json; of equal pieces the first gives its name.
 
 BED, GAP = "220x220", "5"
 """Size of a plate, and what pieces on it keep apart (mm), where nobody says."""
@@ -78,9 +80,8 @@ def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
 def laid_out(
     out: Out, parts: Parts, meshes: list[MeshPiece], bed: Bed, gap: float
 ) -> tuple[dict[str, bytes], list[Made], list[Bought]]:
-    """The files by their names, the lists last, and what is on these."""
-    from mechanisms.stages.print.lists import markdown, table
-    from mechanisms.stages.print.making import bought_of, made_of, outlined, plates_of
+    """Return the files by their names, the lists last, and what is on these."""
+    from mechanisms.stages.print.making import bought_of, made_of, markdown, outlined, plates_of, table
 
     pieces = {name: piece for body in parts.bodies.values() for name, piece in body.pieces.items()}
     bought = bought_of(pieces)
@@ -93,7 +94,7 @@ def laid_out(
 
 
 def bed_of(text: str) -> Bed:
-    """A bed from words like 220x220 or 220x220x250; raises UserError if it is none."""
+    """Return a bed from words like 220x220 or 220x220x250; raises UserError if it is none."""
     lengths = text.lower().split("x")
     if len(lengths) not in (2, 3) or not all(_LENGTH.fullmatch(length) and float(length) > 0 for length in lengths):
         example = said(bed="220x220")
@@ -103,9 +104,9 @@ def bed_of(text: str) -> Bed:
 
 
 def gap_of(text: str) -> float:
-    """A gap (mm); raises UserError if it is none."""
+    """Return a gap (mm); raises UserError if it is none."""
     if not _LENGTH.fullmatch(text):
-        raise UserError(f"{said(gap=text)} is no gap; write what pieces keep apart in mm, such as {said(gap='5')}")
+        raise UserError(f"{said(gap=text)} is no gap; write the distance between pieces in mm, such as {said(gap='5')}")
     return float(text)
 
 
@@ -133,7 +134,8 @@ def _tell_large(name: str, parts: list[Made], bed: Bed, ratio: float) -> None:
 
 def _tell_thin(name: str, made: list[Made]) -> None:
     """Name pieces that have walls thinner than a nozzle, the thinnest first."""
-    from mechanisms.stages.print.walls import NOZZLE, thinnest
+
+    from mechanisms.stages.print.making import NOZZLE, thinnest
 
     walls = sorted((thinnest(part.piece.triangles), part.name) for part in made)
     thin = [f"{piece} {wall:.2g} mm" for wall, piece in walls if wall < NOZZLE]

@@ -1,17 +1,110 @@
-"""Takes the mass of each body from mechanism.py, else from its parts, else from an estimate."""
+"""Masses for a motion: from mechanism.py, from parts.json, or estimated; and motions without masses."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING, Literal
 
+from mechanisms.stages.loading import loading
+from mechanisms.stages.solve import solving
+from shared.contract.materials import MATERIALS
 from shared.contract.quantity import written
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.suggestions import did_you_mean
 
 if TYPE_CHECKING:
-    from mbsd import Mechanism
-    from shared.contract import BodyParts, Parts
+    from mbsd import Marker, Mechanism, Solution
+    from shared.contract import BodyParts, Mass, Parts
+
+
+# Masses for a motion: from mechanism.py, from parts.json, or estimated.
+
+# Estimates masses of bodies that have none yet: each counts as a uniform aluminium plate through its markers.
+#
+#     outline       convex hull of discs of radius r about the markers: a disc, a bar with round ends, or a plate
+#     r             the wheel's radius where a joint rolls there; else 0.06 L; 0.12 L where there is one marker alone
+#     thickness h   0.05 L;  L: the largest distance between two markers of one body, ground included
+#     mass          rho h A;  centre of mass and second moments of the polygon by Green's theorem
+#
+# A 120 mm linkage gets bars of 14 x 6 mm, about what its parts become.
+
+HALF_WIDTH, THICKNESS = 0.06, 0.05
+"""Half width and thickness of a bar, as parts of L."""
+LEAST_SIZE = 0.1
+"""L (m) where no body has two markers apart."""
+CORNERS = 96
+"""Corners of the polygon that stands for a disc."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """kg, centre of mass (m, body frame), inertia about it (kg m^2)."""
+
+    mass: float
+    com: tuple[float, float]
+    inertia: float
+
+
+def estimated_masses(m: Mechanism) -> dict[str, Estimate]:
+    """Return the estimated mass of each moving body, by name, whatever mass it has."""
+    discs: dict[str, list[tuple[float, float, float]]] = {name: [] for name in m.bodies}
+    for marker, radius in _discs(m):
+        discs[marker.body.name].append((marker.x, marker.y, radius))
+    for name, body in m.bodies.items():
+        if body.length is not None:
+            discs[name] += [(0.0, 0.0, 0.0), (body.length, 0.0, 0.0)]
+    size = max((_extent(disc) for disc in discs.values()), default=0.0) or LEAST_SIZE
+    return {name: _plate(disc, size) for name, disc in discs.items() if name != "ground"}
+
+
+def _discs(m: Mechanism) -> Iterator[tuple[Marker, float]]:
+    """Yield every marker that is used, with the radius of the wheel about it (m), or 0."""
+    from mbsd.model.force import ForceKind
+    from mbsd.model.teeth import with_radii
+
+    for joint in chain(m.joints.values(), m.drivers.values(), m.contacts.values(), m.forces.values()):
+        params = with_radii(joint.params)
+        rolls = not isinstance(joint.kind, ForceKind) or joint.kind.surface is not None
+        wheel = params.get("radius", 0.0) if rolls and "slots" not in params else 0.0
+        yield joint.i, float(params.get("radius_i", 0.0))
+        yield joint.j, float(params.get("radius_j", wheel))
+    for marker in m.traces.values():
+        yield marker, 0.0
+
+
+def _extent(discs: list[tuple[float, float, float]]) -> float:
+    import numpy as np
+
+    places = np.array([disc[:2] for disc in discs]).reshape(-1, 2)
+    if not len(places):
+        return 0.0
+    return float(np.hypot(*(places[:, None] - places).transpose(2, 0, 1)).max())
+
+
+def _plate(discs: list[tuple[float, float, float]], size: float) -> Estimate:
+    import numpy as np
+    from scipy.spatial import ConvexHull
+
+    places = discs or [(0.0, 0.0, 0.0)]
+    alone = len({disc[:2] for disc in places}) == 1
+    least = size * HALF_WIDTH * (2.0 if alone else 1.0)
+    turn = 2 * np.pi * np.arange(CORNERS) / CORNERS
+    rim = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    points = np.concatenate([np.array([x, y]) + max(radius, least) * rim for x, y, radius in places])
+    outline = points[ConvexHull(points).vertices]  # counter-clockwise
+    ahead = np.roll(outline, -1, axis=0)
+    cross = outline[:, 0] * ahead[:, 1] - outline[:, 1] * ahead[:, 0]
+    area = float(cross.sum() / 2)
+    com = (cross[:, None] * (outline + ahead)).sum(axis=0) / (6 * area)
+    about_origin = float((cross * ((outline * outline) + outline * ahead + ahead * ahead).sum(axis=1)).sum() / 12)
+    surface = MATERIALS["aluminium"].density * THICKNESS * size
+    return Estimate(surface * area, (float(com[0]), float(com[1])), surface * (about_origin - area * float(com @ com)))
+
+
+# Takes the mass of each body from mechanism.py, else from its parts, else from an estimate.
 
 Source = Literal["mechanism", "parts", "estimate"]
 LISTED = 8
@@ -71,7 +164,7 @@ def give_masses_aloud(stage: str, name: str, m: Mechanism, parts: Parts | None) 
 
 
 def bodies_of(parts: Parts) -> dict[str, BodyParts]:
-    """The bodies of parts.json without its rods, which are none of mechanism.py."""
+    """Return the bodies of parts.json without its rods, which are none of mechanism.py."""
     return {name: body for name, body in parts.bodies.items() if body.spans is None}
 
 
@@ -79,7 +172,6 @@ def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
     """Give these bodies the mass of plates; the sentence that says so."""
     if not names:
         return []
-    from mechanisms.stages.solve.estimated_masses import estimated_masses
 
     estimates = estimated_masses(m)
     for name in names:
@@ -90,7 +182,7 @@ def _estimate(m: Mechanism, names: list[str], left_out: bool) -> list[str]:
 
 
 def _some(masses: list[str]) -> str:
-    """The first of them, and how many others there are."""
+    """Return the first of them, and how many others there are."""
     more = len(masses) - LISTED
     return ", ".join(masses) if more <= 1 else f"{', '.join(masses[:LISTED])} and {more} others"
 
@@ -109,3 +201,27 @@ def _refuse_other_bodies(m: Mechanism, parts: Parts) -> None:
                 f"{did_you_mean(min(missing), there) or '.'} mechanism.py and parts.py must name the same bodies "
                 "(Bodies.leave_out names one without solids)"
             )
+
+
+# The motion of a mechanism from mechanism.py alone, before there are any parts.
+
+
+def bare_solution(name: str, masses: Mapping[str, Mass] | None = None) -> Solution:
+    """Solve a mechanism with the masses of mechanism.py; where it gives none, with ``masses`` or estimated ones.
+
+    Poses of a mechanism whose drivers fix every freedom do not depend on masses; those of a simulation do, so parts
+    made for it follow from a motion with their own masses (automatic_solids.py). Raises UserError.
+    """
+    module, p = loading.load(name, "mechanism"), loading.params(name)
+    m = solving.build(name, module, p)
+    sources, _ = give_masses(m, None)
+    for body in (body for body, source in sources.items() if source == "estimate" and body in (masses or {})):
+        mass = (masses or {})[body]
+        m.set_mass(body, mass.mass, mass.com, mass.inertia)
+    return solving.motion_of(name, module, m, p)
+
+
+def depends_on_masses(name: str, solution: Solution) -> bool:
+    """Return True if the motion is a simulation of bodies some of which have no mass in mechanism.py."""
+    m = solving.build(name, loading.load(name, "mechanism"), loading.params(name))
+    return solution.work is not None and "estimate" in give_masses(m, None)[0].values()

@@ -1,18 +1,41 @@
-"""The mechanism with the solver's symbols, in poses over its motion, as skeleton.json has it."""
+"""The skeleton file, and the colours of bodies."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from shared.contract import Provenance
+from shared.contract.materials import MATERIALS
 from shared.contract.skeleton import Carried, CarriedName, Carrier, End, Moving, Name, Pose, Skeleton, Stroke
 
 if TYPE_CHECKING:
-    from mbsd import Solution
+    from mbsd import Mechanism, Solution
     from mbsd.drawing.view.carried import Moving as Drawn
+    from shared.contract import BodyParts, Parts
+
+
+# The one table of body colours: by the material of each body's main piece, or by its role where there are no parts.
+
+
+def body_colours(m: Mechanism, parts: Parts | None) -> dict[str, str]:
+    """Return the ink (``#rrggbb``, on light paper) of each moving body; bodies of one material have shades that
+    differ.
+    """
+    from mbsd.drawing.inks import INKS, apart, colours_by_role
+
+    inks = {body: INKS[word] for body, word in colours_by_role(m).items()}
+    if parts is not None:
+        inks |= {body: MATERIALS[main_material(parts.bodies[body])].ink for body in inks if body in parts.bodies}
+    return apart(inks)
+
+
+def main_material(body: BodyParts) -> str:
+    """Return the material of the piece with the largest volume."""
+    return max(body.pieces.values(), key=lambda piece: piece.mass.volume).material
+
+
+# The mechanism with the solver's symbols, in poses over its motion, as skeleton.json has it.
 
 POSES = 12
 """In equal times; the end of the motion is not among them, because it often is the start again."""
@@ -21,7 +44,9 @@ FINENESS = 1e-4
 
 
 def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
-    """The first pose whole, with its names; of the others what is elsewhere."""
+    """Return the first pose whole, with its names; of the others what is elsewhere."""
+    import numpy as np
+
     from mbsd.drawing.strokes import moved, strokes_of
 
     times = np.linspace(solution.t[0], solution.t[-1], POSES + 1)[:-1]
@@ -45,7 +70,7 @@ def skeleton_of(solution: Solution, provenance: Provenance) -> Skeleton:
 
 
 def moving_of(solution: Solution, drawn: Drawn | None = None) -> Moving:
-    """The whole skeleton for any moment; ``drawn``, if it is drawn already."""
+    """Return the whole skeleton for any moment; ``drawn``, if it is drawn already."""
     from mbsd.drawing.view.carried import moving
 
     shown = moving(solution) if drawn is None else drawn

@@ -15,8 +15,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from mechanisms.stages.loading import loading, variants
-from mechanisms.stages.loading.author_functions import refuse_arguments
+from mechanisms.stages.loading import loading
+from mechanisms.stages.loading.loading import refuse_arguments
 from shared.contract.quantity import counted
 from shared.stage import console
 from shared.stage.errors import UserError
@@ -32,7 +32,7 @@ FEWEST, MOST, RATE = 360, 7200, 120.0
 
 
 def build(name: str, module: Any, p: Any) -> Mechanism:
-    """The model of ``build(p)`` in ``module``; that of a variant has the variant's name.
+    """Return the model of ``build(p)`` in ``module``; that of a variant has the variant's name.
 
     Raises UserError unless it is a Mechanism called as its folder.
     """
@@ -54,7 +54,7 @@ def build(name: str, module: Any, p: Any) -> Mechanism:
 
 
 def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
-    """The motion of ``m`` as mechanism.py asks for it. Raises UserError; warnings of the solver become lines."""
+    """Return the motion of ``m`` as mechanism.py asks for it. Raises UserError; warnings of the solver become lines."""
     from mbsd import MechanismError
     from mbsd.results.solution import Solution
 
@@ -79,7 +79,7 @@ def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
 
 
 def _natural(name: str, module: Any, m: Mechanism) -> Solution:
-    """The sweep or simulation that the model asks for."""
+    """Return the sweep or simulation that the model asks for."""
     duration = _positive(name, module, "DURATION", "a number of seconds, as in DURATION = 2.0")
     steps = _positive(name, module, "STEPS", "a whole number of steps, as in STEPS = 600")
     if steps is not None and steps != int(steps):
@@ -88,7 +88,8 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
     if free <= 0:
         if steps is not None:
             return m.sweep(duration, int(steps), event_rows=True)
-        from mechanisms.stages.solve.refined_times import refined_sweep
+
+        from mechanisms.stages.solve.refinement import refined_sweep
 
         return refined_sweep(m.sweep(duration, _steps_of(m, duration)))
     if duration is None:
@@ -100,13 +101,14 @@ def _natural(name: str, module: Any, m: Mechanism) -> Solution:
         )
     if steps is not None:
         return m.simulate(duration, int(steps), event_rows=True)
-    from mechanisms.stages.solve.refined_times import simulated_closely
+
+    from mechanisms.stages.solve.refinement import simulated_closely
 
     return simulated_closely(m, duration, min(max(FEWEST, math.ceil(RATE * duration)), MOST))
 
 
 def _steps_of(m: Mechanism, duration: float | None) -> int:
-    """Steps of a sweep: so many for each turn of its drivers, of the whole period where no duration is given."""
+    """Return steps of a sweep: so many for each turn of its drivers, of the whole period where no duration is given."""
     from mbsd.kinematics.period import common_period
 
     whole, common = duration or m.period(), common_period(m.drivers.values())
@@ -116,8 +118,10 @@ def _steps_of(m: Mechanism, duration: float | None) -> int:
 
 
 def _positive(name: str, module: Any, constant: str, form: str) -> float | None:
-    """A constant beside build(), or None where there is none. Raises UserError unless it is a positive number."""
-    value = variants.constant(name, module, constant)
+    """Return a constant beside build(), or None where there is none. Raises UserError unless it is a positive
+    number.
+    """
+    value = loading.constant(name, module, constant)
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
@@ -126,7 +130,7 @@ def _positive(name: str, module: Any, constant: str, form: str) -> float | None:
 
 
 def _refuse_other(name: str, m: Mechanism, solved: Any) -> None:
-    """What motion() solved may be a variant of the model, with the same name and bodies."""
+    """Raise UserError unless motion() solved the model or a variant of it, with the same name and bodies."""
     if solved is not m and (solved.name not in (name, owner_of(name)) or set(solved.bodies) != set(m.bodies)):
         raise UserError(
             f"{_file(name)}: motion() solved '{solved.name}' with the bodies {', '.join(solved.bodies)}; solve the "
@@ -150,17 +154,18 @@ def _tell_blurred_impacts(name: str, solution: Solution) -> bool:
 
 def _tell_long_steps(name: str, module: Any, solution: Solution) -> None:
     """Say that rows of a simulation are too far apart for how fast something moves, so that proofs may fail there."""
-    from mechanisms.stages.solve.refined_times import doubted_steps
+
+    from mechanisms.stages.solve.refinement import doubted_steps
 
     long = [] if solution.work is None else doubted_steps(solution)
     if len(long):
         own = "motion()" if hasattr(module, "motion") else "STEPS"
-        chosen = hasattr(module, "motion") or variants.constant(name, module, "STEPS") is not None
+        chosen = hasattr(module, "motion") or loading.constant(name, module, "STEPS") is not None
         remedy = f"leave out {own}, so that rows are added there, or ask for more steps" if chosen else "end it earlier"
         steps = f"{counted(len(long), 'step')} {'is' if len(long) == 1 else 'are'}"
         console.warn(
             "solve",
-            f"{name}: {steps} too long for what moves fast within, first at t = {solution.t[long[0]]:.6g} s: plots and "
+            f"{name}: {steps} too long for the fastest bodies, first at t = {solution.t[long[0]]:.6g} s: plots and "
             f"films may stray from the motion there, and clearances may not be proven; {remedy}",
         )
 

@@ -6,10 +6,9 @@ import sys
 from typing import TYPE_CHECKING
 
 from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.inputs import Inputs, observed, sources_state
-from mechanisms.stages.loading.recording import recording
+from mechanisms.stages.loading.inputs import Inputs, observed, recording, sources_state
 from mechanisms.stages.solve import solving
-from mechanisms.stages.solve.body_colours import main_material
+from mechanisms.stages.solve.skeleton_file import main_material
 from shared import contract
 from shared.contract.quantity import counted, written
 from shared.contract.skeleton import write_skeleton
@@ -25,11 +24,11 @@ if TYPE_CHECKING:
 NOISE = 1e-9
 """An effort below this part of the largest reaction is rounding."""
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
-_MOTION = ("solving", "refined_times", "masses", "estimated_masses")
-_STAGE = ("stage", *_MOTION, "motion_file", "body_colours", "shapes", "skeleton_file")
+_MOTION = ("solving", "refinement", "masses")
+_STAGE = ("stage", *_MOTION, "motion_file", "skeleton_file")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / "solve" / f"{name}.py" for name in _STAGE),
-    ROOT / "mechanisms" / "stages" / "loading" / "variants.py",
+    ROOT / "mechanisms" / "stages" / "loading" / "loading.py",
     *contract_sources("skeleton"),
 ]
 
@@ -49,7 +48,7 @@ def run(name: str, parts_are_outdated: bool = False) -> None:
     if _is_fresh(out, parts):
         console.say("solve", f"{name}: nothing to do")
         return
-    from mechanisms.stages.loading.loaded_files import loaded_inputs
+    from mechanisms.stages.loading.inputs import loaded_inputs
     from mechanisms.stages.solve.motion_file import to_motion
     from mechanisms.stages.solve.skeleton_file import skeleton_of
 
@@ -69,7 +68,7 @@ def run(name: str, parts_are_outdated: bool = False) -> None:
 
 
 def is_fresh(name: str) -> bool:
-    """Whether there is nothing to do. Raises UserError where parts.json cannot be read."""
+    """Return True if there is nothing to do. Raises UserError where parts.json cannot be read."""
     out = Out(name)
     return _is_fresh(out, _parts(out))
 
@@ -84,7 +83,9 @@ def _is_fresh(out: Out, parts: contract.Parts | None) -> bool:
 
 
 def motion_key(parts: contract.Parts | None, inputs: Inputs) -> str:
-    """Hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it reads."""
+    """Return the hash of all that the motion follows from; ``inputs``: what mechanism.py is made of, and what it
+    reads.
+    """
     masses = parts and {body: (solids.mass, solids.z, main_material(solids)) for body, solids in parts.bodies.items()}
     sources = sources_hash(*SOURCES), sources_state("mbsd"), sources_state("mbsd/drawing")
     return str(key_of(*sources, masses, versions(*PACKAGES), inputs.digest()))

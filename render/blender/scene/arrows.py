@@ -1,9 +1,5 @@
-"""Arrows: a thin shaft and a cone on an empty that moves and turns them, and a ball where it begins; their lengths are
-animated by scale.
-"""
+"""Arrows and arcs of forces and torques in Blender."""
 
-# pyright: reportAttributeAccessIssue=false
-# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import math
@@ -13,8 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from render.blender.scene.nodes import Graph
-from render.film.scene import ArrowSpec, Colour
+from render.blender.scene.materials import Graph
+from render.film.scene import ArcSpec, ArrowSpec, Colour, Point
+
+# Arrows: a thin shaft and a cone on an empty that moves and turns them, and a ball where it begins; their lengths are
+# animated by scale.
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+
 
 SIDES = 32
 ROUND = [(-math.cos(math.pi * k / 12), max(math.sin(math.pi * k / 12), 1e-3)) for k in range(13)]
@@ -42,7 +45,9 @@ class Arrow:
 
 
 def sizes(spec: ArrowSpec, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Factor of all thicknesses, and length of the shaft, for arrows of ``length`` (n,) (m); the cone is the rest."""
+    """Return the factor of all thicknesses, and length of the shaft, for arrows of ``length`` (n,) (m); the cone is the
+    rest.
+    """
     factor = np.minimum(1.0, length / (STOUT * spec.point))
     return factor, length - factor * spec.point
 
@@ -50,7 +55,7 @@ def sizes(spec: ArrowSpec, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def channels(
     arrow: Arrow, spec: ArrowSpec, tails: np.ndarray, tips: np.ndarray
 ) -> list[tuple[Any, str, list[np.ndarray]]]:
-    """What is animated: an object, its property, and the values of its components, for tails and tips (n, 3)."""
+    """Return the animated channels: object, property, and values of its components, for tails and tips (n, 3)."""
     across = tips - tails
     length = np.hypot(across[:, 0], across[:, 1])
     there = length > 0
@@ -71,8 +76,8 @@ def channels(
     ]
 
 
-def build(scene: Any, spec: ArrowSpec) -> Arrow:
-    """The objects of one arrow, in ``scene``."""
+def build_arrow(scene: Any, spec: ArrowSpec) -> Arrow:
+    """Return the objects of one arrow, in ``scene``."""
     import bpy
 
     root = bpy.data.objects.new(f"arrow {spec.name}", None)
@@ -96,7 +101,7 @@ def build(scene: Any, spec: ArrowSpec) -> Arrow:
 
 
 def _tip(name: str, spec: ArrowSpec) -> Any:
-    """The head from its neck (x = 0) to its tip (x = 1), whose half width is 1 in y and z."""
+    """Return the head from its neck (x = 0) to its tip (x = 1), whose half width is 1 in y and z."""
     if spec.tip == "solid":
         return _turned(name, [(0.0, 1.0), (1.0, 1e-3)])
     if spec.tip == "solid double":
@@ -110,7 +115,7 @@ def _tip(name: str, spec: ArrowSpec) -> Any:
 
 
 def _flat(name: str, outlines: Sequence[Sequence[tuple[float, float]]], half: float) -> Any:
-    """Upright prisms over outlines in the plane of the motion, from -half to half."""
+    """Return upright prisms over outlines in the plane of the motion, from -half to half."""
     import bpy
 
     corners: list[tuple[float, float, float]] = []
@@ -126,7 +131,7 @@ def _flat(name: str, outlines: Sequence[Sequence[tuple[float, float]]], half: fl
 
 
 def _turned(name: str, profile: Sequence[tuple[float, float]]) -> Any:
-    """A body of revolution about x, closed at both ends, from places along x and the radii there."""
+    """Return a body of revolution about x, closed at both ends, from places along x and the radii there."""
     import bpy
 
     turn = [math.tau * k / SIDES for k in range(SIDES)]
@@ -146,7 +151,7 @@ def _turned(name: str, profile: Sequence[tuple[float, float]]) -> Any:
 
 
 def paint(name: str, colour: Colour) -> Any:
-    """Its own light, darker towards the rim, so that it reads as round in any studio."""
+    """Return its own light, darker towards the rim, so that it reads as round in any studio."""
     import bpy
 
     made = bpy.data.materials.new(f"arrow {name}")
@@ -161,5 +166,72 @@ def paint(name: str, colour: Colour) -> Any:
 
 
 def _linear(c: float) -> float:
-    """Linear value of a colour as the picture has it (sRGB, IEC 61966-2-1)."""
+    """Return linear value of a colour as the picture has it (sRGB, IEC 61966-2-1)."""
     return c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+
+
+# Curved arrows: a thin tube round a pivot with a cone at its end, a mesh whose vertices follow the sweep.
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+
+
+ARC_SIDES = 24
+RINGS = 64
+"""Number of rings of the tube; two more are the cone."""
+FRONT = -math.pi / 2
+"""Angle (rad) of the middle of every arc: towards the camera."""
+
+
+def build_arc(scene: Any, spec: ArcSpec) -> Any:
+    """Return the mesh object, whose vertices :func:`place_arc` moves."""
+    import bpy
+
+    mesh = bpy.data.meshes.new(f"arc {spec.name}")
+    sides, ends = arc_faces()
+    mesh.from_pydata([(0.0, 0.0, 0.0)] * ((RINGS + 2) * ARC_SIDES), [], [*sides, *ends])
+    smooth = np.arange(len(sides) + len(ends)) < len(sides)
+    smooth[(RINGS - 1) * ARC_SIDES : RINGS * ARC_SIDES] = False  # behind the cone
+    mesh.polygons.foreach_set("use_smooth", smooth)
+    mesh.materials.append(paint(spec.name, spec.colour))
+    thing = bpy.data.objects.new(mesh.name, mesh)
+    thing.visible_shadow = thing.visible_diffuse = thing.visible_glossy = False
+    scene.collection.objects.link(thing)
+    return thing
+
+
+def arc_faces() -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
+    """Return numbers of the vertices of each face: round the tube and its cone, and at the two ends."""
+    around: list[tuple[int, ...]] = []
+    for ring in range(RINGS + 1):
+        for side in range(ARC_SIDES):
+            a, b = ring * ARC_SIDES + side, ring * ARC_SIDES + (side + 1) % ARC_SIDES
+            around.append((a, b, b + ARC_SIDES, a + ARC_SIDES))
+    last = (RINGS + 1) * ARC_SIDES
+    return around, [tuple(reversed(range(ARC_SIDES))), tuple(range(last, last + ARC_SIDES))]
+
+
+def arc_vertices(spec: ArcSpec, centre: Point, sweep: float) -> np.ndarray:
+    """Return vertices ((RINGS + 2) * SIDES, 3), float32, of an arc about ``centre`` (m) that reaches ``sweep`` (rad)
+    round it.
+
+    Its middle is at FRONT; arcs shorter than STOUT cones shrink as a whole.
+    """
+    length = max(abs(sweep) * spec.radius, GONE)
+    factor = min(1.0, length / (STOUT * spec.point))
+    way = math.copysign(1.0, sweep)
+    start, end = FRONT - sweep / 2, FRONT + sweep / 2
+    neck = end - way * min(factor * spec.point, 0.9 * length) / spec.radius
+    angle = np.concatenate([np.linspace(start, neck, RINGS), [neck, end]])
+    thick = factor * np.concatenate([np.full(RINGS, spec.shaft), [spec.head, 1e-3 * spec.head]])
+    out = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    turn = -way * math.tau * np.arange(ARC_SIDES) / ARC_SIDES  # faces look outwards whichever way it goes
+    rim = np.cos(turn)[None, :, None] * out[:, None] + np.sin(turn)[None, :, None] * np.array([0.0, 0.0, 1.0])
+    tube = np.asarray(centre) + spec.radius * out[:, None] + thick[:, None, None] * rim
+    return tube.reshape(-1, 3).astype(np.float32)
+
+
+def place_arc(thing: Any, spec: ArcSpec, centre: Point, sweep: float) -> None:
+    """Let the arc reach ``sweep`` (rad) round ``centre``; it is not there where that is 0."""
+    thing.data.vertices.foreach_set("co", arc_vertices(spec, centre, sweep).ravel())
+    thing.data.update()

@@ -1,7 +1,5 @@
-"""The whole scene in Blender is built once and then played. Frame i of the timeline shows state i."""
+"""The scene in Blender: the studio, the mechanism, and its motion."""
 
-# pyright: reportAttributeAccessIssue=false
-# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import math
@@ -11,15 +9,93 @@ from typing import Any
 import numpy as np
 
 from render.blender.job import Job
-from render.blender.scene import arcs, arrows, coded, labels, passing, pieces, studio, trail, tubes
+from render.blender.scene import arrows, cut, materials, pieces, tubes
+from render.blender.scene.world import bench, ground, lights
+from render.blender.scene.world.bench import Thing
 from render.film.framing import SENSOR
-from render.film.scene import State
+from render.film.framing import studio as studio_axes
+from render.film.scene import Point, State, StudioSpec
+from render.looks import Light
 from shared.contract.mount import Z
+
+# The place where a machine is filmed: ground, background, sky and lights of its look. Sized by what is filmed, turned
+# with the camera.
+#
+# Places are (right, away, up) as the camera stands, in radii of the swept motion around its middle. A light's power
+# grows with the square of its distance, so a mechanism of any size is lit alike.
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+
+
+BESIDE = 0.35
+"""From what the machine reaches to the things beside it, in radii."""
+
+
+def build_studio(scene: Any, studio: StudioSpec) -> None:
+    """Put the look around the mechanism and set the view."""
+    look, stands = studio.look, studio.up != Z
+    lights.build(scene, look.sky, studio.up)
+    light = look.standing if stands else look.lying
+    things = [
+        ground.build(scene, studio, light.bounce),
+        *(lights.softbox(scene, studio, box) for box in light.softboxes),
+    ]
+    if light.sun is not None:
+        things += lights.sun(scene, studio, light.sun)
+    if studio.wall is not None and (look.wall is None or look.wall.kind == "sweep"):
+        things.append(ground.wall(scene, studio))
+    things += _workshop(scene, studio, light)
+    if stands:
+        for thing in things:
+            thing.matrix_world = to_world(studio.up) @ thing.matrix_basis
+    view = scene.view_settings
+    view.view_transform = "AgX"
+    view.look = look.contrast
+    view.exposure = look.exposure
+
+
+def to_world(up: Point) -> Any:
+    """Return the matrix that turns the studio's axes into those of the world (4 x 4)."""
+    from mathutils import Matrix
+
+    return Matrix(studio_axes(up).T.tolist()).to_4x4()
+
+
+def _workshop(scene: Any, studio: StudioSpec, light: Light) -> list[Any]:
+    """Return the things of a bench, where the machine does not reach: a wall with tools and a vice."""
+    from mathutils import Matrix, Vector
+
+    look, radius = studio.look, studio.radius
+    right, away = studio.reach
+    floor = Vector((studio.centre[0], studio.centre[1], studio.floor))
+    made = []
+    if look.wall is not None and look.wall.kind == "pegboard":
+        made.append(Thing(scene, "pegboard", radius, floor, studio.azimuth if studio.wall is None else 0.0))
+        behind = away / radius + look.wall.away
+        if studio.wall is not None:
+            behind = (studio.wall - studio.centre[1]) / radius
+        lamps = lights.lamps_seen_from(made[-1].root, studio, light.softboxes)
+        bench.build_pegboard(made[-1], look.wall.colour, behind, right / radius, light.bounce, lamps)
+    if look.vice and studio.wall is None:
+        turn = Matrix.Rotation(studio.azimuth, 4, "Z")
+        place = turn @ Vector((-0.62 * right, away + BESIDE * radius, 0.0))
+        made.append(Thing(scene, "vice", radius, floor + place, studio.azimuth + 0.5))
+        made[-1].seen_only = True
+        bench.build_vice(made[-1], lights.lamps_seen_from(made[-1].root, studio, light.softboxes))
+    return [thing.root for thing in made]
+
+
+# The whole scene in Blender is built once and then played. Frame i of the timeline shows state i.
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+
 
 PINHOLE = 1000.0
 """f-stop of a camera without a lens blur."""
 NEAR, FAR = 0.01, 1000.0
-"""What a camera sees, in radii of the machine."""
+"""Field of a camera, in radii of the machine."""
 
 
 @dataclass
@@ -36,7 +112,7 @@ class BuiltScene:
     arcs: list[Any] = field(default_factory=list)
     """In that scene."""
     beside: list[Any] = field(default_factory=list)
-    """What states may hide; empty where none does."""
+    """Objects that states may hide; empty if none does."""
 
     def show(self, index: int) -> None:
         """Go to state ``index``."""
@@ -45,18 +121,18 @@ class BuiltScene:
             self.front.frame_set(index)
         for which, thing in enumerate(self.trails):
             path = self.job.states[index].trails[which]
-            trail.place(thing, path, self.job.scene.trails[which].radius)
+            tubes.place_trail(thing, path, self.job.scene.trails[which].radius)
         for which, thing in enumerate(self.tubes):
-            tubes.place(thing, self.job.states[index].tubes[which], self.job.scene.tubes[which].radius)
+            tubes.place_tube(thing, self.job.states[index].tubes[which], self.job.scene.tubes[which].radius)
         for thing in self.beside:
             hidden = self.job.states[index].hidden
             thing.hide_render = hidden == "all" or (hidden == "trails" and thing in self.trails)
         for which, thing in enumerate(self.arcs):
-            arcs.place(thing, self.job.scene.arcs[which], *self.job.states[index].arcs[which])
+            arrows.place_arc(thing, self.job.scene.arcs[which], *self.job.states[index].arcs[which])
 
 
-def build(job: Job) -> BuiltScene:
-    """An empty Blender becomes the studio with the mechanism in it, with the motion on its timeline."""
+def build_scene(job: Job) -> BuiltScene:
+    """Turn an empty Blender into the studio with the mechanism in it, with the motion on its timeline."""
     import bpy
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -64,31 +140,31 @@ def build(job: Job) -> BuiltScene:
     scene.render.engine = "CYCLES"
     scene.unit_settings.system = "METRIC"
     solids: dict[str, Any] = {}
-    bodies = pieces.build(scene, job.scene.pieces, job.scene.studio.radius, job.flat, solids)
+    bodies = pieces.build_pieces(scene, job.scene.pieces, job.scene.studio.radius, job.flat, solids)
     camera = _camera(scene, job)
     texts: list[Any] = []
     trails: list[Any] = []
     wires: list[Any] = []
     if job.flat is None:
         if not job.drawn:
-            studio.build(scene, job.scene.studio)
-        trails = [trail.build(scene, spec) for spec in job.scene.trails]
-        wires = [tubes.build(scene, spec, job.scene.studio.radius) for spec in job.scene.tubes]
-        texts = [labels.build(scene, spec) for spec in job.scene.labels]
+            build_studio(scene, job.scene.studio)
+        trails = [tubes.build_trail(scene, spec) for spec in job.scene.trails]
+        wires = [tubes.build_tube(scene, spec, job.scene.studio.radius) for spec in job.scene.tubes]
+        texts = [pieces.build_label(scene, spec) for spec in job.scene.labels]
     if job.flat is not None or job.drawn:
         _dark(scene)
     if job.drawn:
         meshes = [thing for thing in scene.objects if thing.type == "MESH" and thing not in trails]
-        coded.number(meshes, [*trails, *texts], job.scene.studio.radius)
+        materials.number(meshes, [*trails, *texts], job.scene.studio.radius)
     painted = job.flat is None and not job.drawn
-    passing.cut_in_passing(scene, job.scene, solids, painted)
+    cut.cut_in_passing(scene, job.scene, solids, painted)
     if wires:
-        passing.cut_tubes(scene, job.scene, job.states, wires, painted)
+        cut.cut_tubes(scene, job.scene, job.states, wires, painted)
     _animate(job, bodies, camera, texts)
     _lift(job, solids)
     drawn = (job.scene.arrows or job.scene.arcs) and job.flat is None
     front = _front(job, camera) if drawn else None
-    curved = [arcs.build(front, spec) for spec in job.scene.arcs] if drawn else []
+    curved = [arrows.build_arc(front, spec) for spec in job.scene.arcs] if drawn else []
     scene.frame_start, scene.frame_end = 0, len(job.states) - 1
     scene.render.fps = job.scene.fps
     beside = [*trails, *wires, *texts] if any(state.hidden for state in job.states) else []
@@ -96,7 +172,7 @@ def build(job: Job) -> BuiltScene:
 
 
 def _front(job: Job, camera: Any) -> Any:
-    """A scene with the arrows alone, seen by the same camera without its lens blur: nothing hides them."""
+    """Return a scene with the arrows alone, seen by the same camera without its lens blur: nothing hides them."""
     import bpy
 
     front = bpy.data.scenes.new("arrows")
@@ -109,7 +185,7 @@ def _front(job: Job, camera: Any) -> Any:
     front.collection.objects.link(eye)
     front.camera = eye
     front.frame_start, front.frame_end = 0, len(job.states) - 1
-    made = [arrows.build(front, spec) for spec in job.scene.arrows]
+    made = [arrows.build_arrow(front, spec) for spec in job.scene.arrows]
     for index, arrow in enumerate(made):
         tails, tips = (np.array([state.arrows[index][end] for state in job.states]) for end in (0, 1))
         for thing, path, channels in arrows.channels(arrow, job.scene.arrows[index], tails, tips):
@@ -122,12 +198,12 @@ def bake_shapes(built: BuiltScene) -> None:
     scene, states = built.job.scene, built.job.states
     for which, thing in enumerate(built.trails):
         radius = scene.trails[which].radius
-        _bake(thing, [trail.vertices(state.trails[which], radius) for state in states])
+        _bake(thing, [tubes.trail_vertices(state.trails[which], radius) for state in states])
     for which, thing in enumerate(built.tubes):
         radius = scene.tubes[which].radius
-        _bake(thing, [tubes.vertices(state.tubes[which], radius) for state in states])
+        _bake(thing, [tubes.tube_vertices(state.tubes[which], radius) for state in states])
     for which, thing in enumerate(built.arcs):
-        _bake(thing, [arcs.vertices(scene.arcs[which], *state.arcs[which]) for state in states])
+        _bake(thing, [arrows.arc_vertices(scene.arcs[which], *state.arcs[which]) for state in states])
 
 
 def _bake(thing: Any, shapes: list[np.ndarray]) -> None:
@@ -143,7 +219,9 @@ def _bake(thing: Any, shapes: list[np.ndarray]) -> None:
 
 
 def _camera(scene: Any, job: Job) -> Any:
-    """The camera. What is not keyed follows from the scene alone: a picture is the same whatever its job renders."""
+    """Set the camera. What is not keyed follows from the scene alone: a picture is the same whatever its job
+    renders.
+    """
     import bpy
 
     pose, radius = job.states[0].camera, job.scene.studio.radius
@@ -160,7 +238,7 @@ def _camera(scene: Any, job: Job) -> Any:
 
 
 def _stop(pose: Any) -> float:
-    """The f-stop of a camera that stands among others that have one."""
+    """Return the f-stop of a camera that stands among others that have one."""
     return max(pose.fstop, 0.01) if pose.fstop > 0 else PINHOLE
 
 
@@ -203,7 +281,7 @@ def _lift(job: Job, solids: dict[str, Any]) -> None:
 
 
 def _facing(states: list[State]) -> list[np.ndarray]:
-    """Three angles (T,) of the camera; what faces it has the same."""
+    """Return three angles (T,) of the camera; what faces it has the same."""
     tilt = np.array([math.pi / 2 - state.camera.elevation for state in states])
     turn = np.array([state.camera.azimuth for state in states])
     up = states[0].camera.up
@@ -213,7 +291,7 @@ def _facing(states: list[State]) -> list[np.ndarray]:
 
     facing = [Euler((tilt[0], 0.0, turn[0]))]
     for a, b in zip(tilt, turn, strict=True):
-        turned = studio.to_world(up) @ Euler((a, 0.0, b)).to_matrix().to_4x4()
+        turned = to_world(up) @ Euler((a, 0.0, b)).to_matrix().to_4x4()
         facing.append(turned.to_euler("XYZ", facing[-1]))
     return list(np.array([list(angles) for angles in facing[1:]]).T)
 

@@ -1,16 +1,86 @@
-"""One small function per finish: from a surface in plain data to a Blender material."""
+"""Materials in Blender: shader nodes, paints and metals, and the coded image of bodies."""
 
-# pyright: reportAttributeAccessIssue=false
-# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from typing import Any
 
-from render.blender.scene.nodes import Graph
-from render.film.hatches import LIGHT, MATT, Hatch, dark_of, light_of
 from render.film.scene import Colour, SurfaceSpec
+from render.film.section import LIGHT, MATT, Hatch, dark_of, light_of
+
+# Helpers that keep the code of shader graphs readable.
+
+
+class Graph:
+    """Adds nodes to a node tree and wires them: a value that is a socket is linked, anything else is set."""
+
+    def __init__(self, tree: Any) -> None:
+        self.tree = tree
+
+    def clear(self) -> Graph:
+        """Drop the nodes Blender starts with."""
+        self.tree.nodes.clear()
+        return self
+
+    def add(self, kind: str, settings: dict[str, Any] | None = None, **inputs: Any) -> Any:
+        """Return a node of type ``ShaderNode<kind>``; inputs by name, with underscores for spaces."""
+        node = self.tree.nodes.new(f"ShaderNode{kind}")
+        for name, value in (settings or {}).items():
+            setattr(node, name, value)
+        for name, value in inputs.items():
+            self.set(node, name.replace("_", " "), value)
+        return node
+
+    def set(self, node: Any, name: str | int, value: Any) -> None:
+        """Set one input, or link it."""
+        socket = node.inputs[name]
+        if hasattr(value, "is_output"):
+            self.tree.links.new(value, socket)
+        else:
+            socket.default_value = (*value, 1.0) if isinstance(value, tuple) and socket.type == "RGBA" else value
+
+    def math(self, operation: str, *values: Any) -> Any:
+        """Return the result of a Math node."""
+        node = self.tree.nodes.new("ShaderNodeMath")
+        node.operation = operation
+        for index, value in enumerate(values):
+            self.set(node, index, value)
+        return node.outputs[0]
+
+    def vector(self, operation: str, *values: Any, **inputs: Any) -> Any:
+        """Return the result of a Vector Math node that is a vector."""
+        node = self.add("VectorMath", {"operation": operation}, **inputs)
+        for index, value in enumerate(values):
+            self.set(node, index, value)
+        return node.outputs["Vector"]
+
+    def mixed(self, ray: str, others: Any, these: Any) -> Any:
+        """Return the shader ``these`` for rays of one sort, e.g. "Is Camera Ray", and ``others`` for all else."""
+        mix = self.add("MixShader")
+        for index, value in enumerate((self.add("LightPath").outputs[ray], others, these)):
+            self.set(mix, index, value)
+        return mix.outputs[0]
+
+    def ramp(self, factor: Any, stops: list[tuple[float, tuple[float, float, float]]]) -> Any:
+        """Return a colour ramp, smooth between its stops."""
+        node = self.tree.nodes.new("ShaderNodeValToRGB")
+        node.color_ramp.interpolation = "EASE"
+        elements = node.color_ramp.elements
+        while len(elements) < len(stops):
+            elements.new(0.5)
+        for element, (position, colour) in zip(elements, stops, strict=True):
+            element.position = position
+            element.color = (*colour, 1.0)
+        self.set(node, "Fac" if "Fac" in node.inputs else 0, factor)
+        return node.outputs["Color"]
+
+
+# One small function per finish: from a surface in plain data to a Blender material.
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+
 
 BARE: Colour = (0.62, 0.63, 0.65)
 IRON: Colour = (0.36, 0.355, 0.35)
@@ -25,7 +95,7 @@ REFERENCE = 0.12
 
 
 def material(surface: SurfaceSpec, name: str, radius: float = REFERENCE) -> Any:
-    """The Blender material of a surface in a picture of a machine of this ``radius`` (m)."""
+    """Return the Blender material of a surface in a picture of a machine of this ``radius`` (m)."""
     made, graph = new_material(name)
     shader = FINISHES[surface.finish](graph, surface, max(1.0, radius / REFERENCE))
     output = graph.add("OutputMaterial", Surface=shader)
@@ -34,7 +104,7 @@ def material(surface: SurfaceSpec, name: str, radius: float = REFERENCE) -> Any:
 
 
 def flat(colour: tuple[float, float, float], name: str) -> Any:
-    """A material that is this colour in any light."""
+    """Return a material that is this colour in any light."""
     made, graph = new_material(name)
     graph.add("OutputMaterial", Surface=graph.add("Emission", Color=colour, Strength=1.0).outputs[0])
     made.cycles.emission_sampling = "NONE"
@@ -42,7 +112,7 @@ def flat(colour: tuple[float, float, float], name: str) -> Any:
 
 
 def hatched(surface: SurfaceSpec, name: str, radius: float, hatch: Hatch, fixed: bool = False) -> Any:
-    """A cut face with stripes in light and dark of the surface's colour.
+    """Return a cut face with stripes in light and dark of the surface's colour.
 
     Stripes are of the body's frame; of a ``fixed`` plane they lie as the world does and go along with the body.
     """
@@ -72,7 +142,7 @@ def ink(light: bool) -> Any:
 
 
 def new_material(name: str) -> tuple[Any, Graph]:
-    """A material of Blender, and its empty graph."""
+    """Return a material of Blender, and its empty graph."""
     import bpy
 
     made = bpy.data.materials.new(name)
@@ -85,7 +155,7 @@ def _principled(graph: Graph, **inputs: Any) -> Any:
 
 
 def _place(graph: Graph, scale: float | tuple[float, float, float], grain: float) -> Any:
-    """Where a point is in its body, times ``scale`` (1/m)."""
+    """Return where a point is in its body, times ``scale`` (1/m)."""
     scales = scale if isinstance(scale, tuple) else (scale,) * 3
     place = graph.add("TexCoord").outputs["Object"]
     return graph.add("Mapping", Vector=place, Scale=tuple(s / grain for s in scales)).outputs[0]
@@ -96,17 +166,17 @@ def _noise(graph: Graph, place: Any, detail: float = 2.0, roughness: float = 0.5
 
 
 def _swing(graph: Graph, value: Any, middle: float, swing: float) -> Any:
-    """A noise of 0..1 as ``middle`` plus and minus half a ``swing``."""
+    """Return a noise of 0..1 as ``middle`` plus and minus half a ``swing``."""
     return graph.math("ADD", middle - swing / 2, graph.math("MULTIPLY", value, swing))
 
 
 def _cloudy(graph: Graph, roughness: float, swing: float, scale: float, grain: float) -> Any:
-    """Roughness with a slow, faint unevenness: what keeps a large face from looking computed."""
+    """Return the roughness with a slow, faint unevenness: what keeps a large face from looking computed."""
     return _swing(graph, _noise(graph, _place(graph, scale, grain)), roughness, swing)
 
 
 def _mixed(graph: Graph, part: Any, first: Any, second: Any) -> Any:
-    """Between two colours."""
+    """Return a mix of two colours."""
     mix = graph.add("Mix", {"data_type": "RGBA"})
     for socket, value in ((0, part), (6, first), (7, second)):
         graph.set(mix, socket, value)
@@ -120,7 +190,7 @@ def _toned(graph: Graph, colour: Colour, tone: Any) -> Any:
 
 
 def _worn(graph: Graph, most: float, grain: float) -> Any:
-    """How much of a chamfer is bare, unevenly along it."""
+    """Return how much of a chamfer is bare, unevenly along it."""
     edge = graph.add("Attribute", {"attribute_name": EDGE}).outputs["Fac"]
     patches = _noise(graph, _place(graph, 90.0, grain))
     return graph.math("MULTIPLY", edge, _swing(graph, patches, most, 0.5 * most))
@@ -177,7 +247,7 @@ def _plastic(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _printed(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """Layers along z, each a round bead: light catches their crowns, and their tone varies a little."""
+    """Return layers along z, each a round bead: light catches their crowns, and their tone varies a little."""
     height = graph.add("SeparateXYZ", Vector=_place(graph, 1.0, 1.0)).outputs["Z"]
     layer = graph.math("DIVIDE", height, LAYER * grain)
     crown = graph.math("ABSOLUTE", graph.math("SINE", graph.math("MULTIPLY", layer, math.pi)))
@@ -231,7 +301,7 @@ def _wood(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
 
 
 def _glass(graph: Graph, surface: SurfaceSpec, grain: float) -> Any:
-    """A pane: it tints what is behind and mirrors at a flat angle; light passes straight through."""
+    """Return a pane: it tints what is behind and mirrors at a flat angle; light passes straight through."""
     mirror = graph.add("BsdfGlossy", Color=(1.0, 1.0, 1.0), Roughness=0.06).outputs[0]
     clear = graph.add("BsdfTransparent", Color=surface.colour).outputs[0]
     mix = graph.add("MixShader")
@@ -253,3 +323,49 @@ FINISHES: dict[str, Callable[[Graph, SurfaceSpec, float], Any]] = {
     "wood": _wood,
     "glass": _glass,
 }
+
+
+# Materials that tell a drawing what is where: emission whose colour is a code instead of light.
+#
+# A pixel has number + (1 + normal_x) / 4 in red, (1 + normal_y) / 2 in green, the distance in radii in blue; normals
+# are the camera's. Numbers from INKED on are lines of their own: there green is their strength.
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+
+
+INKED = 4096
+
+
+def number(things: list[Any], inked: list[Any], radius: float) -> None:
+    """Give solids and inked things their numbers, and the material that tells them."""
+    made, traced = _material(radius, None), _material(radius, "fade")
+    plain = _material(radius, "")
+    for first, group in ((1, things), (INKED, inked)):
+        for index, thing in enumerate(group):
+            thing.pass_index = first + index
+            fades = first == INKED and thing.type == "MESH" and "fade" in thing.data.attributes
+            for slot in range(len(thing.data.materials)):
+                thing.data.materials[slot] = made if first == 1 else traced if fades else plain
+
+
+def _material(radius: float, strength: str | None) -> Any:
+    """Return the material of solids; with a ``strength``, of inked things: the attribute of that name, else 1."""
+    import bpy
+
+    made = bpy.data.materials.new("coded")
+    made.use_nodes = True
+    graph = Graph(made.node_tree).clear()
+    seen = graph.add("VectorTransform", {"vector_type": "NORMAL", "convert_from": "WORLD", "convert_to": "CAMERA"})
+    graph.set(seen, 0, graph.add("NewGeometry").outputs["Normal"])
+    normal = graph.add("SeparateXYZ", Vector=seen.outputs[0])
+    quarter = graph.math("MULTIPLY", graph.math("ADD", normal.outputs["X"], 1.0), 0.25)
+    red = graph.math("ADD", graph.add("ObjectInfo").outputs["Object Index"], quarter)
+    green = graph.math("MULTIPLY", graph.math("ADD", normal.outputs["Y"], 1.0), 0.5)
+    if strength is not None:
+        green = graph.add("Attribute", {"attribute_name": strength}).outputs["Fac"] if strength else 1.0
+    away = graph.math("DIVIDE", graph.add("CameraData").outputs["View Distance"], radius)
+    colour = graph.add("CombineXYZ", X=red, Y=green, Z=away).outputs[0]
+    graph.add("OutputMaterial", Surface=graph.add("Emission", Color=colour, Strength=1.0).outputs[0])
+    made.cycles.emission_sampling = "NONE"
+    return made

@@ -1,9 +1,10 @@
-"""What is written over a picture: the legend on a card, the title, the rate, a number that follows the motion."""
+"""Words on a picture: lines, sizes and places."""
 
 from __future__ import annotations
 
 import math
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -11,6 +12,8 @@ import numpy as np
 
 from render.film.scene import ARC, LegendRow, Writing
 from render.letters import font_of
+
+# Text over a picture: the legend on a card, the title, the rate, a number that follows the motion.
 
 FINE = 3
 """Letters and legend are drawn so many times larger."""
@@ -41,7 +44,9 @@ def lay_words(page: Any, writing: Writing, number: str) -> None:
 
 @lru_cache(maxsize=4)
 def _written(wide: int, high: int, writing: bytes, number: str) -> tuple[Any, Any, Any]:
-    """The lines: the box of the picture that they take, their halo (L) and themselves (RGBA); None without lines."""
+    """Return the lines: the box of the picture that they take, their halo (L) and themselves (RGBA); None without
+    lines.
+    """
     from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
     spec, unit = msgspec.json.decode(writing, type=Writing), min(wide, high)
@@ -69,7 +74,7 @@ def _written(wide: int, high: int, writing: bytes, number: str) -> tuple[Any, An
 
 @lru_cache(maxsize=2)
 def _card(wide: int, high: int, writing: bytes) -> tuple[tuple[int, int], Any] | None:
-    """The legend on its card (RGBA) and its place in the picture; None where there is none."""
+    """Return the legend on its card (RGBA) and its place in the picture; None where there is none."""
     from PIL import Image, ImageDraw
 
     spec, unit = msgspec.json.decode(writing, type=Writing), min(wide, high)
@@ -84,7 +89,9 @@ def _card(wide: int, high: int, writing: bytes) -> tuple[tuple[int, int], Any] |
 
 
 def _averaged(page: Any, size: tuple[int, int]) -> Any:
-    """A page (RGBA), :data:`FINE` times smaller: averaged with alpha premultiplied, else letters have dark rims."""
+    """Return a page (RGBA), :data:`FINE` times smaller: averaged with alpha premultiplied, else letters have dark
+    rims.
+    """
     from PIL import Image
 
     wide, high = size
@@ -141,10 +148,63 @@ def _arc(draw: Any, x: float, y: float, radius: float, row: LegendRow) -> None:
     y -= radius * (1 + math.cos(min(row.sweep / 2, math.pi))) / 2  # its middle stands in the row's
     start, end = math.pi / 2 + row.sweep / 2, math.pi / 2 - row.sweep / 2  # y goes down: counter-clockwise falls
 
-    def at(angle: float, r: float) -> tuple[float, float]:
+    def place(angle: float, r: float) -> tuple[float, float]:
         return x + r * math.cos(angle), y + r * math.sin(angle)
 
     angles = [start + (end + head - start) * k / 48 for k in range(49)]
-    ring = [at(a, radius + shaft) for a in angles] + [at(a, radius - shaft) for a in reversed(angles)]
+    ring = [place(a, radius + shaft) for a in angles] + [place(a, radius - shaft) for a in reversed(angles)]
     draw.polygon(ring, fill=ink)
-    draw.polygon([at(end + head, radius + half), at(end, radius), at(end + head, radius - half)], fill=ink)
+    draw.polygon([place(end + head, radius + half), place(end, radius), place(end + head, radius - half)], fill=ink)
+
+
+# The overlay of a rendered picture: arrows with a faint glow, the legend, a title.
+
+ARROW_HALO, HALO_WIDTH, HALO_EDGE = 0.9, 0.0013, 4.0
+"""How far the picture is darkened around an arrow, how wide, as a part of its width, and how sharply that ends."""
+SHADE, SHADE_WIDTH = 0.4, 0.004
+"""The same of the soft shade beyond."""
+GLOW, GLOW_WIDTH = 0.22, 0.011
+
+
+def lay(path: Path, over: Path | None, writing: Writing, number: str) -> None:
+    """Write the picture at ``path`` anew with all that lies over it; does nothing where that is nothing."""
+    if over is None and not (writing.legend or writing.lines):
+        return
+    from PIL import Image
+
+    with Image.open(path) as opened:
+        picture = np.asarray(opened.convert("RGB")).astype(np.float64) / 255
+    if over is not None:
+        with Image.open(over) as opened:
+            picture = _with_arrows(picture, np.asarray(opened.convert("RGBA")).astype(np.float64) / 255)
+    page = Image.fromarray(np.rint(255 * np.clip(picture, 0, 1)).astype(np.uint8), "RGB")
+    lay_words(page, writing, number)
+    page.save(path, format="PNG", compress_level=4)
+
+
+def _with_arrows(picture: np.ndarray, arrows: np.ndarray) -> np.ndarray:
+    """Return the picture (h, w, 3) with a thin dark halo round the arrows (h, w, 4), their glow, and themselves on
+    top.
+    """
+    colour, alpha = arrows[..., :3], arrows[..., 3:]
+    wide = picture.shape[1]
+    halo = np.clip(HALO_EDGE * _blurred(alpha, HALO_WIDTH * wide), 0, 1)
+    shade = np.clip(1.6 * _blurred(alpha, SHADE_WIDTH * wide), 0, 1)
+    glow = _blurred(colour * alpha, GLOW_WIDTH * wide)
+    under = picture * (1 - SHADE * shade)
+    under = 1 - (1 - np.clip(under, 0, 1)) * (1 - GLOW * np.clip(glow, 0, 1))
+    under = under * (1 - ARROW_HALO * halo)
+    return under * (1 - alpha) + colour * alpha
+
+
+def _blurred(picture: np.ndarray, sigma: float) -> np.ndarray:
+    """Return a Gaussian blur over rows and columns of (h, w, n)."""
+    reach = max(1, round(3 * sigma))
+    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    weights /= weights.sum()
+    for axis in (0, 1):
+        padding = [(reach, reach) if k == axis else (0, 0) for k in range(3)]
+        padded = np.pad(picture, padding, mode="edge")
+        length = picture.shape[axis]
+        picture = sum(weight * np.take(padded, range(k, k + length), axis=axis) for k, weight in enumerate(weights))  # pyright: ignore[reportAssignmentType]
+    return picture

@@ -1,14 +1,18 @@
-"""What a frame of a story shows: a picture that is rendered, and what is laid over it."""
+"""Frames of a story: what each one shows, and where words stand."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Literal
 
 import msgspec
 
+from render.film.composing import sides
 from render.film.framing import CameraPose
 from render.film.scene import Hidden
+
+# A frame of a story: a picture that is rendered, and its overlay.
 
 
 class Picture(msgspec.Struct, kw_only=True, frozen=True):
@@ -18,10 +22,10 @@ class Picture(msgspec.Struct, kw_only=True, frozen=True):
     """Frame of the loop, which may lie between two."""
     camera: CameraPose
     forces: bool = False
-    """Whether it is of the scene with arrows, which ``grown`` (0 .. 1) makes long."""
+    """True if it is of the scene with arrows, which ``grown`` (0 .. 1) makes long."""
     grown: float = 0.0
     cut: bool = False
-    """Whether it is of the scene that the shot's section cuts open."""
+    """True if it is of the scene that the shot's section cuts open."""
     lifts: tuple[tuple[str, float], ...] = ()
     hidden: Hidden = ""
 
@@ -33,7 +37,7 @@ class Leader(msgspec.Struct, frozen=True):
     y: float
     words: str
     quiet: str
-    """What stands behind the words: a mass."""
+    """Amount behind the words: a mass."""
     right: bool
     height: float
     """Height of the middle of the words, in parts of the picture's height."""
@@ -51,7 +55,7 @@ class Note(msgspec.Struct, frozen=True):
 
 
 class Over(msgspec.Struct, kw_only=True, frozen=True):
-    """What is laid over a picture; all of it costs Blender nothing."""
+    """The overlay of a picture: words, strip and leaders; Blender draws none of it."""
 
     title: float = 0.0
     """How far the title is there, 0 .. 1, over a picture that is dark and out of focus."""
@@ -97,7 +101,65 @@ class Shot:
 
 
 def shown_in(s: float, start: float, end: float, fade: float = 0.35) -> float:
-    """How far something is there at second ``s`` that comes at ``start`` and goes at ``end``, 0 .. 1."""
+    """Return how far something is there at second ``s`` that comes at ``start`` and goes at ``end``, 0 .. 1."""
     part = min((s - start) / fade, (end - s) / fade, 1.0)
     u = max(part, 0.0)
     return u * u * (3 - 2 * u)
+
+
+# Where words, strip and captions of a story stand, in parts of the picture's shorter side.
+
+EDGE = 0.04
+STRIP = 0.17
+"""Height of the strip under the picture, with its edge."""
+SIDE = 0.56
+"""Width of the strip where it stands beside the machine, ..."""
+UNDER = 0.18
+"""... the height that it leaves to captions under it, ..."""
+PANEL = 0.3
+"""... and the height of each of its panels at most."""
+CAPTION = 0.095
+"""Height that a caption takes above it."""
+LETTER, SMALL = 0.047, 0.034
+"""Heights of letters: of captions, and of rates, names and numbers of the strip."""
+LINES = 2
+"""Lines of a caption at most."""
+
+
+def below(aspect: float, strip: bool) -> float:
+    """Return the part of the picture's height that a camera leaves empty for caption and strip."""
+    return (CAPTION + (STRIP if strip else 0.0)) / sides(aspect)[1]
+
+
+def side_width(aspect: float) -> float:
+    """Return the part of the picture's width that a camera leaves empty at the right for a strip that stands there."""
+    return SIDE / sides(aspect)[0]
+
+
+def above(aspect: float) -> float:
+    """Return the same of the rate of time at the top."""
+    return 0.05 / sides(aspect)[1]
+
+
+# Reasons to stop: an event or a peak of the motion, as plain data; ``render/report/facts.py`` has them.
+
+Kind = Literal["impact", "turns_back", "event", "effort", "reaction", "speed"]
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Something that is worth a stop."""
+
+    time: float
+    """s"""
+    kind: Kind
+    name: str
+    """Name of the element: a contact, a follower, an event, a driver or force, a joint, a point."""
+    amount: str = ""
+    """How much, with its unit."""
+    joint: str = ""
+    """The joint that carries most at that time, if joints carry anything ..."""
+    force: str = ""
+    """... and how much."""
+    words: tuple[str, ...] = field(default=())
+    """By which an author may ask for it."""

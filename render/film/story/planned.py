@@ -6,19 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from render.film.film import Film
-from render.film.story.curves import curves_of
-from render.film.story.frame import Shot
-from render.film.story.reason import Reason
+from render.film.story.frame import Reason, Shot
 from render.film.story.scenery import Scenery
 from render.film.story.shots.assembly import assembly
-from render.film.story.shots.last import last
-from render.film.story.shots.loop import loop
-from render.film.story.shots.macro import macro
-from render.film.story.shots.motion import motion
-from render.film.story.shots.reason import reason
-from render.film.story.shots.section import section
-from render.film.story.shots.title import title
-from render.film.story.story import Story
+from render.film.story.shots.close_ups import macro, section
+from render.film.story.shots.motion import last, motion, title
+from render.film.story.shots.reason import loop, reason
+from render.film.story.story import Story, curves_of
 from render.film.story.words import words_in
 from render.presets import Preset
 from shared.contract.shot import STORY_SHOTS
@@ -28,9 +22,9 @@ from shared.stage.suggestions import did_you_mean
 BUDGET = 2.2
 """Pictures of a story beside those of the loop film; starting Blender twice takes the rest up to 2.5."""
 WAYS = ((True, 1.0), (False, 1.0), (False, 0.75), (False, 0.55), (False, 0.4), (False, 0.25), (False, 0.12))
-"""Whether the camera turns while the machine is shown, and the part of the seconds of moves: the first that fits."""
+"""If the camera turns while the machine is shown, and the part of the seconds of moves: the first that fits."""
 ARROWED = 2.6
-"""What a picture with arrows takes, which are rendered for themselves, in one without."""
+"""Cost of a picture with arrows, which are rendered apart, in pictures without."""
 TWOS = ("draft", "preview")
 """Presets that move on twos."""
 BLUR = {"draft": 9.0, "preview": 11.0}
@@ -42,15 +36,15 @@ def planned(
     film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset, seconds: float = 0.0,
     cut: Film | None = None,
 ) -> Story:  # fmt: skip
-    """The story of a film: ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut open,
-    None of a shot without a section; the first of ``reasons`` is
-    what time stops for, unless the shot asks for another. With ``seconds`` it is a loop of that length.
+    """Return the story of a film: ``forces`` is the same with arrows, None where nothing has any, ``cut`` the same cut
+    open, None of a shot without a section; the first of ``reasons`` is what time stops for, unless the shot asks for
+    another. With ``seconds`` it is a loop of that length.
 
     Raises UserError with place and remedy for wishes of the shot that cannot be.
     """
     scenery = replace(scenery_of(film, forces, reasons, preset), cut=cut)
     if seconds:
-        return _made(scenery, [loop(scenery, seconds)])
+        return _assemble(scenery, [loop(scenery, seconds)])
     most = BUDGET * min(film.clock.frames, film.clock.moving + 1) * (2 / scenery.step)
     story = _story(scenery)
     for turning, scale in WAYS[1:]:
@@ -61,10 +55,10 @@ def planned(
 
 
 def scenery_of(film: Film, forces: Film | None, reasons: Sequence[Reason], preset: Preset) -> Scenery:
-    """What the shots are made of. Raises UserError for an event or a language that is not there."""
+    """Return the scenery that the shots share. Raises UserError for an unknown event or language."""
     wishes, mechanism = film.shot.story, film.motion.mechanism
     base = preset.name.partition("-")[0]
-    reasons = _asked(mechanism, wishes.event, reasons)
+    reasons = _wished_first(mechanism, wishes.event, reasons)
     return Scenery(
         film=film,
         forces=forces,
@@ -78,7 +72,7 @@ def scenery_of(film: Film, forces: Film | None, reasons: Sequence[Reason], prese
 
 
 def _cost(story: Story) -> float:
-    """What the pictures of a story take, in pictures without arrows."""
+    """Return the cost of a story's pictures, in pictures without arrows."""
     return sum(ARROWED if picture.grown else 1.0 for picture in story.pictures)
 
 
@@ -94,10 +88,10 @@ def _story(scenery: Scenery) -> Story:
             f"{scenery.film.motion.mechanism}: shot.story.shots = {', '.join(names)} leaves nothing to show: the "
             "machine has no such shots, and a title stands before another shot; add motion or last"
         )
-    return _made(scenery, shots)
+    return _assemble(scenery, shots)
 
 
-def _made(scenery: Scenery, shots: Sequence[Shot]) -> Story:
+def _assemble(scenery: Scenery, shots: Sequence[Shot]) -> Story:
     mechanism, fps, step = scenery.film.motion.mechanism, scenery.fps, scenery.step
     return Story(mechanism, fps, step, shots, scenery.curves, scenery.at_side)
 
@@ -113,8 +107,8 @@ SHOTS: dict[str, Callable[[Scenery], Shot | None]] = {
 """By the names that a shot.py gives; the title needs what follows it."""
 
 
-def _asked(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list[Reason]:
-    """The reasons, that of the shot's ``event`` first. Raises UserError where nothing like it ever happens."""
+def _wished_first(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list[Reason]:
+    """Return the reasons, that of the shot's ``event`` first. Raises UserError where nothing like it ever happens."""
     if event is None:
         return list(reasons)
     for reason_ in reasons:
@@ -122,6 +116,6 @@ def _asked(mechanism: str, event: str | None, reasons: Sequence[Reason]) -> list
             return [reason_, *(other for other in reasons if other is not reason_)]
     known = list(dict.fromkeys(words for other in reasons for words in other.words))
     raise UserError(
-        f"{mechanism}: shot.story.event names '{event}', which never happens in this motion; what does: "
+        f"{mechanism}: shot.story.event names '{event}', which never happens in this motion; its events are: "
         f"{', '.join(known) or 'nothing'}{did_you_mean(event, known)}"
     )

@@ -1,7 +1,8 @@
-"""What the shots of a story are made of: the film with and without arrows, its stands, its words."""
+"""The scenery of a story: the film, its cameras and its bounds."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -10,21 +11,123 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.camera import angles
-from render.film.composing.filling import View
-from render.film.exploded import Lift, exploded
+from render.film.camera import Subject, angles, point
+from render.film.composing import View, held
 from render.film.film import Film
-from render.film.framing import CameraPose
+from render.film.framing import REFERENCE_WIDTH, SENSOR, CameraPose, axes, depth_of_field, in_studio, in_world
+from render.film.pieces import Lift, exploded
 from render.film.scene import Hidden
-from render.film.story import cameras, layout
-from render.film.story.cameras import Stand
-from render.film.story.curves import Curve
-from render.film.story.frame import Over, Picture
-from render.film.story.reason import Reason
+from render.film.story import frame
+from render.film.story.frame import Over, Picture, Reason
+from render.film.story.story import Curve
 from render.film.story.words import rate_words
+from shared.contract.mount import Vector
 from shared.contract.shot import Story as Wishes
 
+# Stands of a story's cameras, and the eased paths between them.
+#
+# A stand counts in the axes of the studio; what is followed moves it. Cameras stay above all that moves: along the
+# normal of the plane nothing is as high as they are, so none ever goes through a part.
+
 Array = NDArray[np.float64]
+OVER = 0.06
+"""A camera is higher above all parts than this, in its distances."""
+
+
+@dataclass(frozen=True)
+class Stand:
+    """Where a camera looks at, from which side (rad) and how far away (m)."""
+
+    target: tuple[float, float, float]
+    azimuth: float
+    elevation: float
+    distance: float
+    lens: float
+
+    @property
+    def position(self) -> Array:
+        """(3,) in the axes of the studio."""
+        return np.array(self.target) - axes(self.azimuth, self.elevation)[2] * self.distance
+
+
+def stand(subject: Subject, up: Vector, view: View) -> Stand:
+    """Return the nearest stand from which a camera holds its subject, as films of one shot do."""
+    few, around, drawn = (in_studio(points, up) for points in (subject.few, subject.around, subject.drawn))
+    position, distance = view.stand(held(view, few, around, drawn, few))
+    target = position + axes(view.azimuth, view.elevation)[2] * distance
+    return Stand(point(target), view.azimuth, view.elevation, distance, view.lens)
+
+
+def between(a: Stand, b: Stand, part: float) -> Stand:
+    """Return a stand on the path from ``a`` to ``b``, 0 .. 1; distances change by equal factors."""
+    if a == b:
+        return a
+    target = (1 - part) * np.array(a.target) + part * np.array(b.target)
+    azimuth, elevation, lens = (
+        (1 - part) * x + part * y for x, y in ((a.azimuth, b.azimuth), (a.elevation, b.elevation), (a.lens, b.lens))
+    )
+    distance = a.distance ** (1 - part) * b.distance**part
+    return Stand(point(target), azimuth, elevation, distance, lens)
+
+
+def raised(stand: Stand, up: Vector, top: float) -> Stand:
+    """Return the stand, so far back that the camera is above ``top`` (m) along the normal of the plane."""
+    normal = in_studio(np.array([0.0, 0.0, 1.0]), up)
+    back = -float(axes(stand.azimuth, stand.elevation)[2] @ normal)
+    height = float(np.array(stand.target) @ normal)
+    if back < 1e-3:
+        return stand
+    needed = (top - height) / (back - OVER) if back > OVER else 0.0
+    return stand if stand.distance >= needed else at_distance(stand, needed)
+
+
+def at_distance(stand: Stand, distance: float) -> Stand:
+    """Return the stand at another distance (m) from what it looks at."""
+    return Stand(stand.target, stand.azimuth, stand.elevation, distance, stand.lens)
+
+
+def posed(stand: Stand, up: Vector, sharp: Array, blur: float, by: Array | None = None) -> CameraPose:
+    """Return a camera at a stand, moved ``by`` (3,) m of the world, that blurs the nearest and farthest of points
+    ``sharp`` (n, 3) of the world by so many pixels of a picture 1280 wide.
+    """
+    position = stand.position
+    depths = (in_studio(sharp, up) - position) @ axes(stand.azimuth, stand.elevation)[2]
+    near = max(float(depths.min()), 0.05 * stand.distance)
+    focus, fstop = depth_of_field(near, max(float(depths.max()), 1.001 * near), stand.lens, blur)
+    return _camera(stand, up, by, focus, fstop)
+
+
+def focused(stand: Stand, up: Vector, blur: float) -> CameraPose:
+    """Return a camera with a shallow depth: what it looks at is sharp, a fifth of the distance behind it ``blur``
+    pixels.
+    """
+    focus, away = stand.distance, 1.2 * stand.distance
+    disc, length = blur * SENSOR / REFERENCE_WIDTH / 1000, stand.lens / 1000
+    fstop = length**2 * (away - focus) / (disc * away * (focus - length)) if blur > 0 and focus > length else 0.0
+    return _camera(stand, up, None, focus, fstop)
+
+
+def _camera(stand: Stand, up: Vector, by: Array | None, focus: float, fstop: float) -> CameraPose:
+    position = in_world(stand.position, up) + (0.0 if by is None else by)
+    return CameraPose(
+        position=point(np.round(position, 9)), azimuth=stand.azimuth, elevation=stand.elevation, lens=stand.lens,
+        focus=focus, fstop=fstop, up=up,
+    )  # fmt: skip
+
+
+def turned(stand: Stand, azimuth: float, elevation: float = 0.0, nearer: float = 1.0) -> Stand:
+    """Return the stand turned about what it looks at by so many degrees, at ``nearer`` times its distance."""
+    return Stand(
+        stand.target,
+        stand.azimuth + math.radians(azimuth),
+        min(stand.elevation + math.radians(elevation), math.radians(85)),
+        stand.distance * nearer,
+        stand.lens,
+    )
+
+
+# Scenery that the shots of a story share: the film with and without arrows, its stands, its words.
+
 WIDE = 1.5
 """Aspect of a picture from which on there may be room for the strip beside the machine."""
 LARGER = 1.08
@@ -52,13 +155,13 @@ class Scenery:
     scale: float = 1.0
     """Part of the seconds in which pictures move; what is cut is held instead."""
     turning: bool = True
-    """Whether the camera moves while the machine is shown; else later turns find their pictures made."""
+    """True if the camera moves while the machine is shown; else later turns find their pictures made."""
     kept: dict[tuple[float, float, bool, bool], Stand] = field(default_factory=dict)
     """Stands that were looked for; they are the same for every scale."""
 
     @property
     def up(self) -> tuple[float, float, float]:
-        """What points up in the world."""
+        """Direction that points up in the world."""
         return self.film.parts.mount.up
 
     @property
@@ -87,7 +190,7 @@ class Scenery:
         return exploded(self.film.parts, 1.0)
 
     def piece(self, lift: Lift, apart: float = 0.0) -> Array:
-        """Points (n, 3) around a piece at the start of the motion, lifted by a part of its distance (m)."""
+        """Return points (n, 3) around a piece at the start of the motion, lifted by a part of its distance (m)."""
         names = list(self.film.parts.bodies[lift.body].pieces)
         outline = self.film.space.outlines(lift.body)[names.index(lift.piece)]
         x, y, theta = self.film.poses.body(lift.body, self.film.clock.moment(0))
@@ -96,7 +199,8 @@ class Scenery:
         return turned + np.array([x, y, 0.0]) + apart * lift.distance * np.array(lift.axis)
 
     def loop_frame(self, time: float) -> float:
-        """The frame of the loop, which may lie between two, that shows a time of the motion (s), also beyond a period.
+        """Return the frame of the loop, which may lie between two, that shows a time of the motion (s), also beyond a
+        period.
 
         Times that are nearer than a millionth of a frame are one, so that a second turn finds its pictures made.
         """
@@ -112,7 +216,9 @@ class Scenery:
         return float(self.film.space.all[:, 2].max())
 
     def stand(self, azimuth: float = 0.0, elevation: float = 0.0, strip: bool = True, arrows: bool = False) -> Stand:
-        """The stand that holds the machine, turned by so many degrees from that of the shot, with room for words."""
+        """Return the stand that holds the machine, turned by so many degrees from that of the shot, with room for
+        words.
+        """
         asked = azimuth, elevation, strip, arrows
         if asked not in self.kept:
             self.kept[asked] = self._stand(*asked)
@@ -124,7 +230,7 @@ class Scenery:
 
     @cached_property
     def at_side(self) -> bool:
-        """Whether the strip stands beside the machine, as is better for one that is tall in a wide picture."""
+        """True if the strip stands beside the machine, as is better for one that is tall in a wide picture."""
         if not self.curves or self.film.aspect < WIDE:
             return False
         under, beside = (self._held(0.0, 0.0, True, False, side) for side in (False, True))
@@ -135,20 +241,20 @@ class Scenery:
         return self._held(azimuth, elevation, strip, arrows, strip and self.at_side)
 
     def _held(self, azimuth: float, elevation: float, strip: bool, arrows: bool, side: bool) -> Stand:
-        """The stand with room for a strip under the machine, or at its ``side``."""
+        """Return the stand with room for a strip under the machine, or at its ``side``."""
         film = self.forces if arrows and self.forces is not None else self.film
         at = angles(film.shot.camera, film.parts.mount, film.aspect)
         turned = at[0] + np.radians(azimuth), min(at[1] + np.radians(elevation), np.radians(85))
-        empty = layout.above(film.aspect), layout.below(film.aspect, strip and not side)
-        camera, aside = film.shot.camera, layout.beside(film.aspect) if side else 0.0
+        empty = frame.above(film.aspect), frame.below(film.aspect, strip and not side)
+        camera, aside = film.shot.camera, frame.side_width(film.aspect) if side else 0.0
         margin = min(camera.margin, MARGIN)
         view = View(float(turned[0]), float(turned[1]), camera.lens, margin, empty, film.aspect, aside)
-        return cameras.raised(cameras.stand(film.subject, self.up, view), self.up, self.top)
+        return raised(stand(film.subject, self.up, view), self.up, self.top)
 
     def camera(self, stand: Stand, at: float) -> CameraPose:
-        """A camera at a stand, which goes along with what is followed."""
+        """Return a camera at a stand, which goes along with what is followed."""
         sharp = self.film.subject.few
-        return cameras.posed(stand, self.up, sharp, self.film.shot.camera.blur, self.film.way(at))
+        return posed(stand, self.up, sharp, self.film.shot.camera.blur, self.film.way(at))
 
     def picture(
         self,
@@ -159,7 +265,7 @@ class Scenery:
         hidden: Hidden = "",
         cut: bool = False,
     ) -> Picture:
-        """The machine at a time of the motion (s), from a stand."""
+        """Return the machine at a time of the motion (s), from a stand."""
         at = self.loop_frame(time)
         forces = forces and self.forces is not None
         return Picture(
@@ -172,15 +278,15 @@ class Scenery:
         )
 
     def moving(self, seconds: float) -> float:
-        """Seconds of a move, as far as the budget of pictures lets it take them."""
+        """Return seconds of a move, as far as the budget of pictures lets it take them."""
         return self.whole(max(seconds * self.scale, 3 * self.step / self.fps))
 
     def whole(self, seconds: float) -> float:
-        """The nearest seconds that are whole steps of pictures, at least one."""
+        """Return the nearest seconds that are whole steps of pictures, at least one."""
         each = self.step / self.fps
         return each * max(1, round(seconds / each))
 
     def going(self, time: float, rate: float, strip: bool = True, **more: object) -> Over:
-        """What lies over a picture that moves: how fast time passes, and the strip with its playhead."""
+        """Return the overlay of a moving picture: the rate of time, and the strip with its playhead."""
         over = Over(rate=rate_words(rate, self.say), strip=1.0 if strip and self.curves else 0.0, now=time)
         return msgspec.structs.replace(over, **more)

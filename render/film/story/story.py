@@ -1,4 +1,4 @@
-"""A story: shots one after the other, what each of its frames shows, and which time of the motion it is."""
+"""A story: its shots in order, and the curves that it draws."""
 
 from __future__ import annotations
 
@@ -8,10 +8,89 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import msgspec
+import numpy as np
+from numpy.typing import NDArray
 
-from render.film.story.curves import Curve
-from render.film.story.frame import Caption, Over, Picture, Shot
-from render.film.time_map import TimeMap
+from render.film.clock import TimeMap
+from render.film.story.frame import Caption, Over, Picture, Reason, Shot
+from render.magnitudes import NOISE, effort_floor, force_scale, without_noise
+from shared.contract import Motion
+from shared.contract.signals import SIGNALS
+
+# The curves of the strip under a story: one to three quantities over the motion, as numbers.
+
+Array = NDArray[np.float64]
+MOST = 3
+FLAT = 1e-6
+"""Curves that change by less than this part of their largest are not worth a strip."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One curve."""
+
+    name: str
+    unit: str
+    colour: str
+    """``#rrggbb`` on dark paper."""
+    time: Array
+    """(T,) s"""
+    values: Array
+    """(T,) in its unit."""
+
+
+def curve_of(motion: Motion, name: str) -> Curve | None:
+    """Return the curve of a joint (its reaction), a driver or force (its effort) or a point (its speed); None of no
+    such.
+    """
+    time = np.asarray(motion.time)
+    if name in motion.joints:
+        joint = motion.joints[name]
+        size = np.hypot(joint.fx, joint.fy)
+        return Curve(name, "N", SIGNALS["reactions"].dark, time, without_noise(size, NOISE * force_scale(motion)))
+    if name in motion.contacts:
+        contact = motion.contacts[name]
+        values = np.asarray(contact.normal, float)
+        return Curve(name, contact.effort_unit, SIGNALS["reactions"].dark, time, values)
+    load = motion.drivers.get(name) or motion.forces.get(name)
+    if load is not None and load.effort is not None:
+        colour = SIGNALS["forces" if load.effort_unit == "N" else "torques"].dark
+        floor = effort_floor(motion, load.effort_unit == "N")
+        return Curve(name, load.effort_unit, colour, time, without_noise(np.asarray(load.effort, float), floor))
+    if name in motion.points:
+        point = motion.points[name]
+        return Curve(name, "m/s", SIGNALS["velocities"].dark, time, np.hypot(point.vx, point.vy))
+    if name in motion.bodies:
+        body = motion.bodies[name]
+        slides = np.ptp(body.theta) < 1e-9
+        values = np.hypot(body.vx, body.vy) if slides else np.asarray(body.omega, float)
+        return Curve(name, "m/s" if slides else "rad/s", SIGNALS["velocities"].dark, time, values)
+    return None
+
+
+def curves_of(motion: Motion, wished: Sequence[str] | None, reasons: Sequence[Reason]) -> list[Curve]:
+    """Return the curves of ``wished`` names; without a wish those of the first reason, of what drives, and of the
+    fastest body.
+    """
+    if wished is not None:
+        return [curve for name in wished if (curve := curve_of(motion, name)) is not None]
+    first = [reasons[0].name, reasons[0].joint] if reasons else []
+    fast = [reason.name for reason in reasons if reason.kind == "speed"]
+    names = dict.fromkeys([*first, *motion.drivers, *fast, *motion.points, *motion.bodies])
+    curves = [curve for name in names if name and (curve := curve_of(motion, name)) is not None]
+    lively = [curve for curve in curves if _is_lively(curve)]
+    by_unit: dict[str, Curve] = {}
+    for curve in lively:  # a curve of each unit says more than three of one
+        by_unit.setdefault(curve.unit, curve)
+    return list(by_unit.values())[:MOST]
+
+
+def _is_lively(curve: Curve) -> bool:
+    top = float(np.abs(curve.values).max(initial=0.0))
+    return bool(np.isfinite(curve.values).all()) and float(np.ptp(curve.values)) > FLAT * top > 0.0
+
+
+# A story: shots one after the other, what each of its frames shows, and which time of the motion it is.
 
 
 @dataclass(frozen=True)
@@ -33,9 +112,9 @@ class Story:
     """Frames for which a picture that moves stands."""
     shots: Sequence[Shot]
     curves: Sequence[Curve] = ()
-    """Those of the strip."""
+    """Curves of the strip."""
     at_side: bool = False
-    """Whether the strip stands beside the machine."""
+    """True if the strip stands beside the machine."""
 
     @cached_property
     def placed(self) -> list[Placed]:
@@ -57,42 +136,42 @@ class Story:
         """Seconds of the film."""
         return self.total / self.fps
 
-    def at(self, frame: int) -> Placed:
-        """The shot of a frame."""
+    def placed_at(self, frame: int) -> Placed:
+        """Return the shot of a frame."""
         return next(placed for placed in self.placed if frame < placed.end)
 
     def picture(self, frame: int) -> Picture:
-        """What Blender makes for a frame."""
-        placed = self.at(frame)
+        """Return the picture that Blender makes for a frame."""
+        placed = self.placed_at(frame)
         return placed.shot.picture(self._second(placed, frame, self.step))
 
     def around(self, frame: int) -> tuple[Picture, Picture, Picture]:
-        """That of a frame between those that a shutter sees before and after, none of another shot."""
-        placed = self.at(frame)
+        """Return the picture of a frame between those that a shutter sees before and after, none of another shot."""
+        placed = self.placed_at(frame)
         here = placed.first + (frame - placed.first) // self.step * self.step
         near = (max(here - 1, placed.first), here, min(here + 1, placed.end - 1))
         before, now, after = (placed.shot.picture(self._second(placed, k, 1)) for k in near)
         return before, now, after
 
     def over(self, frame: int) -> Over:
-        """What is laid over it; words go on ones, and the playhead with the picture."""
-        placed = self.at(frame)
+        """Return the overlay of a frame; words go on ones, and the playhead with the picture."""
+        placed = self.placed_at(frame)
         over = placed.shot.over(self._second(placed, frame, 1))
         still = placed.shot.over(self._second(placed, frame, self.step))
         return msgspec.structs.replace(over, now=still.now, rate=still.rate)
 
     def model_time(self, s: float) -> float:
-        """Time of the motion (s) at film second ``s``, 0 <= ``s`` <= ``seconds``.
+        """Return the time of the motion (s) at film second ``s``, 0 <= ``s`` <= ``seconds``.
 
         It is monotone within a shot, jumps at cuts, and goes on beyond a period that begins anew.
         """
         frame = min(max(int(s * self.fps), 0), self.total - 1)
-        placed = self.at(frame)
+        placed = self.placed_at(frame)
         return placed.shot.model(s - placed.first / self.fps)
 
     def time_map(self, start: float, end: float, anew: bool = True) -> TimeMap:
-        """The same for sound, a piece a frame long, of a motion from ``start`` to ``end`` (s) that begins anew, or
-        stands at its end if it does not.
+        """Return the same for sound, a piece a frame long, of a motion from ``start`` to ``end`` (s) that begins anew,
+        or stands at its end if it does not.
         """
         seconds, moments = [0.0], [self.model_time(0.0)]
         for placed in self.placed:
@@ -100,8 +179,8 @@ class Story:
                 seconds.append((placed.first + k) / self.fps)
                 moments.append(placed.shot.model(k / self.fps))
         if not anew:
-            return TimeMap.through(*_held(seconds, moments, start, end), closes=False)
-        return TimeMap.through(*_folded(seconds, moments, start, end), closes=False)
+            return TimeMap.from_moments(*_held(seconds, moments, start, end), closes=False)
+        return TimeMap.from_moments(*_folded(seconds, moments, start, end), closes=False)
 
     @cached_property
     def pictures(self) -> list[Picture]:
@@ -127,7 +206,9 @@ class Story:
 
 
 def _held(seconds: list[float], moments: list[float], start: float, end: float) -> tuple[list[float], list[float]]:
-    """Moments held within ``start`` .. ``end``, as in the picture; where a shot begins it anew, the film cuts."""
+    """Return moments held within ``start`` .. ``end``, as in the picture; where a shot begins it anew, the film
+    cuts.
+    """
     out_seconds, out_moments = [], []
     for k, (second, moment) in enumerate(zip(seconds, moments, strict=True)):
         moment = min(max(moment, start), end)
@@ -140,7 +221,9 @@ def _held(seconds: list[float], moments: list[float], start: float, end: float) 
 
 
 def _folded(seconds: list[float], moments: list[float], start: float, end: float) -> tuple[list[float], list[float]]:
-    """Moments brought back into ``start`` .. ``end``; where a piece passes the end, the film cuts to the start."""
+    """Return moments brought back into ``start`` .. ``end``; where a piece passes the end, the film cuts to the
+    start.
+    """
     whole = end - start
     out_seconds, out_moments = [], []
     for k, (second, moment) in enumerate(zip(seconds, moments, strict=True)):

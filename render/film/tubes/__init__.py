@@ -1,1 +1,1 @@
-"""What changes its shape: springs, ropes, belts, traces of points."""
+"""Tubes that change their shape: springs, ropes, belts, traces of points."""

@@ -57,7 +57,7 @@ class Belt:
     """By how much the belt is shown faster than it is."""
 
     alike: bool
-    """Whether all links of a chain have the same plates; else every other link's lie inside its neighbours'."""
+    """True if all links of a chain have the same plates; else every other link's lie inside its neighbours'."""
     until: float = math.inf
     """Time (s) of the event that releases it."""
 
@@ -77,7 +77,7 @@ class Belt:
         ]
 
     def paths(self, poses: Poses, at: Moment) -> list[list[Point]]:
-        """Path of each tube at that moment."""
+        """Return the path of each tube at that moment."""
         place, every = self.run(poses, at)
         if at.time > self.until:
             return [[(*place.origin, self.z)] * spec.points for spec in self.specs]
@@ -103,15 +103,15 @@ class Belt:
         return 0.85 * self.aside(1)
 
     def aside(self, link: int) -> float:
-        """How far (m) the plates of a link lie from the middle."""
+        """Return how far (m) the plates of a link lie from the middle."""
         return PLATES * self.radius * (OUTER if self.alike or link % 2 == 0 else INNER)
 
     def still(self) -> Placing:
-        """Beside its first pulley's centre at the origin, the second on the x axis."""
+        """Return the placing with its first pulley's centre at the origin, the second on the x axis."""
         return Placing(self, (0.0, 0.0), 0.0)
 
     def run(self, poses: Poses, at: Moment) -> tuple[Placing, Array]:
-        """Where the belt is at a moment, and the lengths (m) along it of its marks or rollers."""
+        """Return where the belt is at a moment, and the lengths (m) along it of its marks or rollers."""
         first, second = (
             placed(poses.body(body, at), marker)
             for body, marker in zip(self.shape.bodies, self.shape.markers, strict=True)
@@ -136,7 +136,7 @@ class Placing:
     line: float
 
     def points(self, along: Array, height: float = 0.0) -> list[Point]:
-        """At these lengths, so far over the belt's middle (m)."""
+        """Return places at these lengths, so far over the belt's middle (m)."""
         flat, rest = self.belt.path.places(along)
         c, s = math.cos(self.line), math.sin(self.line)
         over = APART * self.belt.radius * np.sin(np.pi * rest) if self.belt.path.crossed else 0 * rest
@@ -147,7 +147,9 @@ class Placing:
 
 
 def belts(motion: Motion, held: Mapping[str, Held]) -> Iterator[Belt]:
-    """All belts whose pulleys say where it lies (``held``, by the names of joints), if there is room for a path."""
+    """Yield all belts whose pulleys say where it lies (``held``, by the names of joints), if there is room for a
+    path.
+    """
     time = np.asarray(motion.time)
     for name, joint in motion.joints.items():
         shape, own = joint.shape, held.get(name)
@@ -179,13 +181,13 @@ def belts(motion: Motion, held: Mapping[str, Held]) -> Iterator[Belt]:
 
 
 def _pace(gone: float, apart: float) -> float:
-    """What makes a way a whole number of distances; 1 where that would be none."""
+    """Return the factor that makes a path a whole number of distances; 1 where that would be none."""
     whole = round(gone / apart)
     return whole * apart / gone if whole else 1.0
 
 
 def _places(motion: Motion, name: str, marker: tuple[float, float, float], count: int) -> Array:
-    """(T, 2) of a marker (m)."""
+    """Return (T, 2) of a marker (m)."""
     body = motion.bodies.get(name)
     if body is None:
         return np.broadcast_to(np.array(marker[:2]), (count, 2))

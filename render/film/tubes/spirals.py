@@ -15,8 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from render.film.markers import local_place, moved
-from render.film.poses import Moment, Poses
+from render.film.poses import Moment, Poses, local_place, moved
 from render.film.scene import Point, SurfaceSpec, TubeSpec
 from render.film.tubes.stretched import STEEL, placed
 from shared.contract import ForceMotion, Motion
@@ -90,7 +89,7 @@ class Spiral:
         ]
 
     def paths(self, poses: Poses, at: Moment) -> list[list[Point]]:
-        """Paths of the three tubes at that moment."""
+        """Return paths of the three tubes at that moment."""
         pose = poses.body(self.outer, at)
         x, y = placed(pose, self.at)
         c, s = math.cos(pose[2] + self.at[2]), math.sin(pose[2] + self.at[2])
@@ -103,7 +102,9 @@ class Spiral:
         ]
 
     def curve(self, turned: float) -> Array:
-        """Points (n, 3) of the wire about its pin, its stud on the x axis; ``turned``: inner against outer (rad)."""
+        """Return points (n, 3) of the wire about its pin, its stud on the x axis; ``turned``: inner against outer
+        (rad).
+        """
         part = np.linspace(0, 1, self.points)
         radius = self.rim + (HUB * self.size - self.rim) * part
         angle = (turned + math.tau * self.turns) * part
@@ -113,7 +114,7 @@ class Spiral:
 def spirals(
     motion: Motion, size: float, site: Callable[[tuple[str, str], Array, float], Site | None]
 ) -> Iterator[Spiral]:
-    """All torsion springs whose two bodies share a pin, ``size`` (m) being that of the swept motion.
+    """Yield all torsion springs whose two bodies share a pin, ``size`` (m) being that of the swept motion.
 
     ``site(bodies, places, radius)`` finds room over the pin, whose places (T, 2) are given; None: there is none.
     """
@@ -137,7 +138,7 @@ def spirals(
 
 
 def _pin(motion: Motion, force: ForceMotion, size: float) -> tuple[tuple[str, str], Array] | None:
-    """The two bodies of a torsion spring, and where they are pinned together (T, 2); None where they are not."""
+    """Return the two bodies of a torsion spring, and where they are pinned together (T, 2); None where they are not."""
     if force.look != "spiral" or force.shape is None:
         return None
     for joint in motion.joints.values():
@@ -152,7 +153,7 @@ def _theta(motion: Motion, body: str) -> Array:
 
 
 def _local(motion: Motion, body: str, place: Array) -> tuple[float, float]:
-    """A place of the world at the first time, in a body's frame (m)."""
+    """Return a place of the world at the first time, in a body's frame (m)."""
     if body not in motion.bodies:
         return float(place[0]), float(place[1])
     return local_place(motion.bodies[body], float(place[0]), float(place[1]))

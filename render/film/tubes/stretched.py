@@ -1,4 +1,4 @@
-"""What changes its shape as it moves: coils of springs, cylinder and rod of dampers and linear drivers, ropes. As
+"""Elements that change their shape: coils of springs, cylinder and rod of dampers and linear drivers, ropes. As
 tubes along paths.
 """
 
@@ -54,7 +54,7 @@ class Stretched:
         return [spec for spec, _ in self.tubes]
 
     def ends(self, poses: Poses, at: Moment) -> tuple[Array, Array]:
-        """Where it is fixed (3,) at that moment (m)."""
+        """Return where it is fixed (3,) at that moment (m)."""
         first, second = (
             placed(poses.body(body, at), marker)
             for body, marker in zip(self.shape.bodies, self.shape.markers, strict=True)
@@ -62,7 +62,7 @@ class Stretched:
         return np.array([*first, self.z]), np.array([*second, self.z])
 
     def paths(self, poses: Poses, at: Moment) -> list[list[Point]]:
-        """Path of each tube."""
+        """Return the path of each tube."""
         ends = self.ends(poses, at)
         return [[(float(x), float(y), float(z)) for x, y, z in path(*ends)] for _, path in self.tubes]
 
@@ -73,7 +73,7 @@ def stretched(
     height: Callable[[Shape, float], tuple[float, tuple[float, float]]],
     held: Mapping[str, Held],
 ) -> Iterator[Stretched]:
-    """All springs, dampers, cylinders and ropes between two points that move apart or together.
+    """Yield all springs, dampers, cylinders and ropes between two points that move apart or together.
 
     ``held`` are those whose ends have parts, by name; what acts along an axis (gas) and drivers of a distance are drawn
     only if they are held. Of the others ``height(shape, radius)`` says where one of that radius lies (m), and how far
@@ -118,7 +118,7 @@ def stretched(
 
 
 def helix(a: Array, b: Array, radius: float, turns: int, hook: float = HOOK) -> Array:
-    """Points (n, 3) of a wire from ``a`` to ``b``: along the axis, ``turns`` round it, along the axis again.
+    """Return points (n, 3) of a wire from ``a`` to ``b``: along the axis, ``turns`` round it, along the axis again.
 
     The coils lie about the line between the ends at ``radius`` (m); the wire bends into them within a turn.
     """
@@ -138,7 +138,9 @@ def helix(a: Array, b: Array, radius: float, turns: int, hook: float = HOOK) -> 
 
 
 def sagging(a: Array, b: Array, length: float, down: Array) -> Array:
-    """Points (ROPE_POINTS, 3) of a rope of ``length`` (m): straight where taut, else a parabola along ``down``."""
+    """Return points (ROPE_POINTS, 3) of a rope of ``length`` (m): straight where taut, else a parabola along
+    ``down``.
+    """
     part = np.linspace(0, 1, ROPE_POINTS)
     line = a + part[:, None] * (b - a)
     hang = (4 * part * (1 - part))[:, None] * down
@@ -151,7 +153,7 @@ def sagging(a: Array, b: Array, length: float, down: Array) -> Array:
 
 
 def _coil(name: str, radius: float, least: float, most: float) -> list[tuple[TubeSpec, Path]]:
-    """So many turns as fill it well in between, and never lie on one another."""
+    """Return a coil of as many turns as fill it well in between, and never lie on one another."""
     wire, room = WIRE * radius, 1 - 2 * HOOK
     turns = min(round(room * (least + most) / 2 / (0.95 * radius)), int(room * least / (2.3 * wire)) - 2)
     turns = min(max(turns, 3), 18)
@@ -160,8 +162,9 @@ def _coil(name: str, radius: float, least: float, most: float) -> list[tuple[Tub
 
 
 def cylinder_tubes(name: str, radius: float, least: float, most: float) -> list[tuple[TubeSpec, Path]]:
-    """A cylinder from the first end, a rod from the second that never leaves it or reaches through; one that goes out
-    by far is longer, and by farther a telescope."""
+    """Return a cylinder from the first end, a rod from the second that never leaves it or reaches through; one that
+    goes out by far is longer, and by farther a telescope.
+    """
     body, stages = 0.68 * least, 1
     reach = min(0.9 * least, max(0.45 * least, most - 0.9 * body))
     if 0.9 * body + reach < most:
@@ -198,7 +201,7 @@ def cylinder_tubes(name: str, radius: float, least: float, most: float) -> list[
 
 
 def _pins(name: str, shape: Shape, radius: float, z: float, feet: tuple[float, float]) -> list[tuple[TubeSpec, Path]]:
-    """Upright at both ends, down to where the bodies are; on ground with a foot."""
+    """Return the posts, upright at both ends, down to where the bodies are; on ground with a foot."""
 
     def upright(end: int, low: float, high: float) -> Path:
         return lambda a, b: np.array([[*(a, b)[end][:2], low], [*(a, b)[end][:2], high]])
@@ -218,7 +221,7 @@ def _tube(name: str, surface: SurfaceSpec, radius: float, points: int) -> TubeSp
 
 
 def placed(pose: tuple[float, float, float], marker: tuple[float, float, float]) -> tuple[float, float]:
-    """Where a marker (x, y, angle) of a body is, whose frame is at ``pose`` (m)."""
+    """Return where a marker (x, y, angle) of a body is, whose frame is at ``pose`` (m)."""
     x, y, theta = pose
     return (
         x + math.cos(theta) * marker[0] - math.sin(theta) * marker[1],

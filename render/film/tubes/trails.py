@@ -25,12 +25,12 @@ BENT = 0.995
 
 
 def trails_of(motion: Motion, shot: Shot) -> tuple[Trail, ...]:
-    """The shot's trails; every traced point gets one if the shot says nothing."""
+    """Return the shot's trails; every traced point gets one if the shot says nothing."""
     return shot.trails if shot.trails is not None else tuple(Trail(point=point) for point in motion.points)
 
 
 def colour_of(trail: Trail, dark: bool) -> Colour:
-    """Linear RGB of a trail, where what is behind it is ``dark`` or bright."""
+    """Return linear RGB of a trail, where what is behind it is ``dark`` or bright."""
     return trail.colour or linear(SIGNALS["trails"].dark if dark and not trail.ink else SIGNALS["trails"].light)
 
 
@@ -42,7 +42,7 @@ class Trails:
         self.trails = trails_of(poses.motion, shot)
 
     def specs(self, dark: bool) -> list[TrailSpec]:
-        """Their looks: lights where what is behind them is ``dark``, else as deep as ink."""
+        """Return their looks: lights where what is behind them is ``dark``, else as deep as ink."""
         return [
             TrailSpec(
                 name=trail.point,
@@ -55,7 +55,9 @@ class Trails:
         ]
 
     def paths(self, frame: float) -> list[list[Point]]:
-        """Where each point was, from now back to the end of its tail; where an impact turned it is among the places."""
+        """Return where each point was, from now back to the end of its tail; where an impact turned it is among the
+        places.
+        """
         out = []
         for trail, rings in zip(self.trails, self._rings, strict=True):
             times = self.clock.trail_times(frame, trail.tail, rings)

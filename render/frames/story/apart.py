@@ -27,11 +27,10 @@ def run(name: str, preset: Preset) -> None:
         return
     from PIL import Image
 
-    from render.film.exploded import exploded
+    from render.film.pieces import exploded
     from render.frames import frames
     from render.frames.store import FrameStore
-    from render.frames.story.pictures import StoryPictures
-    from render.frames.story.telling import telling_of
+    from render.frames.story.telling import StoryPictures, telling_of
     from shared.contract import read_parts
 
     if not any(lift.distance for lift in exploded(read_parts(out.parts, out.name), 1.0)):

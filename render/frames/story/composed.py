@@ -1,4 +1,4 @@
-"""From a story to its film: pictures rendered, words laid over them, chapters; what is there is not rendered again."""
+"""From a story to its film: pictures rendered, words laid over them, chapters; pictures that are there stay."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from render.blender.scratch import scratch_folder
+from render.blender.process import scratch_folder
 from render.film.story.story import Story
-from render.film.story.subtitles import chapters
+from render.film.story.words import chapters
 from render.frames import encode, frames
-from render.frames.running_ffmpeg import run_ffmpeg
+from render.frames.encode import run_ffmpeg
 from render.frames.store import FrameStore
 from render.frames.story.drawing import Drawing, png
 from render.frames.story.telling import Telling
@@ -25,19 +25,21 @@ from shared.stage.paths import Out, out_root
 PATIENCE = 600.0
 """Seconds for ffmpeg to write the chapters."""
 Page = tuple[str, Any]
-"""What a picture is called, and the picture (RGB)."""
+"""Name of a picture, and the picture (RGB)."""
 
 
 @dataclass(frozen=True)
 class Rendered:
-    """What was rendered: the folder, and the file of each frame of the film."""
+    """Rendered frames: the folder, and the file of each frame of the film."""
 
     mechanism: str
     store: FrameStore
     names: list[str]
 
     def pages(self) -> Iterator[Page]:
-        """The picture of each frame, read once while it stands. Raises UserError for one that changed meanwhile."""
+        """Yield the picture of each frame, read once while it stands. Raises UserError for one that changed
+        meanwhile.
+        """
         from PIL import Image
 
         name, picture = "", None
@@ -55,7 +57,7 @@ class Rendered:
 
 
 def rendered(out: Out, preset: Preset, telling: Telling) -> Rendered:
-    """All pictures in a folder of their own, kept by what they show."""
+    """Return all pictures in a folder of their own, kept by what they show."""
     store, started = FrameStore(out.frames(f"{preset.name}-story"), (preset.width, preset.height)), time.perf_counter()
     sets = telling.pictures(preset)
     with store.locked():
@@ -89,7 +91,7 @@ def encoded(pages: Iterable[Page], story: Story, drawing: Drawing, preset: Prese
 
 
 def _composed(pages: Iterable[Page], story: Story, drawing: Drawing) -> Iterator[bytes]:
-    """PNGs of the film; one that is as the one before is not drawn again."""
+    """Yield PNGs of the film; one that is as the one before is not drawn again."""
     kept: tuple[object, bytes] | None = None
     for frame, (name, picture) in enumerate(pages):
         over = story.over(frame)

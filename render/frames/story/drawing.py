@@ -11,10 +11,9 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from render.film.story import layout
+from render.film.story import frame
 from render.film.story.frame import Leader, Note, Over
-from render.frames.story.letters import CARD, INK, LINE, QUIET, card, fitted, font, readable
-from render.frames.story.strip import Strip
+from render.frames.story.strip import CARD, INK, LINE, QUIET, Strip, card, fitted, font, readable
 from render.letters import width_of
 
 DARK, SOFT = 0.36, 1 / 42
@@ -56,7 +55,7 @@ class Drawing:
         return min(self.wide, self.high)
 
     def frame(self, picture: Any, over: Over) -> Any:
-        """The picture (RGB) with all that lies over it."""
+        """Return the picture (RGB) with all that lies over it."""
         page = self._titled(picture, over) if over.title > 0 or (over.focus < 1 and over.title) else picture.copy()
         layer = self._layer(over)
         if layer is not None:
@@ -86,13 +85,13 @@ class Drawing:
         return _title(3 * self.wide, 3 * self.high, self.name, self.said).reduce(3)
 
     def _layer(self, over: Over) -> Any:
-        """All words, on nothing; None without any."""
+        """Return all words, on nothing; None without any."""
         if self._kept is None or self._kept[0] != msgspec.structs.replace(over, now=0.0):
             self._kept = msgspec.structs.replace(over, now=0.0), self._fine_layer(over)
         return self._kept[1]
 
     def _fine_layer(self, over: Over) -> Any:
-        """Drawn larger, as small letters would stand unevenly, and averaged."""
+        """Return drawn larger, as small letters would stand unevenly, and averaged."""
         times = 3 if self.wide * self.high <= 1e6 else 2 if self.wide * self.high <= 2.5e6 else 1
         fine = Drawing(times * self.wide, times * self.high, self.name, self.said, self.facts, None)
         fine.heads = self.heads
@@ -102,7 +101,7 @@ class Drawing:
         return layer.reduce(times) if layer is not None and times > 1 else layer
 
     def _drawn(self, over: Over) -> Any:
-        """The words at this size."""
+        """Return the words at this size."""
         from PIL import Image, ImageDraw
 
         if not (
@@ -128,7 +127,7 @@ class Drawing:
 
     def _heads(self, draw: Any) -> None:
         """Names of variants, each with a line as its curves are."""
-        size, edge = layout.LETTER * self.unit, layout.EDGE * self.unit
+        size, edge = frame.LETTER * self.unit, frame.EDGE * self.unit
         for right, top, words, colour in self.heads:
             wide = size * width_of(words, True) + 3.0 * size
             x, y = self.wide - edge - wide if right else edge, top * self.high + edge
@@ -139,7 +138,7 @@ class Drawing:
 
     def _rate(self, draw: Any, words: str) -> None:
         """At the upper left; where names are there, in the middle between them, or at the right."""
-        size, edge = layout.SMALL * self.unit, layout.EDGE * self.unit
+        size, edge = frame.SMALL * self.unit, frame.EDGE * self.unit
         wide, x = size * width_of(words) + 1.2 * size, edge
         if self.heads:
             x = (self.wide - wide) / 2 if self.wide > self.high else self.wide - edge - wide
@@ -149,7 +148,7 @@ class Drawing:
     def _caption(self, draw: Any, over: Over) -> None:
         """In the middle over the strip, or over where it would be."""
         size, lines = caption_lines(over.caption, self.wide, self.high)
-        low = self.high - self.below - (0.35 if self.below else 0.8) * layout.EDGE * self.unit
+        low = self.high - self.below - (0.35 if self.below else 0.8) * frame.EDGE * self.unit
         half = max(size * width_of(line) for line in lines) / 2 + 0.7 * size
         top, x = low - (LINE * len(lines) + 0.5) * size, self.wide / 2
         card(draw, (x - half, top, x + half, low), size, over.caption_shown)
@@ -159,7 +158,7 @@ class Drawing:
             draw.text((x, y), line, fill=ink, font=font(size), anchor="mm")
 
     def _leader(self, draw: Any, leader: Leader, shown: float) -> None:
-        size, edge = layout.SMALL * self.unit * 1.08, layout.EDGE * self.unit
+        size, edge = frame.SMALL * self.unit * 1.08, frame.EDGE * self.unit
         at, y = (leader.x * self.wide, leader.y * self.high), leader.height * self.high
         words = size * width_of(leader.words, True)
         wide = words + (0.5 * size + size * width_of(leader.quiet) if leader.quiet else 0.0)
@@ -180,7 +179,7 @@ class Drawing:
 
     def _notes(self, draw: Any, notes: tuple[Note, ...], shown: float) -> None:
         """Beyond the tips of arrows, within the picture, and apart from each other."""
-        size, edge = layout.SMALL * self.unit, layout.EDGE * self.unit
+        size, edge = frame.SMALL * self.unit, frame.EDGE * self.unit
         low = self.high - self.below - 0.12 * self.unit
         taken: list[tuple[float, float, float, float]] = []
         for note in notes:
@@ -206,13 +205,15 @@ class Drawing:
 
 
 def caption_lines(text: str, wide: int, high: int) -> tuple[float, list[str]]:
-    """Height of letters (pixels) and lines of a caption; raises ValueError where it is too long for the frame."""
+    """Return the height of letters (pixels) and lines of a caption; raises ValueError where it is too long for the
+    frame.
+    """
     unit = min(wide, high)
-    return fitted(text, layout.LETTER * unit, wide - 2 * layout.EDGE * unit - 1.4 * layout.LETTER * unit, layout.LINES)
+    return fitted(text, frame.LETTER * unit, wide - 2 * frame.EDGE * unit - 1.4 * frame.LETTER * unit, frame.LINES)
 
 
 def png(page: Any) -> bytes:
-    """A picture as a PNG that is made fast: it lives until ffmpeg has it."""
+    """Return a picture as a PNG that is made fast: it lives until ffmpeg has it."""
     buffer = io.BytesIO()
     page.save(buffer, format="PNG", compress_level=1)
     return buffer.getvalue()
@@ -223,21 +224,21 @@ def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float,
 
 
 def _on_arrow(box: tuple[float, float, float, float], note: Note, wide: int, high: int) -> bool:
-    """Whether a box (pixels) that could not go farther lies on the arrow whose tip it names."""
+    """Return True if a box (pixels) that could not go farther lies on the arrow whose tip it names."""
     tip, back = np.array([note.x * wide, note.y * high]), np.linspace(0.0, 0.25 * min(wide, high), 40)
     x, y = (tip[:, None] - np.array([[note.dx], [note.dy]]) * back).tolist()
     return any(box[0] < a < box[2] and box[1] < b < box[3] for a, b in zip(x, y, strict=True))
 
 
 def _faded(layer: Any, shown: float) -> Any:
-    """The alpha of a layer, as far as it is shown."""
+    """Return the alpha of a layer, as far as it is shown."""
     alpha = layer.getchannel("A")
     return alpha if shown >= 1 else alpha.point([round(shown * value) for value in range(256)])
 
 
 @lru_cache(maxsize=1)
 def _soft(content: bytes, size: tuple[int, int]) -> Any:
-    """The picture, dark and out of focus."""
+    """Return the picture, dark and out of focus."""
     from PIL import Image, ImageFilter
 
     picture = Image.frombytes("RGB", size, content).filter(ImageFilter.GaussianBlur(SOFT * size[0]))
@@ -246,7 +247,7 @@ def _soft(content: bytes, size: tuple[int, int]) -> Any:
 
 @lru_cache(maxsize=2)
 def _title(wide: int, high: int, name: str, said: tuple[str, ...]) -> Any:
-    """Name, a short line, and as many whole sentences as there is room for."""
+    """Return the name, a short line, and as many whole sentences as there is room for."""
     from PIL import Image, ImageDraw
 
     unit, page = min(wide, high), Image.new("RGBA", (wide, high), (*INK, 0))
@@ -265,7 +266,7 @@ def _title(wide: int, high: int, name: str, said: tuple[str, ...]) -> Any:
 
 
 def _sentences(said: tuple[str, ...], size: float, room: float, most: int) -> tuple[float, list[str]]:
-    """Height of letters and lines of as many sentences as fit into ``most`` lines."""
+    """Return the height of letters and lines of as many sentences as fit into ``most`` lines."""
     for count in range(len(said), 0, -1):
         try:
             return fitted(" ".join(said[:count]), size, room, most)
@@ -275,7 +276,9 @@ def _sentences(said: tuple[str, ...], size: float, room: float, most: int) -> tu
 
 
 def _facts(facts: str, size: float, room: float, most: int) -> tuple[float, list[str]]:
-    """Height of letters and lines, broken between facts where that fits. Raises ValueError where nothing does."""
+    """Return the height of letters and lines, broken between facts where that fits. Raises ValueError where nothing
+    does.
+    """
     whole = facts.replace(" ", JOINED).replace(f"{JOINED}·{JOINED}", "· ")
     try:
         small, lines = fitted(whole, size, room, most)
@@ -286,7 +289,7 @@ def _facts(facts: str, size: float, room: float, most: int) -> tuple[float, list
 
 @lru_cache(maxsize=2)
 def _ending(wide: int, high: int, name: str, facts: str) -> Any:
-    """The name and a line of facts at the lower left, on a shade."""
+    """Return the name and a line of facts at the lower left, on a shade."""
     from PIL import Image, ImageDraw
 
     unit, page = min(wide, high), Image.new("RGBA", (wide, high), (*CARD, 0))

@@ -1,4 +1,4 @@
-"""Which film is made: the loop of every day, or a story."""
+"""Kinds of films: the loop of every day, or a story."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ def run(name: str, preset: Preset, show: str = "", story: str = "loop", loop: fl
         film.run(name, preset, show, sound)
         return
     if story == "compare":
-        from render.frames.story import beside
+        from render.frames.story import comparison
 
-        beside.run(name, preset, sound)
+        comparison.run(name, preset, sound)
         return
     from render.frames.story import stage
 

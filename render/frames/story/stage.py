@@ -1,4 +1,4 @@
-"""``STORY=explain``: the film of a machine that explains it, its subtitles beside it."""
+"""The film with a story: frames composed, encoded, with subtitles and sound."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from shared.stage.stages import Stage, key_of
 if TYPE_CHECKING:
     from render.frames.story.telling import Telling
 
+# ``STORY=explain``: the film of a machine that explains it, its subtitles beside it.
+
 KIND = "explain"
 
 
@@ -32,7 +34,7 @@ def run(name: str, preset: Preset, show: str = "", loop: float = 0.0, sound: str
     if stage.is_fresh():
         say("film", f"{out.name}: {preset}: {KIND}: nothing to do")
         return
-    from render.film.story.subtitles import srt
+    from render.film.story.words import srt
     from render.frames import encode
     from render.frames.story.telling import telling_of
 
@@ -55,7 +57,9 @@ def run(name: str, preset: Preset, show: str = "", loop: float = 0.0, sound: str
 
 
 def _silent_film(out: Out, preset: Preset, show: str, loop: float, telling: Telling) -> Path:
-    """The film without sound, in the folder of the frames; not made again where what decides it has not changed."""
+    """Return the film without sound, in the folder of the frames; not made again where what decides it has not
+    changed.
+    """
     from render.frames.story.composed import encoded, rendered
 
     film = film_of(out, preset.name, show, loop)
@@ -68,9 +72,8 @@ def _silent_film(out: Out, preset: Preset, show: str, loop: float, telling: Tell
 
 
 def _with_sound(silent: Path, telling: Telling, preset: Preset, film: Path) -> None:
-    from render.frames.muxing import mux
-    from render.sound.sound import sound_of
-    from render.sound.wave_file import wav
+    from render.frames.encode import mux
+    from render.sound.sound import sound_of, wav
 
     story, clock = telling.story, telling.film.clock
     waves = wav_of(film)
@@ -79,14 +82,14 @@ def _with_sound(silent: Path, telling: Telling, preset: Preset, film: Path) -> N
 
 
 def film_of(out: Out, preset: str, show: str = "", loop: float = 0.0) -> Path:
-    """Where the film of a story is."""
+    """Return where the film of a story is."""
     word = KIND if not loop else f"loop{loop:g}s"
     path = named(out.film(preset), show)
     return path.with_stem(f"{path.stem}-{word}")
 
 
 def is_fresh(name: str, preset: Preset, show: str = "", sound: str = "") -> bool:
-    """Whether there is nothing to do. Raises UserError where motion, parts or shot are missing."""
+    """Return True if there is nothing to do. Raises UserError where motion, parts or shot are missing."""
     return _stage(Out(name), preset, show, 0.0, has_sound(sound)).is_fresh()
 
 
@@ -98,15 +101,15 @@ def _stage(out: Out, preset: Preset, show: str, loop: float, heard: bool) -> Sta
 
 
 def _key(out: Out, preset: Preset, show: str, loop: float) -> str:
-    """What decides the pictures and the words."""
+    """Return the key of the pictures and the words."""
     words = word_sources(), _described(out)
     return stage_key(out, preset, encoder_version(), show, KIND, loop, *words, *clearance_files(out))
 
 
 def word_sources() -> str:
-    """Hash of the sources of what stories say, beside those of pictures."""
+    """Return the hash of the sources of what stories say, beside those of pictures."""
     room = Path(__file__).parents[2]
-    return sources_hash(room / "report", *(room / f"{name}.py" for name in ("crank", "magnitudes", "shaking")))
+    return sources_hash(room / "report", room / "magnitudes.py")
 
 
 def _described(out: Out) -> str:

@@ -1,20 +1,98 @@
-"""The strip under a story, or beside a tall machine: a panel a curve, with a playhead and marks of events."""
+"""The strip beside the picture of a story: letters, curves and notes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
-from render.film.story import layout
-from render.film.story.curves import Curve
+from render.film.story import frame
+from render.film.story.story import Curve
 from render.film.story.words import plain
-from render.frames.story.letters import CARD, CARD_ALPHA, INK, QUIET, font, readable
-from render.letters import width_of
+from render.letters import font_of, width_of
 from shared.contract.quantity import live
+
+# Words on dark cards, in every look alike, broken and made smaller until they fit.
+
+INK, QUIET, CARD = (240, 243, 247), (184, 192, 203), (9, 12, 17)
+CARD_ALPHA = 0.74
+SIGNAL = 0.68
+"""Part of a signal colour in letters."""
+LINE = 1.32
+"""From one line to the next, in heights of letters."""
+SMALLEST = 0.74
+"""To this part letters shrink before words count as too long."""
+
+
+def readable(colour: str) -> tuple[int, int, int]:
+    """Return a signal colour (``#rrggbb``) as letters have it on a card: a part lighter, so that red is read on
+    dark.
+    """
+    red, green, blue = (
+        round(SIGNAL * int(colour[k : k + 2], 16) + (1 - SIGNAL) * ink) for k, ink in zip((1, 3, 5), INK, strict=True)
+    )
+    return red, green, blue
+
+
+@lru_cache(maxsize=64)
+def font(size: float, bold: bool = False) -> Any:
+    """Return the letters of a size in pixels."""
+    return font_of(size, bold)
+
+
+def broken(text: str, letters: float, most: int, bold: bool = False) -> list[str]:
+    """Return the text in lines of at most so many ``letters`` heights; raises ValueError if they are more than
+    ``most``.
+
+    Lines are as alike in width as the words let them be.
+    """
+    words = text.split()
+    widths = [width_of(word, bold) for word in words]
+    for count in range(1, most + 1):
+        lines = _even(words, widths, count, width_of(" ", bold))
+        if all(width_of(line, bold) <= letters for line in lines):
+            return lines
+    raise ValueError(f"it takes {width_of(text, bold) / letters:.1f} lines")
+
+
+def _even(words: Sequence[str], widths: Sequence[float], count: int, space: float) -> list[str]:
+    """Return lines of words, filled greedily towards the mean width."""
+    mean = (sum(widths) + space * (len(words) - 1)) / count
+    lines: list[list[str]] = [[]]
+    length = 0.0
+    for word, width in zip(words, widths, strict=True):
+        if lines[-1] and length + width / 2 > mean and len(lines) < count:
+            lines.append([])
+            length = 0.0
+        lines[-1].append(word)
+        length += width + space
+    return [" ".join(line) for line in lines if line]
+
+
+def fitted(text: str, size: float, wide: float, most: int, bold: bool = False) -> tuple[float, list[str]]:
+    """Return the height of letters (pixels) and lines with which a text is not wider than ``wide`` pixels.
+
+    Raises ValueError where it is too long for ``most`` lines of the smallest letters.
+    """
+    part = 1.0
+    while True:
+        try:
+            return part * size, broken(text, wide / (part * size), most, bold)
+        except ValueError:
+            part -= 0.065
+            if part < SMALLEST:
+                raise
+
+
+def card(draw: Any, box: tuple[float, float, float, float], size: float, shown: float = 1.0) -> None:
+    """A dark card with round corners on an RGBA layer."""
+    draw.rounded_rectangle(box, radius=0.45 * size, fill=(*CARD, round(255 * CARD_ALPHA * shown)))
+
+
+# The strip under a story, or beside a tall machine: a panel a curve, with a playhead and marks of events.
 
 FINE = 3
 """Curves are drawn so many times larger."""
@@ -38,7 +116,7 @@ class Strip:
     others: Sequence[Curve] = ()
     """Curves of another variant, each drawn thinner over that of the same place."""
     side: bool = False
-    """Whether its panels stand over each other at the right edge of the picture, instead of in a row under it."""
+    """True if its panels stand over each other at the right edge of the picture, instead of in a row under it."""
 
     @cached_property
     def unit(self) -> int:
@@ -48,14 +126,14 @@ class Strip:
     @cached_property
     def across(self) -> int:
         """Pixels of its width."""
-        return round(layout.SIDE * self.unit) if self.side else self.wide
+        return round(frame.SIDE * self.unit) if self.side else self.wide
 
     @cached_property
     def tall(self) -> int:
         """Pixels of its height."""
         if self.side:
-            return round(len(self.shown) * self._each + 0.6 * layout.EDGE * self.unit)
-        return round(layout.STRIP * self.unit)
+            return round(len(self.shown) * self._each + 0.6 * frame.EDGE * self.unit)
+        return round(frame.STRIP * self.unit)
 
     @property
     def place(self) -> tuple[int, int]:
@@ -65,8 +143,8 @@ class Strip:
     @property
     def _each(self) -> float:
         """Height of a panel that stands over others, with its name (pixels)."""
-        room = self.high - (layout.UNDER + 0.6 * layout.EDGE) * self.unit
-        return min(layout.PANEL * self.unit, room / max(len(self.shown), 1))
+        room = self.high - (frame.UNDER + 0.6 * frame.EDGE) * self.unit
+        return min(frame.PANEL * self.unit, room / max(len(self.shown), 1))
 
     @cached_property
     def shown(self) -> list[Curve]:
@@ -76,17 +154,17 @@ class Strip:
     @cached_property
     def panels(self) -> list[tuple[float, float, float, float]]:
         """Left, upper, right and lower edge of each plot (pixels of the strip)."""
-        edge, gap = layout.EDGE * self.unit, 0.05 * self.unit
-        top = 1.75 * layout.SMALL * self.unit
+        edge, gap = frame.EDGE * self.unit, 0.05 * self.unit
+        top = 1.75 * frame.SMALL * self.unit
         if self.side:
             rows = [k * self._each for k in range(len(self.shown))]
             return [(edge, row + top, self.across - edge, row + self._each - 0.2 * edge) for row in rows]
         each = (self.wide - 2 * edge - gap * (len(self.shown) - 1)) / max(len(self.shown), 1)
-        low = self.tall - 0.6 * layout.EDGE * self.unit
+        low = self.tall - 0.6 * frame.EDGE * self.unit
         return [(edge + k * (each + gap), top, edge + k * (each + gap) + each, low) for k in range(len(self.shown))]
 
     def drawn(self, time: float) -> Any:
-        """The strip (RGBA) with its playhead at a time of the motion (s)."""
+        """Return the strip (RGBA) with its playhead at a time of the motion (s)."""
         from PIL import Image, ImageDraw
 
         page = self._still.copy()
@@ -109,7 +187,7 @@ class Strip:
         return page
 
     def _height(self, k: int, value: float) -> float:
-        """Where a value is in a panel (pixels)."""
+        """Return where a value is in a panel (pixels)."""
         low, high = self._ranges[k]
         return self.panels[k][3] - (value - low) / (high - low) * (self.panels[k][3] - self.panels[k][1])
 
@@ -119,15 +197,15 @@ class Strip:
 
     def _number(self, draw: Any, k: int, value: float, right: float, ink: tuple[int, ...], bare: bool) -> float:
         """Write the value that lives, ``bare`` of its unit; how much room (pixels) it takes, whatever it will be."""
-        size = layout.SMALL * self.unit
+        size = frame.SMALL * self.unit
         letters = font(FINE * size, True)
         words = self._words(k, value, bare)
         draw.text((FINE * right, FINE * self._name_height(k)), words, fill=ink, font=letters, anchor="ra")
         return self._room(k, bare)
 
     def _name_height(self, k: int) -> float:
-        """Where the words over a panel begin (pixels)."""
-        return self.panels[k][1] - 1.3 * layout.SMALL * self.unit
+        """Return where the words over a panel begin (pixels)."""
+        return self.panels[k][1] - 1.3 * frame.SMALL * self.unit
 
     def _words(self, k: int, value: float, bare: bool) -> str:
         words = self._writers[k](value)
@@ -135,7 +213,7 @@ class Strip:
 
     def _room(self, k: int, bare: bool = False) -> float:
         widest = self._words(k, -max(abs(value) for value in self._ranges[k]), bare)
-        return layout.SMALL * self.unit * (width_of(widest, True) + 0.7)
+        return frame.SMALL * self.unit * (width_of(widest, True) + 0.7)
 
     @cached_property
     def _writers(self) -> list[Any]:
@@ -167,7 +245,7 @@ class Strip:
             if k < len(self.others):
                 self._curve(draw, self.others[k], panel, span, 1.0, _rgb(self.others[k].colour))
             self._curve(draw, curve, panel, span, 1.5, _rgb(curve.colour))
-        size = layout.SMALL * self.unit
+        size = frame.SMALL * self.unit
         for k, (curve, panel) in enumerate(zip(self.shown, self.panels, strict=True)):
             room = panel[2] - panel[0] - self._room(k) - (self._room(k, True) if self.others else 0.0)
             name = plain(curve.name)

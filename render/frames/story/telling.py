@@ -1,4 +1,4 @@
-"""Reads the files of a machine and makes its story: the films it is rendered from, its shots, what is drawn over."""
+"""The telling of a story: its pictures, shots and words for one mechanism."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ import numpy as np
 from render.film.camera import angles
 from render.film.film import Film
 from render.film.inputs import refuse_missing
+from render.film.scene import Point, Scene, State, Writing
 from render.film.section import seen_from
+from render.film.story.frame import Picture, Reason
 from render.film.story.planned import planned
-from render.film.story.reason import Reason
 from render.film.story.story import Story
 from render.film.story.words import plain
+from render.frames.frames import Pictures
 from render.frames.story.drawing import BETWEEN, Drawing, caption_lines
-from render.frames.story.pictures import Around, StoryPictures
 from render.frames.story.strip import Strip
 from render.freshness import current_clearance
 from render.presets import Preset
 from render.report import description
-from render.report.facts import facts
-from render.report.moments import marks
-from render.report.reasons import reasons
+from render.report.facts import facts, reasons
+from render.report.transmission import marks
 from shared.contract import Motion, read_motion, read_parts
 from shared.contract.shot import Shot, read_shot, shown
 from shared.contract.shot import Story as Wishes
@@ -35,8 +35,62 @@ from shared.stage.console import duration
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 
+# The pictures of a story: states of its film with and without arrows, kept by what they show as all frames are.
+
+Around = tuple[Picture, Picture, Picture]
+
+
+@dataclass
+class StoryPictures(Pictures):
+    """Pictures of one scene; picture k is the middle of ``rows[k]``, between those that its shutter sees."""
+
+    rows: tuple[Around, ...] = ()
+    what: str = ""
+    """Their name, for people."""
+
+    @cached_property
+    def _scene(self) -> Scene:
+        return msgspec.structs.replace(self.film.scene, writing=Writing())
+
+    @property
+    def shown(self) -> Scene:
+        """The scene of the film, without what is written over it: stories have their own words."""
+        return self._scene
+
+    def around(self, frame: int) -> tuple[int, int, int]:
+        """Return numbers of states: those of neighbours are negative, so that each picture has its own."""
+        return -2 * frame - 1, frame, -2 * frame - 2
+
+    def state(self, frame: int) -> State:
+        """Return the state of picture ``frame``; negative ones are neighbours of :meth:`around`."""
+        if frame not in self._states:
+            row, side = (frame, 1) if frame >= 0 else ((-frame - 1) // 2, 0 if frame % 2 else 2)
+            self._states[frame] = _state(self.film, self.rows[row][side])
+        return self._states[frame]
+
+
+def _state(film: Film, picture: Picture) -> State:
+    state = film.state(picture.at, picture.camera)
+    grown = picture.grown if picture.forces else 0.0
+    return msgspec.structs.replace(
+        state,
+        arrows=[(tail, _along(tail, tip, grown)) for tail, tip in state.arrows],
+        arcs=[(middle, sweep * grown) for middle, sweep in state.arcs],
+        number="",
+        lifts=dict(picture.lifts),
+        hidden=picture.hidden,
+    )
+
+
+def _along(tail: Point, tip: Point, part: float) -> Point:
+    x, y, z = (a + part * (b - a) for a, b in zip(tail, tip, strict=True))
+    return x, y, z
+
+
+# Reads the files of a machine and makes its story: the films it is rendered from, its shots, what is drawn over.
+
 SHOWN = {"effort": "forces", "speed": "velocities"}
-"""What arrows show by the kind of what a story stops for; reactions else."""
+"""Quantities of arrows by the kind of reason; reactions else."""
 FACTS = 4
 """Facts at the end, at most."""
 WALK = 5.0
@@ -56,7 +110,7 @@ class Telling:
     cut: Film | None = None
 
     def pictures(self, preset: Preset) -> list[StoryPictures]:
-        """The different pictures of the story, in sets of one scene each."""
+        """Return the different pictures of the story, in sets of one scene each."""
         rows: dict[Around, None] = dict.fromkeys(self.row(frame, preset) for frame in range(self.story.total))
         sets = []
         for forces, cut, film in ((False, False, self.film), (False, True, self.cut), (True, False, self.forces)):
@@ -67,7 +121,7 @@ class Telling:
         return sets
 
     def row(self, frame: int, preset: Preset) -> Around:
-        """What Blender makes for a frame, between its neighbours where the shutter blurs them."""
+        """Return the pictures that Blender makes for a frame, between its neighbours where the shutter blurs them."""
         if preset.motion_blur:
             return self.story.around(frame)
         picture = self.story.picture(frame)
@@ -79,7 +133,7 @@ class Telling:
         return len(self.story.pictures)
 
     def said(self) -> str:
-        """Shots and cost, for people."""
+        """Return shots and cost, for people."""
         loop = self.film.clock.frames
         shots = ", ".join(f"{placed.shot.name} {placed.shot.seconds:.1f} s" for placed in self.story.placed)
         return f"{duration(self.story.seconds)}: {shots}; {self.count} pictures, the loop film has {loop}"
@@ -88,7 +142,7 @@ class Telling:
 def telling_of(
     out: Out, preset: Preset, show: str = "", loop: float = 0.0, shots: tuple[str, ...] | None = None
 ) -> Telling:
-    """The story of a machine, of these ``shots`` alone if they are given.
+    """Return the story of a machine, of these ``shots`` alone if they are given.
 
     Raises UserError for what its shot asks of it and cannot be, with the remedy.
     """
@@ -111,7 +165,7 @@ def telling_of(
 
 
 def shown_plain(shot: Shot) -> Shot:
-    """The whole machine without arrows and without words over it: the story has its own."""
+    """Return the whole machine without arrows and without words over it: the story has its own."""
     return msgspec.structs.replace(shot, show=(), title=None, section=0.0)
 
 
@@ -120,7 +174,7 @@ def _chosen(event: str | None, why: list[Reason]) -> Reason | None:
 
 
 def _shows(motion: Motion, reason: Reason | None) -> str:
-    """What arrows show."""
+    """Return the quantities that arrows show."""
     if reason is None:
         return "velocities"
     show = SHOWN.get(reason.kind, "reactions")
@@ -129,13 +183,15 @@ def _shows(motion: Motion, reason: Reason | None) -> str:
 
 
 def _with_arrows(show: str, film: Film) -> Film | None:
-    """The same film with arrows; None where none is ever seen."""
+    """Return the same film with arrows; None where none is ever seen."""
     made = Film(film.motion, film.parts, shown(film.shot, show), film.folder, film.aspect)
     return made if made.arrows.vectors or made.arcs.torques else None
 
 
 def _cut_open(shot: Shot, film: Film) -> Film | None:
-    """The same film as the shot cuts it open; None where it does not. Raises UserError for one that opens no piece."""
+    """Return the same film as the shot cuts it open; None where it does not. Raises UserError for one that opens no
+    piece.
+    """
     if not shot.section:
         return None
     usual = math.degrees(angles(shot.camera, film.parts.mount, film.aspect)[0])
@@ -158,12 +214,12 @@ def _drawing(out: Out, preset: Preset, film: Film, story: Story, known: list[str
 
 
 def _without_slow(fact: str) -> str:
-    """A fact without the km/h of what is slower than a walk."""
+    """Return a fact without the km/h of what is slower than a walk."""
     return re.sub(r" \(([\d.]+) km/h\)", lambda match: match[0] if float(match[1]) >= WALK else "", fact)
 
 
 def strip_of(film: Film, story: Story, preset: Preset) -> Strip | None:
-    """The strip of a story; None where it has no curves."""
+    """Return the strip of a story; None where it has no curves."""
     if not story.curves:
         return None
     times = sorted({at for at, _ in marks(film.motion)})

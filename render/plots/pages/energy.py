@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import blended_transform_factory
 
 from render.magnitudes import centre_of_mass, energy_floor, power_floor, without_noise
-from render.plots.horizon import Horizon, horizon
-from render.plots.pages.rates import draw
+from render.plots.measures import Horizon, horizon
+from render.plots.pages.motion import draw
 from render.plots.style import INK, PARTS, QUIET, page, rows
 from shared.contract import EventMark, Motion
 from shared.contract.quantity import counted, written
@@ -21,7 +21,7 @@ MARKED = 12
 
 
 def energy(motion: Motion) -> Figure:
-    """Energies (J) from their start, and the power balance (W), with what impacts take at once (J)."""
+    """Return energies (J) from their start, and the power balance (W), with what impacts take at once (J)."""
     over = horizon(motion)
     floor = energy_floor(motion)
     kinetic = without_noise(np.asarray(motion.energy.kinetic), floor)
@@ -49,7 +49,7 @@ def energy(motion: Motion) -> Figure:
 
 
 def powers(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """(T,) power of all drivers, and the rate of kinetic and potential energy (W), rounding taken for zero.
+    """Return (T,) power of all drivers, and the rate of kinetic and potential energy (W), rounding taken for zero.
 
     Rates of the kinetic energy and of weights follow from velocities and accelerations, so they are right at either
     side of an impact; that of elastic energy is the slope between samples, never across an event.
@@ -71,7 +71,7 @@ def powers(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
 
 
 def statement(motion: Motion) -> str:
-    """What is true of this motion's balance, in a line."""
+    """Return the sentence that is true of this motion's energy balance."""
     given, rate = powers(motion)
     others, floor = rate - given, energy_floor(motion)
     largest = float(np.abs(others).max())
@@ -91,18 +91,18 @@ def statement(motion: Motion) -> str:
 
 
 def _tolerance(motion: Motion, given: np.ndarray, rate: np.ndarray) -> float:
-    """Below this the difference of the two powers (W) says nothing."""
+    """Return the power (W) below which the difference of the two says nothing."""
     largest = max(float(np.abs(given).max()), float(np.abs(rate).max()))
     return max(BALANCED * largest, 10 * power_floor(motion), 10 * motion.diagnostics.power_residual)
 
 
 def _impacts(motion: Motion, floor: float) -> list[EventMark]:
-    """What changed the kinetic energy at once."""
+    """Return marks of events that changed the kinetic energy at once."""
     return [event for event in motion.events if abs(event.energy) > floor]
 
 
 def _slope(time: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(T,) derivative, piece by piece between samples that share a time."""
+    """Return (T,) derivative, piece by piece between samples that share a time."""
     out = np.zeros(len(time))
     for piece in np.split(np.arange(len(time)), np.flatnonzero(np.diff(time) <= 0) + 1):
         if len(piece) > 1:

@@ -1,1 +1,1 @@
-"""What makes sound: a file each, which opens with its equations. None of them asks for a kind."""
+"""Sources of sound: a file each, which opens with its equations. None of them asks for a kind."""

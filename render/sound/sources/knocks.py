@@ -56,7 +56,7 @@ def _joint(setting: Setting, desk: Desk, joint: JointMotion) -> None:
 
 
 def _crossings(setting: Setting, joint: JointMotion, force: Array, clearance: float) -> tuple[Array, Array]:
-    """Times at which the force of a joint turns round within a small part of its size, and impulses."""
+    """Return times at which the force of a joint turns round within a small part of its size, and impulses."""
     time, size = setting.time, np.hypot(*force)
     steps = np.diff(time)
     low = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] < size[2:]) & (size[1:-1] < NEAR * size.max())) + 1
@@ -71,13 +71,13 @@ def _crossings(setting: Setting, joint: JointMotion, force: Array, clearance: fl
 
 
 def _turns(force: Array, size: Array, k: int) -> bool:
-    """Whether the force points the other way after its least value at ``k``."""
+    """Return True if the force points the other way after its least value at ``k``."""
     before, after = force[:, max(0, k - 3)], force[:, min(force.shape[1] - 1, k + 3)]
     return float(before @ after) < 0 and bool(size[k] < size.max())
 
 
 def _jumps(time: Array, force: Array) -> tuple[Array, Array]:
-    """Times at which a force jumps, and by how much (N); not at impacts, which are heard as such."""
+    """Return times at which a force jumps, and by how much (N); not at impacts, which are heard as such."""
     change = np.hypot(*np.diff(force, axis=1))
     if len(change) < 8:
         return np.zeros(0), np.zeros(0)

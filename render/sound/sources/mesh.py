@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.sound.desk import Blows, Desk
-from render.sound.radiated import of_force
+from render.sound.ringing import of_force
 from render.sound.setting import Setting
 from shared.contract import JointMotion, Shape
 
@@ -62,14 +62,14 @@ def _pair(setting: Setting, desk: Desk, joint: JointMotion, shape: Shape) -> Non
 
 
 def _load(joint: JointMotion, shape: Shape) -> Array:
-    """(T,) force between the teeth (N); of a belt, whose reaction is a torque, that over the radius."""
+    """Return (T,) force between the teeth (N); of a belt, whose reaction is a torque, that over the radius."""
     force, torque = np.hypot(joint.fx, joint.fy), np.abs(joint.torque)
     radius = shape.radius_second or shape.radius_first
     return np.maximum(force, torque / radius) if radius else force
 
 
 def teeth_passed(setting: Setting, shape: Shape) -> Array:
-    """(M + 1,) how many teeth have passed the place where two wheels, or a pinion and its rack, meet."""
+    """Return (M + 1,) how many teeth have passed the place where two wheels, or a pinion and its rack, meet."""
     (a, b), (first, second) = shape.bodies, shape.markers
     if len(shape.teeth) == 1:
         return shape.teeth[0] * (setting.angle(b) - setting.angle(a)) / math.tau
@@ -79,12 +79,12 @@ def teeth_passed(setting: Setting, shape: Shape) -> Array:
 
 
 def _of_ring(setting: Setting, shape: Shape, line: Array) -> Array:
-    """The same where the first wheel stands still: its teeth pass the line of centres as that turns."""
+    """Return the same where the first wheel stands still: its teeth pass the line of centres as that turns."""
     return -shape.teeth[0] * line / math.tau
 
 
 def crossings(at: Array, phase: Array) -> Array:
-    """Film seconds at which the phase passes whole numbers, in order."""
+    """Return the film seconds at which the phase passes whole numbers, in order."""
     low, high = np.floor(phase[:-1]), np.floor(phase[1:])
     count = np.abs(high - low).astype(int)
     step = np.repeat(np.arange(len(count)), count)

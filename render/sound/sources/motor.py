@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.sound.desk import Desk
-from render.sound.radiated import of_power
+from render.sound.ringing import of_power
 from render.sound.setting import Setting
 
 Array = NDArray[np.float64]
@@ -33,9 +33,9 @@ UNBALANCE = (0.3, 0.25, 0.15)
 SERIES = 10.0 ** (np.arange(0, 41) / 5)
 """Ratios of gearboxes, R5."""
 TAKEN = 0.01
-"""What takes no more than this part of the work that goes in and out takes none."""
+"""A load below this part of the work that goes in and out is none."""
 IDLE = 0.005
-"""What a motor gives that has no load: this part of the machine's weight, at the arm of its size."""
+"""Torque of a motor without load: this part of the machine's weight, at the arm of its size."""
 REST = 0.1
 """Part of the greatest speed at which a motor that holds still is as loud."""
 
@@ -55,7 +55,7 @@ def play(setting: Setting, desk: Desk) -> None:
 
 
 def _takes(setting: Setting, power: list[float]) -> bool:
-    """Whether it takes more work than it gives, as a load does, or what holds an engine at its speed."""
+    """Return True if it takes more work than it gives, as a load does, or what holds an engine at its speed."""
     given, all_of_it = (float(np.trapezoid(values, setting.time)) for values in (power, np.abs(power)))
     return given < -TAKEN * all_of_it
 

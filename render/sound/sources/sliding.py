@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.sound.desk import Desk
-from render.sound.radiated import of_power
+from render.sound.ringing import of_power
 from render.sound.setting import Setting
 from shared.contract import ContactMotion, ForceMotion, JointMotion
 
@@ -34,7 +34,7 @@ BAND = (300.0, 5000.0)
 
 
 class Rubbing(NamedTuple):
-    """What rubs: power (W), speed (m/s), places (m), all (T,); wave length of its roughness (m)."""
+    """A sliding pair: power (W), speed (m/s), places (m), all (T,); wave length of its roughness (m)."""
 
     power: Array
     speed: Array
@@ -76,7 +76,7 @@ def _joint(setting: Setting, joint: JointMotion) -> Iterator[Rubbing]:
 def _touching(
     setting: Setting, joint: JointMotion | ContactMotion, load: Array, x: Array, y: Array
 ) -> Iterator[Rubbing]:
-    """Slides as far as its surfaces have other speeds where they touch, and rolls as its bodies turn."""
+    """Yield slides as far as its surfaces have other speeds where they touch, and rolls as its bodies turn."""
     speed = setting.slip(joint.bodies, x, y)
     yield Rubbing(FRICTION * load * speed, speed, x, y)
     radius = joint.shape.radius_second if joint.shape else None

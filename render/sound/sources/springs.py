@@ -13,10 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render.sound.desk import Desk
-from render.sound.radiated import of_power
-from render.sound.ringing import modes
+from render.sound.ringing import Matter, modes, of_power
 from render.sound.setting import Setting
-from render.sound.solid_matter import Matter
 from render.sound.sources.impacts import NAME as IMPACTS
 from shared.contract import ForceMotion
 
@@ -56,7 +54,7 @@ def _spring(setting: Setting, desk: Desk, name: str, force: ForceMotion) -> None
 
 
 def surge_of(force: ForceMotion) -> tuple[float, float]:
-    """The lowest frequency (Hz) of waves along the wire of a spring, and the mass of that wire (kg)."""
+    """Return the lowest frequency (Hz) of waves along the wire of a spring, and the mass of that wire (kg)."""
     stored, travel = float(np.ptp(force.potential)), float(np.ptp(np.asarray(force.value)))
     wire = max(2 * SHEAR * DENSITY * stored / STRESS**2, 1e-6)
     stiffness = float(np.ptp(np.asarray(force.effort))) / max(travel, 1e-12)

@@ -10,12 +10,10 @@ from typing import Any
 
 from mbsd import Mechanism, Solution
 from mechanisms.stages.loading import loading
-from mechanisms.stages.loading.inputs import path_of
-from mechanisms.stages.loading.loaded_files import author_files
-from mechanisms.stages.loading.recording import recording
+from mechanisms.stages.loading.inputs import author_files, path_of, recording
 from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.masses import bodies_of, give_masses
-from render.view.binary import encode
+from render.view.document import encode
 from shared import contract
 from shared.contract.shot import Shot
 from shared.stage import console

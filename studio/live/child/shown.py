@@ -11,7 +11,7 @@ from mbsd.drawing.view.carried import Moving, moving
 from mbsd.drawing.view.redrawn import redrawn
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.skeleton_file import moving_of
-from render.view.binary import encode
+from render.view.document import encode
 from render.view.payload import payload
 from shared.contract import Motion, Parts
 from shared.contract.shot import Shot

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mbsd import AssemblyError, BranchError, LimitError, Mechanism, MechanismError, SingularPoseError, Solution
-from mechanisms.stages.loading import variants
+from mechanisms.stages.loading import loading
 from shared.stage.errors import UserError
 
 STEPS = 360
@@ -42,7 +42,7 @@ def until_it_stops(name: str, module: Any, m: Mechanism, solve: Callable[[], Sol
     except UserError as error:
         if not isinstance(error.__cause__, OPENS) or hasattr(module, "motion") or not m.drivers:
             raise
-        longest = _longest(m, variants.constant(name, module, "DURATION"))
+        longest = _longest(m, loading.constant(name, module, "DURATION"))
         if longest is None:
             raise
         values = {driver: float(longest.driver(driver).value[-1]) for driver in m.drivers}

@@ -14,12 +14,12 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import scipy.optimize  # noqa: E402, F401  (a fit needs it, and it takes long)
 
-import mechanisms.stages.loading.loaded_files  # noqa: E402
-import mechanisms.stages.solve.estimated_masses  # noqa: E402
-import mechanisms.stages.solve.refined_times  # noqa: E402, F401
+import mechanisms.stages.loading.inputs  # noqa: E402
+import mechanisms.stages.solve.masses  # noqa: E402
+import mechanisms.stages.solve.refinement  # noqa: E402, F401
 from mbsd import Mechanism, constant_rate, fit_path  # noqa: E402
 from mechanisms.stages.solve.masses import give_masses  # noqa: E402
-from render.view.binary import encode  # noqa: E402
+from render.view.document import encode  # noqa: E402
 from studio.live.child.main import main as serve  # noqa: E402, F401  (runs in each process that is forked)
 from studio.live.child.shown import Shown  # noqa: E402
 

@@ -92,9 +92,9 @@ def _is_fresh(question: Callable[[], bool]) -> bool:
 
 def _questions(name: str, preset: Preset, show: str, spectra: str, sound: str) -> dict[str, Callable[[], bool]]:
     """Return for each step the question whether it has nothing to do."""
+    from mechanisms.stages import shot as shot
     from mechanisms.stages.clearance import stage as clearance
     from mechanisms.stages.parts import stage as parts
-    from mechanisms.stages.shot import stage as shot
     from mechanisms.stages.solve import stage as solve
     from render import glb, plots, report
     from render.frames import film, still

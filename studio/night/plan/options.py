@@ -7,8 +7,7 @@ import re
 import sys
 from dataclasses import dataclass
 
-from render.presets import PRESETS, Preset, preset_named
-from render.shown import has_sound
+from render.presets import PRESETS, Preset, has_sound, preset_named
 from shared.stage.errors import UserError
 from shared.stage.face import said
 from shared.stage.paths import all_mechanisms, known_name, unfit_names

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from render.view.binary import encode
+from render.view.document import encode
 from studio.live.child.author import Author
 from studio.live.child.described import described
 from studio.live.numbers import numbers_of

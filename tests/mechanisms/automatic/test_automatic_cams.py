@@ -10,10 +10,9 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mbsd.cams import Lift, flat_cam, roller_cam
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.cams.cams import Cam
-from mechanisms.stages.automatic.cams.geneva import GenevaDrive
+from mechanisms.stages.automatic.cams import Cam, GenevaDrive
 from shared.stage.errors import UserError
-from tools.models.genevas import geneva
+from tools.models.guided import geneva
 
 LIFT = Lift.of((2.0, 0.02, "cycloidal"), (1.0, 0.02), (2.0, 0.0, "cycloidal"), (2 * math.pi - 5.0, 0.0))
 

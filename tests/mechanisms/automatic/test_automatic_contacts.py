@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from mbsd import Mechanism, constant_rate
 from mbsd.model.laws.curve import curve
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.cams.cams import Cam
+from mechanisms.stages.automatic.cams import Cam
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
-from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from shared.shapes.facets import volume_of
 from shared.shapes.polyline import distances
@@ -55,7 +55,7 @@ def test_one_ball_and_walls_that_meet_in_a_corner(scale: float, turn: float) -> 
     np.testing.assert_allclose(walls[0].feet[1], walls[1].feet[0], atol=1e-6)  # and behind it
     places = made.layout.seen("ball", ball.at, "ground")
     for wall in walls:
-        least = float((distances(places, wall.path) - ball.made).min()) * made.sizes.scale
+        least = float((distances(places, wall.path) - ball.built_radius).min()) * made.sizes.scale
         assert 0.05 < least < 0.5  # mm
 
 
@@ -205,7 +205,7 @@ def test_balls_that_meet_share_a_layer_and_never_touch() -> None:
     assert [part.look for part in rounds] == ["ball", "ball"]
     assert made.levels["cue"] == made.levels["ball"]
     apart = np.linalg.norm(made.layout.seen("cue", (0, 0), "ball"), axis=1).min()
-    assert 0.05 < (apart - sum(part.made for part in rounds)) * made.sizes.scale < 1.0  # mm
+    assert 0.05 < (apart - sum(part.built_radius for part in rounds)) * made.sizes.scale < 1.0  # mm
     assert set(made.solids(engraved_too=False)) == {"ground", "cue", "ball"}
 
 

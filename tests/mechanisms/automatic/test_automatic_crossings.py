@@ -9,7 +9,7 @@ import pytest
 
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.slides.crossings import Crossing
+from mechanisms.stages.automatic.slides.rails import Crossing
 from mechanisms.stages.automatic.slides.slides import Slide
 from mechanisms.trammel import mechanism as trammel
 from shared.stage.errors import UserError

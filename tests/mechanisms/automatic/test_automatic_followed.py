@@ -12,11 +12,9 @@ from scipy.interpolate import CubicSpline
 
 from mbsd import Mechanism, Solution
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.followed import continued, followed
-from mechanisms.stages.automatic.rolling.backings import band
-from mechanisms.stages.automatic.rolling.roads import Road, along, banded
+from mechanisms.stages.automatic.layout.curves import continued, followed
+from mechanisms.stages.automatic.rolling.roads import Road, along, band, banded, with_shared_roads
 from mechanisms.stages.automatic.rolling.rounds import Round
-from mechanisms.stages.automatic.rolling.shared_roads import with_shared_roads
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
 from shared.shapes.polyline import distances
 from shared.stage.errors import UserError
@@ -71,7 +69,7 @@ def test_a_slot_goes_on_along_the_tangent_of_its_curve() -> None:
 
 def test_a_slot_that_crosses_itself_is_refused() -> None:
     m, solution = _runs(_loop(), 8, 4.0, 0.0, 1.2)
-    with pytest.raises(UserError, match=r"runs: the pin of joint 'track' crosses its own way.* near \(.*motion end"):
+    with pytest.raises(UserError, match=r"runs: the pin of joint 'track' crosses its own path.* near \(.*motion end"):
         _ = Automatic(m, solution).levels
 
 
@@ -84,7 +82,7 @@ def test_a_road_goes_on_under_its_wheel(half: float) -> None:
     assert away == pytest.approx(wheel.radius, abs=0.03), "neither without a road nor through one"
     assert (road.band is not None) == (half > 2.0)
     sides = road.path[-1:], road.feet if road.band is None else road.band.back[::-1], road.path[:1]
-    assert distances(centres, np.vstack(sides)).min() > wheel.made
+    assert distances(centres, np.vstack(sides)).min() > wheel.built_radius
     solid = road._wall(0.0, 5.0).val()
     assert solid.isValid()
 
@@ -108,7 +106,7 @@ def test_a_terrain_goes_on_as_far_as_it_is_touched() -> None:
     assert centres[-1, 0] > 0.7 * scale, "the ball goes far beyond the last point"
     assert road.path[-1, 0] > centres[-1, 0]
     assert road.path[0, 0] == pytest.approx(-0.4 * scale), "at the other end the road is as long as the curve"
-    assert distances(centres, road.path).min() > part.made
+    assert distances(centres, road.path).min() > part.built_radius
 
 
 def test_a_point_is_followed_through_a_crossing() -> None:

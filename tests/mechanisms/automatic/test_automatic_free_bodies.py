@@ -10,8 +10,8 @@ import pytest
 
 from mbsd import Mechanism
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.pins.free.free_bodies import FreeBody
-from mechanisms.stages.parts.mass_properties import mass_of
+from mechanisms.stages.automatic.pins.free_bodies import FreeBody
+from mechanisms.stages.parts.meshes import mass_of
 from shared.contract.materials import MATERIALS
 
 

@@ -10,9 +10,8 @@ from manifold3d import CrossSection
 
 from mbsd import Mechanism, constant_rate, polynomial
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.wheels.gear_solids import wheel_shape
-from mechanisms.stages.automatic.wheels.teeth import module_of
-from mechanisms.stages.automatic.wheels.wheels import Wheel
+from mechanisms.stages.automatic.wheels.gears import module_of
+from mechanisms.stages.automatic.wheels.wheels import Wheel, wheel_shape
 from shared.shapes.involute import foul_inside, longest_tip, shortest_tip, toothed
 from shared.stage.errors import UserError
 from tests.shared.shape_checks import checked

@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, MechanismError, constant_rate
-from mechanisms.stages.automatic.assembly.body_shape import body_shape
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.features import KINDS
+from mechanisms.stages.automatic.body_shapes import body_shape
 from mechanisms.stages.automatic.layout.items import Item, Reach, spans_meet
+from mechanisms.stages.automatic.layout.plan import KINDS
 from mechanisms.stages.automatic.layout.planar import Rounded, around, convex_hull, core_gaps, disc, least_gap, placed
 from mechanisms.stages.automatic.layout.sizes import sizes, standard
 from mechanisms.stages.automatic.pins.bridges import Bridge

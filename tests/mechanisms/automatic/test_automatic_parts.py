@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
+from mechanisms.stages import shot as shot_stage
 from mechanisms.stages.clearance import stage as clearance_stage
 from mechanisms.stages.parts import stage as parts_stage
-from mechanisms.stages.shot import stage as shot_stage
-from mechanisms.stages.solve import bare_motion
+from mechanisms.stages.solve import masses
 from mechanisms.stages.solve import stage as solve_stage
-from mechanisms.stages.solve.bare_motion import bare_solution
+from mechanisms.stages.solve.masses import bare_solution
 from shared.contract import read_parts
 from shared.contract.shot import Shot, read_shot
 from shared.stage.errors import UserError
@@ -87,7 +87,7 @@ def test_parts_of_a_variant_follow_from_the_motion_of_the_variant(
         asked.append(name)
         return bare_solution(name)
 
-    monkeypatch.setattr(bare_motion, "bare_solution", solved)
+    monkeypatch.setattr(masses, "bare_solution", solved)
     (project.folder / "mechanism.py").write_text(ARM + 'VARIANTS = {"long": {"length": 0.2}}\n')
     (project.folder / "parts.py").write_text(CHANGED)
     project.run()

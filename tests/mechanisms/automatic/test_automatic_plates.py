@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mechanisms.stages.automatic.assembly.body_shape import body_shape
+from mechanisms.stages.automatic.body_shapes import body_shape
 from mechanisms.stages.automatic.layout.planar import FLAT, convex_hull
-from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from shared.shapes.facets import volume_of
 from shared.shapes.link import Eye

@@ -8,8 +8,8 @@ import pytest
 
 from mechanisms.belt_drive import mechanism as belt_drive
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.wheels.gear_solids import shape_of
-from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.automatic.wheels.wheels import shape_of
+from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from shared.shapes.link import Eye
 

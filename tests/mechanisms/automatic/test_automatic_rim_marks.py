@@ -9,8 +9,7 @@ import pytest
 
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.pins.free.points import Stylus
-from mechanisms.stages.automatic.pins.free.rim_marks import BASE, TIP, WALL, RimMark
+from mechanisms.stages.automatic.pins.free_bodies import BASE, TIP, WALL, RimMark, Stylus
 from tests.mechanisms.automatic.layouts import meets
 from tools.hunt_parts.case import parts_of
 from tools.hunt_parts.outcome import BUILT

@@ -11,7 +11,7 @@ from mbsd import Mechanism, constant_rate, harmonic
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.planar import placed
 from mechanisms.stages.automatic.pins.pins import Pin
-from mechanisms.stages.automatic.pins.springs.stretching import Stretching
+from mechanisms.stages.automatic.pins.springs import Stretching
 from tests.mechanisms.automatic.layouts import meets
 from tools.hunt_parts.case import parts_of
 

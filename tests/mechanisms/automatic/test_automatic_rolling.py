@@ -8,7 +8,7 @@ import pytest
 from mbsd import Mechanism, constant_rate
 from mbsd.model.plane_curves import curve_pieces
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.profiles import curve_path
+from mechanisms.stages.automatic.layout.curves import curve_path
 from mechanisms.stages.automatic.rolling.roads import Road
 from mechanisms.stages.automatic.rolling.rounds import Round
 from shared.shapes.polyline import distances
@@ -47,8 +47,8 @@ def test_wheel_is_short_of_its_road_by_the_clearance(curve: bool) -> None:
     centre = made.layout.seen("wheel", wheel.at, "ground")
     away = distances(centre, path)
     scale = made.sizes.scale
-    assert (away - wheel.made).min() * scale > 0.05
-    assert (away - wheel.made).max() * scale < 0.2
+    assert (away - wheel.built_radius).min() * scale > 0.05
+    assert (away - wheel.built_radius).max() * scale < 0.2
     assert np.ptp(centre[:, 0]) * scale == pytest.approx(80.0, rel=0.05)  # 2 rad of 40 mm
 
 
@@ -65,7 +65,7 @@ def test_wheel_tyre_and_road_are_sound() -> None:
     assert box.zmax == pytest.approx(made.heights.top("wheel"))
     assert box.xlen > np.ptp(path[:, 0]) - 1e-6
     outer = 0.5 * tyre.shape.val().BoundingBox().xlen
-    assert outer == pytest.approx(wheel.made, abs=0.05)
+    assert outer == pytest.approx(wheel.built_radius, abs=0.05)
 
 
 @pytest.mark.parametrize("size", [0.01, 1.0, 100.0])

@@ -9,11 +9,9 @@ import pytest
 
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic, automatic
-from mechanisms.stages.automatic.layout.extents import lengths_of
-from mechanisms.stages.automatic.layout.printed import LEAST, RUNNING, fit_at_scale
-from mechanisms.stages.automatic.layout.sizes import STANDARD, thin_pins
-from mechanisms.stages.clearance.at_scale import at_scale, what_shrinks
-from mechanisms.stages.loading.wished_scale import scaling
+from mechanisms.stages.automatic.layout.sizes import LEAST, RUNNING, STANDARD, fit_at_scale, lengths_of, thin_pins
+from mechanisms.stages.clearance.path import at_scale, what_shrinks
+from mechanisms.stages.loading.wishes import scaling
 from mechanisms.stages.solve.motion_file import to_motion
 from shared.shapes.bodies import Bodies
 from shared.shapes.fit import Fit

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate, curve
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.rolling.roads import Road, along
-from mechanisms.stages.automatic.rolling.shared_roads import with_shared_roads
+from mechanisms.stages.automatic.rolling.roads import Road, along, with_shared_roads
 from shared.shapes.polyline import distances
 from tests.mechanisms.automatic.layouts import meets
 from tests.shared.shape_checks import checked
@@ -67,7 +66,7 @@ def test_two_wheels_run_on_one_road(surface: str, turn: float) -> None:
     assert [part.body for part in road.rounds] == ["rear", "front"]
     assert made.levels["rear"] == made.levels["front"] != made.levels["frame"]
     for part in road.rounds:
-        away = distances(made.layout.seen(part.body, part.at, "ground"), road.path) - part.made
+        away = distances(made.layout.seen(part.body, part.at, "ground"), road.path) - part.built_radius
         assert away.min() > (-1.0 if surface == "tyre" else 0.0)
     plan = made.plan()
     [solid] = [piece for piece in plan.solids["ground"] if piece.name == "road_rear_road"]

@@ -145,7 +145,7 @@ def test_bands_follow_arcs() -> None:
 
 @pytest.mark.parametrize(("scale", "turn"), [(0.1, 0.3), (30.0, -2.0)])
 def test_slots_on_ground_that_cross_are_refused_with_their_names(scale: float, turn: float) -> None:
-    """Either roller would have to pass the plate of the other: only slides cross in one plate (crossings.py)."""
+    """Either roller would have to pass the plate of the other: only slides cross in one plate (rails.py)."""
     m = Mechanism("crossed")
     bar = m.bar("bar", 0.1 * scale)
     m.pin_in_slot("across", m.ground.at(0, 0, turn), bar.start)

@@ -11,7 +11,7 @@ import pytest
 from mbsd import Mechanism, constant_rate, four_stroke
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.layout.planar import Rounded, least_gap
-from mechanisms.stages.automatic.pins.springs.stretching import Stretching, Stud
+from mechanisms.stages.automatic.pins.springs import Stretching, Stud
 from shared.shapes.stud import Collar, ball_stud
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from mbsd import Mechanism, constant_rate, harmonic
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.cams.cams import CLEAR
+from mechanisms.stages.automatic.cams import CLEAR
 from mechanisms.stages.automatic.layout.planar import placed
 from mechanisms.stages.automatic.pins.stops import RADIUS, Stop
 from mechanisms.stages.automatic.slides.slots import Slot

@@ -10,7 +10,8 @@ import pytest
 from mbsd import Mechanism, constant_rate, harmonic
 from mbsd.results.solution import Solution
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.rolling.tracks import Track, circle, normals, turns_left
+from mechanisms.stages.automatic.rolling.tracks import Track, circle, turns_left
+from mechanisms.stages.automatic.rolling.tracks import closed_normals as normals
 from shared.shapes.polyline import distances
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
@@ -109,7 +110,7 @@ def test_what_runs_on_a_track_is_clear_of_it_by_the_clearance(name: str) -> None
     assert track.inside == inside
     part = track.carried
     away = distances(made.layout.seen(part.body, part.at, track.body), track.path)
-    assert 0.05 < (away.min() - part.made) * made.sizes.scale < 1.5
+    assert 0.05 < (away.min() - part.built_radius) * made.sizes.scale < 1.5
     assert not meets(made)
 
 

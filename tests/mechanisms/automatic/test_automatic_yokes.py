@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from mechanisms.stages.automatic.assembly.body_shape import PlacedEye
-from mechanisms.stages.automatic.assembly.yoke_shape import ARM, yoke_shape
+from mechanisms.stages.automatic.body_shapes import ARM, PlacedEye, yoke_shape
 from shared.shapes import outline
 from shared.shapes.build import extruded
 from shared.shapes.link import Eye

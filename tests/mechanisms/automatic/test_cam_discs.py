@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from OCP.StdFail import StdFail_NotDone
 
-from mechanisms.stages.automatic.assembly import built
+from mechanisms.stages.automatic import assembly
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.profiles import curve_path, set_back
-from mechanisms.stages.parts.mesh_check import check_mesh, only_solid
+from mechanisms.stages.automatic.layout.curves import curve_path, set_back
+from mechanisms.stages.parts.meshes import check_mesh, only_solid
 from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from shared.shapes.cam import cam_disc
 from shared.shapes.facets import volume_of
@@ -64,6 +64,6 @@ def test_what_the_kernel_cannot_make_is_refused_by_name(monkeypatch: pytest.Monk
     def fails(*_: object) -> None:
         raise StdFail_NotDone("BRep_API: command not done")
 
-    monkeypatch.setattr(built, "body_shape", fails)
+    monkeypatch.setattr(assembly, "body_shape", fails)
     with pytest.raises(UserError, match=r"the CAD kernel cannot make the plate of 'crank'.*command not done"):
         made.solids(engraved_too=False)

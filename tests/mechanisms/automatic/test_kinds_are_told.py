@@ -8,11 +8,11 @@ import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
 from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
-from mechanisms.stages.automatic.layout import features
+from mechanisms.stages.automatic.layout import plan
 from shared.stage.paths import ROOT
 
 STOPS = {"angle_stop", "coordinate_stop"}
-"""They are looked for by the joints whose way they end (layout/limits.py)."""
+"""They are looked for by the joints whose way they end (layout/motion.py)."""
 
 
 def _rows() -> tuple[set[str], set[str]]:
@@ -26,7 +26,7 @@ def _rows() -> tuple[set[str], set[str]]:
 
 def test_every_kind_is_told_as_what_it_becomes() -> None:
     made, without = _rows()
-    entered = {*features.KINDS, *features.DRIVER_KINDS, *features.FORCE_KINDS, *features.CONTACT_KINDS}
+    entered = {*plan.KINDS, *plan.DRIVER_KINDS, *plan.FORCE_KINDS, *plan.CONTACT_KINDS}
     every = {*KINDS, *FORCE_KINDS, *CONTACT_KINDS}
     assert made & every == (entered | STOPS) & every
     assert without & every == every - entered - STOPS

@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mechanisms.stages.automatic.layout.items import TOP, Item, PinReach, PivotReach, Reach, spans_meet
-from mechanisms.stages.automatic.layout.order.layer_clauses import choices_of
-from mechanisms.stages.automatic.layout.order.layers import Problem, blocking, find_layers
+from mechanisms.stages.automatic.layout.layers import Problem, blocking, choices_of, find_layers
 from mechanisms.stages.automatic.layout.planar import disc
 
 

@@ -7,12 +7,11 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from mechanisms.stages.automatic import decided
+from mechanisms.stages.automatic import decision
 from mechanisms.stages.automatic.automatic import automatic
-from mechanisms.stages.automatic.layout.order import layers
-from mechanisms.stages.automatic.layout.order.layer_clauses import Clauses
-from mechanisms.stages.automatic.layout.order.purse import Purse, Undecided
-from mechanisms.stages.automatic.pins.swept import Swept
+from mechanisms.stages.automatic.layout import layers
+from mechanisms.stages.automatic.layout.layers import Clauses, Purse, Undecided
+from mechanisms.stages.automatic.pins.bridges import Swept
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
 from tools.models.walkers import walker
@@ -44,7 +43,7 @@ def test_what_has_no_order_is_not_searched_with_every_number_of_layers(monkeypat
 def test_gaps_of_layouts_that_differ_in_a_web_are_computed_once() -> None:
     m = walker(2)
     made = automatic(m, solution=m.sweep(1.0, 120))
-    layout = made._layout(made.wishes()[-1], decided.Springs())
+    layout = made._layout(made.wishes()[-1], decision.Springs())
     layout.conflicts  # noqa: B018
     known = len(layout.known_gaps)
     assert known > 0
@@ -74,7 +73,7 @@ def test_a_search_that_was_given_up_says_so(monkeypatch: pytest.MonkeyPatch) -> 
     def given_up(*_: object) -> None:
         raise Undecided
 
-    monkeypatch.setattr(decided, "find_layers", given_up)
+    monkeypatch.setattr(decision, "find_layers", given_up)
     m = walker(2, apart=0.2)
     with pytest.raises(UserError, match=r"14 bodies and \d+ places where something meets was given up .*made\.layer"):
         automatic(m, solution=m.sweep(1.0, 60)).levels  # noqa: B018

@@ -118,16 +118,16 @@ def test_one_is_built_and_proven() -> None:
 
 def test_what_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """A search that puts every plate on one layer; pieces in one another; a plan that fails."""
-    from mechanisms.stages.automatic import decided
+    from mechanisms.stages.automatic import decision
 
     def flat(problem: object, _: object) -> dict[str, int]:
-        from mechanisms.stages.automatic.layout.order.layer_clauses import choices_of
+        from mechanisms.stages.automatic.layout.layers import choices_of
 
         return dict.fromkeys([*problem.bodies, *choices_of(problem.items)], 0)
 
-    monkeypatch.setattr(decided, "find_layers", flat)
+    monkeypatch.setattr(decision, "find_layers", flat)
     assert case.run(SEED, "slider-crank").outcomes[-1].state in (COLLIDES, UNSOUND)
-    monkeypatch.setattr(decided, "find_layers", lambda *_: {})
+    monkeypatch.setattr(decision, "find_layers", lambda *_: {})
     assert case.run(SEED, "slider-crank").outcomes[-1].state == ERROR
 
 

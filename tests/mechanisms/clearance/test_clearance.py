@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mechanisms.stages.clearance.outlines import least_gap
 from mechanisms.stages.clearance.path import paths, points, relative
 from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search.least import least_gap
-from mechanisms.stages.clearance.search.search import RESOLUTION as SHARP
-from mechanisms.stages.clearance.search.sweep import Sweep
+from mechanisms.stages.clearance.search import RESOLUTION as SHARP
+from mechanisms.stages.clearance.search import Sweep
 from mechanisms.stages.clearance.turn import RESOLUTION, turn_gap
 from shared.contract import Motion
 from shared.stage.errors import UserError
@@ -55,7 +55,7 @@ def test_too_near_is_told_from_touching() -> None:
 def farthest(motion: Motion, piece: MeshPiece, direction: float) -> tuple[float, np.ndarray]:
     """When some corner of a coupler's piece is farthest out in a direction (rad), and where it is (mm)."""
     times = np.linspace(0.0, motion.time[-1], 4 * len(motion.time))
-    pose = paths(motion)["coupler"].at(times)
+    pose = paths(motion)["coupler"].poses_at(times)
     corners = np.unique(piece.triangles.reshape(-1, 3)[:, :2], axis=0)
     world = np.stack([points(pose, corner) for corner in corners])
     out = world @ [math.cos(direction), math.sin(direction)]
@@ -179,7 +179,7 @@ def test_poses_between_samples_follow_the_motion() -> None:
     coarse, fine = four_bar_motion(steps=90), four_bar_motion(steps=900)
     times = np.array(fine.time)
     for body in ("coupler", "rocker"):
-        error = paths(coarse)[body].at(times) - paths(fine)[body].pose
+        error = paths(coarse)[body].poses_at(times) - paths(fine)[body].pose
         assert np.abs(error[:, :2]).max() < 2e-3
         assert np.abs(error[:, 2]).max() < 2e-5
     seen = relative(paths(fine)["coupler"].pose, paths(fine)["coupler"].pose)

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
-from mechanisms.stages.clearance.belts import SAG, band, bands
+from mechanisms.stages.clearance.meshing import SAG, band, bands
 from mechanisms.stages.clearance.path import paths
 from mechanisms.stages.clearance.pieces import MeshPiece
 from mechanisms.stages.clearance.stage import check
@@ -78,7 +78,7 @@ def test_all_that_the_film_draws_is_in_the_band(crossed: bool, teeth: tuple[int,
     solid, poses = belt_band.piece.manifold, Poses(motion)
     low, high = belt_band.piece.z_range
     for time in (0.0, 0.31):
-        x, y, turn = belt_band.path.at(np.array([time]))[0]
+        x, y, turn = belt_band.path.poses_at(np.array([time]))[0]
         for spec, path in zip(belt.specs, belt.paths(poses, Moment(time, 0)), strict=True):
             points = 1000 * np.array(path)
             upright = len(path) == 2 and path[0][:2] == path[1][:2]
@@ -135,9 +135,9 @@ def test_the_band_goes_round_with_a_carrier() -> None:
     where = paths(motion)
     [belt_band] = bands(with_rims([], "b"), motion, where)
     times = np.linspace(0.0, 1.0, 331)
-    place = belt_band.path.at(times)
+    place = belt_band.path.poses_at(times)
     assert place[:, :2] == pytest.approx(np.broadcast_to([10.0, 20.0], (331, 2)))
-    assert place[:, 2] == pytest.approx(where["arm"].at(times)[:, 2], abs=1e-7)
+    assert place[:, 2] == pytest.approx(where["arm"].poses_at(times)[:, 2], abs=1e-7)
     rim = disc("b", "rim", 0, 0, 40.5, 7.0, 13.0)
     far, near = (box("ground", "post", 10.0, 20.0 + y, 0.0, (4, 4, 20)) for y in (-175.0, -80.0))
     check(with_rims([rim, far], "b"), motion, [rim, far], "key")

@@ -10,15 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from mechanisms.stages.clearance.outlines import OutlineSearch
 from mechanisms.stages.clearance.path import BodyPath, RelativePath, paths, points
-from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search.facets import nearest, separation
-from mechanisms.stages.clearance.search.outline_search import OutlineSearch
-from mechanisms.stages.clearance.search.search import RESOLUTION as SHARP
-from mechanisms.stages.clearance.search.search import Search
-from mechanisms.stages.clearance.search.spans import Spans
-from mechanisms.stages.clearance.search.sweep import Sweep
-from mechanisms.stages.clearance.tree import FacetTree
+from mechanisms.stages.clearance.pieces import FacetTree, MeshPiece
+from mechanisms.stages.clearance.search import RESOLUTION as SHARP
+from mechanisms.stages.clearance.search import Search, Spans, Sweep, nearest, separation
 from render.film.poses import Moment, Poses
 from shared.contract import BodyMotion, Energy, Motion
 from shared.stage.errors import UserError
@@ -148,7 +144,7 @@ def test_a_jump_of_velocity_between_samples_is_covered_by_the_error(at: float) -
     path = BodyPath(times, pose, rate, np.zeros((2, 3)))
     fine = np.linspace(0.0, 1.0, 501)
     true = np.maximum(fine - at, 0.0)
-    worst = np.abs(path.at(fine)[:, 0] - true).max()
+    worst = np.abs(path.poses_at(fine)[:, 0] - true).max()
     assert worst <= path.interpolation_error(0.0)[0] * (1 + 1e-9)
     assert path.interpolation_error(0.0)[0] <= 10 * worst
 
@@ -159,7 +155,7 @@ def test_the_quintic_is_that_of_the_film() -> None:
     for body in ("coupler", "rocker"):
         for moment in np.linspace(0.0, motion.time[-1], 77):
             x, y, theta = film.body(body, Moment(float(moment), 0))
-            np.testing.assert_allclose(mine[body].at(np.array([moment]))[0], [1e3 * x, 1e3 * y, theta], atol=1e-9)
+            np.testing.assert_allclose(mine[body].poses_at(np.array([moment]))[0], [1e3 * x, 1e3 * y, theta], atol=1e-9)
 
 
 def test_points_stray_no_farther_than_the_spans_say() -> None:

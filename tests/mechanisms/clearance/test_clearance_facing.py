@@ -9,12 +9,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from mechanisms.stages.clearance import outlines
+from mechanisms.stages.clearance.outlines import BESIDE, never_over
 from mechanisms.stages.clearance.path import BodyPath, paths
 from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search import least
-from mechanisms.stages.clearance.search.facing import BESIDE, never_over
-from mechanisms.stages.clearance.search.search import RESOLUTION
-from mechanisms.stages.clearance.search.sweep import Sweep
+from mechanisms.stages.clearance.search import RESOLUTION, Sweep
 from tests.mechanisms.clearance.clearance_pieces import box, disc
 from tests.mechanisms.clearance.test_clearance_between import cam_motion
 
@@ -67,9 +66,9 @@ def test_the_least_gap_is_that_of_all_facets(collar: float, over: bool, monkeypa
     roller = disc("follower", "roller", 0.0, 0.0, 10.0, 4.2, 7.0, 24)
     where = paths(motion)
     sweep = Sweep(cam, roller, where["cam"], where["follower"])
-    quick = least.least_gap(sweep, 5.0)
+    quick = outlines.least_gap(sweep, 5.0)
     assert never_over(sweep, quick.gap + 0.01) != over
-    monkeypatch.setattr(least, "never_over", lambda sweep, gap: False)
-    whole = least.least_gap(sweep, 5.0)
+    monkeypatch.setattr(outlines, "never_over", lambda sweep, gap: False)
+    whole = outlines.least_gap(sweep, 5.0)
     assert quick.gap == pytest.approx(whole.gap, abs=RESOLUTION)
     assert quick.gap - RESOLUTION - 1e-3 <= quick.proven <= whole.gap + 1e-9

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mechanisms.stages.clearance import far
+from mechanisms.stages.clearance import path
 from mechanisms.stages.clearance import stage as clearance_stage
 from mechanisms.stages.clearance.path import paths
-from mechanisms.stages.clearance.search.sweep import Sweep
+from mechanisms.stages.clearance.search import Sweep
 from shared.contract import Motion
 from tests.mechanisms.clearance.clearance_pieces import box, parts_of
 from tests.mechanisms.clearance.test_clearance_between import motion_of
@@ -32,7 +32,7 @@ def test_bodies_that_are_far_have_pieces_that_are_apart() -> None:
     motion = snake(6)
     pieces = [box(f"b{k}", f"p{k}", 12.0, 5.0, 0.0, (20.0, 8.0, 4.0)) for k in range(6)]
     where = paths(motion)
-    far_pairs = far.far_bodies(pieces, where, REACH)
+    far_pairs = path.far_bodies(pieces, where, REACH)
     assert 0 < len(far_pairs) < 15
     for a in pieces:
         for b in pieces:
@@ -44,6 +44,6 @@ def test_the_check_is_the_same_with_and_without(monkeypatch: pytest.MonkeyPatch)
     motion = snake(5)
     pieces = [box(f"b{k}", f"p{k}", 0.0, 0.0, 6.0 * k, (20.0, 8.0, 4.0)) for k in range(5)]
     clearance = clearance_stage.check(parts_of(pieces), motion, pieces, "0" * 64)
-    monkeypatch.setattr(far, "far_bodies", lambda *_: set())
+    monkeypatch.setattr(path, "far_bodies", lambda *_: set())
     assert clearance_stage.check(parts_of(pieces), motion, pieces, "0" * 64) == clearance
     assert clearance.apart > 0

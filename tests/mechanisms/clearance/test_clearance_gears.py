@@ -11,12 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mechanisms.stages.clearance.meshing import Gears, least_in_mesh
+from mechanisms.stages.clearance.outlines import least_gap
 from mechanisms.stages.clearance.path import BodyPath
-from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search.least import least_gap
-from mechanisms.stages.clearance.search.search import RESOLUTION, Least
-from mechanisms.stages.clearance.search.sweep import Sweep
-from mechanisms.stages.clearance.unions import order, turned_union
+from mechanisms.stages.clearance.pieces import MeshPiece, order, turned_union
+from mechanisms.stages.clearance.search import RESOLUTION, Least, Sweep
 from shared.shapes.involute import longest_tip, toothed
 
 PLAY = 0.12

@@ -9,13 +9,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from mechanisms.stages.clearance import outlines
+from mechanisms.stages.clearance.outlines import Outline, covers, least_by_outlines, nearest, outline
 from mechanisms.stages.clearance.path import BodyPath
 from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search import least
-from mechanisms.stages.clearance.search.outline import Outline, covers, outline
-from mechanisms.stages.clearance.search.outline_search import least_by_outlines, nearest
-from mechanisms.stages.clearance.search.search import RESOLUTION
-from mechanisms.stages.clearance.search.sweep import Sweep
+from mechanisms.stages.clearance.search import RESOLUTION, Sweep
 from tests.mechanisms.clearance.clearance_pieces import box, disc
 
 TIMES = np.linspace(0.0, 1.0, 37)
@@ -114,11 +112,11 @@ def test_what_outlines_tell_is_what_the_meshes_tell(seed: int, monkeypatch: pyte
     away = math.hypot(reach, 2.0) + math.hypot(14.0, 6.0) + rng.uniform(0.1, 1.0)
     paths = _turning(0, 0, rng.uniform(3, 7)), _turning(away, rng.uniform(-3, 3), rng.uniform(-7, 7), 1.0)
     pair = Sweep(star, plate, *paths)
-    told = least.least_gap(pair, 5.0)
+    told = outlines.least_gap(pair, 5.0)
     if told.gap < 3.0:  # of the collar over the plate
         assert least_by_outlines(pair, pair.gap_at(0.0, 5.0), 0.0, 1) is not None
-    monkeypatch.setattr(least, "least_by_outlines", lambda *_: None)
-    slow = least.least_gap(pair, 5.0)
+    monkeypatch.setattr(outlines, "least_by_outlines", lambda *_: None)
+    slow = outlines.least_gap(pair, 5.0)
     assert told.gap == pytest.approx(slow.gap, abs=RESOLUTION)
     for measured in (told, slow):
         assert measured.gap - RESOLUTION <= measured.proven <= measured.gap

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from mechanisms.stages.automatic.layout.sizes import of_pin
-from mechanisms.stages.clearance import distinct as distinct_file
-from mechanisms.stages.clearance.distinct import distinct
+from mechanisms.stages.clearance import pieces as distinct_file
+from mechanisms.stages.clearance.pieces import distinct
 from mechanisms.stages.clearance.turn import _bounds, _box_gap
 from mechanisms.stages.parts_files import TOLERANCE, read_triangles, stl_bytes
 from shared.shapes.fit import Fit

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
+from mechanisms.stages.clearance.outlines import least_gap
 from mechanisms.stages.clearance.path import paths
 from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search.least import least_gap
-from mechanisms.stages.clearance.search.sweep import Sweep
+from mechanisms.stages.clearance.search import Sweep
 from mechanisms.stages.clearance.slide import sliced, slide_gap, slides_of
 from mechanisms.stages.clearance.stage import check
 from mechanisms.stages.solve.motion_file import to_motion

@@ -9,9 +9,9 @@ import pytest
 from manifold3d import CrossSection
 
 from mbsd import Mechanism, constant_rate
-from mechanisms.stages.automatic.layout.profiles import curve_path
+from mechanisms.stages.automatic.layout.curves import curve_path
 from mechanisms.stages.clearance.pieces import MeshPiece
-from mechanisms.stages.clearance.search.search import Search
+from mechanisms.stages.clearance.search import Search
 from mechanisms.stages.clearance.stage import check
 from mechanisms.stages.solve.motion_file import to_motion
 from tests.mechanisms.clearance.clearance_pieces import disc, parts_of

@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate
-from mechanisms.stages.export.assembly import step, with_ordered_styles
-from mechanisms.stages.export.wanted import Wanted
-from mechanisms.stages.parts.described_body import described_body
+from mechanisms.stages.export.assembly import Wanted, step, with_ordered_styles
+from mechanisms.stages.parts.bodies import described_body
 from mechanisms.stages.solve.motion_file import to_motion
 from shared.contract import Parts, Provenance
 from shared.contract.materials import MATERIALS

@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
-from mechanisms.stages.export.fmu.unit import fmu
+from mechanisms.stages.export.fmu import fmu
 from shared.stage.paths import ROOT
 from tools.models import linkages
 

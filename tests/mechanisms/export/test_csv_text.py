@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from mbsd import Mechanism, constant_rate
 from mbsd.base.csv_text import FORMULA, csv_text, frame_csv
 from mechanisms.stages.export import stage as export
-from mechanisms.stages.export.wanted import Wanted
-from mechanisms.stages.print.lists import HEADER, Bought, table
+from mechanisms.stages.export.assembly import Wanted
+from mechanisms.stages.print.making import HEADER, Bought, table
 from shared.stage.paths import Out
 
 EVIL = '=HYPERLINK("http://elsewhere";A1)'

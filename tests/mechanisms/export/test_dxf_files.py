@@ -21,14 +21,14 @@ BOTH = """
 import cadquery
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.export import drawings
-from mechanisms.stages.print import outlines
+from mechanisms.stages.print import plates
 m = Mechanism("crank")
 crank = m.bar("crank", 0.05, mass=1.0)
 m.revolute("A", m.ground.at(0, 0), crank.start)
 m.drive_angle("motor", crank, constant_rate(1.0))
 print(drawings.dxf(m.sweep(steps=8), 0.0))
 cut = cadquery.Workplane().ellipse(20, 10).spline([(30, 0), (40, 5), (50, -3)]).circle(4).rect(80, 60)
-print(outlines.dxf(cut, 5.0).decode())
+print(plates.dxf(cut, 5.0).decode())
 """
 
 

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, polynomial
-from mechanisms.stages.export.fmu.unit import fmu
+from mechanisms.stages.export.fmu import fmu
 from shared.stage.errors import UserError
 from tests.mechanisms.export.unit_models import bouncing, driven, four_bar, geared, lifting, rubbing
 
@@ -341,7 +341,7 @@ def test_without_a_compiler_it_says_what_to_install(monkeypatch: pytest.MonkeyPa
 AGAIN = """
 import hashlib, sys
 from tests.mechanisms.export.unit_models import driven, geared
-from mechanisms.stages.export.fmu.unit import fmu
+from mechanisms.stages.export.fmu import fmu
 if sys.argv[1] == "other":
     fmu(geared().simulate(0.1, steps=5))
 print(hashlib.sha256(fmu(driven().simulate(1.0, steps=50))[0]).hexdigest())

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from mbsd import Mechanism, constant_rate, harmonic, polynomial
-from mechanisms.stages.export.modelica.classes import CLASSES
-from mechanisms.stages.export.modelica.identifiers import Identifiers
+from mechanisms.stages.export.modelica.document import CLASSES, Identifiers
 from mechanisms.stages.export.modelica.text import modelica
 from tests.mechanisms.export.modelica_file import UNKNOWN_UNITS, ModelicaFile, Moment
 from tests.mechanisms.export.test_robot_models import (

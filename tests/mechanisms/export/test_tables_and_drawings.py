@@ -15,8 +15,8 @@ from ezdxf.filemanagement import read
 from mbsd import Mechanism, constant_rate
 from mbsd.drawing.inks import body_inks
 from mechanisms.stages.export import stage
+from mechanisms.stages.export.assembly import Wanted
 from mechanisms.stages.export.drawings import dxf, svg
-from mechanisms.stages.export.wanted import Wanted
 from shared.stage.errors import UserError
 from shared.stage.paths import Out
 

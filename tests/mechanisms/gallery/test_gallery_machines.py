@@ -11,9 +11,9 @@ from scipy.integrate import solve_ivp
 from mechanisms.four_bar_motor import mechanism as motor
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.vibration_slider_crank import mechanism as vibration
-from render.crank import crank_of
+from render.magnitudes import crank_of
+from render.plots.pages.spectra import spectrum
 from render.plots.quantities import quantity
-from render.plots.spectrum import spectrum
 from shared.contract import Motion
 
 # -- the shaking slider-crank ----------------------------------------------------------------------------------------

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from mechanisms.stages.study import stage
-from mechanisms.stages.study.grid import grid_of
+from mechanisms.stages import study
+from mechanisms.stages.study import grid_of
 from shared.stage.errors import UserError
 
 
@@ -31,7 +31,7 @@ def test_ranges_and_lists_by_the_kind_of_the_field() -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ("", "say what to vary"),
+        ("", "name the fields to vary"),
         ("length", "is no part of a grid"),
         ("lenght=1", "did you mean 'length'"),
         ("length=0.1:0.2", "is no range"),
@@ -56,7 +56,7 @@ def test_the_table_agrees_with_the_motion_and_names_what_failed(
 ) -> None:
     monkeypatch.setenv("MBSD_OUT", str(tmp_path))
     monkeypatch.delenv("CLUSTER", raising=False)
-    stage.run("four_bar", "crank=0.03:0.05:2; rocker=0.09,0.02")
+    study.run("four_bar", "crank=0.03:0.05:2; rocker=0.09,0.02")
     table = pd.read_csv(tmp_path / "four_bar" / "study" / "study.csv")
     assert list(table["crank"]) == [0.03, 0.03, 0.05, 0.05]
     assert list(table["reason"].isna()) == [True, False, True, False]
@@ -84,7 +84,7 @@ def test_a_study_without_a_good_point_fails_and_keeps_its_table(
         pytest.warns(match="all 2 points failed"),
         pytest.raises(UserError, match=r"all 2 points failed.*do not close"),
     ):
-        stage.run("four_bar", "rocker=0.02,0.01")
+        study.run("four_bar", "rocker=0.02,0.01")
     assert len(pd.read_csv(tmp_path / "four_bar" / "study" / "study.csv")["reason"].dropna()) == 2
     said = capsys.readouterr().out
     assert "not at rocker 0.02: " in said

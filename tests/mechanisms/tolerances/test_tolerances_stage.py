@@ -16,10 +16,9 @@ from mbsd import Clearance, tolerances
 from mbsd.measures import largest, samples
 from mechanisms.slider_crank import tolerances as author
 from mechanisms.slider_crank.mechanism import Params, build
+from mechanisms.stages import tolerances as tolerances_stage
 from mechanisms.stages.solve.masses import give_masses
-from mechanisms.stages.tolerances import stage
-from mechanisms.stages.tolerances.asked import asked
-from mechanisms.stages.tolerances.summary import advice
+from mechanisms.stages.tolerances import advice, wished_results
 from shared.stage.errors import UserError
 from tests.studio.command.test_own_folder import mbsd
 
@@ -68,7 +67,7 @@ def test_a_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(UserError, match=r"slider_crank-offset: cannot write .*\.csv: No space left on device"):
-        stage.run("slider_crank-offset")
+        tolerances_stage.run("slider_crank-offset")
     assert [path.name for path in (tmp_path / "slider_crank-offset").iterdir()] == ["tolerances"]
     assert not list((tmp_path / "slider_crank-offset" / "tolerances").iterdir())
 
@@ -77,7 +76,7 @@ def test_the_example_of_the_gallery_is_what_the_library_finds(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("MBSD_OUT", str(tmp_path))
-    stage.run("slider_crank-offset")
+    tolerances_stage.run("slider_crank-offset")
     folder = tmp_path / "slider_crank-offset" / "tolerances"
     assert sorted(file.name for file in folder.iterdir()) == ["end_of_stroke.csv", "end_of_stroke.svg", "summary.md"]
     m = build(Params(offset=0.020))
@@ -95,10 +94,10 @@ def test_the_example_of_the_gallery_is_what_the_library_finds(
     assert f"tighten '{t.tighten[0].name}' first" in said
     assert "nothing to do" not in said
     before = (folder / "end_of_stroke.svg").read_bytes()
-    stage.run("slider_crank-offset")
+    tolerances_stage.run("slider_crank-offset")
     assert "nothing to do" in capsys.readouterr().out
     (folder / "end_of_stroke.svg").write_text("cut short")
-    stage.run("slider_crank-offset")
+    tolerances_stage.run("slider_crank-offset")
     assert (folder / "end_of_stroke.svg").read_bytes() == before
 
 
@@ -155,18 +154,18 @@ def test_bad_input_is_refused_before_any_result_is_found(
     m = build(Params())
     give_masses(m, None)
     with pytest.raises(UserError, match=rf"mechanisms/slider_crank/tolerances\.py: .*{said}"):
-        asked("slider_crank", m, Params())
+        wished_results("slider_crank", m, Params())
 
 
 def test_a_function_of_other_arguments_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(author, "tolerances", lambda p, more: {"far": GOOD})
     with pytest.raises(UserError, match=r"tolerances\.py: .*\(p, more\) is called with 1 argument: missing a required"):
-        asked("slider_crank", build(Params()), Params())
+        wished_results("slider_crank", build(Params()), Params())
 
 
 def test_a_mechanism_without_one_says_what_to_write() -> None:
     with pytest.raises(UserError, match=r"four_bar/tolerances\.py is missing; write def tolerances"):
-        stage.run("four_bar")
+        tolerances_stage.run("four_bar")
 
 
 def test_advice_knows_when_there_is_nothing_to_tighten() -> None:
@@ -185,11 +184,11 @@ def test_the_duration_of_mechanism_py_holds_where_nothing_else_is_said(monkeypat
     monkeypatch.setattr(mechanism, "DURATION", 0.25, raising=False)
     m = build(Params())
     give_masses(m, None)
-    t = asked("slider_crank", m, Params())["end_of_stroke"]()
+    t = wished_results("slider_crank", m, Params())["end_of_stroke"]()
     assert t.nominal == pytest.approx(0.16)
     monkeypatch.setattr(mechanism, "DURATION", -1.0)
     with pytest.raises(UserError, match=r"'end_of_stroke': slider_crank: duration is -1"):
-        asked("slider_crank", m, Params())
+        wished_results("slider_crank", m, Params())
 
 
 def test_what_takes_long_says_how_far_it_is(
@@ -199,7 +198,7 @@ def test_what_takes_long_says_how_far_it_is(
     monkeypatch.setattr("shared.stage.console.SHORTEST", 0.0)
     m = build(Params())
     give_masses(m, None)
-    asked("slider_crank", m, Params())["far"]()
+    wished_results("slider_crank", m, Params())["far"]()
     said = capsys.readouterr().out
     parts = [int(part) for part in re.findall(r"far: (\d+) of 100 per cent of its machines", said)]
     assert parts == sorted(parts)

@@ -12,15 +12,13 @@ import pytest
 from PIL import Image
 
 from render.blender.scene.arrows import sizes
-from render.film.arrows.arrows import FULL, Arrows
-from render.film.arrows.scales import LONGEST, TINY, round_below, scales_of
-from render.film.arrows.vectors import Vector, at_time, vectors
+from render.film.arrows import FULL, Arrows
 from render.film.framing import project
 from render.film.inputs import named, read_film
 from render.film.scene import ArrowSpec
+from render.film.vectors import LONGEST, TINY, Vector, at_time, round_below, scales_of, vectors
 from render.frames import still
-from render.presets import Preset
-from render.shown import WORDS, show_words
+from render.presets import WORDS, Preset, show_words
 from shared.contract.quantity import written
 from shared.contract.shot import Quantity, Shot, Title, shown
 from shared.contract.signals import SIGNALS, rgb
@@ -84,12 +82,12 @@ def test_at_an_impact_the_later_row_counts_and_nothing_is_blended_across_it():
 def test_the_largest_has_the_full_length_and_tiny_ones_are_left_out():
     made = Arrows(TIME, [steady(50.0), steady(5.0), steady(0.5 * TINY * 50.0)], size=0.4)
     assert [vector.size[0] for vector in made.vectors] == [50.0, 5.0]
-    (tail, tip), (_, second) = made.at(0.5, [0.01, 0.02])
+    (tail, tip), (_, second) = made.ends_at(0.5, [0.01, 0.02])
     assert tail == (0.0, 0.0, 0.01)
     assert tip == pytest.approx((FULL * 0.4, 0.0, 0.01))
     assert second == pytest.approx((FULL * 0.04, 0.0, 0.02))
     fading = Arrows(TIME, [steady(100.0 * (1 - TIME))], size=1.0)
-    (tail, tip) = fading.at(0.999, [0.0])[0]
+    (tail, tip) = fading.ends_at(0.999, [0.0])[0]
     assert tail == tip
     assert fading.tips([0.0])[0][0] == pytest.approx([FULL, 0.0, 0.0])
 
@@ -97,8 +95,8 @@ def test_the_largest_has_the_full_length_and_tiny_ones_are_left_out():
 def test_a_short_peak_is_cut_and_the_legend_says_so():
     pulse = np.where(np.abs(TIME - 0.5) < 0.006, 300.0, 10.0)
     made = Arrows(TIME, [steady(pulse)], size=1.0)
-    assert made.at(0.5, [0.0])[0][1][0] == pytest.approx(FULL * LONGEST)
-    assert made.at(0.2, [0.0])[0][1][0] == pytest.approx(FULL * 10.0 / made.scales["N"].largest)
+    assert made.ends_at(0.5, [0.0])[0][1][0] == pytest.approx(FULL * LONGEST)
+    assert made.ends_at(0.2, [0.0])[0][1][0] == pytest.approx(FULL * 10.0 / made.scales["N"].largest)
     row = made.legend(2.0)[0]
     assert row.words == "forces, peaks cut"
     assert row.length == pytest.approx(FULL * made.scales["N"].reference / made.scales["N"].largest / 2.0)

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.wheels.pulley_solids import sprocket_outline
 from mechanisms.stages.automatic.wheels.pulleys import Belt as Strands
-from mechanisms.stages.automatic.wheels.pulleys import Pulley
+from mechanisms.stages.automatic.wheels.pulleys import Pulley, sprocket_outline
 from mechanisms.stages.solve.motion_file import to_motion
 from render.film.poses import Moment, Poses
 from render.film.tubes.belts import Belt, belts

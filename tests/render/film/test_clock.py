@@ -11,7 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from render.blender.scene.trail import CAP, SIDES, vertices
+from render.blender.scene.tubes import CAP
+from render.blender.scene.tubes import TRAIL_SIDES as SIDES
+from render.blender.scene.tubes import trail_vertices as vertices
 from render.film.clock import LONGEST, SHORTEST, Clock, natural_rate, speed, turns_of
 from render.film.film import Film
 from render.film.poses import Poses

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from render.film.composing import following
+from render.film import composing
 from render.film.film import Film
 from render.film.framing import project
 from shared.contract import Mount, mounted, read_motion, read_parts
@@ -33,26 +33,26 @@ def test_what_travels_and_what_does_not():
     round_trip = along(np.sin(np.pi * TIME) * 2, still)
     orbiting = along(np.cos(2 * np.pi * TIME), np.sin(2 * np.pi * TIME))
     swinging = np.concatenate([along(2 * TIME, still), along(still, still)], axis=1)  # its pivot stays
-    assert following.travels(car, False)
-    assert following.travels(thrown, False)
+    assert composing.travels(car, False)
+    assert composing.travels(thrown, False)
     for places in (slow, round_trip, orbiting, swinging):
-        assert not following.travels(places, False)
-    assert not following.travels(car, True)
+        assert not composing.travels(places, False)
+    assert not composing.travels(car, True)
 
 
 @given(st.integers(0, 10**6), st.floats(1.0, 20.0))
 def test_the_way_is_smooth_stays_within_what_it_follows_and_closes_where_the_film_does(seed: int, width: float):
     values = np.random.default_rng(seed).normal(size=(80, 3)).cumsum(axis=0)
-    held, closed = (following.damped(values, width, repeats) for repeats in (False, True))
+    held, closed = (composing.damped(values, width, repeats) for repeats in (False, True))
     for way in (held, closed):
         assert (way >= values.min(axis=0) - 1e-12).all()
         assert (way <= values.max(axis=0) + 1e-12).all()
-    turned = following.damped(np.roll(values, 17, axis=0), width, True)
+    turned = composing.damped(np.roll(values, 17, axis=0), width, True)
     assert turned == pytest.approx(np.roll(closed, 17, axis=0))
     steps = np.abs(np.diff(values, axis=0)).max()
     assert np.abs(np.diff(held, axis=0)).max() <= steps + 1e-12
     even = np.outer(np.arange(200.0), [1.0, 2.0, 3.0])  # what goes evenly is followed without a lag
-    assert following.damped(even, width, False)[90:110] == pytest.approx(even[90:110])
+    assert composing.damped(even, width, False)[90:110] == pytest.approx(even[90:110])
 
 
 def travelling(out_root: Path, mount: Mount, follow: bool | None = None) -> Film:

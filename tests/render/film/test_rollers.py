@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from mechanisms.geneva_drive.mechanism import Params, build
 from mechanisms.stages.solve.motion_file import to_motion
 from render.film.film import Film
-from render.film.rolling.rollers import turned
+from render.film.rollers import turned
 from render.glb.build import glb
 from shared.contract import (
     BodyMotion,

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from render.film.composing import room
+from render.film import composing
 from render.film.film import Film
 from render.film.framing import NEAREST, SENSOR, CameraPose, axes, depth_of_field, fit, project
 from render.film.solids import prism, read_corners, swept
@@ -59,7 +59,7 @@ def test_every_body_that_moves_stays_in_the_frame_over_the_whole_film_and_fills_
     out_root: Path, orbit: float, above: float, mount: Mount, shape: tuple[int, int], monkeypatch: pytest.MonkeyPatch
 ):
     """Within what stays empty ``above`` and below, where something is written. The base may leave it."""
-    monkeypatch.setattr(room, "PARTS", (above,))
+    monkeypatch.setattr(composing, "PARTS", (above,))
     shot = Shot(camera=Camera(orbit=orbit, margin=0.08), seconds_per_turn=1.0, title=Title())
     out = film_fixture.write(shot, mount=mount)
     film = Film(read_motion(out.motion), read_parts(out.parts), shot, out.parts_folder, shape[0] / shape[1])

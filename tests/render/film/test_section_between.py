@@ -28,10 +28,10 @@ from tests.render.glb_file import GlbFile
 PASSES = """
 import json
 import bpy, bmesh
-from render.blender.scene import passing, tubes
+from render.blender.scene import cut, tubes
 from render.film.framing import CameraPose
 from render.film.scene import Scene, State, StudioSpec, SurfaceSpec, TubeSpec
-from render.looks.studio import STUDIO
+from render.looks import STUDIO
 surface = SurfaceSpec(colour=(0.5, 0.5, 0.5), finish="plastic", roughness=0.5)
 planes = ((0.0, 0.0, 1.0, 0.0), (1.0, 0.0, 0.0, 0.05))
 specs = [TubeSpec(name=name, surface=surface, radius=0.01, points=2, cut=planes) for name in ("rod", "aside")]
@@ -42,11 +42,11 @@ rows = [[(0.0, y, z), (0.1, y, z)] for y, z in ((0.0, 0.0), (0.3, 0.0), (0.0, 0.
 camera = CameraPose(position=(0.0, 0.0, 1.0), azimuth=0.0, elevation=1.0, lens=50.0, focus=1.0, fstop=10.0)
 states = [State(bodies={}, trails=[], labels=[], camera=camera, tubes=[row, aside]) for row in rows]
 scene = bpy.context.scene
-things = [tubes.build(scene, each, 0.2) for each in specs]
-passing.cut_tubes(scene, spec, states, things, painted=True)
+things = [tubes.build_tube(scene, each, 0.2) for each in specs]
+cut.cut_tubes(scene, spec, states, things, painted=True)
 seen = []
 for row in rows:
-    tubes.place(things[0], row, 0.01)
+    tubes.place_tube(things[0], row, 0.01)
     bpy.context.view_layer.update()
     left = things[0].evaluated_get(bpy.context.evaluated_depsgraph_get())
     made = bmesh.new()

@@ -23,9 +23,9 @@ from tools.fixtures import film_fixture
 PASSES = """
 import json, math
 import bpy, bmesh
-from render.blender.scene.passing import cut_in_passing
+from render.blender.scene.cut import cut_in_passing
 from render.film.scene import PieceSpec, Scene, StudioSpec, SurfaceSpec
-from render.looks.studio import STUDIO
+from render.looks import STUDIO
 scene = bpy.context.scene
 mesh = bpy.data.meshes.new("solid")
 made = bmesh.new()

@@ -11,11 +11,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from render.blender.scene.tubes import vertices
+from render.blender.scene.tubes import tube_vertices as vertices
 from render.film.film import Film
 from render.film.framing import project
-from render.film.markers import moved
-from render.film.poses import Moment, Poses
+from render.film.poses import Moment, Poses, moved
 from render.film.tubes.spirals import APART, HUB, RIM, Site, Spiral, spirals
 from shared.contract import Action, ForceMotion, Motion, Shape, read_motion, read_parts
 from shared.contract.shot import Shot

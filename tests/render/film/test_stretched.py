@@ -8,11 +8,12 @@ import msgspec
 import numpy as np
 import pytest
 
-from render.blender.scene.tubes import SIDES, vertices
+from render.blender.scene.tubes import SIDES
+from render.blender.scene.tubes import tube_vertices as vertices
 from render.film.film import Film
 from render.film.poses import Moment
 from render.film.tubes.stretched import HOOK, cylinder_tubes, helix, placed, sagging
-from render.frames.keys import scene_key
+from render.frames.frames import scene_key
 from render.presets import PRESETS
 from shared.contract import Action, ContactMotion, ForceMotion, Motion, Shape, read_motion, read_parts
 from shared.contract.shot import Shot, read_shot

@@ -12,17 +12,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from render.blender.scene.arcs import FRONT, RINGS, SIDES, faces, vertices
-from render.blender.worker import overlay
-from render.film.arrows import writing
-from render.film.arrows.arcs import APART, FULL_TURN, RADIUS, Arcs
-from render.film.arrows.scales import LONGEST, TINY
-from render.film.arrows.torques import Torque, rounding, torques
-from render.film.arrows.vectors import vectors
-from render.film.composing import layout
+from render.blender.scene.arrows import ARC_SIDES as SIDES
+from render.blender.scene.arrows import FRONT, RINGS
+from render.blender.scene.arrows import arc_faces as faces
+from render.blender.scene.arrows import arc_vertices as vertices
+from render.blender.worker import words
+from render.film import arrows, composing
+from render.film.arrows import APART, FULL_TURN, RADIUS, Arcs
 from render.film.framing import project
 from render.film.inputs import read_film
 from render.film.scene import ArcSpec, LegendRow, Writing
+from render.film.vectors import LONGEST, TINY, Torque, rounding, torques, vectors
 from render.frames import still
 from render.presets import ASPECT, Preset
 from shared.contract import Action, Acts, DriverMotion, ForceMotion, Motion
@@ -103,7 +103,7 @@ def test_a_guide_has_a_torque_and_what_acts_beside_its_marker_the_torque_there()
 def test_the_largest_has_the_full_sweep_tiny_ones_and_rounding_are_left_out():
     made = Arcs(TIME, [steady(-50.0), steady(5.0, at=(1, 0)), steady(0.4 * TINY * 50.0)], size=0.4)
     assert [torque.value[0] for torque in made.torques] == [-50.0, 5.0]
-    assert [sweep for _, sweep in made.at(0.5, [0.01, 0.02])] == pytest.approx([-FULL_TURN, FULL_TURN / 10])
+    assert [sweep for _, sweep in made.sweeps_at(0.5, [0.01, 0.02])] == pytest.approx([-FULL_TURN, FULL_TURN / 10])
     assert [row.number for row in made.legend()] == ["20 N m"]
     assert made.legend()[0].sweep == pytest.approx(FULL_TURN * 20 / 50)
     forces = vectors(four_bar_motion(), ("forces", "reactions"))
@@ -111,13 +111,13 @@ def test_the_largest_has_the_full_sweep_tiny_ones_and_rounding_are_left_out():
     assert 0 < least < 1e-8
     assert Arcs(TIME, [steady(0.5 * least)], 0.3, least).specs() == []
     fading = Arcs(TIME, [steady(100.0 * (1 - TIME))], size=1.0)
-    assert fading.at(0.999, [0.0])[0][1] == 0.0
+    assert fading.sweeps_at(0.999, [0.0])[0][1] == 0.0
 
 
 def test_a_short_peak_is_cut_and_no_arc_meets_its_own_tail():
     pulse = np.where(np.abs(TIME - 0.5) < 0.006, 300.0, 10.0)
     made = Arcs(TIME, [steady(pulse, "reactions")], size=1.0)
-    assert made.at(0.5, [0.0])[0][1] == pytest.approx(FULL_TURN * LONGEST)
+    assert made.sweeps_at(0.5, [0.0])[0][1] == pytest.approx(FULL_TURN * LONGEST)
     assert 1.8 * np.pi > FULL_TURN * LONGEST
     assert made.legend()[0].words == "torques of joints, peaks cut"
 
@@ -159,8 +159,8 @@ def test_the_legend_shows_how_far_an_arc_reaches(tmp_path: Path):
     for sweep in (0.5 * np.pi, np.pi):
         Image.new("RGB", (640, 360), (40, 40, 40)).save(path)
         row = LegendRow(number="5 N m", words="torques", colour=TORQUE, sweep=sweep)
-        card = layout.cards([row], layout.box_of([]), ASPECT)["lower right"]
-        overlay.lay(path, None, Writing(legend=[row], card=card), "")
+        card = composing.cards([row], composing.box_of([]), ASPECT)["lower right"]
+        words.lay(path, None, Writing(legend=[row], card=card), "")
         orange = np.abs(np.asarray(Image.open(path)) - 255 * np.array(TORQUE)).sum(axis=2) < 40
         seen.append(int(orange.sum()))
     assert 12 < seen[0] < 0.75 * seen[1]
@@ -169,10 +169,10 @@ def test_the_legend_shows_how_far_an_arc_reaches(tmp_path: Path):
 def test_the_number_beside_the_title_is_of_what_acts_where_the_drivers_give_nothing():
     shot = Shot(title=Title())
     idle = with_driver(four_bar_motion(), kind="any", effort=[0.0] * 361)
-    assert writing.number(idle, shot)(0.0).startswith("lift")
+    assert arrows.number(idle, shot)(0.0).startswith("lift")
     acting = with_force(idle, 0.3, ("rocker",), True)
-    assert writing.number(acting, shot)(0.0) == "spring  300 mN m"
-    assert writing.number(with_force(four_bar_motion(), 0.3, ("rocker",), True), shot)(0.0).startswith("motor")
+    assert arrows.number(acting, shot)(0.0) == "spring  300 mN m"
+    assert arrows.number(with_force(four_bar_motion(), 0.3, ("rocker",), True), shot)(0.0).startswith("motor")
 
 
 def test_an_arc_is_drawn_where_it_is(out_root: Path):

@@ -10,10 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image, ImageFilter
 
-from render.blender.worker import overlay, words
-from render.film.arrows import writing
+from render.blender.worker import words
+from render.film import arrows, composing
 from render.film.clock import Clock
-from render.film.composing import layout, room
 from render.film.framing import axes, half_field, project
 from render.film.inputs import read_film
 from render.film.scene import ARC, LegendRow, Writing
@@ -31,22 +30,22 @@ FORCE = rgb(SIGNALS["forces"].dark)
 def test_titles_and_numbers_that_live():
     motion = four_bar_motion()
     shot = Shot(title=Title(), seconds_per_turn=4.0)
-    assert writing.title(motion, shot) == "Four bar"
-    assert writing.rate(Clock(motion, shot), shot) == "4 times slower"
-    assert writing.rate(Clock(motion, Shot(seconds_per_turn=4.0)), Shot()) == ""
+    assert arrows.title(motion, shot) == "Four bar"
+    assert arrows.rate(Clock(motion, shot), shot) == "4 times slower"
+    assert arrows.rate(Clock(motion, Shot(seconds_per_turn=4.0)), Shot()) == ""
     effort = motion.drivers["motor"].effort
-    said = writing.number(motion, shot)(motion.time[90])
+    said = arrows.number(motion, shot)(motion.time[90])
     assert said.startswith("motor  ")
     assert float(said.split()[1].replace("−", "-")) == pytest.approx(1000 * effort[90], abs=0.051)
     assert said.endswith(" mN m")
     point, at = motion.points["P"], motion.time[33]
     speed = float(np.hypot(point.vx[33], point.vy[33]))
-    words = writing.number(motion, Shot(title=Title(number="P")))(at).split()
+    words = arrows.number(motion, Shot(title=Title(number="P")))(at).split()
     assert words[2] == "mm/s"
     assert words[4] == "km/h"
     assert float(words[1]) == pytest.approx(1000 * speed, abs=1)
     assert float(words[3]) == pytest.approx(3.6 * speed, abs=1e-2)
-    assert writing.number(motion, Shot())(0.0) == ""
+    assert arrows.number(motion, Shot())(0.0) == ""
     with pytest.raises(UserError, match="motor"):
         refuse_unknown(Shot(title=Title(number="moto")), Names("four_bar", (), ("P",), {}, ("motor",)))
 
@@ -63,12 +62,12 @@ def test_the_legend_keeps_clear_of_what_moves_and_then_of_what_stands(out_root: 
 
     left, right = seen_at(0.1, 0.9), seen_at(0.9, 0.9)
     assert project(camera, right, 100, 100 * 9 / 16)[0] == pytest.approx([90, 90 * 9 / 16])
-    empty = layout.box_of([])
-    small = layout.cards([LegendRow(number="5 N", words="forces", colour=(0, 0, 0), length=0.1)], empty, ASPECT)
-    places = {corner: layout.in_picture(layout.around(card), ASPECT) for corner, card in small.items()}
+    empty = composing.box_of([])
+    small = composing.cards([LegendRow(number="5 N", words="forces", colour=(0, 0, 0), length=0.1)], empty, ASPECT)
+    places = {corner: composing.in_picture(composing.around(card), ASPECT) for corner, card in small.items()}
 
     def chosen(moving: np.ndarray, standing: np.ndarray) -> str:
-        return room.emptiest([camera], moving, standing, places)
+        return composing.emptiest([camera], moving, standing, places)
 
     assert chosen(none, none) == "lower left"
     assert chosen(left, none) == "lower right"
@@ -81,19 +80,19 @@ def test_the_legend_keeps_clear_of_what_moves_and_then_of_what_stands(out_root: 
 def test_the_rate_of_a_simulation_that_is_not_in_real_time_is_always_told():
     motion = bouncing_ball()
     slow = Shot(rate=0.05)
-    assert writing.rate(Clock(motion, slow), slow) == "20 times slower"
-    assert writing.rate(Clock(motion, Shot(rate=1.0)), Shot(rate=1.0)) == ""
+    assert arrows.rate(Clock(motion, slow), slow) == "20 times slower"
+    assert arrows.rate(Clock(motion, Shot(rate=1.0)), Shot(rate=1.0)) == ""
 
 
 def test_the_overlay_writes_its_legend_onto_its_card_alone(tmp_path: Path):
     path = tmp_path / "p.png"
     Image.new("RGB", (320, 180), (40, 40, 40)).save(path)
     before = path.read_bytes()
-    overlay.lay(path, None, Writing(), "")
+    words.lay(path, None, Writing(), "")
     assert path.read_bytes() == before
     row = LegendRow(number="5 N", words="forces", colour=FORCE, length=0.1, point=0.03)
-    card = layout.cards([row], layout.box_of([]), ASPECT)["lower right"]
-    overlay.lay(path, None, Writing(legend=[row], card=card), "")
+    card = composing.cards([row], composing.box_of([]), ASPECT)["lower right"]
+    words.lay(path, None, Writing(legend=[row], card=card), "")
     pixels = np.asarray(Image.open(path)).astype(int)
     rows, columns = np.nonzero(np.abs(pixels - 40).sum(axis=2) > 6)
     assert rows.min() >= 180 * card.top - 1
@@ -123,22 +122,22 @@ def test_words_and_legend_neither_overlap_nor_leave_a_picture_of_any_shape(
     shape: tuple[int, int], title: str, numbers: list[str], rate: str, rows: list[LegendRow]
 ):
     aspect = shape[0] / shape[1]
-    wide, high = layout.sides(aspect)
-    lines = layout.lines(title, numbers, rate, aspect)
+    wide, high = composing.sides(aspect)
+    lines = composing.lines(title, numbers, rate, aspect)
     below = 0.0
     for line in lines:
         words = [line.words] if line.words else numbers
-        assert all(line.x + line.size * width_of(word, line.bold) <= wide - layout.EDGE + 1e-9 for word in words)
+        assert all(line.x + line.size * width_of(word, line.bold) <= wide - composing.EDGE + 1e-9 for word in words)
         assert line.y >= below
         below = line.y + 1.2 * line.size
     assert below <= high / 2
     assert " ".join(line.words for line in lines if line.bold) == title
-    for card in layout.cards(rows, layout.box_of(lines), aspect).values():
+    for card in composing.cards(rows, composing.box_of(lines), aspect).values():
         right, lower = card.left + card.wide, card.top + card.high
-        assert card.left >= layout.EDGE / 2
-        assert right <= wide - layout.EDGE / 2
-        assert card.top >= layout.EDGE / 2
-        assert lower <= high - layout.EDGE / 2
+        assert card.left >= composing.EDGE / 2
+        assert right <= wide - composing.EDGE / 2
+        assert card.top >= composing.EDGE / 2
+        assert lower <= high - composing.EDGE / 2
         for line in lines:
             assert card.left >= line.x + line.width or card.top >= line.y + line.size
         for row in rows:
@@ -174,7 +173,7 @@ def test_words_have_a_contrast_of_four_and_a_half_to_whatever_is_behind_them(
 ):
     """Measured where a letter hides nothing any more: three pixels beside those that have its ink alone."""
     number = "motor  −0.0143 N m"
-    lines = layout.lines("Four bar", [number], "4 times slower", shape[0] / shape[1])
+    lines = composing.lines("Four bar", [number], "4 times slower", shape[0] / shape[1])
     page = Image.new("RGB", shape, behind)
     words.lay_words(page, Writing(lines=lines, on_bright=dark), number)
     pixels = np.asarray(page).astype(int)
@@ -203,14 +202,14 @@ def test_a_title_makes_room_for_itself_and_nothing_moves_under_it(out_root: Path
         close = Camera(elevation=elevation, margin=0.01)
         out = film_fixture.write(Shot(seconds_per_turn=0.4, camera=close))
         film, plain = read_film(out, "velocities,title"), read_film(out, "velocities")
-        writing, moving = film.scene.writing, film._seen_moving
-        title = layout.in_picture(layout.box_of(writing.lines), ASPECT)
-        assert writing.lines[0].words == "Four bar"
-        assert (room.held(plain.camera(0), moving, title) > 0) == in_the_way
-        assert room.held(film.camera(0), moving, title) == 0
-        assert writing.card is not None
-        legend = layout.in_picture(layout.around(writing.card), ASPECT)
-        assert room.held(film.camera(0), moving, legend) == 0
+        arrows, moving = film.scene.writing, film._seen_moving
+        title = composing.in_picture(composing.box_of(arrows.lines), ASPECT)
+        assert arrows.lines[0].words == "Four bar"
+        assert (composing.count_held(plain.camera(0), moving, title) > 0) == in_the_way
+        assert composing.count_held(film.camera(0), moving, title) == 0
+        assert arrows.card is not None
+        legend = composing.in_picture(composing.around(arrows.card), ASPECT)
+        assert composing.count_held(film.camera(0), moving, legend) == 0
         if in_the_way:
             assert film.camera(0) != plain.camera(0)
         pixels = project(film.camera(0), film.space.machine, 1600, 900)

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from render.blender import child, memory
+from render.blender import child
 from render.blender.job import Job, Picture
-from render.blender.patience import FLOOR, START, Patience
+from render.blender.process import FLOOR, START, Patience
 from render.film.scene import Scene, StudioSpec
-from render.looks.looks import LOOKS
+from render.looks import LOOKS
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
 from tests.running.processes import working_for
@@ -114,10 +114,10 @@ def test_a_worker_that_grows_at_its_end_is_not_started_again(acts, capsys: pytes
 
 
 def test_memory_may_double_where_there_is_little_and_not_where_there_is_much():
-    assert memory.limit(100e6) > 2 * 100e6
-    assert memory.limit(5e9) < 2 * 5e9
-    assert memory.resident(2**22 + 1) == 0.0
-    assert memory.resident(os.getpid()) > 1e6
+    assert child.limit(100e6) > 2 * 100e6
+    assert child.limit(5e9) < 2 * 5e9
+    assert child.resident(2**22 + 1) == 0.0
+    assert child.resident(os.getpid()) > 1e6
 
 
 def test_patience_follows_what_a_picture_takes(monkeypatch: pytest.MonkeyPatch):

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from render.frames import encode
-from render.frames.film_file import refuse_other_than
+from render.frames.encode import refuse_other_than
 from render.presets import Preset
 from shared.stage.errors import UserError
 

@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from render.frames import encode, film, frames, muxing
+from render.frames import encode, film, frames
 from render.presets import Preset
 from shared.contract.shot import Shot, Sound, write_shot
 from shared.stage.errors import UserError
@@ -110,7 +110,7 @@ def test_a_film_that_is_killed_while_it_is_muxed_goes_on_there(
     slow = tmp_path / "ffmpeg"
     slow.write_text('#!/bin/sh\nfor last; do :; done\necho part > "$last"\necho muxing >&2\nexec sleep 3\n')
     slow.chmod(0o755)
-    code = f"from render.frames import film, muxing; muxing.ffmpeg = lambda: {str(slow)!r}; "
+    code = f"from render.frames import encode, film; encode.ffmpeg = lambda: {str(slow)!r}; "
     code += "from render.presets import Preset; film.run('four_bar', Preset('tiny', 96, 54, 2))"
     with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.DEVNULL) as process:
         end = time.monotonic() + 60
@@ -129,7 +129,7 @@ def test_a_film_that_is_killed_while_it_is_muxed_goes_on_there(
 def test_a_mux_that_fails_leaves_the_film_that_was_there(made: Out, monkeypatch: pytest.MonkeyPatch):
     target = made.film("tiny")
     silent = target.read_bytes()
-    monkeypatch.setattr(muxing, "SETTINGS", ("-c:a", "no_such_encoder"))
+    monkeypatch.setattr(encode, "SETTINGS", ("-c:a", "no_such_encoder"))
     with pytest.raises(UserError, match=r"four_bar-tiny\.mp4: ffmpeg could not join pictures and sound: .*SOUND=off"):
         film.run("four_bar", TINY)
     assert target.read_bytes() == silent

@@ -16,8 +16,8 @@ import pytest
 from PIL import Image
 
 from render.blender.picture_file import fault, name_of
-from render.blender.scratch import scratch_folder, sweep
-from render.blender.worker.libraries import missing_library
+from render.blender.process import scratch_folder, sweep
+from render.blender.worker.worker import missing_library
 from render.frames import blend, frames, still
 from render.frames.store import FrameStore, Timing
 from render.presets import PRESETS, Preset
@@ -166,7 +166,7 @@ def test_unfinished_files_are_swept(tmp_path: Path):
 
 
 def test_scratch_folders_of_dead_processes_are_swept(tmp_path: Path):
-    code = "import sys, os, pathlib; from render.blender.scratch import scratch_folder\n"
+    code = "import sys, os, pathlib; from render.blender.process import scratch_folder\n"
     code += "with scratch_folder(pathlib.Path(sys.argv[1])): os._exit(0)"
     subprocess.run([sys.executable, "-c", code, str(tmp_path)], cwd=ROOT, check=True)
     assert len(list(tmp_path.iterdir())) == 1

@@ -14,7 +14,7 @@ import pytest
 
 from render.blender.picture_file import fault
 from render.frames import blend, film, frames, still
-from render.frames.film_file import refuse_other_than
+from render.frames.encode import refuse_other_than
 from render.presets import Preset
 from shared.contract.shot import Shot
 from shared.stage.errors import UserError

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image, PngImagePlugin
 
-from render.blender.worker.plain_png import make_plain, without_notes
+from render.blender.picture_file import make_plain, without_notes
 
 
 def picture(words: str, seed: int = 0) -> bytes:

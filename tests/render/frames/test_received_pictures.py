@@ -14,11 +14,9 @@ import pytest
 from PIL import Image
 
 from mbsd.dealing.wrong_answer import WrongAnswer
-from render.blender.picture_file import name_of
-from render.blender.received_picture import fault_of, most_bytes
-from render.blender.worker.plain_png import SIGNATURE, without_notes
-from render.frames import on_cluster
-from render.frames.served import Made
+from render.blender.picture_file import SIGNATURE, fault_of, most_bytes, name_of, without_notes
+from render.frames import cluster
+from render.frames.cluster import Made
 from render.frames.store import FrameStore
 from shared.stage.errors import UserError
 
@@ -72,7 +70,7 @@ RUBBISH = {
 
 def reader() -> Any:
     job = SimpleNamespace(width=WIDTH, height=HEIGHT, pictures=[SimpleNamespace(key=KEY, name="frame 3")])
-    return on_cluster.reader(job)  # pyright: ignore[reportArgumentType]
+    return cluster.reader(job)  # pyright: ignore[reportArgumentType]
 
 
 def sent(content: bytes, name: str = "", cycles: float = 0.5, device: str = "CPU") -> bytes:
@@ -120,9 +118,9 @@ def test_rubbish_that_is_in_the_folder_already_is_missed(kind: str, tmp_path: Pa
     """The same command makes it again, where it said that there was nothing to do."""
     content, size = RUBBISH[kind], (WIDTH, HEIGHT)
     name = name_of(KEY, content)
-    FrameStore(tmp_path).put(name, content)
+    FrameStore(tmp_path).keep(name, content)
     assert FrameStore(tmp_path, size).read(name) is None
     assert FrameStore(tmp_path, size).find(KEY) is None
     assert not (tmp_path / name).exists()
     with pytest.raises(UserError, match="came damaged"):
-        FrameStore(tmp_path, size).put(name, content)
+        FrameStore(tmp_path, size).keep(name, content)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from render.blender.worker.saved import save_whole
+from render.blender.worker.picture import save_whole
 from shared.stage.errors import UserError
 
 
@@ -22,7 +22,7 @@ def test_an_error_of_blender_is_tried_again_and_then_told(tmp_path: Path) -> Non
         calls.append(path)
         raise RuntimeError("Error: No space left on device\n")
 
-    with pytest.raises(UserError, match=r"scene\.blend: what Blender saved was not written \(Error: No space left"):
+    with pytest.raises(UserError, match=r"the file that Blender saved was not written \(Error: No space left"):
         save_whole(part, fails, whole, 1000, "scene.blend")
     assert len(calls) == 2
     assert list(tmp_path.iterdir()) == []

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mbsd.model.joint import KINDS
-from render.film.time_map import TimeMap
+from render.film.clock import TimeMap
 from render.sound.setting import CONTROL, RATE, Setting
 from render.sound.sound import sound_of
 from render.sound.sources.mesh import crossings, teeth_passed
@@ -21,7 +21,7 @@ def cut_map(film, before: tuple[float, float], after: tuple[float, float]) -> Ti
     """Parts of the motion before the cut and after it, each in its 1.5 s."""
     start, end = film.clock.start, film.clock.end
     moments = [start + part * (end - start) for part in (*before, *after)]
-    return TimeMap.through([0.0, CUT, CUT, 2 * CUT], moments, closes=False)
+    return TimeMap.from_moments([0.0, CUT, CUT, 2 * CUT], moments, closes=False)
 
 
 def linkage():
@@ -56,7 +56,7 @@ def test_slower_and_faster_passages_are_no_jumps() -> None:
     film = filmed(gears())
     start, end = film.clock.start, film.clock.end
     third = start + (end - start) / 3
-    setting = Setting(film, TimeMap.through([0.0, 0.7003, 0.9001, 1.5], [start, third, third, end], closes=False))
+    setting = Setting(film, TimeMap.from_moments([0.0, 0.7003, 0.9001, 1.5], [start, third, third, end], closes=False))
     assert not setting.jumps.any()
     way = setting.series(np.asarray(film.motion.time))
     assert np.array_equal(setting.continued(way), way)
@@ -76,7 +76,7 @@ def test_a_story_of_a_prime_number_of_frames_is_made_as_quickly_and_is_as_long()
     """Its last moment is held to a length whose spectrum is quickly made; what it is until then is heard as it was."""
     film = filmed(gears())
     frames = 89
-    heard = TimeMap.through([0.0, frames / 30], [film.clock.start, film.clock.end], closes=False)
+    heard = TimeMap.from_moments([0.0, frames / 30], [film.clock.start, film.clock.end], closes=False)
     setting = Setting(film, heard)
     assert setting.heard_samples == frames * RATE // 30
     assert 0 <= setting.samples - setting.heard_samples < 0.05 * setting.heard_samples
@@ -87,8 +87,8 @@ def test_a_story_of_a_prime_number_of_frames_is_made_as_quickly_and_is_as_long()
     assert left == 1
     assert sound_of(film, heard).shape == (2, setting.heard_samples)
     at = np.linspace(0.0, frames / 30, 50, endpoint=False)
-    assert np.array_equal(setting.map.at(at), heard.at(at))
-    moment, rate = setting.map.at(np.array([setting.seconds]))
+    assert np.array_equal(setting.map.moments_at(at), heard.moments_at(at))
+    moment, rate = setting.map.moments_at(np.array([setting.seconds]))
     assert (moment[0], rate[0]) == (film.clock.end, 0.0)
     assert Setting(film).samples == Setting(film).heard_samples == round(film.clock.time_map.seconds * RATE)
 
@@ -99,7 +99,7 @@ def test_impacts_are_heard_in_the_frame_that_shows_them_through_ramps_and_cuts()
     first = next(event.time for event in film.motion.events if event.what == "impact")
     seconds = [0.0, 0.3, 0.6, 1.2, 1.8, 1.8, 2.4]
     moments = [first - 0.14, first - 0.05, first - 0.02, first + 0.01, first + 0.1, first - 0.06, first + 0.06]
-    heard = TimeMap.through(seconds, moments, closes=False)
+    heard = TimeMap.from_moments(seconds, moments, closes=False)
     times = heard.when(np.array([first]))[0]
     assert times == pytest.approx([1.0, 2.1])
     sound = np.abs(sound_of(film, heard)).max(axis=0)
@@ -108,6 +108,6 @@ def test_impacts_are_heard_in_the_frame_that_shows_them_through_ramps_and_cuts()
         before, blow = sound[at - 2400 : at - 240], sound[at - 240 : at + 1600]
         onset = int(np.argmax(blow > max(0.2 * blow.max(), 2 * before.max()))) - 240
         assert abs(onset) < RATE / 1000, (time, onset)
-        shown = [heard.at(np.array([k / 30]))[0][0] for k in (int(time * 30), int(time * 30) + 1)]
+        shown = [heard.moments_at(np.array([k / 30]))[0][0] for k in (int(time * 30), int(time * 30) + 1)]
         assert shown[0] <= first + 1e-9
         assert first <= shown[1] + 1e-9

@@ -11,14 +11,11 @@ from hypothesis import strategies as st
 
 from mbsd import Mechanism, Solution
 from mbsd.model.joint import KINDS
-from render.sound.chance import frequencies, shaped
 from render.sound.desk import Desk
-from render.sound.limiter import true_peaks
-from render.sound.loudness import loudness
-from render.sound.mix import mixed
+from render.sound.mix import loudness, mixed, true_peaks
 from render.sound.setting import RATE, Setting
-from render.sound.sound import sound_of
-from render.sound.wave_file import wav
+from render.sound.sound import sound_of, wav
+from render.sound.waves import frequencies, shaped
 from shared.contract.shot import Shot, Sound
 from shared.stage.errors import UserError
 from tests.render.sound.heard import ball, filmed, gears, measured

@@ -8,10 +8,9 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from render.film.time_map import TimeMap
-from render.sound.ringing import modes_of
+from render.film.clock import TimeMap
+from render.sound.ringing import OTHER, matter, modes_of
 from render.sound.setting import RATE, Setting
-from render.sound.solid_matter import OTHER, matter
 from render.sound.sound import SOURCES, sound_of, stems_of
 from render.sound.sources.mesh import crossings, teeth_passed
 from shared.contract.materials import MATERIALS
@@ -97,10 +96,10 @@ def test_every_material_rings_as_one_of_its_family() -> None:
 
 
 def test_a_film_that_cuts_shows_moments_twice_or_not_at_all() -> None:
-    slow = TimeMap.through([0.0, 1.0, 3.0, 3.0, 4.0, 5.0], [0.0, 1.0, 1.5, 1.0, 2.0, 2.0], closes=False)
+    slow = TimeMap.from_moments([0.0, 1.0, 3.0, 3.0, 4.0, 5.0], [0.0, 1.0, 1.5, 1.0, 2.0, 2.0], closes=False)
     assert slow.seconds == 5.0
     assert slow.cuts == [0.0, 3.0]
-    model, rate = slow.at(np.array([0.5, 2.0, 3.5, 4.5]))
+    model, rate = slow.moments_at(np.array([0.5, 2.0, 3.5, 4.5]))
     assert model.tolist() == [0.5, 1.25, 1.5, 2.0]
     assert rate.tolist() == [1.0, 0.25, 1.0, 0.0]
     film, index = slow.when(np.array([0.5, 1.25, 1.75, 2.0, 2.5]))
@@ -118,14 +117,16 @@ def test_the_map_of_a_clock_shows_what_its_frames_show() -> None:
         clock = film.clock
         frames = np.arange(clock.frames)
         shown = [clock.moment(int(frame)).time for frame in frames]
-        assert np.allclose(clock.time_map.at(frames / film.shot.fps)[0], shown, atol=1e-12)
+        assert np.allclose(clock.time_map.moments_at(frames / film.shot.fps)[0], shown, atol=1e-12)
         assert clock.time_map.seconds == pytest.approx(clock.frames / film.shot.fps)
 
 
 def test_an_impact_at_the_seam_of_a_loop_is_heard_once() -> None:
-    whole = TimeMap.through([0.0, 2.0], [0.0, 1.0], closes=True)
+    whole = TimeMap.from_moments([0.0, 2.0], [0.0, 1.0], closes=True)
     assert whole.when(np.array([0.0, 1.0]))[1].tolist() == [0]
-    assert TimeMap.through([0.0, 2.0, 3.0], [0.0, 1.0, 1.0], closes=False).when(np.array([0.0, 1.0]))[0].tolist() == [
+    assert TimeMap.from_moments([0.0, 2.0, 3.0], [0.0, 1.0, 1.0], closes=False).when(np.array([0.0, 1.0]))[
+        0
+    ].tolist() == [
         0,
         2,
     ]

@@ -8,8 +8,7 @@ import pytest
 from render.film.story.frame import Over, Picture, Shot
 from render.film.story.story import Story
 from render.sound.setting import Setting
-from render.sound.sound import stems_of
-from render.sound.together import STREAMS, Heard, sound_of_all
+from render.sound.sound import STREAMS, Heard, sound_of_all, stems_of
 from shared.contract.shot import Shot as Wishes
 from shared.contract.shot import Sound
 from tests.render.sound.heard import ball, filmed, gears
@@ -62,8 +61,8 @@ def test_a_motion_without_a_period_is_silent_once_it_stands_at_its_end() -> None
     story = Story("ball", 30, 1, [shot])
     stands, anew = (story.time_map(0.0, end, again) for again in (False, True))
     late = np.linspace(end + 0.05, 2.9 * end, 20)
-    assert stands.at(late)[0] == pytest.approx(end)
-    assert not stands.at(late)[1].any()
-    assert stands.at(late)[1].max() < anew.at(late)[1].min()
+    assert stands.moments_at(late)[0] == pytest.approx(end)
+    assert not stands.moments_at(late)[1].any()
+    assert stands.moments_at(late)[1].max() < anew.moments_at(late)[1].min()
     impact = [event.time for event in film.motion.events][:1]
     assert len(stands.when(np.array(impact))[0]) == 1 < len(anew.when(np.array(impact))[0])

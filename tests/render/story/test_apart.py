@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from render.film import exploded
+from render.film import pieces
 from render.film.inputs import read_film
 from render.frames.story import apart
 from render.glb.exploded import exploded_glb, run
@@ -63,7 +63,7 @@ def test_the_glb_comes_apart_in_order_and_together_again(out_root: Path, capsys:
 
     (clip,) = document["animations"]
     assert clip["name"] == "exploded"
-    lifts = {lift.name: lift for lift in exploded.exploded(film.parts, film.size)}
+    lifts = {lift.name: lift for lift in pieces.exploded(film.parts, film.size)}
     heights = {}
     for channel in clip["channels"]:
         node, sampler = document["nodes"][channel["target"]["node"]], clip["samplers"][channel["sampler"]]
@@ -83,9 +83,9 @@ def test_the_glb_comes_apart_in_order_and_together_again(out_root: Path, capsys:
 
 def test_a_machine_of_one_layer_is_refused(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     film_fixture.write()
-    every = exploded.exploded
+    every = pieces.exploded
     monkeypatch.setattr(
-        exploded, "exploded", lambda parts, size: [lift._replace(distance=0.0) for lift in every(parts, size)]
+        pieces, "exploded", lambda parts, size: [lift._replace(distance=0.0) for lift in every(parts, size)]
     )
     with pytest.raises(UserError, match="all its parts lie in one layer"):
         apart.run("four_bar", TINY)

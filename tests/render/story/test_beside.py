@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from render.film.story.cameras import Stand
-from render.frames.story import beside
-from render.frames.story.pair import FIRST, SECOND, Pair, _on_one_scale, pair_of
+from render.film.story.scenery import Stand
+from render.frames.story import comparison
+from render.frames.story.comparison import FIRST, SECOND, Pair, _on_one_scale, pair_of
 from render.presets import PRESETS, preset_named
 from shared.contract import read_motion, write_motion
 from shared.contract.shot import Shot, Story
@@ -30,7 +30,7 @@ def pair(out_root) -> Pair:
         values[half:] *= 3
         setattr(joint, key, values.tolist())
     write_motion(outs[1].motion, motion)
-    return pair_of(outs, PRESETS["draft"], beside.half(PRESETS["draft"]))
+    return pair_of(outs, PRESETS["draft"], comparison.half(PRESETS["draft"]))
 
 
 def test_both_are_on_one_clock(pair: Pair) -> None:
@@ -89,8 +89,8 @@ def test_numbers_beside_each_other_have_the_unit_once_and_room_for_both(pair: Pa
 
 def test_halves_fill_the_picture() -> None:
     wide, tall = PRESETS["draft"], preset_named("draft-9x16")
-    assert (beside.half(wide).width, beside.half(wide).height) == (320, 360)
-    assert (beside.half(tall).width, beside.half(tall).height) == (360, 320)
+    assert (comparison.half(wide).width, comparison.half(wide).height) == (320, 360)
+    assert (comparison.half(tall).width, comparison.half(tall).height) == (360, 320)
 
     class Made:
         def __init__(self, preset, colour: tuple[int, int, int]) -> None:
@@ -100,22 +100,22 @@ def test_halves_fill_the_picture() -> None:
             yield str(self.picture.getpixel((0, 0))), self.picture
 
     for preset in (wide, tall):
-        half = beside.half(preset)
-        [(_, page)] = beside._beside(preset, [Made(half, (255, 0, 0)), Made(half, (0, 0, 255))])  # pyright: ignore[reportArgumentType]
+        half = comparison.half(preset)
+        [(_, page)] = comparison._side_by_side(preset, [Made(half, (255, 0, 0)), Made(half, (0, 0, 255))])  # pyright: ignore[reportArgumentType]
         assert page.size == (preset.width, preset.height)
         assert page.getpixel((5, 5)) == (255, 0, 0)
         assert page.getpixel((page.width - 5, page.height - 5)) == (0, 0, 255)
 
 
 def test_a_name_means_the_machine_and_a_variant() -> None:
-    assert beside.both("v_twin") == beside.both("v-twin-bank-45") == NAMES
-    assert beside.both("geneva_drive-six_slots") == ("geneva_drive", "geneva_drive-six_slots")
+    assert comparison.both("v_twin") == comparison.both("v-twin-bank-45") == NAMES
+    assert comparison.both("geneva_drive-six_slots") == ("geneva_drive", "geneva_drive-six_slots")
     with pytest.raises(UserError, match="four_bar: there is nothing to compare"):
-        beside.both("four_bar")
+        comparison.both("four_bar")
 
 
 def test_what_is_missing_is_named(out_root) -> None:
     film_fixture.write(name=NAMES[0])
     with pytest.raises(UserError, match="v_twin-bank_45"):
-        beside.run("v_twin", PRESETS["draft"])
+        comparison.run("v_twin", PRESETS["draft"])
     assert Out(NAMES[0]).shot.is_file()

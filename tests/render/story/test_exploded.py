@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from render.film.exploded import MOST, STEP, exploded
+from render.film.pieces import MOST, STEP, exploded
 from shared.contract import read_parts
 from tools.fixtures import film_fixture
 

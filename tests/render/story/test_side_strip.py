@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from render.film.framing import project
-from render.film.story import layout
+from render.film.story import frame
 from render.film.story.frame import Over
 from render.frames.story.telling import Telling, telling_of
 from render.presets import preset_named
@@ -37,14 +37,14 @@ def test_it_stands_beside_what_is_tall_in_a_wide_picture(out_root) -> None:
 def test_the_machine_has_the_rest_of_the_picture_and_is_larger_there(out_root, monkeypatch) -> None:
     telling = made(TALL)
     film, story = telling.film, telling.story
-    wide = film.aspect - layout.SIDE
+    wide = film.aspect - frame.SIDE
     heights = []
     for placed in (each for each in story.placed if each.shot.name in ("motion", "reason")):
-        for frame in range(placed.first, placed.end, 20):
-            x, y = project(story.picture(frame).camera, film.subject.few, film.aspect, 1.0).T
+        for k in range(placed.first, placed.end, 20):
+            x, y = project(story.picture(k).camera, film.subject.few, film.aspect, 1.0).T
             assert x.max() <= wide + 1e-6
             assert x.min() >= 0.0
-            assert 0.0 <= y.min() <= y.max() <= 1 - layout.below(film.aspect, strip=False)
+            assert 0.0 <= y.min() <= y.max() <= 1 - frame.below(film.aspect, strip=False)
             heights.append(np.ptp(y))
     monkeypatch.setattr("render.film.story.scenery.WIDE", 9.0)
     under = made(TALL)
@@ -58,10 +58,10 @@ def test_panels_stand_over_each_other_at_the_right_edge_clear_of_captions(out_ro
     strip = telling.drawing.strip
     assert strip is not None
     assert strip.place == (640 - strip.across, 0)
-    assert strip.tall <= 360 * (1 - layout.UNDER) + 1
+    assert strip.tall <= 360 * (1 - frame.UNDER) + 1
     for a, b in itertools.pairwise(strip.panels):
         assert (a[0], a[2]) == (b[0], b[2])
-        assert a[3] < b[1] - 1.3 * layout.SMALL * 360, "its name has room"
+        assert a[3] < b[1] - 1.3 * frame.SMALL * 360, "its name has room"
     page = telling.drawing.frame(Image.new("RGB", (640, 360), (90, 120, 90)), Over(strip=1.0, now=strip.start))
     pixels = np.asarray(page)
     assert (pixels[:, : strip.place[0]] == (90, 120, 90)).all()

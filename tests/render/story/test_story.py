@@ -9,15 +9,14 @@ import pytest
 
 from render.film.film import Film
 from render.film.framing import project
-from render.film.story.curves import curves_of
+from render.film.story.frame import Reason
 from render.film.story.planned import planned, scenery_of
-from render.film.story.reason import Reason
 from render.film.story.shots import reason
-from render.film.story.story import Story
+from render.film.story.story import Story, curves_of
 from render.frames.story import kinds
 from render.frames.story.telling import Telling, telling_of
 from render.presets import PRESETS, preset_named
-from render.report.reasons import reasons
+from render.report.facts import reasons
 from shared.contract.shot import STORY_SHOTS, Camera, Section, Shot
 from shared.contract.shot import Story as Wishes
 from shared.stage.errors import UserError
@@ -49,7 +48,7 @@ def check(telling: Telling) -> Story:
 
 
 def _lifts(telling: Telling):
-    from render.film.exploded import exploded
+    from render.film.pieces import exploded
 
     return exploded(telling.film.parts, telling.film.size)
 
@@ -87,7 +86,7 @@ def test_sound_follows_the_times_of_the_story(out_root) -> None:
     heard = story.time_map(clock.start, clock.end)
     assert heard.seconds == pytest.approx(story.seconds)
     seconds = (np.arange(story.total - 1) + 0.3) / story.fps
-    moments, rates = heard.at(seconds)
+    moments, rates = heard.moments_at(seconds)
     exact = np.array([story.model_time(float(s)) for s in seconds])
     period = clock.end - clock.start
     off = (moments - exact + period / 2) % period - period / 2
@@ -111,7 +110,7 @@ def test_sound_of_a_motion_that_ends_stands_where_the_picture_does(out_root) -> 
     heard = story.time_map(film.clock.start, film.clock.end, anew=False)
     seconds = (np.arange(story.total) + 0.5) / story.fps
     shown = np.array([min(max(story.model_time(float(s)), film.clock.start), film.clock.end) for s in seconds])
-    moments, rates = heard.at(seconds)
+    moments, rates = heard.moments_at(seconds)
     anew = np.abs(moments - shown) > 0.1 * (film.clock.end - film.clock.start)
     assert anew.sum() <= 3, "frames in which the motion begins anew"
     assert np.abs(moments - shown)[~anew].max() < film.clock.rate / story.fps
@@ -213,7 +212,7 @@ def test_a_shot_says_otherwise_in_a_few_lines(out_root) -> None:
     ("wishes", "message"),
     [
         (Wishes(event="rocker flies"), r"four_bar: shot\.story\.event names 'rocker flies', which never happens in "
-         r"this motion; what does: rocker turns back.*"),
+         r"this motion; its events are: rocker turns back.*"),
         (Wishes(caption="much too long a word " * 9), r"four_bar: the caption of the shot 'reason' is too long for a "
          r"picture of 640x360: it takes \d\.\d lines of 2 .*; write a shorter shot\.story\.caption"),
         (Wishes(shots=("titel",)), r"four_bar: shot\.story\.shots\[0\] names 'titel', which is not there; known: "

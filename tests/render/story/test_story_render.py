@@ -16,15 +16,13 @@ from PIL import Image
 from render import freshness
 from render.film.story.frame import Picture
 from render.frames import frames
-from render.frames.encode import ffmpeg
-from render.frames.film_file import refuse_other_than
+from render.frames.encode import ffmpeg, refuse_other_than
 from render.frames.store import FrameStore
 from render.frames.story import stage
-from render.frames.story.pictures import StoryPictures
-from render.frames.story.telling import telling_of
+from render.frames.story.telling import StoryPictures, telling_of
 from render.presets import Preset
 from render.showreel import showreel
-from render.showreel.clip import read_clip
+from render.showreel.join import read_clip
 from shared.contract.shot import Camera, Shot, Story
 from shared.stage.paths import ROOT, Out
 from tools.fixtures import film_fixture

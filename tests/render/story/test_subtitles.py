@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from render.film.story.frame import Caption
-from render.film.story.subtitles import captions_of, chapters, srt
-from render.film.story.words import TABLE, rate_words, words_in
+from render.film.story.words import TABLE, captions_of, chapters, rate_words, srt, words_in
 from shared.stage.errors import UserError
 
 BLOCK = re.compile(r"(\d+)\n(\d\d):(\d\d):(\d\d),(\d{3}) --> (\d\d):(\d\d):(\d\d),(\d{3})\n(.+)\n\n")

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from render.view.gaps import middle
+from render.view.loads import middle
 
 
 def box(size: tuple[float, float, float], at: tuple[float, float, float]) -> np.ndarray:

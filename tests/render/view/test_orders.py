@@ -8,9 +8,8 @@ import subprocess
 from pathlib import Path
 
 from mbsd.results.vibration.orders import Orders
-from render.view.binary import encode
 from render.view.bundle import PAGE, bundle, node, node_modules
-from render.view.document import document
+from render.view.document import document, encode
 from render.view.payload import payload
 from shared.contract.quantity import written
 from tests.render.test_shaking import motion_of

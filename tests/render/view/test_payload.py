@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from render.film.solids import read_triangles
-from render.view.binary import encode
-from render.view.inputs import read_payload
-from render.view.meshes import Meshes, shapes
+from render.view.document import encode
+from render.view.payload import read_payload
+from render.view.solid import Meshes, shapes
 from shared.contract import read_motion
 from shared.contract.skeleton import read_skeleton, write_skeleton
 from shared.stage.errors import UserError

@@ -15,8 +15,8 @@ from msgspec import structs
 
 from render import view
 from render.view.bundle import PAGE, node, node_modules
-from render.view.inputs import read_payload
-from render.view.sketch import sketch
+from render.view.document import sketch
+from render.view.payload import read_payload
 from shared.contract import read_motion
 from shared.contract.shot import Shot
 from shared.contract.skeleton import read_skeleton, write_skeleton

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from render.blender.patience import FLOOR, KERNELS, TIMES
+from render.blender.process import FLOOR, KERNELS, TIMES
 from studio.night.watch import STAGE, TWICE, limit
 
 

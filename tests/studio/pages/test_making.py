@@ -29,7 +29,7 @@ class Shop:
         monkeypatch.setattr(making, "_current", lambda names: self.current & set(names))
         monkeypatch.setattr(pictures, "chromium", lambda: "browser")
         monkeypatch.setattr(pictures, "version_of", lambda browser: self.version)
-        monkeypatch.setattr(pictures, "take", self.take)
+        monkeypatch.setattr(pictures, "take_picture", self.take)
 
     def take(self, out: Out, browser: str) -> None:
         if out.name in self.refused:
@@ -82,10 +82,10 @@ def test_a_stopped_run_goes_on(shop: Shop, monkeypatch: pytest.MonkeyPatch) -> N
             raise KeyboardInterrupt
         shop.take(out, browser)
 
-    monkeypatch.setattr(pictures, "take", stop)
+    monkeypatch.setattr(pictures, "take_picture", stop)
     with pytest.raises(KeyboardInterrupt):
         making.run(NAMES)
-    monkeypatch.setattr(pictures, "take", shop.take)
+    monkeypatch.setattr(pictures, "take_picture", shop.take)
     assert making.run(NAMES) == 0
     assert shop.taken == NAMES
 

@@ -16,9 +16,9 @@ from PIL import Image
 
 from mechanisms.stages.solve.masses import give_masses
 from render import view
-from render.view.binary import encode
 from render.view.bundle import PAGE, node, node_modules
-from render.view.inputs import read_payload
+from render.view.document import encode
+from render.view.payload import read_payload
 from render.view.pictures import chromium
 from shared.stage.console import say
 from shared.stage.errors import UserError

@@ -8,7 +8,7 @@ import numpy as np
 
 from mbsd import Mechanism
 from mbsd.kinematics.period import common_period
-from mechanisms.stages.loading import loading, variants
+from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import solving
 from shared.stage.paths import mechanism_names
 from tools.hunt.subject import Builder, Subject, family
@@ -28,7 +28,7 @@ def loaded(name: str) -> tuple[Mechanism, float | None]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         module, p = loading.load(name, "mechanism"), loading.params(name)
-        duration = variants.constant(name, module, "DURATION")
+        duration = loading.constant(name, module, "DURATION")
         return solving.build(name, module, p), None if duration is None else float(duration)
 
 

@@ -55,7 +55,7 @@ def difference(before: Outcome, now: Outcome) -> Difference:
 
 
 def _other(before: Outcome, now: Outcome) -> str:
-    """What makes them outcomes of another kind, or nothing."""
+    """Return what makes them outcomes of another kind, or nothing."""
     if before.error != now.error:
         return f"{before.error or 'no error'} before, {now.error or 'no error'} now {now.text}"
     before_words, now_words = ([(e[1], e[2]) for e in each.happened] for each in (before, now))

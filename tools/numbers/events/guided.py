@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from mbsd import Mechanism
-from tools.models import crossing_curves, genevas, loose_gears, repeated_joints
+from tools.models import guided, repeated_joints
 from tools.models.engines import petrol, slider_crank
 from tools.numbers.events.case import Case
 
@@ -28,31 +28,31 @@ def cases() -> Iterator[Case]:
 
 def _genevas() -> Iterator[Case]:
     built = {
-        "geneva of 4": partial(genevas.free, 4),
-        "geneva of 6": partial(genevas.free, 6),
-        "geneva of 5 backwards": lambda: genevas.free(5, None, -9.0),
-        "geneva that swings back": genevas.swinging,
-        "two genevas": genevas.two,
+        "geneva of 4": partial(guided.free_geneva, 4),
+        "geneva of 6": partial(guided.free_geneva, 6),
+        "geneva of 5 backwards": lambda: guided.free_geneva(5, None, -9.0),
+        "geneva that swings back": guided.swinging_geneva,
+        "two genevas": guided.heavy_pair_of_genevas,
     }
     for name, build in built.items():
         for formulation in FREE:
             options = {"formulation": formulation}
             yield Case(f"{name}, {formulation}", build, 1.53, options, kink=JUMPS, quick=name == "geneva of 4")
-    yield Case("geneva with a stop", lambda: _stopped(genevas.free(6)), 0.93, kink=JUMPS)
-    yield Case("geneva on a motor", lambda: _hung(genevas.geneva(5, start=-1.5)), 2.53, kink=JUMPS)
+    yield Case("geneva with a stop", lambda: _stopped(guided.free_geneva(6)), 0.93, kink=JUMPS)
+    yield Case("geneva on a motor", lambda: _hung(guided.geneva(5, start=-1.5)), 2.53, kink=JUMPS)
 
 
 def _wheels() -> Iterator[Case]:
     for stiffness in (1.0, 3.0):
-        yield Case(f"loose gears {stiffness:g}", partial(loose_gears.loose_gears, stiffness), 0.93)
-    yield Case("loose gears up to near their middle", loose_gears.loose_gears, 0.93)
+        yield Case(f"loose gears {stiffness:g}", partial(guided.loose_gears, stiffness), 0.93)
+    yield Case("loose gears up to near their middle", guided.loose_gears, 0.93)
 
 
 def _curves() -> Iterator[Case]:
     for name, build in {
-        "bead on an eight": crossing_curves.coaster,
-        "bead on an eight, events": partial(crossing_curves.coaster, True),
-        "bead on an eight, stop": partial(crossing_curves.coaster, stop=True),
+        "bead on an eight": guided.coaster,
+        "bead on an eight, events": partial(guided.coaster, True),
+        "bead on an eight, stop": partial(guided.coaster, stop=True),
     }.items():
         yield Case(name, build, 1.53 if name.endswith("stop") else 0.73, kink=CHAOS, quick=name.endswith("events"))
 

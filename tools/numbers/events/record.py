@@ -1,4 +1,4 @@
-"""What is kept of a run, and the file of all."""
+"""Records of runs, and the file of all."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Sizes(msgspec.Struct):
 
 
 class Outcome(msgspec.Struct, omit_defaults=True):
-    """What came of a run; of a refused one only ``error`` and ``text``."""
+    """Outcome of a run; a refused one has only ``error`` and ``text``."""
 
     happened: list[tuple[float, str, str, float, float]] = []
     """Time (s), name, what, impulse (N s, N m s) and change of kinetic energy (J)."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from mbsd import Mechanism, angle_reaches
-from tools.models import contact_models, genevas, loose_gears, rough_contacts, sticking, stops, user_events
+from tools.models import contact_models, guided, rough_contacts, sticking, stops, user_events
 from tools.numbers.events.case import Case
 
 
@@ -17,7 +17,7 @@ def cases() -> Iterator[Case]:
     yield Case("rod that jams", lambda: rough_contacts.rod(2.5), 0.3, refused=("'tip'", "jams", "2.5"))
     yield Case("rod that jams at once", _painleve, 1.0, refused=("'table'", "jams", "t = 0 s", "Painleve"))
     yield Case("joints that jam", _jam, 1.0, refused=("joints jam", "'A'", "0.7588"))
-    yield Case("gears that meet", loose_gears.loose_gears, 1.5, refused=("'mesh'", "meet at t ="))
+    yield Case("gears that meet", guided.loose_gears, 1.5, refused=("'mesh'", "meet at t ="))
     yield Case("geneva of a wrong radius", _wrong_geneva, 1.0, refused=("'index'", "radius must be"))
     yield Case("event without a number", _nan, 1.0, refused=("'broken'", "nan", "t = 0 s"), quick=True)
     yield Case("compiled event without a number", _compiled_nan, 0.5, refused=("'bad'", "nan"))
@@ -75,7 +75,7 @@ def _jam() -> Mechanism:
 
 
 def _wrong_geneva() -> Mechanism:
-    m = genevas.free(5)
+    m = guided.free_geneva(5)
     m.change("index", radius=0.07)
     return m
 

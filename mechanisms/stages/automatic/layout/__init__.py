@@ -1,1 +1,1 @@
-"""What takes room, in which layer, and at which height; it knows no kind of joint."""
+"""The layout: items that take room, their layers and their heights. It knows no kind of joint."""

@@ -1,19 +1,20 @@
-"""What takes room: a shape in the plane that moves with a body, and the heights it reaches through.
-
-Heights are counted in half layers: layer k of plates is 2 k, the gap above it 2 k + 1; -1 is the gap above the base.
-"""
+"""Items that take room: a shape in the plane that moves with a body, and the heights that it reaches through."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from mechanisms.stages.automatic.layout.planar import Rounded
 
+# Items take room: a shape in the plane that moves with a body, and the heights that it reaches through.
+#
+# Heights are counted in half layers: layer k of plates is 2 k, the gap above it 2 k + 1; -1 is the gap above the base.
+
 BASE = -1
 TOP = 10**6
 PIVOT = "pivot"
-"""What pivots on ground are, which may stand beside each other."""
+"""Kind of pivots on ground, which may stand beside each other."""
 
 type Levels = Mapping[str, int]
 """The layer of each body, as far as it is decided; and the choices (0 or 1) of items that have one."""
@@ -60,7 +61,9 @@ class Reach:
         return {None: ((None if self.base else self.low, None if self.top else self.high),)}
 
     def span(self, levels: Levels) -> tuple[int, int] | None:
-        """Lowest and highest half layer, as far as layers are decided: more decided ones only make it longer."""
+        """Return the lowest and highest half layer, as far as layers are decided: more decided ones only make it
+        longer.
+        """
         return _span(self, levels)
 
 
@@ -77,7 +80,7 @@ class PinReach:
         return {self.choice: ((1, 1), (-1, -1))}
 
     def span(self, levels: Levels) -> tuple[int, int] | None:
-        """As :meth:`Reach.span`; while the choice is open, without an end."""
+        """Return what :meth:`Reach.span` does; while the choice is open, without an end."""
         return _span(self, levels)
 
 
@@ -99,7 +102,7 @@ class PivotReach:
         return {self.choice: ((None, 0 if self.flush else 1), (-1, None))}
 
     def span(self, levels: Levels) -> tuple[int, int] | None:
-        """As :meth:`Reach.span`; while the choice is open, what both have in common."""
+        """Return what :meth:`Reach.span` does; while the choice is open, what both have in common."""
         return _span(self, levels)
 
 
@@ -122,18 +125,18 @@ class Item:
     only: frozenset[str] = frozenset()
     """Names of the items that it keeps away, where it is no thing but a rule; empty: all."""
     spared: bool = True
-    """Whether items that spare its body spare it, too."""
+    """True if items that spare its body spare it, too."""
     stands: str = ""
     """A word for what stands on ground; what has another such word must keep clear of it."""
 
 
 def choice_of(reach: AnyReach) -> str | None:
-    """The choice that an item's heights depend on, if there is one."""
+    """Return the choice that an item's heights depend on, if there is one."""
     return next(iter(reach.ends))
 
 
 def spans_meet(a: tuple[int, int] | None, b: tuple[int, int] | None) -> bool:
-    """Whether two spans share a half layer."""
+    """Return True if two spans share a half layer."""
     return a is not None and b is not None and a[0] <= b[1] and b[0] <= a[1]
 
 
@@ -152,3 +155,54 @@ def _placed(low: int | None, high: int | None, known: list[int]) -> tuple[int, i
     if not known:
         return (BASE, BASE) if low is None else None
     return BASE if low is None else min(known) + low, TOP if high is None else max(known) + high
+
+
+# From layers to heights: every gap as high as what is in it needs, and no higher.
+
+ROOF = 12.0
+"""From the highest layer to bridges above it (rmm): room for heads of pins, weights and the like."""
+
+
+@dataclass(frozen=True)
+class Heights:
+    """Heights above the base plate (rmm)."""
+
+    levels: Levels
+    thickness: float
+    bottoms: tuple[float, ...]
+    """Underside of each layer."""
+
+    @property
+    def roof(self) -> float:
+        """Underside of bridges."""
+        return self.bottoms[-1] + self.thickness + ROOF
+
+    def bottom(self, body: str) -> float:
+        """Return the underside of a body's plate."""
+        return self.bottoms[self.levels[body]]
+
+    def top(self, body: str) -> float:
+        """Return the upper face of a body's plate."""
+        return self.bottom(body) + self.thickness
+
+    def gap_above(self, body: str) -> float:
+        """Return the height free above a body's plate, below the next layer; infinite above the highest."""
+        level = self.levels[body]
+        return self.bottoms[level + 1] - self.top(body) if level + 1 < len(self.bottoms) else float("inf")
+
+
+def heights(
+    levels: Mapping[str, int], bodies: Iterable[str], thickness: float, needs: Iterable[Need], least: float
+) -> Heights:
+    """Stack the layers; ``least`` is the smallest gap (rmm)."""
+    count = max((levels[body] for body in bodies), default=0) + 1
+    gaps = dict.fromkeys(range(-1, count - 1), least)
+    for need in needs:
+        if need.gap in gaps:
+            gaps[need.gap] = max(gaps[need.gap], need.height)
+    z, bottoms = 0.0, []
+    for level in range(count):
+        z += gaps[level - 1]
+        bottoms.append(z)
+        z += thickness
+    return Heights(levels, thickness, tuple(bottoms))

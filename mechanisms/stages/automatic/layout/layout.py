@@ -1,4 +1,4 @@
-"""What is to be built before anything is: places and outlines of all bodies in the plane, and what takes room."""
+"""The layout in the plane: poses, features and outlines of all bodies, and items that take room."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.extents import rods_of
 from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Item, PinReach, Reach, spans_meet
-from mechanisms.stages.automatic.layout.order.layers import Problem
+from mechanisms.stages.automatic.layout.layers import Problem
 from mechanisms.stages.automatic.layout.planar import Rounded, around, core_gaps, least_gap, placed
+from mechanisms.stages.automatic.layout.sizes import rods_of
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Mapping
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Springs:
-    """Which springs get parts, and where."""
+    """Springs that get parts, and where they lie."""
 
     above: bool = True
-    """Whether they have to lie over both of their bodies."""
+    """True if they have to lie over both of their bodies."""
     left_out: frozenset[str] = frozenset()
     names: list[str] = field(default_factory=list, compare=False)
     """Names of the others, once features are gathered."""
@@ -38,24 +38,24 @@ class Feature(Protocol):
     """One joint, or several that are one thing such as links on a common pin."""
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Where outlines of bodies must reach."""
+        """Return where outlines of bodies must reach."""
         ...
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """What takes room besides the bodies' own plates."""
+        """Return the items that take room besides the bodies' own plates."""
         ...
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """How high gaps must be, once the layers are known."""
+        """Return how high gaps must be, once the layers are known."""
         ...
 
 
 class Layered(Protocol):
-    """What has a layer."""
+    """An element with a layer."""
 
     @property
     def layer(self) -> str:
-        """What decides its layer: its body, or itself."""
+        """Name that decides the layer: that of the body, or its own."""
         ...
 
 
@@ -102,11 +102,11 @@ class Layout:
     yielding: set[frozenset[str]] = field(default_factory=set)
     """Pairs of bodies whose round part is seen to press into a wall: these two pieces touch, and nothing else."""
     flush: bool = False
-    """Whether pivots on ground may end flush with the one link that turns on them."""
+    """True if pivots on ground may end flush with the one link that turns on them."""
     tubes: bool = False
-    """Whether there are wheels on tubes because arms would meet their mates."""
+    """True if there are wheels on tubes because arms would meet their mates."""
     far_posts: bool = False
-    """Whether slotted plates on ground reach farther to their posts."""
+    """True if slotted plates on ground reach farther to their posts."""
     webs: dict[str, str] = field(default_factory=dict)
     """Further plates of bodies, by name, each with its body."""
     rounds: dict[tuple[str, float, float], Feature] = field(default_factory=dict)
@@ -115,11 +115,11 @@ class Layout:
     """Gaps by what they follow from, for layouts that differ in some features alone and share these."""
 
     def place(self, marker: Marker) -> tuple[float, float]:
-        """A marker in its body's frame (rmm)."""
+        """Return a marker in its body's frame (rmm)."""
         return self.sizes.of_metres(marker.x), self.sizes.of_metres(marker.y)
 
     def seen(self, body: str, place: tuple[float, float], other: str) -> np.ndarray:
-        """(T, 2): a place of ``body`` in the frame of another body over the motion (rmm)."""
+        """Return (T, 2) a place of ``body`` in the frame of another body over the motion (rmm)."""
         pose, frame = self.poses[body], self.poses[other]
         c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
         x = pose[:, 0] + c * place[0] - s * place[1] - frame[:, 0]
@@ -144,12 +144,12 @@ class Layout:
         return {body: [a for a in places if not self._on_wheel(a)] for body, places in by_body.items()}
 
     def wheel_at(self, x: float, y: float) -> Carrier | None:
-        """The wheel of ground about a place on it (rmm): what turns there stands on that wheel."""
+        """Return the wheel of ground about a place on it (rmm): what turns there stands on that wheel."""
         here = [wheel for wheel in self.wheels.get("ground", []) if math.hypot(wheel.x - x, wheel.y - y) < 0.02]
         return next((wheel for wheel in here if not wheel.ring), None)
 
     def _on_wheel(self, anchor: Anchor) -> bool:
-        """Whether the wheel in its body's layer carries it."""
+        """Return True if the wheel in its body's layer carries it."""
         reach = min(anchor.radius, self.sizes.hardware)
         wheels = [wheel for wheel in self.wheels.get(anchor.body, []) if wheel.shares and not wheel.ring]
         return any(math.hypot(anchor.x - w.x, anchor.y - w.y) + reach <= w.root for w in wheels)
@@ -167,7 +167,7 @@ class Layout:
 
     @cached_property
     def bodies(self) -> list[str]:
-        """Those of the model that move and are not left out."""
+        """Names of the bodies that move and are not left out."""
         return [name for name in self.m.bodies if name != "ground" and name not in self.apart]
 
     @cached_property
@@ -176,7 +176,7 @@ class Layout:
         return [*self.bodies, *self.rods, *self.webs]
 
     def outline(self, body: str) -> Rounded:
-        """The shape that holds a body's plate."""
+        """Return the shape that holds a body's plate."""
         anchors = self.anchors[body]
         radius = max(anchor.radius for anchor in anchors)
         return around([(anchor.x, anchor.y) for anchor in anchors], radius)
@@ -203,27 +203,31 @@ class Layout:
         return pairs
 
     def problem(self, fixed: Mapping[str, int] | None = None, hanging: frozenset[str] = frozenset()) -> Problem:
-        """What the search for layers is asked."""
+        """Return the problem that the search for layers solves."""
         between = [feature.order for feature in self.features if getattr(feature, "order", None)]
         together = [*self.together, *((wheel.layer, mate.layer) for wheel, mate in self.meshing)]
         return Problem(self.layered, self.items, self.conflicts, fixed or {}, together, hanging, between)
 
     def with_flush_pivots(self) -> Layout:
-        """The same with other pivots, and as they meet the same in the plane, with all that was found of that."""
+        """Return the same with other pivots, and as they meet the same in the plane, with all that was found of
+        that.
+        """
         flushed = replace(self, flush=True, features=list(self.features))
         flushed.__dict__["conflicts"] = self.conflicts
         return flushed
 
     def with_far_posts(self) -> Layout:
-        """The same with posts of slotted plates out of the way of what carries their pins, and with flush pivots."""
+        """Return the same with posts of slotted plates out of the way of what carries their pins, and with flush
+        pivots.
+        """
         return replace(self, flush=True, far_posts=True, features=list(self.features))
 
     def is_held(self, pin: object) -> bool:
-        """Whether something stands on a pin."""
+        """Return True if something stands on a pin."""
         return any(getattr(feature, "pin", None) is pin for feature in self.features)
 
     def gap(self, first: Item, second: Item) -> tuple[float, float]:
-        """Least gap in the plane (rmm), and its time (s)."""
+        """Return the least gap in the plane (rmm), and its time (s)."""
         key = first.body, first.shape.content, second.body, second.shape.content
         if key not in self.known_gaps:
             poses = self.poses[first.body], self.poses[second.body]
@@ -232,7 +236,7 @@ class Layout:
         return gap, float(self.times[at])
 
     def may_meet(self, first: Item, second: Item) -> bool:
-        """Whether two items that meet in the plane need different heights: no pair by design."""
+        """Return True if two items that meet in the plane need different heights: no pair by design."""
         if first.body == second.body == "ground":
             return bool(first.stands and second.stands) and first.stands != second.stands
         if first.body == second.body:
@@ -248,7 +252,9 @@ class Layout:
         )
 
     def _are_stepped(self, first: Item, second: Item) -> bool:
-        """Whether the first is a wheel on a tube, the second its body's plate, another wheel of it, or a pin beside."""
+        """Return True if the first is a wheel on a tube, the second its body's plate, another wheel of it, or a pin
+        beside.
+        """
         wheels = [wheel for wheel in self.wheels.get(first.body, []) if not wheel.ring]
         if not any(wheel is first.source and wheel.layer == first.what for wheel in wheels):
             return False
@@ -257,8 +263,8 @@ class Layout:
         return second.what == second.body or any(w is second.source and w is not first.source for w in wheels)
 
     def is_covered(self, source: object, half_layer: int, levels: Levels, further: int = 0) -> bool:
-        """Whether something that meets an item of the feature ``source`` in the plane is at a half layer, or up to
-        ``further`` ones from there: what ends in the gap beyond an empty layer may reach into that layer, too.
+        """Return True if something that meets an item of the feature ``source`` in the plane is at a half layer, or up
+        to ``further`` ones from there: what ends in the gap beyond an empty layer may reach into that layer, too.
         """
         mine = {k for k, item in enumerate(self.items) if item.source is source}
         others = {j if i in mine else i for i, j in self.conflicts if (i in mine) != (j in mine)}
@@ -266,7 +272,7 @@ class Layout:
         return any(spans_meet(self.items[k].reach.span(levels), looked) for k in others)
 
     def room_below(self, x: float, y: float, levels: Levels) -> float:
-        """Distance (rmm) from a place on ground to what moves above the base, under the lowest layer."""
+        """Return the distance (rmm) from a place on ground to what moves above the base, under the lowest layer."""
         here, every = np.full((len(self.times), 1, 2), (x, y)), np.arange(len(self.times))
         moving = (i for i in self.items if i.body != "ground" and not i.only and i.what != i.body)
         low = (i for i in moving if spans_meet(i.reach.span(levels), (BASE, BASE)))
@@ -274,7 +280,7 @@ class Layout:
         return min((float(gap.min()) for gap in gaps), default=math.inf)
 
     def room_on_base(self, x: float, y: float) -> float:
-        """Half of the distance (rmm) from a place on ground to the next place where something stands there."""
+        """Return half of the distance (rmm) from a place on ground to the next place where something stands there."""
         places = [a for feature in self.features for a in feature.anchors(self) if a.body == "ground"]
         away = [math.hypot(a.x - x, a.y - y) for a in places]
         half = min((d for d in away if d > 0.01), default=math.inf) / 2

@@ -1,10 +1,12 @@
-"""What the features agreed on: eyes of every body, feet on the base, and solids, each with a name of its own."""
+"""The plan of the parts: what kinds of joints, forces and contacts put on bodies, with eyes, feet and solids."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Protocol
+from functools import singledispatch
+from typing import TYPE_CHECKING, Any, Protocol
 
 from shared.contract.mount import Mount
 from shared.shapes.link import Eye
@@ -15,9 +17,68 @@ if TYPE_CHECKING:
 
     import cadquery as cq
 
-    from mechanisms.stages.automatic.layout.layout import Carrier, Layout
+    from mbsd import Mechanism
+    from mbsd.model.force import Force
+    from mbsd.model.joint import Joint
+    from mechanisms.stages.automatic.layout.items import Heights
+    from mechanisms.stages.automatic.layout.layout import Carrier, Feature, Layout
     from shared.shapes.outline import Circle
 
+
+# Features of kinds of joints, forces and contacts, and the registries; the package's docstring says how.
+
+type Gather[Thing] = Callable[[Mechanism, list[Thing], Layout], Sequence[Feature]]
+"""The features of all joints (forces, contacts) of one kind."""
+
+KINDS: dict[str, Gather[Joint]] = {}
+"""By the name of a joint's kind. A joint whose kind is not here has no automatic parts."""
+FORCE_KINDS: dict[str, Gather[Force]] = {}
+"""By the name of a force's kind. A force whose kind is not here needs no part."""
+CONTACT_KINDS: dict[str, Gather[Joint]] = {}
+"""By the name of a contact's kind. A contact whose kind is not here needs no part."""
+
+
+DRIVER_KINDS: dict[str, Gather[Joint]] = {}
+"""By the name of a driver's kind. A driver whose kind is not here needs no part: it is what turns a pin, or pushes."""
+
+
+@singledispatch
+def build(feature: Any, plan: Plan, heights: Heights) -> None:
+    """Give eyes to the bodies and solids to the plan: as a file of solids has registered, else the feature itself."""
+    feature.build(plan, heights)
+
+
+def kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
+    """Enter the features of a kind of joint."""
+    return _enter(KINDS, name)
+
+
+def force_kind(name: str) -> Callable[[Gather[Force]], Gather[Force]]:
+    """Enter the features of a kind of force."""
+    return _enter(FORCE_KINDS, name)
+
+
+def contact_kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
+    """Enter the features of a kind of contact."""
+    return _enter(CONTACT_KINDS, name)
+
+
+def driver_kind(name: str) -> Callable[[Gather[Joint]], Gather[Joint]]:
+    """Enter the features of a kind of driver."""
+    return _enter(DRIVER_KINDS, name)
+
+
+def _enter[Thing](kinds: dict[str, Gather[Thing]], name: str) -> Callable[[Gather[Thing]], Gather[Thing]]:
+    def enter(gather: Gather[Thing]) -> Gather[Thing]:
+        if name in kinds:
+            raise ValueError(f"{name}: registered twice")
+        kinds[name] = gather
+        return gather
+
+    return enter
+
+
+# The result of all features: eyes of every body, feet on the base, and solids, each with a name of its own.
 
 BOLT_HOLE = 9.0
 """Depth of the holes in the base for the screws of its feet (rmm)."""
@@ -35,7 +96,7 @@ class Foot:
     """Places of its screws."""
     dial: bool = False
     road: bool = False
-    """Whether it is of a road, which may be the ground itself."""
+    """True if it is of a road, which may be the ground itself."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +172,7 @@ class Plan:
         kept += [replace(s, name=self.named(s.name)) for s in solids]
 
     def make(self, body: str, name: str, shape: cq.Workplane, material: str, through_holes: int, buy: str = "") -> str:
-        """One solid; the name that it gets."""
+        """Add one solid; return the name that it gets."""
         self.add(body, Solid(name, shape, material, through_holes, buy=buy))
         return self.solids[body][-1].name
 
@@ -126,7 +187,9 @@ class Plan:
             self.main[body] = self.named(body)
 
     def named(self, wish: str) -> str:
-        """A name that no other solid has, of letters, digits and _; some disks take upper and lower case for one."""
+        """Return a name that no other solid has, of letters, digits and _; some disks take upper and lower case for
+        one.
+        """
         name = re.sub(r"\W", "_", wish, flags=re.ASCII)
         if not name[:1].isalpha():
             name = f"part_{name}"

@@ -32,12 +32,12 @@ class Rounded:
     radius: float
 
     def core_at(self, chosen: np.ndarray) -> np.ndarray:
-        """The core at these poses: (n, 2), or (k, n, 2) where it changes."""
+        """Return the core at these poses: (n, 2), or (k, n, 2) where it changes."""
         return self.core if self.core.ndim == 2 else self.core[chosen]
 
     @cached_property
     def content(self) -> tuple[tuple[int, ...], bytes, float]:
-        """What two shapes that are alike have in common."""
+        """Key that is equal for two equal shapes."""
         return self.core.shape, self.core.tobytes(), self.radius
 
     @property
@@ -48,17 +48,17 @@ class Rounded:
 
 
 def disc(x: float, y: float, radius: float) -> Rounded:
-    """A disc."""
+    """Return a disc."""
     return Rounded(np.array([[x, y]]), radius)
 
 
 def around(points: Sequence[tuple[float, float]], radius: float) -> Rounded:
-    """All within ``radius`` of the convex hull of points."""
+    """Return all within ``radius`` of the convex hull of points."""
     return Rounded(convex_hull(np.array(points, dtype=float)), radius)
 
 
 def convex_hull(points: np.ndarray, tolerance: float = 1e-9) -> np.ndarray:
-    """(m, 2): corners of the convex hull, counter-clockwise, none on a line between two others (monotone chain).
+    """Return (m, 2) corners of the convex hull, counter-clockwise, none on a line between two others (monotone chain).
 
     ``tolerance``: corners are dropped that with others make triangles of this part of the hull's squared size, as far
     as what is dropped lies within ``FLAT`` of the hull that stays.
@@ -80,7 +80,7 @@ def convex_hull(points: np.ndarray, tolerance: float = 1e-9) -> np.ndarray:
 
 
 def _plainer(chain: list[tuple[float, float]], area: float) -> list[tuple[float, float]]:
-    """The convex chain without corners that hardly stand out; its ends stay."""
+    """Return the convex chain without corners that hardly stand out; its ends stay."""
     kept, dropped = [chain[0]], list[tuple[float, float]]()
     for corner, after in pairwise(chain[1:]):
         least = min(math.dist(kept[-1], after) * FLAT, area)
@@ -94,7 +94,8 @@ def _plainer(chain: list[tuple[float, float]], area: float) -> list[tuple[float,
 def least_gap(
     first: Rounded, second: Rounded, poses: tuple[np.ndarray, np.ndarray], enough: float
 ) -> tuple[float, int]:
-    """Least gap (rmm, negative where they overlap) and the pose it is at; (T, 3) poses x, y, theta of both bodies.
+    """Return the least gap (rmm, negative where they overlap) and the pose it is at; (T, 3) poses x, y, theta of both
+    bodies.
 
     A gap above ``enough`` need not be the least one, and for one below it the first that is found will do.
     """
@@ -117,7 +118,7 @@ def least_gap(
 
 
 def core_gaps(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(T,): distances of two convex polygons of points (T, n, 2) and (T, m, 2); 0 where they overlap."""
+    """Return (T,): distances of two convex polygons of points (T, n, 2) and (T, m, 2); 0 where they overlap."""
     gaps = np.minimum(_corners_to_edges(a, b), _corners_to_edges(b, a))
     meet = _inside(a[:, 0], b) | _inside(b[:, 0], a) | _cross_each_other(a, b)
     return np.where(meet, 0.0, gaps)
@@ -155,7 +156,7 @@ def _cross_each_other(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _parts(p: np.ndarray, q: np.ndarray, r: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Whether the line through p and q has r and s on either side, and neither on it but for rounding."""
+    """Return True if the line through p and q has r and s on either side, and neither on it but for rounding."""
     to_r, to_s = _turn(q - p, r - p), _turn(q - p, s - p)
     reach = np.abs(r - p).sum(axis=-1) + np.abs(s - p).sum(axis=-1)
     noise = ON_A_LINE * np.abs(q - p).sum(axis=-1) * reach
@@ -171,7 +172,7 @@ def _cross(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float
 
 
 def placed(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
-    """(T, n, 2): points (n, 2) or (T, n, 2) of a body in the world at poses (T, 3)."""
+    """Return (T, n, 2): points (n, 2) or (T, n, 2) of a body in the world at poses (T, 3)."""
     c, s = np.cos(pose[:, 2:]), np.sin(pose[:, 2:])
     x = pose[:, :1] + c * points[..., 0] - s * points[..., 1]
     return np.stack([x, pose[:, 1:2] + s * points[..., 0] + c * points[..., 1]], axis=2)

@@ -1,14 +1,15 @@
-"""Sizes follow the mechanism: one scale for pins, eyes and plates, from its shortest link and its overall size.
-
-Everything is laid out and built with pins of :data:`PIN` mm, in reference millimetres (rmm), and scaled at the end.
-So a 20 mm clockwork and a 3 m excavator have the same proportions, chamfers included.
-"""
+"""The size of parts: how far joints reach, lengths that must hold a pin, and the scale that follows (mm)."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from mechanisms.stages.loading.wishes import wished_scale
 from mechanisms.stages.parts_files import TOLERANCE
 from shared.shapes.fit import Fit
 from shared.shapes.pin import Head
@@ -17,9 +18,172 @@ from shared.shapes.screw import SOCKET
 from shared.shapes.standards import CIRCLIPS, shim_ring
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
+from shared.stage.face import said
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.extents import Lengths
+    from mbsd import Mechanism, Solution
+    from mbsd.model.body import Marker
+    from mbsd.model.force import Force
+    from mbsd.model.joint import Joint
+    from shared.stage.scale import Scale
+
+
+# Lengths from which the scale of the parts follows: the reach of joints, and lengths that must hold a pin's width.
+
+LINK, STUD = 22.0, 18.0
+"""Least distances of two pins of one body, and of a spring's stud and a pin or stud beside it (rmm)."""
+ROD = "distance"
+"""The kind of joint that is a rod: like a body here, though it has no mass and no pose of its own in the model."""
+STRETCHING = (
+    "spring", "spring_law", "curve_of_length", "actuator", "gas", "gas_cycle", "gas_strut", "hydraulic_cylinder",
+)  # fmt: skip
+"""Kinds of forces that act along the line of two points, or along an axis on which both may be."""
+ROPE, LINEAR = "rope", "drive_distance"
+"""The kinds of contact and of driver that do."""
+NEAR = 0.02
+"""Studs that are nearer to each other, as a part of the whole, are on one place, or do not decide the scale."""
+
+
+@dataclass(frozen=True)
+class Extent:
+    """Extent of a joint, contact or force: how far it reaches, and which lengths must hold its parts."""
+
+    radii: tuple[tuple[Marker, float], ...] = ()
+    """Markers and radii (m) round them."""
+    least: tuple[tuple[float, float], ...] = ()
+    """Lengths of the model (m), each with the least that it may be in rmm."""
+
+
+type ExtentOf = Callable[[Any, Solution], Extent]
+"""Extent of a joint, a contact or a force."""
+
+EXTENTS: dict[str, ExtentOf] = {}
+
+
+def extent(name: str) -> Callable[[ExtentOf], ExtentOf]:
+    """Enter what joints, contacts or forces of a kind say of their size."""
+
+    def enter(of: ExtentOf) -> ExtentOf:
+        EXTENTS[name] = of
+        return of
+
+    return enter
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """Lengths of a mechanism (m) from which the size of its parts follows."""
+
+    apart: list[tuple[float, str, float]]
+    """Distances of two pins of a body, or what is like one, each with words for it, and the length that these mean;
+    without those that are none.
+    """
+    overall: float
+    """The longer side of all that is swept."""
+
+    @property
+    def shortest(self) -> tuple[float, str, float]:
+        """The shortest distance, with its words and their length."""
+        return min(self.apart, default=(self.overall, "all that moves", self.overall))
+
+
+def lengths_of(m: Mechanism, solution: Solution, left_out: Collection[str] = ()) -> Lengths:
+    """Return lengths of a mechanism and its motion, without bodies that are ``left_out``."""
+    places: dict[str, list[tuple[float, float]]] = {}
+    pinned: dict[str, list[tuple[float, float]]] = {}
+    pins: dict[str, list[str]] = {}
+    studs: dict[str, list[tuple[float, float]]] = {}
+    least: list[tuple[float, str, float]] = []
+    for joint in m.joints.values():
+        for marker in (joint.i, joint.j):
+            if marker.body.name in left_out:
+                continue
+            places.setdefault(marker.body.name, []).append((marker.x, marker.y))
+            if joint.kind.pair == "pin" or joint.kind.name == ROD or (joint.kind.pair == "slot" and marker is joint.j):
+                pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
+                pins.setdefault(marker.body.name, []).append(joint.name)
+    for force in m.forces.values():
+        for marker in (force.i, force.j) if force.kind.journal is not None else ():
+            if marker.body.name not in left_out:
+                places.setdefault(marker.body.name, []).append((marker.x, marker.y))
+                pinned.setdefault(marker.body.name, []).append((marker.x, marker.y))
+                pins.setdefault(marker.body.name, []).append(force.name)
+    for thing in (*m.joints.values(), *m.contacts.values(), *m.forces.values()):
+        if thing.kind.name in EXTENTS and not any(body in left_out for body in thing.bodies):
+            own = EXTENTS[thing.kind.name](thing, solution)
+            least += [(length * LINK / wanted, f"a length of '{thing.name}'", length) for length, wanted in own.least]
+            for marker, radius in own.radii:
+                round_it = [(marker.x + radius * u, marker.y + radius * v) for u, v in _ROUND]
+                places.setdefault(marker.body.name, []).extend(round_it)
+    for element in stretching(m, left_out):
+        for marker in (element.i, element.j):
+            places.setdefault(marker.body.name, []).append((marker.x, marker.y))
+            studs.setdefault(marker.body.name, []).append((marker.x, marker.y))
+    held = [*m.joints.values(), *(force for force in m.forces.values() if force.kind.journal is not None)]
+    jointed = {name for joint in held for name in joint.bodies}
+    for name, body in m.bodies.items():
+        if name not in (*jointed, *left_out, "ground"):
+            places.setdefault(name, []).append(body.com)
+        if body.length is not None and name not in left_out:
+            places.setdefault(name, []).extend([(0.0, 0.0), (body.length, 0.0)])
+    seen = np.concatenate([[[0.0, 0.0]], *[_swept(solution, body, np.array(at)) for body, at in places.items()]])
+    overall = float(np.ptp(seen[1:], axis=0).max()) if len(seen) > 1 else 1.0
+    apart = [
+        (d := math.dist(at[i], at[k]), f"the distance of '{pins[body][k]}' and '{pins[body][i]}' on '{body}'", d)
+        for body, at in pinned.items()
+        for i in range(len(at))
+        for k in range(i)
+    ]
+    for body, at in studs.items():
+        beside = [math.dist(a, b) for i, a in enumerate(at) for b in [*at[:i], *pinned.get(body, [])]]
+        words = f"the distance of pins or ends of springs on '{body}'"
+        least += [(d * LINK / STUD, words, d) for d in beside if d > NEAR * overall]
+    return Lengths([length for length in [*apart, *least] if length[0] > 1e-3 * overall], overall)
+
+
+def stretching(m: Mechanism, left_out: Collection[str] = ()) -> list[Force | Joint]:
+    """Return forces, ropes and drivers between two points that have parts at both ends."""
+    elements: list[Force | Joint] = [force for force in m.forces.values() if force.kind.name in STRETCHING]
+    elements += [contact for contact in m.contacts.values() if contact.kind.name == ROPE]
+    elements += [driver for driver in m.drivers.values() if driver.kind.name == LINEAR]
+    return [element for element in elements if not any(body in left_out for body in element.bodies)]
+
+
+_ROUND = [(np.cos(a), np.sin(a)) for a in np.linspace(0.0, 2 * np.pi, 16, endpoint=False)]
+
+
+def _swept(solution: Solution, body: str, at: np.ndarray) -> np.ndarray:
+    if body == "ground":
+        return at
+    view = solution.body(body)
+    c, s = np.cos(view.theta)[:, None], np.sin(view.theta)[:, None]
+    x = view.x[:, None] + c * at[:, 0] - s * at[:, 1]
+    y = view.y[:, None] + s * at[:, 0] + c * at[:, 1]
+    return np.stack([x.ravel(), y.ravel()], axis=1)
+
+
+def distance(joint: Joint, solution: Solution) -> float:
+    """Return the distance between a joint's two markers at the start (m)."""
+    first, second = (_swept(solution, k.body.name, np.array([[k.x, k.y]]))[0] for k in (joint.i, joint.j))
+    return float(np.hypot(*(second - first)))
+
+
+def rods_of(m: Mechanism, left_out: Collection[str] = ()) -> dict[str, Joint]:
+    """Return rods by name, which is that of the joint, but for joints whose name a body has; without those that lack an
+    end.
+    """
+    rods: dict[str, Joint] = {}
+    for name, joint in m.joints.items():
+        rod = f"rod_{name}" if name in m.bodies else name
+        if joint.kind.name == ROD and rod not in left_out and not any(body in left_out for body in joint.bodies):
+            rods[rod] = joint
+    return rods
+
+
+# Sizes follow the mechanism: one scale for pins, eyes and plates, from its shortest link and its overall size.
+#
+# Everything is laid out and built with pins of :data:`PIN` mm, in reference millimetres (rmm), and scaled at the end.
+# So a 20 mm clockwork and a 3 m excavator have the same proportions, chamfers included.
 
 PIN = 8.0
 """Diameter of a pin (rmm)."""
@@ -89,14 +253,14 @@ class Sizes:
     pedestal: float = 8.0
     """Least height of a pedestal."""
     pin_end: float = 1.2
-    """What a pin shows beyond its circlip."""
+    """Length of a pin beyond its circlip."""
     room: float = 1.5
     """Least gap in the plane between bodies that share a height."""
     ratio: float = 1.0
     """Millimetres of the finished piece for a millimetre here: 0.05 for a model at 1:20."""
 
     def of_metres(self, length: float) -> float:
-        """A length of the model (m) in rmm."""
+        """Return a length of the model (m) in rmm."""
         return mm(length) / self.scale
 
     @property
@@ -143,8 +307,8 @@ class Sizes:
 
 
 def sizes(shortest: float, overall: float, fit: Fit | None = None, thinnest: float = THINNEST) -> list[Sizes]:
-    """From the shortest distance of two joints of one body and the longer side of what all joints sweep (m); then
-    with thinner pins, the last ``thinnest`` times as thick at least.
+    """Return sizes from the shortest distance of two joints of one body and the longer side of what all joints sweep
+    (m); then with thinner pins, the last ``thinnest`` times as thick at least.
     """
     pin = standard(min(mm(shortest) / LEAST_LINK, mm(overall) / OVERALL))
     thinner = [d for d in reversed(STANDARD) if thinnest * pin <= d < pin]
@@ -164,7 +328,8 @@ def thin_pins(lengths: Lengths, pin: float) -> str:
 
 
 def of_pin(diameter: float, fit: Fit | None = None, ratio: float = 1.0) -> Sizes:
-    """Sizes that go with pins of this diameter (mm), with washers and circlips that one can buy where there are any.
+    """Return sizes that go with pins of this diameter (mm), with washers and circlips that one can buy where there are
+    any.
 
     ``fit`` in mm; by default what a workshop can make, small or large. Both are those of the finished piece, in the
     ``ratio`` to the machine.
@@ -179,7 +344,7 @@ def of_pin(diameter: float, fit: Fit | None = None, ratio: float = 1.0) -> Sizes
 
 
 def _bought(pivot: Pivot, diameter: float, scale: float) -> Pivot:
-    """With the sizes of standard washers and circlips."""
+    """Return the pivot with the sizes of standard washers and circlips."""
     ring, clip = shim_ring(diameter, pivot.washer_thickness * scale), CIRCLIPS.get(diameter)
     if ring:
         washer, thickness = ring.outer / scale, ring.thickness / scale
@@ -192,7 +357,7 @@ def _bought(pivot: Pivot, diameter: float, scale: float) -> Pivot:
 
 
 def standard(wish: float) -> float:
-    """The standard diameter (mm) next below ``wish``; the smallest one if there is none below."""
+    """Return the standard diameter (mm) next below ``wish``; the smallest one if there is none below."""
     if wish >= STANDARD[-1] + 50:
         return 50.0 * (wish // 50)
     return max((d for d in STANDARD if d <= wish * (1 + 1e-9)), default=STANDARD[0])
@@ -204,3 +369,62 @@ def refuse_sizes(name: str, pin: float | None, fit: Fit | None) -> None:
     for what, value in given.items():
         if value is not None and not 0 < value < float("inf"):
             raise UserError(f"{name}: {what} is {value} mm; give a positive number")
+
+
+# Sizes of models at a scale, which are printed: pins and clearances in millimetres of the finished piece.
+#
+# Hardware of a pin of :data:`LEAST` mm is as thin as a nozzle allows: the wall of a bushing is 0.41 mm, its flange
+# 0.45 mm, and washers and circlips of that size are bought (DIN 988, DIN 471).
+
+LEAST = 3.0
+"""Diameter of the thinnest pin (mm)."""
+RUNNING, PRESS, AXIAL = 0.3, 0.1, 0.3
+"""Least clearances of printed parts (mm)."""
+
+
+def printed_sizes(
+    name: str, lengths: Lengths, scale: Scale, thinnest: float, pin: float | None = None, fit: Fit | None = None
+) -> list[Sizes]:
+    """Return the most wanted first, then with thinner pins, the last ``thinnest`` times as thick at least.
+
+    ``pin`` (mm of the machine) is what its author wishes there, ``fit`` (mm of the piece) what the printer does. Raises
+    UserError naming the shortest link and the smallest scale that would do, if no pin fits it.
+    """
+    shortest, link, own = lengths.shortest
+    room = mm(shortest) * scale.ratio / LEAST_LINK
+    if room < LEAST * (1 - 1e-9):
+        raise UserError(_too_short(name, shortest, link, own, scale))
+    wished = mm(lengths.overall) * scale.ratio / OVERALL if pin is None else pin * scale.ratio
+    thick = max(standard(min(room, wished)), LEAST)
+    thinner = [d for d in reversed(STANDARD) if max(thinnest * thick, LEAST) <= d < thick]
+    return [of_pin(d, fit or printed_fit(d), scale.ratio) for d in (thick, *thinner)]
+
+
+def printed_fit(pin: float) -> Fit:
+    """Return clearances that printed parts with pins of this diameter need (mm)."""
+    size = pin / PIN
+    return Fit(
+        min(max(0.2 * size, RUNNING), 0.6), max(Fit.press * size, PRESS), max(0.4 * size, AXIAL), Fit.seat * size
+    )
+
+
+def fit_at_scale(pin: float) -> Fit:
+    """Return the clearances for a parts.py with pins of this diameter: ``Fit()``, or in a model at a scale what its
+    printer needs. All in mm of the machine.
+    """
+    scale = wished_scale()
+    if scale is None:
+        return Fit()
+    fit = printed_fit(pin * scale.ratio)
+    return Fit(*(clearance / scale.ratio for clearance in (fit.running, fit.press, fit.axial, fit.seat)))
+
+
+def _too_short(name: str, shortest: float, link: str, own: float, scale: Scale) -> str:
+    needed = LEAST * LEAST_LINK
+    times = mm(shortest) / needed
+    least = f"1:{math.floor(times)}" if times >= 1 else f"{math.ceil(1 / times)}:1"
+    return (
+        f"{name} at {scale}: {link} becomes {mm(own) * scale.ratio:.3g} mm, and the thinnest pins that can be "
+        f"printed, of {LEAST:g} mm, need {needed * own / shortest:.3g} mm; "
+        f"{said(scale=least)} is the smallest that works"
+    )

@@ -1,22 +1,25 @@
-"""The solids of a pin: what holds it, what runs on it, and what keeps it in place (rmm)."""
+"""Solids of pin joints: bolts, washers, circlips and pins of hardened steel (mm)."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Foot
+from mechanisms.stages.automatic.layout.plan import BOLT_HOLE, Foot, build
+from mechanisms.stages.automatic.pins.pins import Pin
 from shared.shapes.base import bolt_circle, column, pedestal
+from shared.shapes.build import bore
 from shared.shapes.link import Eye
-from shared.shapes.pin import pin, washer
+from shared.shapes.pin import Head, bushing, pin, washer
 from shared.shapes.screw import socket_screw
 from shared.shapes.solid import Solid, placed
 from shared.shapes.standards import screw_length, screw_name
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Levels
-    from mechanisms.stages.automatic.layout.order.heights import Heights
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.plan import Plan
-    from mechanisms.stages.automatic.pins.pins import Pin
+
+
+# The solids of a pin: what holds it, what runs on it, and what keeps it in place (rmm).
 
 FLANGE, CIRCLE = 39.0, 31.0
 """Diameters of a pedestal's flange and of the circle of its screws."""
@@ -97,7 +100,7 @@ def ground_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
 
 
 def upper_end(joint: Pin, plan: Plan, heights: Heights) -> tuple[str, float]:
-    """What holds a pin, and the height of the pin's upper end."""
+    """Return the body that holds a pin, and the height of the pin's upper end."""
     sizes = plan.layout.sizes
     pivot, fit = sizes.pivot, sizes.pivot.fit
     stack = sorted(joint.movers, key=heights.bottom)
@@ -110,7 +113,7 @@ def upper_end(joint: Pin, plan: Plan, heights: Heights) -> tuple[str, float]:
 
 
 def _flush(joint: Pin, holder: str, plan: Plan, heights: Heights) -> bool:
-    """Whether something passes where the head of a hanging pin would be."""
+    """Return True if something passes where the head of a hanging pin would be."""
     half = 2 * heights.levels[holder]
     return any(plan.layout.is_covered(joint, half + above, heights.levels) for above in (1, 2))
 
@@ -172,3 +175,80 @@ def standing(
     for i, (u, v) in enumerate(bolts):
         at_screw = placed(screw, u, v, FLANGE_THICKNESS + 2 * seat)
         plan.add("ground", Solid(f"screw_{name}_{i + 1}", at_screw, "steel", 0, buy=bought))
+
+
+# The solids of pins with nothing beyond their plates (rmm): sunk pivots, and pins of built-up cranks.
+
+SUNK = Head(14.0, 1.4, 0.3)
+"""Head of a pivot that is sunk into its link."""
+UNDER = 0.3
+"""How far such a head, or the end of a pin, is under the face of the plate."""
+
+
+def flush_pivot(joint: Pin, plan: Plan, heights: Heights) -> None:
+    """A pedestal with a fixed pin whose head is in a counterbore of the one link on it, so that nothing is above it."""
+    sizes, name, (body,) = plan.layout.sizes, joint.name, joint.movers
+    pivot, fit = sizes.pivot, sizes.pivot.fit
+    x, y = joint.places["ground"]
+    u, v = joint.places[body]
+    bottom = heights.bottom(body)
+    height = bottom - pivot.flange_room - fit.axial - pivot.washer_room
+    standing(name, (x, y), height, plan, dial=joint.driven, levels=heights.levels)
+    depth = SUNK.height + fit.axial + UNDER
+    floor = heights.thickness - depth
+    plan.eye(body, u, v, Eye(sizes.eye, pivot.running))
+    plan.cut(body, placed(bore(SUNK.diameter + fit.running + 0.4, floor + 0.5, heights.thickness + 1.0), u, v), 0)
+    barrel = bushing(pivot.bored(joint.play), pivot.bushing, pivot.flange, pivot.flange_thickness, floor - 0.1)
+    barrel = barrel.rotate((0, 0, 0), (1, 0, 0), 180)
+    plan.make(body, f"bushing_{name}", placed(barrel, u, v, bottom - fit.seat), "bronze", 1)
+    end = bottom + floor + fit.axial
+    plan.make("ground", f"pin_{name}", placed(pin(pivot.pin, end - 0.5, SUNK), x, y, 0.5), "steel", 0)
+    plan.add("ground", pivot.washer_at(f"washer_{name}", x, y, height + fit.seat))
+
+
+def crank_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> None:
+    """A pin pressed into two webs of one body, the ends of ``stack``; the others turn between them."""
+    sizes, name = plan.layout.sizes, joint.name
+    pivot, fit = sizes.pivot, sizes.pivot.fit
+    low, *runners, high = stack
+    x, y = joint.places[low]
+    top, under = heights.top(low), heights.bottom(high)
+    room = pivot.flange_room + fit.axial + pivot.washer_room
+    above, below = (_boss(gap - room) for gap in (heights.bottom(runners[0]) - top, under - heights.top(runners[-1])))
+    radius = min(9.5, sizes.hardware)
+    plan.eye(low, x, y, Eye(sizes.eye - 0.5, pivot.held, above=above, boss=radius))
+    plan.eye(high, x, y, Eye(sizes.eye - 0.5, pivot.held, below=below, boss=radius))
+    run(joint, runners, low, plan, heights)
+    start, end = heights.bottom(low) + UNDER, heights.top(high) - UNDER
+    plan.make(low, f"pin_{name}", placed(pin(pivot.pin, end - start), x, y, start), "steel", 0)
+    plan.add(
+        low,
+        pivot.washer_at(f"washer_{name}_low", x, y, top + above + fit.seat),
+        pivot.washer_at(f"washer_{name}_high", x, y, under - below - pivot.washer_room),
+    )
+
+
+def _boss(height: float) -> float:
+    return height if height > 0.05 else 0.0
+
+
+# Solids of a pin, by the element that holds it.
+
+
+@build.register(Pin)
+def pin_hardware(joint: Pin, plan: Plan, heights: Heights) -> None:
+    """Eyes and hardware; a bridge builds what hangs from it."""
+    stack = sorted(joint.movers, key=heights.bottom)
+    hangs = heights.levels.get(joint.choice) == 1
+    if joint.on_ground and hangs:
+        return
+    if joint.webs:
+        crank_pin(joint, stack, plan, heights)
+    elif joint.is_flush(heights.levels, plan.layout):
+        flush_pivot(joint, plan, heights)
+    elif joint.on_ground:
+        ground_pin(joint, stack, plan, heights)
+    elif hangs:
+        hanging_pin(joint, stack, plan, heights)
+    else:
+        moving_pin(joint, stack, plan, heights)

@@ -1,30 +1,73 @@
-"""Revolute joints: links that turn about a common axis on one pin, with bushings, washers and circlip. Rods (rods.py)
-turn about a pin at either end.
-
-Joints that share a place on a body share their pin. The lowest body holds it and its head is on top, or the highest
-holds it and it hangs down, kept by a circlip; on ground a pedestal holds it, or a bridge (bridges.py). Where something
-passes close above a pivot, its head is sunk into its link; a pin may join two webs of a crank (webs.py)."""
+"""Pin joints: bolts, rods between pins, webs, and pins with play."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
-from mechanisms.stages.automatic.layout.extents import ROD
-from mechanisms.stages.automatic.layout.features import kind
+import numpy as np
+
 from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, PinReach, PivotReach, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
+from mechanisms.stages.automatic.layout.plan import force_kind, kind
 from mechanisms.stages.automatic.layout.planar import disc
-from mechanisms.stages.automatic.pins.rods import ends as rod_ends
+from mechanisms.stages.automatic.layout.sizes import ROD, Extent, extent
+from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
-    from mbsd import Mechanism
+    from mbsd import Mechanism, Solution
+    from mbsd.model.force import Force
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.items import Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from shared.shapes.bodies import Place
+
+
+# Rods: distance joints, and what is like a body here. A rod has an eye on the pin at either of its ends.
+#
+# In the model it is a constraint without mass, so it has no pose of its own: its frame is at the joint's first marker,
+# and its x axis goes to the second.
+
+LEAST = 22.0
+"""Least length of a rod (rmm): that of a bar between two pins."""
+
+
+def add_poses(layout: Layout) -> None:
+    """Enter where each rod is over the motion."""
+    for rod, joint in layout.rods.items():
+        start, end = (layout.seen(marker.body.name, layout.place(marker), "ground") for marker in (joint.i, joint.j))
+        way = end - start
+        layout.poses[rod] = np.column_stack([start, np.unwrap(np.arctan2(way[:, 1], way[:, 0]))])
+
+
+def ends(joint: Joint, layout: Layout) -> list[tuple[tuple[float, float], str, tuple[float, float]]]:
+    """Return the place of either eye on the rod, the body that it is pinned to, and the place there (rmm)."""
+    length = layout.sizes.of_metres(joint.params["length"])
+    return [((x, 0.0), marker.body.name, layout.place(marker)) for x, marker in ((0.0, joint.i), (length, joint.j))]
+
+
+def places(joint: Joint) -> tuple[Place, Place]:
+    """Return the two places that the joint joins, in rmm."""
+    first, second = ((marker.body.name, 1e3 * marker.x, 1e3 * marker.y) for marker in (joint.i, joint.j))
+    return first, second
+
+
+@extent(ROD)
+def extent_of(joint: Joint, solution: Solution) -> Extent:
+    """Return an extent as long as a bar."""
+    return Extent(least=((joint.params["length"], LEAST),))
+
+
+# Revolute joints: links that turn about a common axis on one pin, with bushings, washers and circlip. Rods (above)
+# turn about a pin at either end.
+#
+# Joints that share a place on a body share their pin. The lowest body holds it and its head is on top, or the highest
+# holds it and it hangs down, kept by a circlip; on ground a pedestal holds it, or a bridge (bridges.py). Where
+# something passes close above a pivot, its head is sunk into its link; a pin may join two webs of a crank (below).
 
 LEAST_COLUMN = 2.5
 """Height of what carries a pivot over a wheel of ground (rmm)."""
@@ -41,7 +84,7 @@ class Pin:
     m: Mechanism
     places: dict[str, tuple[float, float]]
     webs: tuple[str, str] | None = None
-    """Two plates of one body that it joins (webs.py); all others on it turn between these."""
+    """Two plates of one body that it joins; all others on it turn between these."""
     play: float = 0.0
     """How far its axis is from that of its bushings at most (rmm): of a pin with clearance, and what that yields."""
 
@@ -52,12 +95,12 @@ class Pin:
 
     @property
     def what(self) -> str:
-        """What its item is called."""
+        """Name of its item."""
         return f"the pivot {self.name} on ground" if self.on_ground else f"the pin of {self.name}"
 
     @property
     def on_ground(self) -> bool:
-        """Whether a pedestal or a bridge holds it."""
+        """True if a pedestal or a bridge holds it."""
         return "ground" in self.places
 
     @property
@@ -67,7 +110,7 @@ class Pin:
 
     @property
     def choice(self) -> str:
-        """Whether its lowest body holds it (0) or its highest (1); on ground: the base (0) or a bridge (1)."""
+        """0 if its lowest body holds it, 1 if its highest; on ground, 0 for the base and 1 for a bridge."""
         return f"pin {self.name}"
 
     @property
@@ -78,7 +121,7 @@ class Pin:
         return *self.webs, tuple(body for body in self.movers if body not in self.webs)
 
     def is_flush(self, levels: Levels, layout: Layout) -> bool:
-        """Whether it ends in the plate of the one body on it, because something passes close above."""
+        """Return True if it ends in the plate of the one body on it, because something passes close above."""
         if not self._may_be_flush(layout) or levels[self.choice] == 1:
             return False
         return layout.is_covered(self, 2 * levels[self.movers[0]] + 1, levels)
@@ -90,16 +133,16 @@ class Pin:
 
     @property
     def driven(self) -> bool:
-        """Whether a driver turns what is on it against ground."""
+        """True if a driver turns what is on it against ground."""
         drivers = self.m.drivers.values()
         return self.on_ground and any(d.kind.angular and set(d.bodies) <= set(self.places) for d in drivers)
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """An eye on every body."""
+        """Return an eye on every body."""
         return [Anchor(body, x, y, layout.sizes.eye) for body, (x, y) in self.places.items()]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """All heights that pin and pedestal take."""
+        """Return all heights that pin and pedestal take."""
         x, y = self.places[self.home]
         shape, on_it = disc(x, y, layout.sizes.hardware), frozenset(self.places)
         if self.on_ground:
@@ -109,7 +152,7 @@ class Pin:
         return [Item(self.what, self.home, shape, ends, on_it, self)]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""
+        """Yield the room for washers and flanges between neighbours on the pin, and for its head or circlip on top."""
         sizes, pivot = layout.sizes, layout.sizes.pivot
         running = pivot.fit.axial + pivot.flange_room
         stack = sorted(levels[body] for body in self.movers)
@@ -137,29 +180,29 @@ class Pin:
 
 @kind("revolute")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Joints by their pins: those with a common place on a body are one."""
+    """Return joints by their pins: those with a common place on a body are one."""
     named = [(joint.name, {k.body.name: layout.place(k) for k in (joint.i, joint.j)}) for joint in joints]
     return _pins(m, [*named, *_rod_ends(layout)])
 
 
 @kind(ROD)
 def gather_rods(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """Their pins are those of the revolute joints, unless there is none of these."""
+    """Gather rods as features; their pins are those of the revolute joints, unless there are none."""
     revolute = [j for j in m.joints.values() if j.kind.pair == "pin" and not layout.apart.intersection(j.bodies)]
     return [] if revolute else _pins(m, _rod_ends(layout))
 
 
 def _rod_ends(layout: Layout) -> list[tuple[str, dict[str, tuple[float, float]]]]:
-    """Named, with the place on the rod and that on the body which it is pinned to."""
+    """Return named ends, with the place on the rod and that on the body which it is pinned to."""
     return [
         (f"{rod}_{number}", {rod: own, body: place})
         for rod, joint in layout.rods.items()
-        for number, (own, body, place) in enumerate(rod_ends(joint, layout), start=1)
+        for number, (own, body, place) in enumerate(ends(joint, layout), start=1)
     ]
 
 
 def _pins(m: Mechanism, named: list[tuple[str, dict[str, tuple[float, float]]]]) -> list[Feature]:
-    """Pins of named joints with a place on two bodies each: those with a common place are one pin."""
+    """Return pins of named joints with a place on two bodies each: those with a common place are one pin."""
     ends = [at for _, at in named]
     group = list(range(len(named)))
     for j in range(len(named)):
@@ -178,3 +221,93 @@ def _pins(m: Mechanism, named: list[tuple[str, dict[str, tuple[float, float]]]])
 
 def _same(a: tuple[float, float], b: tuple[float, float]) -> bool:
     return abs(a[0] - b[0]) < SAME and abs(a[1] - b[1]) < SAME
+
+
+# Pins with play: the bushings of a clearance joint are bored as much wider as its journal moves in them.
+#
+# The play is what the motion shows, to scale: the clearance and what steel yields, so that nothing meets in the film.
+
+THINNEST = 0.4
+"""Least wall of a bushing (rmm)."""
+
+
+@force_kind("clearance_joint")
+def gather_with_play(m: Mechanism, forces: list[Force], layout: Layout) -> list[Feature]:
+    """Return a pin each. Raises UserError where play leaves no bushing, or where another pin has the place."""
+    pins: list[Feature] = []
+    for force in forces:
+        places = {marker.body.name: layout.place(marker) for marker in (force.i, force.j)}
+        _refuse_shared(m, force, places, layout)
+        pins.append(Pin(force.name, m, places, play=_play(m, force, layout)))
+        layout.features.append(pins[-1])  # springs may end on it
+    return pins
+
+
+def _play(m: Mechanism, force: Force, layout: Layout) -> float:
+    first, second = force.i, force.j
+    away = layout.seen(second.body.name, layout.place(second), first.body.name) - layout.place(first)
+    play = float(np.hypot(*away.T).max())
+    pivot = layout.sizes.pivot
+    most = (pivot.bushing - 2 * THINNEST - pivot.bored()) / 2
+    if play > most:
+        scale = layout.sizes.scale
+        raise UserError(
+            f"{m.name}: clearance joint '{force.name}' moves {play * scale:.3g} mm to a side, and bushings of "
+            f"{pivot.bushing * scale:.3g} mm on a pin of {pivot.pin * scale:.3g} mm have room for {most * scale:.3g} "
+            f"mm; give it less clearance, or write {shown_file(m.name, 'parts')}"
+        )
+    return play
+
+
+def _refuse_shared(m: Mechanism, force: Force, places: dict[str, tuple[float, float]], layout: Layout) -> None:
+    for pin in layout.features:
+        for body, (x, y) in places.items():
+            if isinstance(pin, Pin) and body in pin.places:
+                u, v = pin.places[body]
+                if abs(x - u) < SAME and abs(y - v) < SAME:
+                    raise UserError(
+                        f"{m.name}: clearance joint '{force.name}' and '{pin.name}' are at one place of '{body}'; "
+                        "bodies that share a pin have no play of their own in automatic parts; move one of them, or "
+                        f"write {shown_file(m.name, 'parts')}"
+                    )
+
+
+# Built-up cranks: a body of two plates, its webs, that the pin between them joins; a link turns on the pin.
+#
+# So a link passes a pivot of its own crank that no bar lets it pass, as on a crankshaft. All of a body that is no pin
+# stays on the first web; pins are shared out.
+
+
+def webbed(layout: Layout, bodies: Collection[str]) -> Iterable[Layout]:
+    """Yield layouts in which one of ``bodies`` has a further web: each of its pins once as the one that joins both, and
+    the others shared out in every way.
+    """
+    for body in (body for body in bodies if body in layout.bodies):
+        pins = [pin for pin in layout.features if isinstance(pin, Pin) and body in pin.places]
+        pins.sort(key=lambda pin: not pin.on_ground)
+        free = [pin for pin in pins if not layout.is_held(pin)]
+        for joining in free:
+            if joining.on_ground or len(joining.places) < 2:
+                continue
+            rest = [pin for pin in pins if pin is not joining]
+            more = any(a.body == body for f in layout.features if f not in pins for a in f.anchors(layout))
+            moved = [pin for pin in (rest if more else rest[1:]) if pin in free]
+            for count in range(1, len(moved) + 1):
+                for chosen in combinations(moved, count):
+                    yield _with_web(layout, body, joining, chosen)
+
+
+def _with_web(layout: Layout, body: str, joining: Pin, chosen: Collection[Pin]) -> Layout:
+    web = f"{body} 2"
+    while web in layout.poses:
+        web += "2"
+    features = []
+    for feature in layout.features:
+        if feature is joining:
+            places = {**joining.places, web: joining.places[body]}
+            feature = replace(joining, places=places, webs=(body, web))
+        elif isinstance(feature, Pin) and feature in chosen:
+            feature = replace(feature, places={web if b == body else b: at for b, at in feature.places.items()})
+        features.append(feature)
+    poses = {**layout.poses, web: layout.poses[body]}
+    return replace(layout, features=features, poses=poses, webs={**layout.webs, web: body})

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout import limits
+from mechanisms.stages.automatic.layout import motion
 from mechanisms.stages.automatic.layout.items import BASE, PIVOT, Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot
@@ -29,9 +29,8 @@ from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 AWAY, RADIUS, EYE = 17.8, 3.2, 6.2
@@ -60,16 +59,16 @@ class Stop:
 
     @property
     def whats(self) -> tuple[str, str]:
-        """What its items are called: those of the first body, and that of the second."""
+        """Names of its items: on the first body, and on the second."""
         return f"the stop {self.name}", f"the stop pin of {self.second} at {self.name}"
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Plates round them, and what posts need on the base."""
+        """Return plates round them, and what posts need on the base."""
         radius = RADIUS + 1.0 if self.first == "ground" else EYE
         return [Anchor(self.second, *self.nose, EYE), *(Anchor(self.first, *at, radius) for _, at in self.ends)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """All between the two plates, or from the base to the plate."""
+        """Yield all between the two plates, or from the base to the plate."""
         still, moving = self.whats
         if self.first == "ground":
             post, nose = Reach((self.second,), -1, -1, base=True), Reach((self.second,), -1, -1)
@@ -83,7 +82,7 @@ class Stop:
         yield Item(moving, self.second, shape, nose, source=self, meshes=frozenset((still,)))
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room in which they meet."""
+        """Yield the room in which they meet."""
         axial = layout.sizes.pivot.fit.axial
         if self.first == "ground":
             level = levels[self.second]
@@ -92,7 +91,7 @@ class Stop:
             yield Need(min(levels[self.first], levels[self.second]), MEET)
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """Pins pressed into the plates, or standing on the base."""
+        """Build pins pressed into the plates, or standing on the base."""
         fit = plan.layout.sizes.pivot.fit
         low, high = heights.bottom(self.second), heights.top(self.second)
         if self.first == "ground":
@@ -117,13 +116,13 @@ class Stop:
 
 
 def stops(m: Mechanism, features: list[Feature], layout: Layout) -> list[Feature]:
-    """Stops of all revolute joints with limits or stops; ``features`` are those of the joints."""
+    """Return stops of all revolute joints with limits or stops; ``features`` are those of the joints."""
     taken = [anchor for feature in features for anchor in feature.anchors(layout)]
     stop_pins: list[Feature] = []
     for joint in m.joints.values():
         if joint.kind.pair != "pin" or layout.apart.intersection(joint.bodies):
             continue
-        ends = limits.turning(joint, m)
+        ends = motion.turning(joint, m)
         (i, j), swap = (joint.i, joint.j), joint.j.body.name == "ground"
         if swap:
             i, j, ends = j, i, (None if ends[1] is None else -ends[1], None if ends[0] is None else -ends[0])
@@ -155,13 +154,13 @@ def stops(m: Mechanism, features: list[Feature], layout: Layout) -> list[Feature
     return stop_pins
 
 
-def _given(ends: limits.Limits) -> list[float]:
+def _given(ends: motion.Limits) -> list[float]:
     return [end for end in ends if end is not None]
 
 
 def _way(taken: list[Anchor], axis: Place, layout: Layout) -> float:
-    """Where the second body has its stop pin (rad): towards a far joint, where its plate is anyway, else where it is
-    farthest from all that is on the body.
+    """Return where the second body has its stop pin (rad): towards a far joint, where its plate is anyway, else where
+    it is farthest from all that is on the body.
     """
     others = np.array([[a.x - axis[0], a.y - axis[1]] for a in taken if math.dist((a.x, a.y), axis) > 0.1])
     if not len(others):

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechanisms.stages.automatic.layout.features import kind
 from mechanisms.stages.automatic.layout.items import BASE, Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.plan import Foot
+from mechanisms.stages.automatic.layout.plan import Foot, kind
 from mechanisms.stages.automatic.layout.planar import around
 from shared.shapes import outline
 from shared.shapes.build import extruded
@@ -29,9 +28,8 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 BOLT, HEAD = 5.0, Head(9.0, 3.0, 0.8)
@@ -60,17 +58,17 @@ class Weld:
         return tuple(body for body, *_ in self.ends if body != "ground")
 
     def bolts(self, body: str) -> list[tuple[float, float]]:
-        """Places of both bolts in the frame of one of the bodies."""
+        """Return places of both bolts in the frame of one of the bodies."""
         _, x, y, angle = next(end for end in self.ends if end[0] == body)
         way = APART * math.cos(angle), APART * math.sin(angle)
         return [(x - way[0], y - way[1]), (x + way[0], y + way[1])]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Both bolts on every body."""
+        """Return both bolts on every body."""
         return [Anchor(body, x, y, ROUND) for body, *_ in self.ends for x, y in self.bolts(body)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """From the lower body, or the base, to the bolts' heads."""
+        """Yield the room from the lower body, or the base, to the bolts' heads."""
         home = self.ends[0][0] if len(self.movers) == 2 else "ground"
         shape = around(self.bolts(home), BLOCK + 1.0)
         reach = Reach(self.movers, 1, 1) if home != "ground" else Reach(self.movers, high=1, base=True)
@@ -79,7 +77,7 @@ class Weld:
         yield Item(what, home, shape, reach, bodies, self, stands=what if home == "ground" else "")
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Room for the heads under what passes over them."""
+        """Yield the room for the heads under what passes over them."""
         fit, top = layout.sizes.pivot.fit, max(levels[body] for body in self.movers)
         if layout.is_covered(self, 2 * (top + 1), levels, 1):
             yield Need(top, HEAD.height + fit.seat + fit.axial)
@@ -115,7 +113,7 @@ class Weld:
 
 @kind("weld")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint; bolts and plates of two welded bodies touch."""
+    """Return one feature for each joint; bolts and plates of two welded bodies touch."""
     welds: list[Feature] = []
     for joint in joints:
         first, second = ((k.body.name, *layout.place(k), k.angle) for k in (joint.i, joint.j))
@@ -125,7 +123,8 @@ def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
 
 
 def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature]:
-    """The features, with the bolts of each weld at the nearest place where nothing of its bodies is in their way.
+    """Return the features, with the bolts of each weld at the nearest place where nothing of its bodies is in their
+    way.
 
     Raises UserError for a weld without such a place.
     """
@@ -146,7 +145,7 @@ def with_free_bolts(features: Sequence[Feature], layout: Layout) -> list[Feature
 
 
 def _moved(weld: Weld) -> Iterable[Weld]:
-    """The weld itself, across, and then farther and farther away in all directions."""
+    """Yield the weld itself, across, and then farther and farther away in all directions."""
     for way in (0.0, *np.arange(STEP, FARTHEST, STEP)):
         count = 1 if way == 0.0 else 8
         for side in 2 * np.pi * np.arange(count) / count:
@@ -159,12 +158,12 @@ def _moved(weld: Weld) -> Iterable[Weld]:
 
 
 def _taken(body: str, features: Sequence[Feature], layout: Layout) -> list[Anchor]:
-    """Places of a body with something on them; what is welded to it is another body's."""
+    """Return places of a body with something on them; what is welded to it is another body's."""
     return [anchor for feature in features for anchor in feature.anchors(layout) if anchor.body == body]
 
 
 def _is_free(weld: Weld, taken: Mapping[str, Sequence[Anchor]], layout: Layout) -> bool:
-    """Whether spacer and bolts stay clear of all hardware on both bodies."""
+    """Return True if spacer and bolts stay clear of all hardware on both bodies."""
     for body, anchors in taken.items():
         (ax, ay), (bx, by) = weld.bolts(body)
         for anchor in anchors:

@@ -1,30 +1,26 @@
-"""Contacts of discs with surfaces and with each other: walls, roads, tracks, balls, wheels and discs.
-
-A surface is where the model has it. What touches is smaller by a clearance (cams.py), and where a contact hardly yields
-also by as much as it presses in; where one sees that, the two pieces may touch by design. A body without joints is a
-ball, or where there is friction, which turns it, a wheel with a tyre; one with joints, or with several places that
-touch, gets discs. What touches a disc that is itself on ground, or a yielding profile of a moving body, has no parts.
-"""
+"""Rolling and touching contacts: discs on roads, tracks and walls."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mbsd.model.laws.curve import Curve
-from mechanisms.stages.automatic.cams.cams import pushing_cam, pushing_extent, with_room
-from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import contact_kind, force_kind
+from mechanisms.stages.automatic.cams import pushing_cam, pushing_extent, with_room
+from mechanisms.stages.automatic.layout.curves import curve_path, farthest, on_body, profile_path, turns_left
 from mechanisms.stages.automatic.layout.layout import Feature
-from mechanisms.stages.automatic.layout.profiles import curve_path, farthest, on_body, profile_path, turns_left
+from mechanisms.stages.automatic.layout.plan import contact_kind, force_kind, kind
+from mechanisms.stages.automatic.layout.sizes import Extent, extent
+from mechanisms.stages.automatic.rolling.roads import THICK, Road, along
 from mechanisms.stages.automatic.rolling.rounds import Look, Round, round_at
-from mechanisms.stages.automatic.rolling.surfaces import touched_path, touched_road
-from mechanisms.stages.automatic.rolling.tracks import circle, track
-from mechanisms.stages.automatic.rolling.walls import NOSE, Line, roads
+from mechanisms.stages.automatic.rolling.tracks import circle, rolled_road, touched_path, touched_road, track
 from shared.shapes.polyline import distances
+from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
@@ -32,26 +28,108 @@ if TYPE_CHECKING:
     from mbsd.model.joint import Joint
     from mechanisms.stages.automatic.layout.layout import Layout
 
-    type Touch = Force | Joint
+
+# Straight walls on ground from contacts with lines: as long as the way along them, and meeting in mitred corners.
+#
+# The lines of one disc leave it the region in which it is on the free side of them all. So each wall ends where it
+# crosses another one, and has its matter outside.
+
+BEYOND = 1.2
+"""How far a wall goes on beyond the way of what touches it, in that one's radii."""
+CORNER = 3.0
+"""A wall that ends nearer than this to another one (radii) goes on to it."""
+SHARPEST = math.radians(20.0)
+"""Walls at a smaller angle have no mitred corner."""
+PARALLEL = 1e-3
+"""Walls at a smaller angle (rad) do not meet."""
+NOSE = 4.0
+"""The least radius of what touches (rmm); the wall of a smaller one lies back by the difference."""
+
+
+@dataclass(eq=False)
+class Line:
+    """A line on ground (rmm): a place, its direction, and the round parts that it carries with their ways along it."""
+
+    name: str
+    start: np.ndarray
+    way: np.ndarray
+    rounds: list[Round] = field(default_factory=list)
+    travel: list[tuple[float, float]] = field(default_factory=list)
+
+    @property
+    def free(self) -> np.ndarray:
+        """(2,) the unit vector to the free side."""
+        return np.array([-self.way[1], self.way[0]])
+
+    def carry(self, part: Round, places: np.ndarray) -> None:
+        """Add a round part that goes along (T, 2) places."""
+        along = (places - self.start) @ self.way
+        beyond = BEYOND * part.radius
+        self.rounds.append(part)
+        self.travel.append((float(along.min()) - beyond, float(along.max()) + beyond))
+
+    def is_same(self, other: Line) -> bool:
+        """Return True if both are one line with one free side."""
+        return bool(np.abs(self.way - other.way).max() < 1e-9 and abs((other.start - self.start) @ self.free) < 1e-6)
+
+
+def roads(lines: Sequence[Line]) -> list[Road]:
+    """Return a wall for each line."""
+    walls = []
+    for line in lines:
+        low, high = min(low for low, _ in line.travel), max(high for _, high in line.travel)
+        shared = [other for other in lines if other is not line and {*other.rounds} & {*line.rounds}]
+        reach = CORNER * max(part.radius for part in line.rounds)
+        behind = [THICK * -line.free] * 2  # of the last and of the first place
+        first, last = low - reach, high + reach
+        for other in shared:
+            turn = float(line.way @ other.free)  # sine of the angle between them; below 0: it ends here
+            if abs(turn) < PARALLEL:
+                continue
+            at = float((other.start - line.start) @ other.free) / turn
+            if turn < 0 and at < last:
+                high, behind[0], last = at, _mitre(line, other), at
+            elif turn > 0 and at > first:
+                low, behind[1], first = at, _mitre(line, other), at
+        path = np.array([line.start + low * line.way, line.start + high * line.way])
+        walls.append(Road(line.name, line.rounds, path, np.array([path[1] + behind[0], path[0] + behind[1]])))
+    return walls
+
+
+def _mitre(line: Line, other: Line) -> np.ndarray:
+    """Return (2,) from where two walls meet to where their outer faces meet; square where that would be far."""
+    cosine = float(line.free @ other.free)
+    if math.pi - math.acos(max(-1.0, min(1.0, cosine))) < SHARPEST:
+        return -THICK * line.free
+    return -THICK * (line.free + other.free) / (1.0 + cosine)
+
+
+# Contacts of discs with surfaces and with each other: walls, roads, tracks, balls, wheels and discs.
+#
+# A surface is where the model has it. What touches is smaller by a clearance (cams.py), and where a contact hardly
+# yields also by as much as it presses in; where one sees that, the two pieces may touch by design. A body without
+# joints is a ball, or where there is friction, which turns it, a wheel with a tyre; one with joints, or with several
+# places that touch, gets discs. What touches a disc that is itself on ground, or a yielding profile of a moving body,
+# has no parts.
+
+type Touch = Force | Joint
 
 BALL, DISC, WHEEL = 12.0, 18.0, 22.0
 """Least radii (rmm)."""
 YIELDS = 0.3
 """Bodies that press further into each other (rmm) do so in the film, too."""
-BEYOND = 1.2
-"""How far a road goes on beyond the way of its wheel, in the wheel's radii."""
 
 
 @contact_kind("rigid_contact")
 def rigid_lines(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
-    """Walls, and what touches them."""
+    """Return walls, and what touches them."""
     return _on_lines(m, touches, layout)
 
 
 @force_kind("contact")
 @force_kind("tyre")
 def yielding(m: Mechanism, touches: list[Force], layout: Layout) -> list[Feature]:
-    """Walls and roads, and what presses on them."""
+    """Return walls and roads, and what presses on them."""
     features = _on_lines(m, [touch for touch in touches if "profile" not in touch.laws], layout)
     for touch in touches:
         profile = touch.laws.get("profile")
@@ -62,7 +140,7 @@ def yielding(m: Mechanism, touches: list[Force], layout: Layout) -> list[Feature
 
 @contact_kind("rigid_terrain")
 def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
-    """Roads and what touches them; a closed curve of a moving body is a cam that pushes a roller."""
+    """Return roads and what touches them; a closed curve of a moving body is a cam that pushes a roller."""
     features: list[Feature] = []
     for touch in touches:
         closed = touch.params["closed"]
@@ -76,7 +154,7 @@ def terrains(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature
 
 @contact_kind("rigid_discs")
 def discs(m: Mechanism, touches: list[Joint], layout: Layout) -> list[Feature]:
-    """Two balls or discs of moving bodies, on one layer; rings round discs, and discs on ground, are tracks."""
+    """Return two balls or discs of moving bodies, on one layer; rings round discs, and discs on ground, are tracks."""
     features: list[Feature] = []
     for touch in touches:
         if touch.params["inside"] or "ground" in touch.bodies:
@@ -117,7 +195,7 @@ def _on_lines(m: Mechanism, touches: Sequence[Touch], layout: Layout) -> list[Fe
 
 
 def _on_profile(m: Mechanism, touch: Force, profile: Curve, layout: Layout) -> list[Feature]:
-    """A road as long as the profile's points, and as the way of what runs on it."""
+    """Return a road as long as the profile's points, and as the way of what runs on it."""
     start = np.array(layout.place(touch.i))
     way = np.array([math.cos(touch.i.angle), math.sin(touch.i.angle)])
     run = (_places(touch, layout) - start) @ way / layout.sizes.of_metres(1.0)
@@ -127,7 +205,7 @@ def _on_profile(m: Mechanism, touch: Force, profile: Curve, layout: Layout) -> l
 
 
 def _in_ring(m: Mechanism, touch: Joint, layout: Layout) -> list[Feature]:
-    """A disc inside a ring, or one that touches a disc of ground."""
+    """Return a disc inside a ring, or one that touches a disc of ground."""
     inside, (ring, disc) = touch.params["inside"], ("radius_i", "radius_j")
     i, j = touch.i, touch.j
     if not inside and j.body.name == "ground":
@@ -147,8 +225,8 @@ def _in_ring(m: Mechanism, touch: Joint, layout: Layout) -> list[Feature]:
 def _on_road(
     m: Mechanism, touch: Touch, path: np.ndarray | None, layout: Layout, closed: bool = False
 ) -> list[Feature]:
-    """A road on ground, or a track of another body or along a closed curve; without a ``path`` (n, 2) (rmm, the frame
-    of its body) it is along the contact's open curve.
+    """Return a road on ground, or a track of another body or along a closed curve; without a ``path`` (n, 2) (rmm, the
+    frame of its body) it is along the contact's open curve.
     """
     places, radius = _places(touch, layout), layout.sizes.of_metres(touch.params["radius"])
     if path is None:
@@ -165,13 +243,13 @@ def _on_road(
 
 
 def _pushes(touch: Touch) -> bool:
-    """Whether a closed curve of a moving body has what touches it outside, as a cam has."""
+    """Return True if a closed curve of a moving body has what touches it outside, as a cam has."""
     closed = touch.params["closed"] and "ground" not in touch.bodies
     return closed and not turns_left(np.array(touch.params["points"], dtype=float))
 
 
 def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Round, bool]:
-    """What touches; ``gap`` is the least one (rmm), below 0 where it presses in."""
+    """Return the round body that touches; ``gap`` is the least one (rmm), below 0 where it presses in."""
     body = touch.j.body.name
     turned = touch.params.get("friction", 0.0) > 0.0
     look: Look = "wheel" if touch.kind.name == "tyre" else _look(m, body, turned)
@@ -188,7 +266,7 @@ def _round(m: Mechanism, touch: Touch, layout: Layout, gap: float) -> tuple[Roun
 
 
 def _look(m: Mechanism, body: str, turned: bool) -> Look:
-    """Look of what touches without being a tyre."""
+    """Return the look of what touches without being a tyre."""
     if _is_held(m, body) or _feet(m, body) > 1:
         return "disc"
     return "wheel" if turned else "ball"
@@ -199,13 +277,13 @@ def _is_held(m: Mechanism, body: str) -> bool:
 
 
 def _feet(m: Mechanism, body: str) -> int:
-    """At how many places of it a body touches something: one with several cannot roll."""
+    """Return at how many of its places a body touches something: one with several cannot roll."""
     touches = [touch for touch in (*m.contacts.values(), *m.forces.values()) if "radius" in touch.params]
     return len({(touch.j.x, touch.j.y) for touch in touches if touch.j.body.name == body})
 
 
 def _set_back(touch: Touch, layout: Layout) -> float:
-    """How far the surface lies behind that of the model (rmm), because what touches is larger than there."""
+    """Return how far the surface lies behind that of the model (rmm), because what touches is larger than there."""
     return max(0.0, NOSE - layout.sizes.of_metres(touch.params["radius"]))
 
 
@@ -218,14 +296,14 @@ def _is_on_ground(touch: Touch) -> bool:
 
 
 def _normals(path: np.ndarray) -> np.ndarray:
-    """(n, 2) unit vectors to the left of a path."""
+    """Return (n, 2) unit vectors to the left of a path."""
     way = np.gradient(path, axis=0)
     return np.stack([-way[:, 1], way[:, 0]], axis=1) / np.hypot(*way.T)[:, None]
 
 
 @extent("rigid_discs")
 def extent_of_discs(touch: Joint, solution: Solution) -> Extent:
-    """Both discs."""
+    """Return both discs."""
     radii = ((touch.i, touch.params["radius_i"]), (touch.j, touch.params["radius_j"]))
     return Extent(radii, tuple((radius, DISC) for _, radius in radii if radius > 0))  # a ring is larger than its disc
 
@@ -235,7 +313,7 @@ def extent_of_discs(touch: Joint, solution: Solution) -> Extent:
 @extent("contact")
 @extent("tyre")
 def extent_of(touch: Touch, solution: Solution) -> Extent:
-    """What touches."""
+    """Return the extent of a disc that touches, and of the closed curve that it touches."""
     radius = touch.params["radius"]
     closed = touch.params.get("closed", False)
     if closed and _pushes(touch):
@@ -243,3 +321,71 @@ def extent_of(touch: Touch, solution: Solution) -> Extent:
     least = WHEEL if touch.kind.name == "tyre" or touch.params.get("friction", 0.0) > 0.0 else BALL
     round_it = ((touch.i, farthest(touch.params["points"])),) if closed else ()
     return Extent(((touch.j, radius), *round_it), ((radius, least),) if radius > 0 else ())
+
+
+# Discs that roll on a line or a curve: a wheel with a tyre, and the road as a wall on the base, or on a moving body;
+# closed curves are rings round the wheel, or discs (tracks.py).
+#
+# Wheel and road touch by design; they are made with the clearance of a cam and its roller.
+
+BEYOND_TRAVEL = 0.8
+"""How far a straight road goes on beyond the wheel's travel, in the wheel's radii."""
+LEAST = 17.0
+"""Least radius of a wheel (rmm): an eye lies within its tyre."""
+
+
+@kind("rolling_disc")
+def on_lines(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """Return a wheel and a road for each joint."""
+    features: list[Feature] = []
+    for joint in joints:
+        _refuse(m, joint)
+        start, angle = np.array(layout.place(joint.i)), joint.i.angle
+        way = np.array([math.cos(angle), math.sin(angle)])
+        travel = (layout.seen(joint.j.body.name, layout.place(joint.j), joint.i.body.name) - start) @ way
+        beyond = BEYOND_TRAVEL * layout.sizes.of_metres(joint.params["radius"])
+        ends = np.array([travel.min() - beyond, travel.max() + beyond])
+        features += _rolling(joint, start + ends[:, None] * way, False, layout)
+    return features
+
+
+@kind("rolling_on_curve")
+def on_curves(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
+    """Return a wheel and a road for each joint."""
+    features: list[Feature] = []
+    for joint in joints:
+        _refuse(m, joint)
+        closed = bool(joint.params["closed"])
+        path = on_body(curve_path(joint.params["points"], True), joint.i, layout) if closed else None
+        features += _rolling(joint, path, closed, layout)
+    return features
+
+
+def _rolling(joint: Joint, path: np.ndarray | None, closed: bool, layout: Layout) -> list[Feature]:
+    """Return the wheel and road; without a ``path`` the road is along the joint's open curve."""
+    radius = layout.sizes.of_metres(joint.params["radius"])
+    wheel, new = round_at(layout, joint.name, joint.j.body.name, layout.place(joint.j), radius, "wheel")
+    body, features = joint.i.body.name, [wheel] if new else []
+    if path is not None and closed:
+        return [*features, track(joint.name, body, wheel, path, True)]
+    road = rolled_road(joint, wheel, layout) if path is None else along(joint.name, [wheel], path)
+    if body == "ground":
+        return [*features, road]
+    return [*features, track(joint.name, body, wheel, road.path, False, road)]
+
+
+def _refuse(m: Mechanism, joint: Joint) -> None:
+    if joint.j.body.name == "ground":
+        raise UserError(
+            f"{m.name}: joint '{joint.name}' is a {joint.kind.name.replace('_', ' ')} whose disc is on ground; "
+            f"it has no automatic parts yet; write {shown_file(m.name, 'parts')}"
+        )
+
+
+@extent("rolling_disc")
+@extent("rolling_on_curve")
+def extent_of_rolling(joint: Joint, solution: Solution) -> Extent:
+    """Return the wheel, and a closed curve."""
+    radius = joint.params["radius"]
+    round_it = ((joint.i, farthest(joint.params["points"])),) if joint.params.get("closed") else ()
+    return Extent(((joint.j, radius), *round_it), ((radius, LEAST),))

@@ -1,4 +1,4 @@
-"""What round parts touch on ground: roads with the profile of a terrain, straight walls that meet in mitred corners."""
+"""Roads: strips along lines and curves, the backings that hold them, and roads that several bodies share."""
 
 from __future__ import annotations
 
@@ -9,33 +9,124 @@ from typing import TYPE_CHECKING
 
 import cadquery as cq
 import numpy as np
+from manifold3d import CrossSection, FillRule, OpType
 
+from mechanisms.stages.automatic.layout.curves import area
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.layout import Feature
 from mechanisms.stages.automatic.layout.plan import Foot
-from mechanisms.stages.automatic.layout.planar import around
-from mechanisms.stages.automatic.rolling.backings import (
-    CHORD,
-    PIECES,
-    THICK,
-    Band,
-    band,
-    behind,
-    is_clear,
-    is_free,
-    polygon,
-    straight_back,
-)
+from mechanisms.stages.automatic.layout.planar import around, convex_hull
 from shared.shapes.build import extruded
-from shared.shapes.polyline import simplified
+from shared.shapes.polyline import distances, simplified
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.rolling.rounds import Round
 
+
+# Backings behind the surface of a road: matter down to a straight lower side, or a band along it where that would
+# cross the surface, itself or the way of what runs on it.
+
+THICK = 10.0
+"""Thickness of a road under its surface, of a band, and of a wall (rmm)."""
+CHORD = 0.006
+"""How far the facets of a surface may stray from it (rmm)."""
+PIECES = 48
+"""Pieces of a road in the plane."""
+LONGEST = 2.0
+"""Mitre at a sharp corner, in the thickness."""
+SAME_AREA = 1e-6
+"""Two areas of a polygon that differ by less, as a part of them, are one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """Matter of even thickness on the right of a surface (rmm): its borders, and convex pieces that cover it."""
+
+    border: np.ndarray
+    """(n, 2) counter-clockwise."""
+    holes: Sequence[np.ndarray]
+    pieces: Sequence[np.ndarray]
+    back: np.ndarray
+    """(k, 2) the other side, from behind the first place of the surface to behind the last."""
+
+    def wall(self, low: float, high: float) -> cq.Workplane:
+        """Return the solid from one height to another."""
+        return extruded(polygon(self.border), high - low, low, [polygon(hole) for hole in self.holes])
+
+
+def straight_back(path: np.ndarray, thick: float = THICK) -> np.ndarray:
+    """Return (2, 2) corners of a straight lower side, behind the last place of a surface and behind the first."""
+    under = behind(path[-1] - path[0])
+    lowest = float((path @ under).max()) + thick
+    return np.array([path[k] + (lowest - path[k] @ under) * under for k in (-1, 0)])
+
+
+def is_simple(path: np.ndarray, feet: np.ndarray) -> bool:
+    """Return True if the polygon of a surface and its lower corners crosses itself nowhere: then its signed area is
+    that of what it goes round.
+    """
+    corners = np.vstack([simplified(path, CHORD), feet])
+    signed = abs(area(corners)) / 2
+    return abs(CrossSection([corners], FillRule.EvenOdd).area() - signed) < SAME_AREA * signed
+
+
+def is_free(path: np.ndarray, feet: np.ndarray, centres: np.ndarray, radius: float) -> bool:
+    """Return True if the polygon of a surface and its lower corners crosses itself nowhere, and what runs on the
+    surface, a disc about ``centres`` (T, 2), is clear of its other sides.
+    """
+    others = np.vstack([path[-1:], feet, path[:1]])
+    return is_simple(path, feet) and bool(distances(centres, others).min() >= radius)
+
+
+def is_clear(backing: Band, path: np.ndarray, centres: np.ndarray, radius: float) -> bool:
+    """Return True if a disc about ``centres`` (T, 2) that runs on a surface is clear of the other sides of the band
+    there.
+    """
+    return bool(distances(centres, np.vstack([path[-1:], backing.back[::-1], path[:1]])).min() >= radius)
+
+
+def band(path: np.ndarray, thick: float = THICK) -> Band | None:
+    """Return the band behind a surface; None where that is in several parts."""
+    surface = simplified(path, CHORD)
+    back = surface - thick * _mitres(surface)
+    quads = [
+        convex_hull(np.array([*front, *rear])) for front, rear in zip(pairwise(surface), pairwise(back), strict=True)
+    ]
+    loops = CrossSection.batch_boolean([CrossSection([quad]) for quad in quads], OpType.Add).to_polygons()
+    outer = [corners for corners in loops if area(corners) > 0]
+    if len(outer) != 1:
+        return None
+    few = max(1, len(quads) // PIECES)
+    pieces = [convex_hull(np.vstack(quads[k : k + few])) for k in range(0, len(quads), few)]
+    return Band(outer[0], [corners for corners in loops if area(corners) < 0], pieces, back)
+
+
+def polygon(corners: np.ndarray) -> cq.Wire:
+    """Return a closed one, at z = 0."""
+    return cq.Wire.makePolygon([cq.Vector(float(x), float(y), 0.0) for x, y in corners], close=True)
+
+
+def _mitres(path: np.ndarray) -> np.ndarray:
+    """Return (n, 2) from a polyline's places to those at a unit distance on its left, at corners as far as LONGEST."""
+    way = np.diff(path, axis=0)
+    way /= np.hypot(*way.T)[:, None]
+    left = np.column_stack([-way[:, 1], way[:, 0]])
+    before, after = np.vstack([left[:1], left]), np.vstack([left, left[-1:]])
+    cosine = (before * after).sum(axis=1)[:, None]
+    return (before + after) / np.maximum(1.0 + cosine, 2.0 / LONGEST)
+
+
+def behind(way: np.ndarray) -> np.ndarray:
+    """Return (2,) the unit vector to the right of a way."""
+    return np.array([way[1], -way[0]]) / np.hypot(*way)
+
+
+# Surfaces on ground that round parts touch: roads with the profile of a terrain, straight walls that meet in mitred
+# corners.
 
 HELD = 0.7
 """Cosine of the angle between gravity and what is under a road on which it holds a wheel."""
@@ -47,28 +138,28 @@ class Road:
 
     name: str
     rounds: Sequence[Round]
-    """What runs on it; it reaches from the base to the highest of them."""
+    """Round parts that run on it; it reaches from the base to the highest of them."""
     path: np.ndarray
     """(n, 2) the surface; the free side is on its left."""
     feet: np.ndarray
     """(2, 2) the other corners: behind the last place of the path, and behind the first."""
     band: Band | None = None
-    """What lies behind the surface where that is no straight lower side."""
+    """Backing of the surface where that is no straight lower side."""
 
     @property
     def is_square(self) -> bool:
-        """Whether it ends square, and in no mitred corner with another wall."""
+        """True if it ends square, and in no mitred corner with another wall."""
         way = self.path[-1] - self.path[0]
         if self.band is not None:
             return False
         return bool(np.abs((self.feet - self.path[[-1, 0]]) @ way).max() < 1e-9 * float(way @ way))
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Nothing."""
+        """Return an empty list."""
         return []
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The wall up to the height of what it carries."""
+        """Yield the wall up to the height of what it carries."""
         bodies = tuple(dict.fromkeys(part.body for part in self.rounds))
         high = max(int(part.look == "ball") for part in self.rounds)
         reach, spares = Reach(bodies, high=high, base=True), frozenset(bodies)
@@ -77,7 +168,7 @@ class Road:
             yield Item(f"the road of {self.name}", "ground", piece, reach, spares, self, stands="road")
 
     def pieces(self) -> Iterable[np.ndarray]:
-        """(n, 2) corners of convex pieces."""
+        """Yield (n, 2) corners of convex pieces."""
         if self.band is not None:
             yield from self.band.pieces
             return
@@ -89,11 +180,11 @@ class Road:
             yield np.array([a, b, *behind])
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """Nothing."""
+        """Return an empty list."""
         return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
-        """The wall; the base plate goes on beside it, under what it carries."""
+        """Build the wall; the base plate goes on beside it, under what it carries."""
         seat = plan.layout.sizes.pivot.fit.seat
         top = max(part.top(heights) for part in self.rounds)
         holes = 0 if self.band is None else len(self.band.holes)
@@ -113,14 +204,14 @@ class Road:
         plan.feet += [Foot("", float(u), float(v), THICK, road=True) for u, v in ends]
 
     def holds(self, m: Mechanism) -> bool:
-        """Whether gravity holds a wheel on it."""
+        """Return True if gravity holds a wheel on it."""
         pull = np.array(m.gravity or (0.0, 0.0))
         down = behind(self.path[-1] - self.path[0]) @ pull > HELD * np.hypot(*pull) > 0.0
         return bool(down) and any(part.look == "wheel" for part in self.rounds)
 
     def reaching(self, places: Sequence[tuple[float, float]], pull: np.ndarray) -> Road:
-        """The road with as much of its straight continuations as lies over or under ``places`` (rmm), ``pull`` (2,)
-        pointing down.
+        """Return the road with as much of its straight continuations as lies over or under ``places`` (rmm), ``pull``
+        (2,) pointing down.
         """
         if not self.is_square or not len(places):
             return self
@@ -134,20 +225,22 @@ class Road:
         return along(self.name, self.rounds, np.vstack([ends[0], self.path, ends[1]]))
 
     def _wall(self, low: float, high: float) -> cq.Workplane:
-        """Wall of flat facets as long as its bends allow: a spline's many short ones make the clearance proof slow."""
+        """Return the wall of flat facets as long as its bends allow: a spline's many short ones make the clearance
+        proof slow.
+        """
         if self.band is not None:
             return self.band.wall(low, high)
         return extruded(polygon(np.vstack([simplified(self.path, CHORD), self.feet])), high - low, low)
 
 
 def along(name: str, rounds: Sequence[Round], path: np.ndarray, thick: float = THICK) -> Road:
-    """A road with its surface on ``path`` and a straight lower side."""
+    """Return a road with its surface on ``path`` and a straight lower side."""
     return Road(name, rounds, path, straight_back(path, thick))
 
 
 def backed(name: str, part: Round, path: np.ndarray, centres: np.ndarray, radius: float) -> Road | None:
-    """A road that a disc about ``centres`` (T, 2) runs on without meeting its other sides: with a straight lower side
-    if it can have one, else a band; None if neither can be.
+    """Return a road that a disc about ``centres`` (T, 2) runs on without meeting its other sides: with a straight lower
+    side if it can have one, else a band; None if neither can be.
     """
     road = along(name, [part], path)
     if is_free(path, road.feet, centres, radius):
@@ -157,17 +250,73 @@ def backed(name: str, part: Round, path: np.ndarray, centres: np.ndarray, radius
 
 
 def banded(name: str, rounds: Sequence[Round], path: np.ndarray) -> Road | None:
-    """A road of even thickness; None where that is in several parts."""
+    """Return a road of even thickness; None where that is in several parts."""
     backing = band(path)
     return None if backing is None else Road(name, rounds, path, backing.back[[-1, 0]], backing)
 
 
 def runs_on_ground(layout: Layout) -> bool:
-    """Whether a wheel runs on a road of ground, and gravity holds it there."""
+    """Return True if a wheel runs on a road of ground, and gravity holds it there."""
     return any(road.holds(layout.m) for road in layout.features if isinstance(road, Road))
 
 
 def _thinned(path: np.ndarray) -> np.ndarray:
-    """About so many places of a path, with both of its ends."""
+    """Return about so many places of a path, with both of its ends."""
     step = max(1, len(path) // PIECES)
     return path if step == 1 else np.vstack([path[:-1:step], path[-1:]])
+
+
+# Roads on ground with one surface are one road: the wheels of a vehicle run on it one behind the other.
+
+SAME = 0.03
+"""Surfaces nearer than this to each other, where both are, are one (rmm)."""
+
+
+def with_shared_roads(features: Sequence[Feature]) -> list[Feature]:
+    """Return the features, the roads of one surface merged into the first of them."""
+    shared: list[Feature] = []
+    for feature in features:
+        for k, other in enumerate(shared):
+            both = _both(other, feature) if isinstance(other, Road) and isinstance(feature, Road) else None
+            if both is not None:
+                shared[k] = both
+                break
+        else:
+            shared.append(feature)
+    return shared
+
+
+def _both(first: Road, second: Road) -> Road | None:
+    """Return two roads on one surface as one; None where they are not on one."""
+    if not all(road.is_square or road.band for road in (first, second)):
+        return None
+    rounds = tuple(dict.fromkeys([*first.rounds, *second.rounds]))
+    if first.band is None and second.band is None:
+        path = _common(first.path, second.path)
+        return None if path is None else along(first.name, rounds, path)
+    for long, short in ((first, second), (second, first)):
+        if distances(short.path, long.path).max() < SAME:
+            return banded(first.name, rounds, long.path)
+    return None
+
+
+def _common(first: np.ndarray, second: np.ndarray) -> np.ndarray | None:
+    """Return (n, 2) one path along both; None where they part, or where there is a gap between two that are not
+    straight.
+    """
+    way = (first[-1] - first[0]) / np.hypot(*(first[-1] - first[0]))
+    at, other = (first @ way, second @ way)
+    if (np.diff(at) <= 0).any() or (np.diff(other) <= 0).any():
+        return None
+    across = np.array([-way[1], way[0]])
+    height, others = first @ across, second @ across
+    if len(first) == len(second) == 2:
+        off = others - height
+    else:
+        low, high = max(at[0], other[0]), min(at[-1], other[-1])
+        both = np.unique(np.concatenate([at, other]))
+        both = both[(both >= low) & (both <= high)]
+        off = np.interp(both, at, height) - np.interp(both, other, others)
+    if not len(off) or np.abs(off).max() > SAME:
+        return None
+    return np.vstack([second[other < at[0]], first, second[other > at[-1]]])

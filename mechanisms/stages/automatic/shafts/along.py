@@ -13,28 +13,37 @@ from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.motion import poses_of, times_of
 from mechanisms.stages.automatic.layout.planar import disc
-from mechanisms.stages.automatic.shafts.banks import banks, deck_corners, deck_takes, fins
-from mechanisms.stages.automatic.shafts.bearers import BOSS, Bearers, bearers
-from mechanisms.stages.automatic.shafts.bodies.kinds import Machine
-from mechanisms.stages.automatic.shafts.bodies.machine import free_links, machine
+from mechanisms.stages.automatic.shafts.bearings import (
+    BOSS,
+    FOOT,
+    Axle,
+    Bearers,
+    axle_takes,
+    axles,
+    bearers,
+    free_places,
+)
+from mechanisms.stages.automatic.shafts.bodies import Machine
 from mechanisms.stages.automatic.shafts.cylinders import Cylinder, cylinders
-from mechanisms.stages.automatic.shafts.free_places import free_places
-from mechanisms.stages.automatic.shafts.mounted.valves import ValvePlan, valve_plans
-from mechanisms.stages.automatic.shafts.mounted.wheels import Wheels, wheels
+from mechanisms.stages.automatic.shafts.machine import free_links, machine
 from mechanisms.stages.automatic.shafts.passing import (
     Meeting,
     Takes,
+    banks,
     cylinder_takes,
+    deck_corners,
+    deck_takes,
+    fins,
     links_take,
     meeting,
     refuse_meetings,
     shaft_takes,
     weights,
 )
-from mechanisms.stages.automatic.shafts.pins_along import FOOT, Axle, axle_takes, axles
 from mechanisms.stages.automatic.shafts.rams import RamPlan, ram_plans
-from mechanisms.stages.automatic.shafts.shaft_plan import ShaftPlan, shaft_plan
-from mechanisms.stages.automatic.shafts.thickness import Measures, thicknesses
+from mechanisms.stages.automatic.shafts.shaft_plan import Measures, ShaftPlan, shaft_plan, thicknesses
+from mechanisms.stages.automatic.shafts.valves import ValvePlan, valve_plans
+from mechanisms.stages.automatic.shafts.wheels import Wheels, wheels
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 
@@ -43,7 +52,7 @@ if TYPE_CHECKING:
 
     from mbsd import Mechanism, Solution
     from mechanisms.stages.automatic.layout.sizes import Sizes
-    from mechanisms.stages.automatic.shafts.bodies.mounted import Mounted
+    from mechanisms.stages.automatic.shafts.bodies import Mounted
 
 BELOW = 8.0
 """From the lowest part that moves to the base plate, at least (rmm)."""
@@ -71,7 +80,7 @@ class Along:
     """Shafts with a flywheel."""
 
     def with_pins_that_pass(self) -> Along:
-        """The same plan with the thickest pins with which nothing meets; itself if there are none."""
+        """Return the same plan with the thickest pins with which nothing meets; itself if there are none."""
         for k, _ in enumerate(self.wishes):
             plan = self if k == 0 else replace(self, wishes=self.wishes[k:])
             try:
@@ -85,7 +94,7 @@ class Along:
 
     @cached_property
     def machine(self) -> Machine:
-        """What each body becomes."""
+        """Machine that says what each body becomes."""
         free = free_links(self.m, self.left_out)
         return self._machine(self.left_out, self._places(free) if free else {})
 
@@ -97,7 +106,7 @@ class Along:
         return poses_of(self.solution, mm(1.0))
 
     def _places(self, free: Sequence[str]) -> dict[str, float]:
-        """Places of links that the model gives none, beside all that it gives a place."""
+        """Return places of links that the model gives none, beside all that it gives a place."""
         given = replace(self, left_out=self.left_out.union(free))
         if not given.machine.links:
             raise UserError(
@@ -162,9 +171,9 @@ class Along:
         return wheels(self.machine, self.measures)
 
     def _mounted(self, shaft: str) -> list[Mounted]:
-        """What sits on a shaft beside its throws."""
+        """Return valves and wheels that sit on a shaft beside its throws."""
         cams = [valve.mounted for valve in self.valves.values() if valve.valve.shaft == shaft]
-        return [*(wheel.mounted for wheel in self.wheels.of(shaft)), *cams]
+        return [*(wheel.mounted for wheel in self.wheels.wheels_on(shaft)), *cams]
 
     @cached_property
     def valves(self) -> dict[str, ValvePlan]:
@@ -175,7 +184,7 @@ class Along:
         return [space for own in self.valves.values() for space in own.takes()]
 
     def _below_liners(self, plan: ShaftPlan) -> ShaftPlan:
-        """With a first journal so long that a flywheel turns below all liners."""
+        """Return the plan with a first journal so long that a flywheel turns below all liners."""
         if plan.shaft.body not in self.flywheels:
             return plan
         first, *rest = plan.journals
@@ -211,7 +220,7 @@ class Along:
         return fins(self.cylinders)
 
     def flywheel(self, plan: ShaftPlan) -> float:
-        """Radius of a shaft's flywheel; 0 for none."""
+        """Return the radius of a shaft's flywheel; 0 for none."""
         return FLYWHEEL * plan.webs_sweep if plan.shaft.body in self.flywheels else 0.0
 
     @cached_property
@@ -271,7 +280,7 @@ class Along:
         return Takes(f"the flywheel of '{body}'", body, shape, plan.bottom(radius), plan.ends[0])
 
     def span(self, body: str) -> tuple[float, float]:
-        """Lowest and highest z of a body's main piece."""
+        """Return the lowest and highest z of a body's main piece."""
         if body in self.machine.links:
             z, half = self.machine.links[body].z, self.thickness[body] / 2
             return z - half, z + half

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
-from mechanisms.stages.automatic.shafts.bodies.planes import SAME
-from mechanisms.stages.automatic.shafts.knuckles import (
+from mechanisms.stages.automatic.shafts.bodies import (
     HUB,
     KNUCKLE_EYE,
+    SAME,
     carrier,
     is_carrier,
     refuse_near,
@@ -29,7 +29,7 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from mechanisms.stages.automatic.shafts.bodies.kinds import Link, Machine, Piston, Shaft
+    from mechanisms.stages.automatic.shafts.bodies import Link, Machine, Piston, Shaft
 
 SQUARE = 0.95
 """Bore over stroke, where there is room and no gas says otherwise."""
@@ -107,7 +107,9 @@ class Cylinder:
 
 
 def cylinders(machine: Machine) -> dict[str, Cylinder]:
-    """By piston. Raises UserError naming cylinders that have no room beside each other, or none for their rod."""
+    """Return cylinders by piston. Raises UserError naming cylinders that have no room beside each other, or none for
+    their rod.
+    """
     wished = {name: _wish(machine, piston) for name, piston in machine.pistons.items()}
     _refuse_near(machine, wished)
     fitted = {}
@@ -124,7 +126,7 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
                 break
             bore *= STEP
         else:
-            wider = ", the angle between banks wider" if _beside(machine, piston, own) else ""
+            wider = ", the angle between banks wider" if _neighbour_limit(machine, piston, own) else ""
             raise UserError(
                 f"{machine.m.name}: a bore of {own:.4g} mm has no room for piston '{name}' in '{piston.joint}': "
                 f"{_fitted(machine, piston, bore / STEP, wished)}; make the rod longer, the throw shorter{wider}, "
@@ -134,7 +136,9 @@ def cylinders(machine: Machine) -> dict[str, Cylinder]:
 
 
 def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylinder]) -> Cylinder:
-    """With the piston that works against it in the same cylinder. Raises UserError where their crowns would meet."""
+    """Return the cylinder, shared with a piston that works against its own. Raises UserError if their crowns would
+    meet.
+    """
     for name, other in every.items():
         way = np.array(other.origin) - np.array(own.origin)
         along = np.array(own.piston.along)
@@ -155,13 +159,13 @@ def _beside_its_mate(machine: Machine, own: Cylinder, every: Mapping[str, Cylind
 
 
 def _between(machine: Machine, own: Cylinder, other: Cylinder, along: np.ndarray) -> np.ndarray:
-    """(T,): distance of the wrist pins of two pistons along their cylinder."""
+    """Return (T,): distance of the wrist pins of two pistons along their cylinder."""
     ends = [machine.path(cylinder.piston.body, *cylinder.piston.wrist) @ along for cylinder in (own, other)]
     return ends[1] - ends[0]
 
 
 def _stroke(machine: Machine, piston: Piston) -> tuple[float, float, np.ndarray]:
-    """Least and largest s of the wrist pin, and where s is 0."""
+    """Return the least and largest s of the wrist pin, and where s is 0."""
     shaft = _shaft(machine, piston)
     along, line = np.array(piston.along), np.array(piston.line)
     foot = line if shaft is None else line + ((np.array(shaft.at) - line) @ along) * along
@@ -176,7 +180,7 @@ def _shaft(machine: Machine, piston: Piston) -> Shaft | None:
 
 
 def _wish(machine: Machine, piston: Piston) -> float:
-    """That of the gas; else square, as far as the neighbours along the shaft leave room."""
+    """Return the bore of the gas; else one equal to the stroke, as far as neighbours along the shaft allow."""
     if piston.area is not None:
         return math.sqrt(4 * piston.area / math.pi)
     low, high, _ = _stroke(machine, piston)
@@ -185,7 +189,9 @@ def _wish(machine: Machine, piston: Piston) -> float:
 
 
 def _neighbours(machine: Machine, piston: Piston) -> dict[str, float]:
-    """Pistons whose bores have the same line in the plane, or one beside it, and how far away along z they are."""
+    """Return pistons whose bores have the same line in the plane, or one beside it, and how far away along z they
+    are.
+    """
     distances = {}
     for name, other in machine.pistons.items():
         cross = piston.along[0] * other.along[1] - piston.along[1] * other.along[0]
@@ -212,7 +218,7 @@ def _refuse_near(machine: Machine, bores: Mapping[str, float]) -> None:
 
 
 def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, float]) -> Cylinder | str:
-    """The cylinder with this bore, or why it does not fit."""
+    """Return the cylinder with this bore, or why it does not fit."""
     lowest, highest, foot = _stroke(machine, piston)
     shaft = _shaft(machine, piston)
     room = ROOM * bore
@@ -224,7 +230,7 @@ def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, f
         skirt = min(skirt, max(LEAST_SKIRT * bore, lowest - swept))
         if lowest - skirt - room < CRANK_PIN * bore * 1.25:
             return f"its skirt would come down to {lowest - skirt:.4g} mm from the axis of the shaft"
-        low, most = max(swept, lowest - skirt, _beside(machine, piston, bore)), lowest + LATEST * bore
+        low, most = max(swept, lowest - skirt, _neighbour_limit(machine, piston, bore)), lowest + LATEST * bore
         while low <= most and not _has_room(machine, piston, foot, low, bore):
             low += room / 2
         if low > most:
@@ -236,7 +242,7 @@ def _fitted(machine: Machine, piston: Piston, bore: float, bores: Mapping[str, f
 
 
 def rod_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
-    """What a connecting rod takes in the plane: its shank, and its big end."""
+    """Return the shapes of a connecting rod in the plane: its shank, and its big end."""
     if is_carrier(machine, link):
         return [*shank_shapes(machine, link, bore), flange_shape(machine, link, bore)]
     if carrier(machine, link) is not None:
@@ -247,7 +253,9 @@ def rod_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
 
 
 def shank_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
-    """Shapes of a carrier or of a rod on one: shank, small end, and eye on the knuckle pin or hub on the crank."""
+    """Return shapes of a carrier or of a rod on one: shank, small end, and eye on the knuckle pin or hub on the
+    crank.
+    """
     main = rod_foot(machine, link)
     ends = [eye for eye in link.eyes if eye.on in machine.pistons or eye is main]
     shank = around([(eye.x, eye.y) for eye in ends], (SHANK + ROOM / 2) * bore)
@@ -257,7 +265,7 @@ def shank_shapes(machine: Machine, link: Link, bore: float) -> list[Rounded]:
 
 
 def flange_shape(machine: Machine, link: Link, bore: float) -> Rounded:
-    """What holds the flanges of a carrier: round its knuckle pins and its big end."""
+    """Return the outline of a carrier's flanges, round its knuckle pins and its big end."""
     main = rod_foot(machine, link)
     pins = [eye for eye in link.eyes if eye.on in machine.links]
     turns = [k * math.pi / 6 for k in range(12)] if main is not None else []
@@ -267,7 +275,7 @@ def flange_shape(machine: Machine, link: Link, bore: float) -> Rounded:
 
 
 def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bore: float) -> bool:
-    """Whether no rod meets a liner that begins at ``low``: its own would lean against it, others pass beside it."""
+    """Return True if no rod meets a liner that begins at ``low``: its own leans, others pass beside it."""
     along, own = np.array(piston.along), machine.links[piston.link or ""]
     left = np.array([-along[1], along[0]])
     main = rod_foot(machine, own)
@@ -294,8 +302,8 @@ def _has_room(machine: Machine, piston: Piston, foot: np.ndarray, low: float, bo
     return True
 
 
-def _beside(machine: Machine, piston: Piston, bore: float) -> float:
-    """How far from the shaft liners of other banks leave room for this one."""
+def _neighbour_limit(machine: Machine, piston: Piston, bore: float) -> float:
+    """Return how far from the shaft liners of other banks leave room for this one."""
     low = 0.0
     for other in machine.pistons.values():
         if other is piston or abs(other.z - piston.z) > (1 + 2 * WALL + ROOM) * bore:

@@ -1,7 +1,9 @@
-"""Whether bodies pass each other in the plane where they share heights: known before anything is built (mm)."""
+"""Room along the normal: which bodies pass each other, and banks of cylinders (mm)."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -9,18 +11,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
+from mechanisms.stages.automatic.shafts.bodies import carrier, flange, is_carrier
 from mechanisms.stages.automatic.shafts.cylinders import HEAD, flange_shape, rod_shapes, shank_shapes
-from mechanisms.stages.automatic.shafts.knuckles import carrier, flange, is_carrier
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from mechanisms.stages.automatic.shafts.bodies.kinds import Link, Machine
+    from mechanisms.stages.automatic.shafts.bodies import Link, Machine
     from mechanisms.stages.automatic.shafts.cylinders import Cylinder
-    from mechanisms.stages.automatic.shafts.shaft_plan import ShaftPlan
-    from mechanisms.stages.automatic.shafts.thickness import Measures
+    from mechanisms.stages.automatic.shafts.shaft_plan import Measures, ShaftPlan
+
+
+# Checks that bodies pass each other in the plane where they share heights, before anything is built (mm).
 
 LEAST = 0.1
 """Gap (mm) that must be left."""
@@ -32,7 +34,7 @@ class Meeting(UserError):
 
 @dataclass(frozen=True, eq=False)
 class Takes:
-    """What takes room: a shape in the plane that moves with a body, from ``low`` to ``high``."""
+    """Room that is taken: a shape in the plane that moves with a body, from ``low`` to ``high``."""
 
     what: str
     body: str
@@ -44,7 +46,7 @@ class Takes:
 
 
 def links_take(measures: Measures, thickness: Mapping[str, float]) -> list[Takes]:
-    """The links."""
+    """Return the links."""
     spaces = []
     for name, link in measures.machine.links.items():
         half, on = thickness[name] / 2, frozenset(eye.on for eye in link.eyes)
@@ -67,7 +69,7 @@ def links_take(measures: Measures, thickness: Mapping[str, float]) -> list[Takes
 def _carrier_takes(
     measures: Measures, link: Link, thickness: Mapping[str, float], bore: float, pistons: frozenset[str]
 ) -> list[Takes]:
-    """Its flanges, and between them the shank."""
+    """Return its flanges, and between them the shank."""
     half, between = thickness[link.body] / 2, measures.shank(link, thickness) / 2
     thick = flange(2 * half, measures.axial)
     round_pins = flange_shape(measures.machine, link, bore)
@@ -81,7 +83,7 @@ def _carrier_takes(
 
 
 def shaft_takes(plan: ShaftPlan) -> list[Takes]:
-    """Webs, crank pins and journals of a shaft."""
+    """Return webs, crank pins and journals of a shaft."""
     (x, y), body, spaces = plan.shaft.axis, plan.shaft.body, []
     for web in plan.webs:
         places = [(x, y), *((x + u, y + v) for u, v in web.pins)]
@@ -103,12 +105,12 @@ def shaft_takes(plan: ShaftPlan) -> list[Takes]:
 
 
 def weights(plan: ShaftPlan) -> list[Takes]:
-    """The counterweights of a shaft."""
+    """Return the counterweights of a shaft."""
     return [space for space in shaft_takes(plan) if space.what.startswith("the counterweight")]
 
 
 def cylinder_takes(own: Cylinder, fin: float) -> list[Takes]:
-    """A piston, and its liner on ground."""
+    """Return a piston, and its liner on ground."""
     piston = own.piston
     link = [piston.link] if piston.link else []
     spares = frozenset(["ground", *link])
@@ -127,7 +129,7 @@ def cylinder_takes(own: Cylinder, fin: float) -> list[Takes]:
 
 
 def box(at: tuple[float, float], along: tuple[float, float], low: float, high: float, half: float) -> Rounded:
-    """A rectangle about a line through ``at``, from ``low`` to ``high`` along it and ``half`` to either side."""
+    """Return a rectangle about a line through ``at``, from ``low`` to ``high`` along it and ``half`` to either side."""
     u, place = np.array(along), np.array(at)
     left = np.array([-u[1], u[0]])
     corners = [place + s * u + q * left for s in (low, high) for q in (-half, half)]
@@ -135,7 +137,7 @@ def box(at: tuple[float, float], along: tuple[float, float], low: float, high: f
 
 
 def meeting(machine: Machine, first: Takes, second: Takes) -> int | None:
-    """The pose at which two things meet; None if they do not."""
+    """Return the pose at which two things meet; None if they do not."""
     if not _may_meet(first, second):
         return None
     poses = machine.poses[first.body], machine.poses[second.body]
@@ -169,3 +171,78 @@ def _may_meet(first: Takes, second: Takes) -> bool:
     if first.body == second.body or first.low >= second.high - 1e-9 or second.low >= first.high - 1e-9:
         return False
     return first.body not in second.spares and second.body not in first.spares
+
+
+# Cylinders that stand in line, the fins of their liners, and the deck that holds these (mm).
+
+DECK = (0.2, 0.05)
+"""Between these distances below the upper end of a liner is the deck that holds it, in bores."""
+FIN = 0.14
+"""How far fins stand out of a liner, in bores, where there is room."""
+BESIDE = 0.12
+"""How far a deck reaches beside its liners."""
+
+
+def fins(all_of: Mapping[str, Cylinder]) -> dict[str, float]:
+    """Return by piston the radius of the fins of its liner, as far as its neighbours leave room."""
+    radii = {}
+    for name, own in all_of.items():
+        radius = own.outer + FIN * own.bore
+        for other in all_of.values():
+            apart = abs(other.piston.z - own.piston.z)
+            if other is own or apart > 2 * radius:
+                continue
+            cosine = sum(a * b for a, b in zip(own.piston.along, other.piston.along, strict=True))
+            between = math.acos(max(-1.0, min(1.0, cosine)))
+            room = apart / 2 - 0.01 * own.bore if between < 1e-6 else own.low * math.tan(between / 2)
+            radius = min(radius, max(room, own.outer))
+        radii[name] = radius
+    return radii
+
+
+def banks(all_of: Mapping[str, Cylinder]) -> list[list[Cylinder]]:
+    """Return cylinders on the same line of the plane, in the order of their places along z."""
+    rows: list[list[Cylinder]] = []
+    for own in all_of.values():
+        for bank in rows:
+            if (
+                math.dist(bank[0].piston.along, own.piston.along) < 1e-6
+                and math.dist(bank[0].origin, own.origin) < 1e-3
+            ):
+                bank.append(own)
+                break
+        else:
+            rows.append([own])
+    return [sorted(bank, key=lambda cylinder: cylinder.piston.z) for bank in rows]
+
+
+def deck_corners(bank: Sequence[Cylinder]) -> list[tuple[float, float]]:
+    """Return corners of its foot on the base plate."""
+    first, wide, low, high = bank[0], deck_half(bank), deck_range(bank)[0], deck_range(bank)[1]
+    (x, y), (u, v) = first.origin, first.piston.along
+    return [(x + s * u - q * v, y + s * v + q * u) for s in (low, high) for q in (-wide, wide)]
+
+
+def deck_takes(bank: Sequence[Cylinder], low: float) -> Takes:
+    """Return the room of a deck, from the base plate (z = ``low``) up."""
+    first, (below, above), last = bank[0], deck_range(bank), bank[-1]
+    inside = [own.piston.body for own in bank] + [own.piston.link for own in bank if own.piston.link]
+    inside += [own.against[0] for own in bank if own.against is not None]
+    shape = box(first.origin, first.piston.along, below, above, deck_half(bank))
+    what = f"the deck of '{first.piston.body}'"
+    return Takes(what, "ground", shape, low, deck_top(last), frozenset(inside))
+
+
+def deck_top(last: Cylinder) -> float:
+    """Return the upper end (z) of the deck whose last cylinder this is."""
+    return last.piston.z + last.outer + BESIDE * last.bore
+
+
+def deck_half(bank: Sequence[Cylinder]) -> float:
+    """Return half of the width of a deck."""
+    return max(own.outer + BESIDE * own.bore for own in bank)
+
+
+def deck_range(bank: Sequence[Cylinder]) -> tuple[float, float]:
+    """Return s of the lower and of the upper face of a deck."""
+    return max(own.top - DECK[0] * own.bore for own in bank), min(own.top - DECK[1] * own.bore for own in bank)

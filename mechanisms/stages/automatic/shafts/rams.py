@@ -1,8 +1,4 @@
-"""Bodies that slide on ground, driven in several planes: a beam with clevises on two columns, as of a press (mm).
-
-Along the columns, s is counted from the first pin of the beam, q to the left of that direction from the line of the
-guide. The columns stand in a deck beyond the beam and end where it comes nearest to what drives it.
-"""
+"""Rams that slide on columns: their plan and their solids (mm)."""
 
 from __future__ import annotations
 
@@ -13,13 +9,25 @@ from typing import TYPE_CHECKING
 
 from mechanisms.stages.automatic.layout.planar import Rounded, around
 from mechanisms.stages.automatic.shafts.passing import Takes, box
+from shared.shapes.build import extruded
+from shared.shapes.genus import through_holes
+from shared.shapes.outline import circle
+from shared.shapes.solid import Solid, placed
 from shared.stage.errors import UserError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from mechanisms.stages.automatic.shafts.bodies.kinds import Machine, Ram, RamPin
-    from mechanisms.stages.automatic.shafts.thickness import Measures
+    import cadquery as cq
+
+    from mechanisms.stages.automatic.shafts.bodies import Machine, Ram, RamPin
+    from mechanisms.stages.automatic.shafts.shaft_plan import Measures
+
+
+# Bodies that slide on ground, driven in several planes: a beam with clevises on two columns, as of a press (mm).
+#
+# Along the columns, s is counted from the first pin of the beam, q to the left of that direction from the line of the
+# guide. The columns stand in a deck beyond the beam and end where it comes nearest to what drives it.
 
 BEAM, DECK, ABOVE = 14.0, 16.0, 6.0
 """Thickness of beam and deck along the columns, and what is between them at the beam's farthest place (rmm)."""
@@ -98,14 +106,14 @@ class RamPlan:
         return [(x + s * u - q * v, y + s * v + q * u) for s in self.deck for q in wide]
 
     def takes(self, low: float) -> list[Takes]:
-        """Beam and clevises, and on ground columns and deck; ``low`` is the top of the base plate."""
+        """Return the beam and clevises, and on ground columns and deck; ``low`` is the top of the base plate."""
         own, body = self.ram, self.ram.body
         links = frozenset(pin.link for pin in own.pins)
         u = math.cos(own.turn), math.sin(own.turn)
-        beam = box(self.at(0.0, self.middle), u, self.low, self.high, self.half)
+        beam = box(self.place(0.0, self.middle), u, self.low, self.high, self.half)
         spaces = [Takes(f"the beam of '{body}'", body, beam, *self.span)]
         for pin, _, bottom, top in self.clevises:
-            cheek = around([self.at(pin.s, pin.q), self.at(self.low, pin.q)], self.eye)
+            cheek = around([self.place(pin.s, pin.q), self.place(self.low, pin.q)], self.eye)
             spaces.append(Takes(f"the clevis of '{pin.joint}'", body, cheek, bottom, top, links))
         r, rams = COLUMN * self.unit, frozenset([body])
         for z in self.columns:
@@ -119,14 +127,14 @@ class RamPlan:
         (x, y), (u, v) = self.ram.line, self.ram.along
         return box((x - self.middle * v, y + self.middle * u), self.ram.along, low, high, half)
 
-    def at(self, s: float, q: float) -> tuple[float, float]:
-        """A place in the frame of the body."""
+    def place(self, s: float, q: float) -> tuple[float, float]:
+        """Return a place in the frame of the body."""
         c, d = math.cos(self.ram.turn), math.sin(self.ram.turn)
         return self.ram.origin[0] + s * c - q * d, self.ram.origin[1] + s * d + q * c
 
 
 def ram_plans(machine: Machine, measures: Measures, thickness: Mapping[str, float]) -> dict[str, RamPlan]:
-    """By body. Raises UserError naming two links that leave no room for a cheek between them."""
+    """Return ram plans by body. Raises UserError naming two links that leave no room for a cheek between them."""
     plans = {}
     cheek = CHEEK * measures.sizes.thickness * measures.unit
     for name, own in machine.rams.items():
@@ -146,3 +154,76 @@ def ram_plans(machine: Machine, measures: Measures, thickness: Mapping[str, floa
         reaches = tuple(max(eye, measures.radius(machine.links[pin.link])) for pin in own.pins)
         plans[name] = RamPlan(own, measures.unit, eye, tuple(clevises), reaches)
     return plans
+
+
+# A ram with its clevises and pins, and on ground its columns and the deck in which they stand (mm).
+
+SEAT = 0.02
+
+
+def ram_solids(own: RamPlan, pin: float, material: str) -> list[Solid]:
+    """Return the ram, its main piece first, and its pins of radius ``pin``."""
+    first, last = own.span
+    shape = _box(own.low, own.high, own.middle, own.half, first, last)
+    for clevis, room, bottom, top in own.clevises:
+        for low, high in ((bottom, clevis.z - room), (clevis.z + room, top)):
+            cheek = extruded(circle(clevis.s, clevis.q, own.eye), high - low, low)
+            shape = shape.union(cheek).union(_box(clevis.s, own.low + 1.0, clevis.q, own.eye, low, high))
+    for clevis, _, bottom, top in own.clevises:
+        shape = shape.cut(extruded(circle(clevis.s, clevis.q, pin + SEAT), top - bottom + 2, bottom - 1))
+    running = max(0.12, 0.02 * own.unit)
+    for z in own.columns:
+        shape = shape.cut(_column(own, own.low - 1, own.high + 1, z, COLUMN * own.unit + running))
+    solids = [Solid(own.ram.body, _on_body(own, shape), material, through_holes(shape))]
+    for s, q, bottom, top in _merged(own):
+        bolt = extruded(circle(s, q, pin), top - bottom, bottom)
+        solids.append(Solid(f"pin_{own.ram.body}", _on_body(own, bolt), "brass", 0))
+    return solids
+
+
+def guide_solids(own: RamPlan, low: float) -> list[Solid]:
+    """Return columns and deck, from the base plate (z = ``low``) up."""
+    begin, (below, above) = own.begin, own.deck
+    wide = own.half + HUB * own.unit
+    deck = _box(below, above, own.middle, wide, low, own.span[1])
+    solids = []
+    for k, z in enumerate(own.columns, start=1):
+        column = _column(own, begin, above, z, COLUMN * own.unit)
+        deck = deck.cut(_column(own, below - 1, above + 1, z, COLUMN * own.unit + SEAT))
+        solids.append(Solid(f"column_{own.ram.body}_{k}", _on_ground(own, column), "steel", 0))
+    solids.append(Solid(f"deck_{own.ram.body}", _on_ground(own, deck), "aluminium_blue", through_holes(deck)))
+    return solids
+
+
+def _merged(own: RamPlan) -> list[tuple[float, float, float, float]]:
+    """Return the place and ends of the pins: one through clevises of one place whose cheeks touch."""
+    merged: list[tuple[float, float, float, float]] = []
+    for clevis, _, bottom, top in own.clevises:
+        for k, (s, q, low, high) in enumerate(merged):
+            if math.hypot(s - clevis.s, q - clevis.q) < SEAT and bottom < high + SEAT:
+                merged[k] = (s, q, low, max(high, top))
+                break
+        else:
+            merged.append((clevis.s, clevis.q, bottom, top))
+    return merged
+
+
+def _box(x0: float, x1: float, y: float, half: float, z0: float, z1: float) -> cq.Workplane:
+    import cadquery as cq
+
+    box = cq.Workplane().box(x1 - x0, 2 * half, z1 - z0, centered=(False, True, False))
+    return box.translate((x0, y, z0))
+
+
+def _column(own: RamPlan, begin: float, end: float, z: float, radius: float) -> cq.Workplane:
+    along = extruded(circle(0, 0, radius), end - begin, begin).rotate((0, 0, 0), (0, 1, 0), 90)
+    return along.translate((0, own.middle, z))
+
+
+def _on_body(own: RamPlan, shape: cq.Workplane) -> cq.Workplane:
+    return placed(shape, *own.ram.origin, turn=math.degrees(own.ram.turn))
+
+
+def _on_ground(own: RamPlan, shape: cq.Workplane) -> cq.Workplane:
+    u, v = own.ram.along
+    return placed(shape, *own.ram.line, turn=math.degrees(math.atan2(v, u)))

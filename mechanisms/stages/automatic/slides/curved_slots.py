@@ -15,15 +15,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from mechanisms.stages.automatic.layout.extents import Extent, extent
-from mechanisms.stages.automatic.layout.features import build, kind
-from mechanisms.stages.automatic.layout.followed import continued, end_ways, evenly, followed
+from mechanisms.stages.automatic.layout.curves import continued, curve_path, end_ways, evenly, followed, on_body
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
 from mechanisms.stages.automatic.layout.layout import Feature
+from mechanisms.stages.automatic.layout.plan import build, kind
 from mechanisms.stages.automatic.layout.planar import convex_hull, disc
-from mechanisms.stages.automatic.layout.profiles import curve_path, on_body
-from mechanisms.stages.automatic.slides.slot_solids import channelled, slotted
-from mechanisms.stages.automatic.slides.slots import Slot, entered
+from mechanisms.stages.automatic.layout.sizes import Extent, extent
+from mechanisms.stages.automatic.slides.slots import Slot, channelled, entered, slotted
 from shared.shapes.band import normals, sharpest
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
@@ -31,9 +29,8 @@ from shared.stage.paths import shown_file
 if TYPE_CHECKING:
     from mbsd import Mechanism, Solution
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
 
 STEP, MOST, FINEST = 2.0, 240, 960
@@ -62,14 +59,14 @@ class CurvedSlot(Slot):
         return None if self.closed else self
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Posts of a plate on ground: beyond the two places that are farthest from each other."""
+        """Return posts of a plate on ground: beyond the two places that are farthest from each other."""
         hull = convex_hull(self.path)
         apart = np.linalg.norm(hull[:, None] - hull[None], axis=2)
         a, b = np.unravel_index(int(np.argmax(apart)), apart.shape)
         return Slot.posts(Slot(self.name, self.slot, self.pin, hull[[a, b]], self.pin_at), layout)
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """A wall round the slot, whole in its middle; an eye that holds the pin."""
+        """Return a wall round the slot, whole in its middle; an eye that holds the pin."""
         if self.slot == "ground":
             return Slot.anchors(self, layout)
         thinned = self.path[:: max(1, len(self.path) // 24)]
@@ -78,7 +75,7 @@ class CurvedSlot(Slot):
         return [*places, Anchor(self.pin, *self.pin_at, layout.sizes.eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """As those of a straight slot; in a groove the pin ends."""
+        """Yield items as for a straight slot; in a groove the pin ends."""
         for item in Slot.items(self, layout):
             if self.closed and item.body == self.pin and isinstance(item.reach, Reach) and item.reach.high == 1:
                 base = self.pin == "ground"
@@ -89,7 +86,7 @@ class CurvedSlot(Slot):
                 yield item
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """As a straight slot."""
+        """Return the same as for a straight slot."""
         return Slot.needs(self, levels, layout)
 
 
@@ -101,7 +98,7 @@ def curved_slot_solids(slot: CurvedSlot, plan: Plan, heights: Heights) -> None:
 
 @kind("point_on_curve")
 def gather(m: Mechanism, joints: list[Joint], layout: Layout) -> list[Feature]:
-    """One for each joint. Raises UserError where the curve bends too sharply for a roller."""
+    """Return one feature for each joint. Raises UserError where the curve bends too sharply for a roller."""
     return [entered(_slot(m, joint, layout), layout) for joint in joints]
 
 
@@ -115,7 +112,7 @@ def _slot(m: Mechanism, joint: Joint, layout: Layout) -> CurvedSlot:
         scale = layout.sizes.scale
         raise UserError(
             f"{m.name}: the curve of joint '{joint.name}' bends with a radius of {bend * scale:.3g} mm where its pin "
-            f"runs, and a slot for a roller of {layout.sizes.roller * scale:.3g} mm needs {least * scale:.3g} mm; make "
+            f"runs; a slot for a roller of {layout.sizes.roller * scale:.3g} mm needs {least * scale:.3g} mm; make "
             "the curve smoother or pins thinner (automatic(m, pin=...))"
         )
     _refuse_near_itself(m, joint, path, closed, layout)
@@ -137,16 +134,16 @@ def _refuse_near_itself(m: Mechanism, joint: Joint, path: np.ndarray, closed: bo
         return
     scale, body, (x, y) = sizes.scale, joint.i.body.name, (path[first] + path[second]) / 2 * sizes.scale
     raise UserError(
-        f"{m.name}: the pin of joint '{joint.name}' crosses its own way, or comes within "
-        f"{away[first, second] * scale:.3g} mm of it, near ({x:.4g}, {y:.4g}) mm in the frame of '{body}', "
-        f"and a slot for its roller of {roller * scale:.3g} mm needs {apart * scale:.3g} mm between two stretches; let "
-        "the motion end before, part the stretches of the curve (its straight continuations are some of them), make "
-        f"pins thinner (automatic(m, pin=...)), or write {shown_file(m.name, 'parts')}"
+        f"{m.name}: the pin of joint '{joint.name}' crosses its own path, or comes within "
+        f"{away[first, second] * scale:.3g} mm of it, near ({x:.4g}, {y:.4g}) mm in the frame of '{body}'; "
+        f"a slot for its roller of {roller * scale:.3g} mm needs {apart * scale:.3g} mm between two stretches; let "
+        "the motion end before, make pins thinner (automatic(m, pin=...)), part the stretches of the curve and of its "
+        f"straight continuations, or write {shown_file(m.name, 'parts')}"
     )
 
 
 def _offset(joint: Joint) -> np.ndarray:
-    """(n, 2) places (m) at the joint's distance from its curve, in the axes of the curve's marker."""
+    """Return (n, 2) places (m) at the joint's distance from its curve, in the axes of the curve's marker."""
     path = curve_path(joint.params["points"], bool(joint.params["closed"]))
     if joint.params["closed"]:
         path = np.vstack([path, path[:1]])
@@ -157,7 +154,7 @@ def _offset(joint: Joint) -> np.ndarray:
 def _run_through(
     whole: np.ndarray, ways: np.ndarray | None, seen: np.ndarray, layout: Layout
 ) -> tuple[np.ndarray, bool]:
-    """The part of a path where the pin comes, with a little more at its ends; and whether that is all of a loop.
+    """Return the part of a path where the pin comes, with a little more at its ends; and whether that is all of a loop.
 
     ``ways`` lead on from both ends of an open path.
     """
@@ -178,7 +175,7 @@ def _run_through(
 
 
 def _stepped(path: np.ndarray, clearance: float) -> np.ndarray:
-    """At even steps, as few as follow the path so closely that the roller keeps its ``clearance`` (rmm)."""
+    """Return a path at even steps, as few as keep the roller's ``clearance`` (rmm) along the path."""
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
     count = min(MOST, max(8, int(way[-1] / STEP)))
     while True:
@@ -191,6 +188,6 @@ def _stepped(path: np.ndarray, clearance: float) -> np.ndarray:
 
 @extent("point_on_curve")
 def extent_of(joint: Joint, solution: Solution) -> Extent:
-    """Room for a roller where the curve bends."""
+    """Return the room for a roller where the curve bends."""
     bend = sharpest(_offset(joint))
     return Extent((), ((bend, LEAST),) if np.isfinite(bend) else ())

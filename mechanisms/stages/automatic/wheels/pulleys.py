@@ -1,8 +1,4 @@
-"""Pulleys: wheels with a rim for a round belt, or for a chain where the joint has teeth; what the belt needs of room.
-
-The rim is a piece of its own and says where the film lays the belt (render/film/tubes/belts.py), which is no solid:
-its strands keep other parts out of their layer, and the clearance knows it as a band (stages/clearance/belts.py).
-"""
+"""Pulleys and belts, with their solids."""
 
 from __future__ import annotations
 
@@ -11,17 +7,36 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import cadquery as cq
 import numpy as np
 
+from mbsd.model.teeth import with_radii
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.plan import build
 from mechanisms.stages.automatic.layout.planar import Rounded
-from mechanisms.stages.automatic.wheels.wheels import Wheel
+from mechanisms.stages.automatic.layout.sizes import Extent, Sizes, extent
+from mechanisms.stages.automatic.wheels.wheels import Wheel, build_wheel, shape_of, with_hub
+from shared.contract.belt_path import BeltPath
+from shared.shapes.build import extruded, turned
+from shared.shapes.involute import wire
+from shared.shapes.outline import circle
+from shared.shapes.solid import Hold, Solid, placed
+from shared.stage.errors import UserError
+from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mbsd import Mechanism, Solution
+    from mbsd.model.joint import Joint
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
-    from mechanisms.stages.automatic.layout.order.heights import Heights
     from mechanisms.stages.automatic.layout.plan import Plan
+    from shared.shapes.link import Eye
+
+
+# Pulleys: wheels with a rim for a round belt, or for a chain where the joint has teeth; what the belt needs of room.
+#
+# The rim is a piece of its own and says where the film lays the belt (render/film/tubes/belts.py), which is no solid:
+# its strands keep other parts out of their layer, and the clearance knows it as a band (stages/clearance/belts.py).
 
 LEAST = 19.0
 """Least pitch radius of a pulley (rmm)."""
@@ -69,11 +84,11 @@ class Belt:
     crossed: bool
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """None."""
+        """Return an empty list."""
         return []
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """Both strands, in a body in which they rest; none where there is no such body."""
+        """Yield both strands, in a body in which they rest; none where there is no such body."""
         first, second = self.pulleys
         for body in layout.poses:
             ends = [layout.seen(pulley.body, (pulley.x, pulley.y), body) for pulley in self.pulleys]
@@ -92,8 +107,143 @@ class Belt:
             return
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """None."""
+        """Return an empty list."""
         return []
 
     def build(self, plan: Plan, heights: Heights) -> None:
         """Nothing: the film lays it."""
+
+
+# The solids of pulleys (rmm): a disc with a web, and the rim round it, grooved for a round belt or cut for a chain.
+
+EDGE, FLOOR = 0.7, 1.3
+"""Width that stays beside a groove, and half the width of the groove's floor."""
+MARKS, LEAST_MARK, LARGEST_MARK = 3, 1.0, 2.5
+"""Small holes between hub and rim, and their radii."""
+SPROCKET = 0.45
+"""Thickness of a sprocket's teeth as a part of the plate's."""
+SEAT = 5
+"""Points of a sprocket's seat for a roller."""
+
+
+@shape_of.register(Pulley)
+def pulley_disc(pulley: Pulley, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
+    """Return the disc of a pulley from z = 0 up, with its eyes, and its number of through holes. One without windows
+    has small holes, so that one sees it turn.
+    """
+    shape, holes = with_hub(extruded(circle(0, 0, pulley.root), thickness), pulley.root, thickness, eyes)
+    room = pulley.root - Sizes.hardware
+    if holes > 1 or 0.3 * room < LEAST_MARK or any(math.hypot(x, y) > 0.01 for x, y, _ in eyes):
+        return shape, holes
+    for k in range(MARKS):
+        tool = extruded(circle(pulley.root - 0.5 * room, 0, min(0.3 * room, LARGEST_MARK)), thickness + 2.0, -1.0)
+        shape = shape.cut(placed(tool, turn=360.0 * k / MARKS))
+    return shape, holes + MARKS
+
+
+@build.register(Pulley)
+def build_pulley(pulley: Pulley, plan: Plan, heights: Heights) -> None:
+    """Build the disc and rim."""
+    build_wheel(pulley, plan, heights)
+    build_rim(pulley, plan, heights)
+
+
+def build_rim(pulley: Pulley, plan: Plan, heights: Heights) -> None:
+    """Build the rim about its disc."""
+    seat = plan.layout.sizes.pivot.fit.seat
+    plan.add(pulley.body, rim_of(pulley, heights.thickness, heights.bottom(pulley.layer), seat))
+
+
+def rim_of(pulley: Pulley, thickness: float, z: float, seat: float) -> Solid:
+    """Return the rim of a pulley from z up, ``seat`` around its disc."""
+    inner = pulley.root + seat
+    middle, radius = z + thickness / 2, BELT
+    if pulley.teeth:
+        height = SPROCKET * thickness
+        outline = wire(sprocket_outline(pulley.teeth, pulley.radius, pulley.tooth, pulley.phase or 0.0))
+        shape = extruded(outline, height, (thickness - height) / 2, [circle(0, 0, inner)])
+        radius = min(pulley.tooth, BELT)
+    else:
+        floor, lip = pulley.radius - 1.1 * BELT, pulley.lip
+        groove = [(lip, thickness - EDGE), (floor, thickness / 2 + FLOOR), (floor, thickness / 2 - FLOOR), (lip, EDGE)]
+        shape = turned([(inner, 0.0), (inner, thickness), (lip, thickness), *groove, (lip, 0.0)])
+    hold = Hold(pulley.belt, middle, radius)
+    material = "steel" if pulley.teeth else "aluminium"
+    rim = placed(shape, pulley.x, pulley.y, z)
+    return Solid(f"rim_{pulley.name}", rim, material, 1, holds=(hold,))
+
+
+def sprocket_outline(teeth: int, radius: float, tooth: float, phase: float) -> np.ndarray:
+    """Return (n, 2): round seats for rollers on the pitch circle, the first at the angle ``phase``, and teeth between
+    them.
+    """
+    seat, pitch = 0.95 * tooth, 2 * math.pi / teeth
+    turn = np.linspace(-100.0, 100.0, SEAT) * math.pi / 180 + math.pi  # about the roller, inner half
+    bed = np.stack([radius + seat * np.cos(turn), seat * np.sin(turn)], axis=1)[::-1]
+    tip, half = radius + tooth, 0.12 * pitch
+    crest = [(tip * math.cos(a), tip * math.sin(a)) for a in (pitch / 2 - half, pitch / 2 + half)]
+    span = np.concatenate([bed, crest])
+    angles = phase + pitch * np.arange(teeth)
+    return np.concatenate([span @ np.array([[math.cos(a), math.sin(a)], [-math.sin(a), math.cos(a)]]) for a in angles])
+
+
+# Belts and chains: pulleys on their bodies, in one layer, and the room of the strands between them.
+
+BELTS = "belt"
+
+
+@extent(BELTS)
+def extent_of(joint: Joint, solution: Solution) -> Extent:
+    """Return both pulleys."""
+    sized = with_radii(joint.params)
+    both = (joint.i, sized["radius_i"]), (joint.j, sized["radius_j"])
+    return Extent(both, tuple((radius, LEAST) for _, radius in both))
+
+
+def belts(m: Mechanism, layout: Layout) -> list[Belt]:
+    """Return all belts of the mechanism, with their pulleys. Raises UserError where two pulleys overlap."""
+    return [belt_of(m, joint, layout) for joint in m.joints.values() if joint.kind.name == BELTS]
+
+
+def belt_of(m: Mechanism, joint: Joint, layout: Layout) -> Belt:
+    """Return the belt of a joint, with its pulleys. Raises UserError where these overlap."""
+    pair = _pulley(joint, 0, layout), _pulley(joint, 1, layout)
+    _fit(m, joint, pair, layout)
+    for pulley, mate in (pair, pair[::-1]):
+        pulley.mates.append(mate)
+    return Belt(joint.name, pair, bool(joint.params["crossed"]))
+
+
+def _pulley(joint: Joint, end: int, layout: Layout) -> Pulley:
+    sized, marker = with_radii(joint.params), (joint.i, joint.j)[end]
+    (x, y), radius = layout.place(marker), layout.sizes.of_metres(sized[("radius_i", "radius_j")[end]])
+    teeth = (joint.params.get("teeth") or (0, 0))[end]
+    name = f"{joint.name}_{marker.body.name}"
+    made = Pulley(name, marker.body.name, x, y, radius, teeth=teeth, belt=joint.name)
+    made.tip = made.lip
+    return made
+
+
+def _fit(m: Mechanism, joint: Joint, pair: tuple[Pulley, Pulley], layout: Layout) -> None:
+    """Seats of both sprockets where the chain's rollers are at the start. Raises UserError where pulleys overlap."""
+    places = [layout.seen(pulley.body, (pulley.x, pulley.y), "ground")[0] for pulley in pair]
+    first, second = pair
+    way = places[1] - places[0]
+    path = BeltPath(first.radius, second.radius, math.hypot(*way), bool(joint.params["crossed"]))
+    if not path.has_room or path.distance < first.lip + second.lip:
+        scale = layout.sizes.scale
+        radii = " and ".join(f"{pulley.radius * scale:.4g}" for pulley in pair)
+        raise UserError(
+            f"{m.name}: belt '{joint.name}': its pulleys of {radii} mm overlap, because their centres are "
+            f"{path.distance * scale:.4g} mm apart; move a centre or make one smaller, or write "
+            f"{shown_file(m.name, 'parts')}"
+        )
+    if not first.teeth:
+        return
+    turns = [layout.poses[pulley.body][0][2] for pulley in pair]
+    line, pitch = math.atan2(way[1], way[0]), 2 * math.pi * first.radius / first.teeth
+    spacing = path.length / max(round(path.length / pitch), 1)
+    first.phase = 0.0
+    seat = first.radius * (turns[0] - line - path.beta)
+    there = seat + spacing * math.ceil((path.parts[0] + path.parts[1] - seat) / spacing)
+    second.phase = path.on_second(there) + line - turns[1]

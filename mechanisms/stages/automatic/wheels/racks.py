@@ -1,8 +1,4 @@
-"""Racks: a toothed bar in the layer of its pinions, screwed to its body's plate or on posts of the ground.
-
-The bar is in phase with its pinions and as long as their way over it. It has a layer of its own and stands off its
-body's plate by two studs, so that a slide may guide the body right under the teeth.
-"""
+"""Racks with their pinions, and the solids of racks."""
 
 from __future__ import annotations
 
@@ -14,17 +10,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.plan import Foot, build
 from mechanisms.stages.automatic.layout.planar import Rounded, disc
-from shared.shapes.involute import DEDENDUM
+from shared.shapes.build import extruded
+from shared.shapes.involute import DEDENDUM, rack_outline, wire
+from shared.shapes.outline import circle
+from shared.shapes.solid import placed
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
 
 if TYPE_CHECKING:
     from mbsd import Mechanism
     from mbsd.model.joint import Joint
-    from mechanisms.stages.automatic.layout.items import Levels
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.wheels.wheels import Wheel
+
+
+# Racks: a toothed bar in the layer of its pinions, screwed to its body's plate or on posts of the ground.
+#
+# The bar is in phase with its pinions and as long as their way over it. It has a layer of its own and stands off its
+# body's plate by two studs, so that a slide may guide the body right under the teeth.
 
 BACK = 11.0
 """Height of the bar under its teeth."""
@@ -63,7 +70,7 @@ class Rack:
 
     @property
     def layer(self) -> str:
-        """What decides its layer: itself."""
+        """Name that decides the layer: its own."""
         return self.what
 
     @property
@@ -90,23 +97,23 @@ class Rack:
         first, last = self.teeth
         return (self.phase or 0.0) + (first - 0.5) * self.pitch, (self.phase or 0.0) + (last + 0.5) * self.pitch
 
-    def at(self, along: float, across: float) -> tuple[float, float]:
-        """A place in the body's frame."""
+    def place(self, along: float, across: float) -> tuple[float, float]:
+        """Return a place in the body's frame."""
         c, s = math.cos(self.angle), math.sin(self.angle)
         return self.x + c * along - s * across, self.y + s * along + c * across
 
     def sees(self, pinion: Wheel, layout: Layout) -> tuple[float, float]:
-        """The pinion's place along the pitch line and its body's angle against the rack at the start."""
+        """Return the pinion's place along the pitch line and its body's angle against the rack at the start."""
         along, _ = _path(self, pinion, layout)[0]
         turn = layout.poses[pinion.body][0][2] - layout.poses[self.body][0][2] - self.angle
         return float(along), float(turn)
 
     def seats(self, layout: Layout) -> list[tuple[float, float]]:
-        """Where studs or posts carry the bar: as near to the rest of the body as they can be."""
+        """Return where studs or posts carry the bar: as near to the rest of the body as they can be."""
         low, high = (end + side * (STUD + 1.0) for end, side in zip(self.ends, (1, -1), strict=True))
         across = self.root - BACK / 2
         if self.body == "ground":
-            return [self.at(low, across), self.at(high, across)]
+            return [self.place(low, across), self.place(high, across)]
         others = [f for f in layout.features if f is not self and not isinstance(f, Rack)]
         c, s = math.cos(self.angle), math.sin(self.angle)
         places = [a for f in others for a in f.anchors(layout) if a.body == self.body]
@@ -114,17 +121,17 @@ class Rack:
         middle = sum(along) / len(along) if along else (low + high) / 2
         half = min(APART, high - low) / 2
         middle = min(max(middle, low + half), high - half)
-        return [self.at(middle - half, across), self.at(middle + half, across)]
+        return [self.place(middle - half, across), self.place(middle + half, across)]
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """Its seats."""
+        """Return its seats."""
         return [Anchor(self.body, x, y, STUD + 2.0) for x, y in self.seats(layout)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """The bar, and what carries it."""
+        """Yield the bar, and what carries it."""
         (low, high), edge = self.ends, 0.2
         corners = [(low, self.root - BACK), (high, self.root - BACK), (high, self.tip), (low, self.tip)]
-        bar = Rounded(np.array([self.at(*corner) for corner in corners]), edge)
+        bar = Rounded(np.array([self.place(*corner) for corner in corners]), edge)
         meshes = frozenset(mate.what for mate in self.mates)
         yield Item(self.what, self.body, bar, Reach((self.layer,)), source=self, meshes=meshes, spared=False)
         reach = (
@@ -134,12 +141,14 @@ class Rack:
             yield Item(f"a stud of {self.what}", self.body, disc(x, y, STUD), reach, source=self, spared=False)
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """None."""
+        """Return an empty list."""
         return []
 
 
 def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layout) -> None:
-    """The pinion's way along the rack. Raises UserError if its centre is not always its radius above the pitch line."""
+    """Add the pinion's way along the rack. Raises UserError if its centre is not always its radius above the pitch
+    line.
+    """
     path = _path(rack, pinion, layout)
     rack.ways.append((float(path[:, 0].min()), float(path[:, 0].max())))
     off = float(np.abs(path[:, 1] - pinion.radius).max())
@@ -148,14 +157,49 @@ def add_way(m: Mechanism, rack: Rack, pinion: Wheel, joint: Joint, layout: Layou
         scale = layout.sizes.scale
         raise UserError(
             f"{m.name}: {joint.kind.name} '{joint.name}': at t={layout.times[at]:.3g} s the pinion's centre is "
-            f"{path[at, 1] * scale:.4g} mm above the rack's x axis, its pitch line, and teeth of a pitch radius of "
-            f"{pinion.radius * scale:.4g} mm need that; move the rack's marker or the pinion, or write "
-            f"{shown_file(m.name, 'parts')}"
+            f"{path[at, 1] * scale:.4g} mm above the rack's x axis, its pitch line; "
+            f"teeth need that to be the pitch radius, {pinion.radius * scale:.4g} mm; "
+            f"move the rack's marker or the pinion, or write {shown_file(m.name, 'parts')}"
         )
 
 
 def _path(rack: Rack, pinion: Wheel, layout: Layout) -> np.ndarray:
-    """(T, 2): the pinion's centre along and across the pitch line."""
+    """Return (T, 2) the pinion's centre along and across the pitch line."""
     seen = layout.seen(pinion.body, (pinion.x, pinion.y), rack.body) - np.array([rack.x, rack.y])
     c, s = math.cos(rack.angle), math.sin(rack.angle)
     return np.stack([c * seen[:, 0] + s * seen[:, 1], c * seen[:, 1] - s * seen[:, 0]], axis=1)
+
+
+# The solids of a rack (rmm): the toothed bar, and the studs or posts that carry it.
+
+
+@build.register(Rack)
+def build_rack(rack: Rack, plan: Plan, heights: Heights) -> None:
+    """Build a steel bar; in its body's layer it is part of the plate."""
+    first, last = rack.teeth
+    outline = rack_outline(
+        last - first + 1,
+        rack.module,
+        rack.tip,
+        rack.root,
+        BACK,
+        rack.play / 2,
+        (rack.phase or 0.0) + first * rack.pitch,
+    )
+    bar = placed(extruded(wire(outline), heights.thickness), rack.x, rack.y, turn=math.degrees(rack.angle))
+    z, seat = heights.bottom(rack.layer), plan.layout.sizes.pivot.fit.seat
+    if rack.body == "ground":
+        low, high = seat, z - seat
+    elif heights.bottom(rack.body) == z:
+        plan.plate(rack.body, bar, (rack.x, rack.y, 0.0))
+        return
+    elif heights.bottom(rack.body) < z:
+        low, high = heights.top(rack.body) + seat, z - seat
+    else:
+        low, high = heights.top(rack.layer) + seat, heights.bottom(rack.body) - seat
+    plan.make(rack.body, f"rack_{rack.name}", placed(bar, z=z), "steel", 0)
+    for k, (x, y) in enumerate(rack.seats(plan.layout)):
+        stud = extruded(circle(x, y, STUD), high - low, low)
+        plan.make(rack.body, f"stud_{rack.name}_{k + 1}", stud, "aluminium", 0)
+        if rack.body == "ground":
+            plan.feet.append(Foot("", x, y, STUD + 2.0))

@@ -1,29 +1,39 @@
-"""A wheel: its teeth in numbers, its layer, what room it takes. External wheels, and rings with teeth inside.
-
-A moving body has one wheel in its own layer, the largest. Each other one (a stepped gear) lies in a layer of its own on
-a tube that leaves the hardware of the body's pins free. A ring that turns is the rim of a cup: the bottom is its
-body's plate, the wall reaches to the layer of the teeth. Wheels of ground stand on posts.
-"""
+"""Toothed and plain wheels: their sizes, and the solids of gears."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import singledispatch
 from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
+import cadquery as cq
 import numpy as np
 
 from mechanisms.stages.automatic.layout.items import Anchor, Item, Need, Reach
+from mechanisms.stages.automatic.layout.plan import Foot, build
 from mechanisms.stages.automatic.layout.planar import Rounded, disc, least_gap
-from mechanisms.stages.automatic.pins.free.rim_marks import Face
+from mechanisms.stages.automatic.pins.free_bodies import Face
 from mechanisms.stages.automatic.pins.pins import SAME, Pin
-from shared.shapes.involute import DEDENDUM
+from shared.shapes.build import extruded, turned
+from shared.shapes.involute import DEDENDUM, toothed, wire
+from shared.shapes.link import Eye
+from shared.shapes.outline import circle
+from shared.shapes.solid import placed
 
 if TYPE_CHECKING:
-    from mechanisms.stages.automatic.layout.items import Levels
-    from mechanisms.stages.automatic.layout.layout import Layout
+    from mechanisms.stages.automatic.layout.items import Heights, Levels
+    from mechanisms.stages.automatic.layout.layout import Carrier, Layout
+    from mechanisms.stages.automatic.layout.plan import Plan
+
+
+# A wheel: its teeth in numbers, its layer, what room it takes. External wheels, and rings with teeth inside.
+#
+# A moving body has one wheel in its own layer, the largest. Each other one (a stepped gear) lies in a layer of its own
+# on a tube that leaves the hardware of the body's pins free. A ring that turns is the rim of a cup: the bottom is its
+# body's plate, the wall reaches to the layer of the teeth. Wheels of ground stand on posts.
 
 SECTORS = 36
 """Pieces of an annulus in the plane."""
@@ -38,7 +48,7 @@ LEAST, LEAST_ON_TUBE = 15.2, 18.0
 
 
 class Mate(Protocol):
-    """What meshes with a wheel: another one, or a rack."""
+    """An element that meshes with a wheel: another wheel, or a rack."""
 
     @property
     def what(self) -> str:
@@ -63,11 +73,11 @@ class Wheel:
     phase: float | None = None
     mates: list[Mate] = field(default_factory=list)
     shares: bool = True
-    """Whether it lies in its body's layer."""
+    """True if it lies in its body's layer."""
 
     @property
     def layer(self) -> str:
-        """What decides its layer: its body, or itself."""
+        """Name that decides the layer: that of the body, or its own."""
         return self.body if self.shares and self.body != "ground" else self.what
 
     @property
@@ -91,7 +101,7 @@ class Wheel:
         return 2 * math.pi / self.teeth
 
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
-        """The wheel is no part of the outline; what carries it is."""
+        """Return anchors of what carries the wheel; the wheel is no part of the outline."""
         if self.body == "ground":
             return [Anchor("ground", self.x, self.y, self.outside)]
         if self.ring:
@@ -99,7 +109,7 @@ class Wheel:
         return [] if self.shares else [Anchor(self.body, self.x, self.y, TUBE[1])]
 
     def items(self, layout: Layout) -> Iterable[Item]:
-        """A disc, or an annulus in pieces, and what carries it."""
+        """Yield a disc, or an annulus in pieces, and what carries it."""
         reach, spares = Reach((self.layer,)), frozenset[str]()
         meshes = frozenset(mate.what for mate in self.mates)
         if not self.ring:
@@ -129,7 +139,7 @@ class Wheel:
                 yield Item(f"a post of {self.what}", self.body, disc(x, y, RIM), reach, spares, self, meshes)
 
     def face_of(self, body: str, layout: Layout) -> Face | None:
-        """Within its teeth, where it is its body's plate."""
+        """Return the disc within its teeth, where it is its body's plate."""
         if body != self.body or self.ring or not self.shares:
             return None
         fills = any(getattr(feature, "fills", "") == body for feature in layout.features)
@@ -137,12 +147,14 @@ class Wheel:
         return None if fills else Face(self.x, self.y, self.root, math.inf if in_ring else max(self.tip, self.radius))
 
     def _pins(self, layout: Layout) -> frozenset[str]:
-        """Names of the pins that its tube goes round."""
+        """Return names of the pins that its tube goes round."""
         pins = (pin for pin in layout.features if isinstance(pin, Pin) and self.body in pin.places)
         return frozenset(pin.what for pin in pins if math.dist(pin.places[self.body], (self.x, self.y)) < SAME)
 
     def posts(self, layout: Layout) -> list[tuple[float, float]]:
-        """Posts under the rim of a ring fixed to ground: a cross turned so that the fewest bodies come near it."""
+        """Return posts under the rim of a ring fixed to ground: a cross turned so that the fewest bodies come near
+        it.
+        """
         return min((self._cross(degrees) for degrees in CROSSES), key=lambda cross: _near(cross, layout))
 
     def _cross(self, degrees: float) -> list[tuple[float, float]]:
@@ -151,14 +163,172 @@ class Wheel:
         return [(self.x + at * math.cos(a), self.y + at * math.sin(a)) for a in angles]
 
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
-        """None."""
+        """Return an empty list."""
         return []
 
 
 def _near(posts: list[tuple[float, float]], layout: Layout) -> int:
-    """How many pairs of a post and a body's plate meet in the plane at some time."""
+    """Return how many pairs of a post and a body's plate meet in the plane at some time."""
     plates = [(layout.outline(body), layout.poses[body]) for body in layout.moving if layout.anchors[body]]
     still = layout.poses["ground"]
     room = layout.sizes.room
     gaps = (least_gap(disc(x, y, RIM), plate, (still, poses), room)[0] for x, y in posts for plate, poses in plates)
     return sum(gap < room for gap in gaps)
+
+
+# The solids of wheels (rmm): a toothed disc with a milled-out web, a ring or a cup, and what holds them.
+
+WEB = 2.0
+"""Depth to which a web is milled out on both faces."""
+HUB = 14.0
+"""Radius of a hub that stays."""
+RIM_WALL = 4.0
+POST = 3.2
+"""Radius of a post under a ring: it stays under the rim, out of the way of planets that are as high as its top."""
+WINDOWS = 5
+"""In the bottom of a cup."""
+BESIDE = 36.0
+"""How far inside of a cup's rim the base plate counts it as standing."""
+
+
+@build.register(Wheel)
+def build_wheel(wheel: Wheel, plan: Plan, heights: Heights) -> None:
+    """Give the plan the wheel as its body's plate, on its body's plate, or as a piece of the ground."""
+    if wheel.body == "ground":
+        _on_ground(wheel, plan, heights)
+    elif wheel.ring:
+        _cup(wheel, plan, heights)
+    elif wheel.shares:
+        plan.wheels[wheel.body] = wheel
+    else:
+        _on_tube(wheel, plan, heights)
+
+
+def _on_ground(wheel: Wheel, plan: Plan, heights: Heights) -> None:
+    thickness, seat = heights.thickness, plan.layout.sizes.pivot.fit.seat
+    z = heights.bottom(wheel.layer)
+    shape, holes = shape_of(wheel, thickness, [])
+    if not wheel.ring:
+        pivot, here = plan.layout.sizes.pivot, (wheel.x, wheel.y)
+        grounded = [pin for pin in plan.layout.features if isinstance(pin, Pin) and pin.on_ground]
+        pinned = any(math.dist(pin.places["ground"], here) < SAME for pin in grounded)
+        bore = pivot.held if pinned else pivot.bushing + 1.0
+        shape = shape.cut(extruded(circle(0, 0, bore / 2), thickness + 2, -1.0))
+        post = extruded(circle(0, 0, wheel.root - 1.5), z - 2 * seat, seat, [circle(0, 0, bore / 2)])
+        plan.make("ground", f"post_{wheel.name}", placed(post, wheel.x, wheel.y), "aluminium", 1)
+        plan.feet.append(Foot("", wheel.x, wheel.y, wheel.root))
+        holes += 1
+    for k, (x, y) in enumerate(wheel.posts(plan.layout) if wheel.ring else []):
+        post = extruded(circle(0, 0, POST), z - 2 * seat, seat)
+        plan.make("ground", f"post_{wheel.name}_{k + 1}", placed(post, x, y), "steel", 0)
+        plan.feet.append(Foot("", x, y, 6.0))
+    plan.make("ground", f"gear_{wheel.name}", placed(shape, wheel.x, wheel.y, z), "aluminium", holes)
+
+
+def _on_tube(wheel: Wheel, plan: Plan, heights: Heights) -> None:
+    """A wheel in a layer of its own: one piece with the tube that reaches to its body's plate."""
+    inner, outer = TUBE
+    thickness = heights.thickness
+    shape, windows = shape_of(wheel, thickness, [(0.0, 0.0, Eye(outer, 0.0))])
+    low, high = _to_plate(wheel, plan, heights)
+    z = heights.bottom(wheel.layer)
+    if high > low:
+        tube = extruded(circle(0, 0, outer), high - low + 1.0, low - z - (1.0 if low > z else 0.0))
+        shape = shape.union(tube)
+    shape = shape.cut(extruded(circle(0, 0, inner), high - low + thickness + 4.0, min(low - z, 0.0) - 2.0))
+    plan.make(wheel.body, f"gear_{wheel.name}", placed(shape, wheel.x, wheel.y, z), "aluminium", 1 + windows)
+
+
+def _cup(wheel: Wheel, plan: Plan, heights: Heights) -> None:
+    """A ring that turns: rim and wall are a piece, the bottom is the body's plate."""
+    thickness = heights.thickness
+    shape, holes = shape_of(wheel, thickness, [])
+    low, high = _to_plate(wheel, plan, heights)
+    z = heights.bottom(wheel.layer)
+    if high > low:
+        wall = extruded(circle(0, 0, wheel.outside), high - low, low - z, [circle(0, 0, wheel.root)])
+        shape = shape.union(wall)
+    plan.make(wheel.body, f"ring_{wheel.name}", placed(shape, wheel.x, wheel.y, z), "aluminium", holes)
+    bottom = extruded(circle(0, 0, wheel.outside), thickness).faces("|Z").edges().chamfer(0.4)
+    alone = all(math.hypot(a.x - wheel.x, a.y - wheel.y) < 0.01 for a in plan.layout.anchors[wheel.body])
+    eye = plan.layout.sizes.eye
+    room = wheel.root - eye - 4.0
+    windows = WINDOWS if alone and room > 16.0 else 0
+    for k in range(windows):
+        at = (wheel.root + eye) / 2 - 1.0
+        radius = min(0.38 * room, 0.8 * at * math.sin(math.pi / WINDOWS))
+        tool = extruded(circle(at, 0, radius), thickness + 2.0, -1.0)
+        bottom = bottom.cut(placed(tool, turn=360.0 * k / WINDOWS))
+    holds = (wheel.x, wheel.y, eye + 0.1 if windows else wheel.outside - 0.5)
+    plan.plate(wheel.body, placed(bottom, wheel.x, wheel.y), holds, windows)
+    way = plan.layout.seen(wheel.body, (wheel.x, wheel.y), "ground")
+    if np.ptp(way, axis=0).max() < 0.01:  # the base plate goes on under it
+        aside = wheel.outside - BESIDE
+        plan.feet += [
+            Foot("", float(way[0, 0]) + u, float(way[0, 1]) + v, 1.0) for u in (-aside, aside) for v in (-aside, aside)
+        ]
+
+
+def _to_plate(wheel: Wheel, plan: Plan, heights: Heights) -> tuple[float, float]:
+    """Return the range in which something between the wheel and its body's plate reaches."""
+    seat = plan.layout.sizes.pivot.fit.seat
+    if heights.bottom(wheel.body) < heights.bottom(wheel.layer):
+        return heights.top(wheel.body) + seat, heights.bottom(wheel.layer)
+    return heights.top(wheel.layer), heights.bottom(wheel.body) - seat
+
+
+@singledispatch
+def shape_of(wheel: Carrier, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
+    """Return a wheel about the z axis from z = 0 up, with its eyes, and its number of through holes."""
+    raise TypeError(f"{type(wheel).__name__} has no shape")
+
+
+@shape_of.register(Wheel)
+def wheel_shape(wheel: Wheel, thickness: float, eyes: list[tuple[float, float, Eye]]) -> tuple[cq.Workplane, int]:
+    """Return the wheel about the z axis from z = 0 up, with its eyes, and its number of through holes."""
+    phase = wheel.phase or 0.0
+    if wheel.ring:
+        space = phase + math.pi / wheel.teeth
+        hole = toothed(wheel.teeth, wheel.module, wheel.root, wheel.tip, -wheel.play / 2, space)
+        return extruded(circle(0, 0, wheel.outside), thickness, holes=[wire(hole)]), 1
+    outline = toothed(wheel.teeth, wheel.module, wheel.tip, wheel.root, wheel.play / 2, phase)
+    return with_hub(extruded(wire(outline), thickness), wheel.root, thickness, eyes)
+
+
+def with_hub(
+    shape: cq.Workplane, root: float, thickness: float, eyes: list[tuple[float, float, Eye]]
+) -> tuple[cq.Workplane, int]:
+    """Return a disc of that root radius with a milled-out web and its eyes, and its number of through holes."""
+    alone = all(math.hypot(x, y) < 0.01 for x, y, _ in eyes)
+    holes = 0
+    if alone and root - RIM_WALL > HUB + 5.0:
+        shape, holes = _milled(shape, root - RIM_WALL, thickness)
+    for x, y, eye in eyes:
+        if eye.above > 0:
+            boss = extruded(circle(x, y, eye.boss_radius), eye.above + 1.0, thickness - 1.0)
+            shape = shape.union(boss)
+        if eye.below > 0:
+            shape = shape.union(extruded(circle(x, y, eye.boss_radius), eye.below + 1.0, -eye.below))
+        if eye.bore > 0:
+            depth = thickness + eye.above + eye.below + 2.0
+            shape = shape.cut(extruded(circle(x, y, eye.bore / 2), depth, -eye.below - 1.0))
+            holes += 1
+    return shape, holes
+
+
+def _milled(shape: cq.Workplane, outer: float, thickness: float) -> tuple[cq.Workplane, int]:
+    """Return a web between hub and rim, with round windows where there is room."""
+    for z0, z1 in ((thickness - WEB, thickness + 1.0), (-1.0, WEB)):
+        shape = shape.cut(turned([(HUB, z0), (outer, z0), (outer, z1), (HUB, z1)]))
+    room = outer - HUB - 4.0
+    if room < 8.0:
+        return shape, 0
+    middle, radius = (outer + HUB) / 2, 0.5 * room
+    count = min(6, int(math.pi / math.asin(min((radius + 2.0) / middle, 1.0))))
+    if count < 3:
+        return shape, 0
+    for k in range(count):
+        angle = 2 * math.pi * k / count
+        at = circle(middle * math.cos(angle), middle * math.sin(angle), radius)
+        shape = shape.cut(extruded(at, thickness + 2.0, -1.0))
+    return shape, count

@@ -9,13 +9,18 @@ from __future__ import annotations
 from typing import Any
 
 import mbsd
-from mechanisms.stages.export.modelica.document import Document
-from mechanisms.stages.export.modelica.expressions import law, number, vector
-from mechanisms.stages.export.modelica.freedoms import chosen
-from mechanisms.stages.export.modelica.identifiers import identifier
-from mechanisms.stages.export.modelica.parts import DRIVERS, FORCES, JOINTS, Parts, amount_of
-from mechanisms.stages.export.modelica.places import Places
-from mechanisms.stages.export.modelica.start import Start, place
+from mechanisms.stages.export.modelica.document import Document, identifier, law, number, vector
+from mechanisms.stages.export.modelica.parts import (
+    DRIVERS,
+    FORCES,
+    JOINTS,
+    Parts,
+    Places,
+    Start,
+    amount_of,
+    chosen,
+    place,
+)
 from mechanisms.stages.export.tree import GROUND
 
 LIBRARY, STANDARD = "1.6.0", "4.0.0"
@@ -25,8 +30,8 @@ COORDINATED = ("revolute", "prismatic", "pin_in_slot", "weld")
 
 
 def modelica(solution: Any) -> tuple[str, list[str]]:
-    """The file's text, and what it leaves out."""
-    m, start = solution.mechanism, Start.of(solution)
+    """Return the file's text, and what it leaves out."""
+    m, start = solution.mechanism, Start.from_solution(solution)
     size = max(float(solution.packed.size), 1e-6)
     repeated = _repeated(solution)
     joints = [joint for joint in m.joints.values() if joint.kind.name in JOINTS and joint.name not in repeated]
@@ -53,7 +58,7 @@ def modelica(solution: Any) -> tuple[str, list[str]]:
 
 
 def _repeated(solution: Any) -> set[str]:
-    """Joints of one row that hold what others hold already: with them the equations are singular."""
+    """Return joints of one row that hold what others hold already: with them the equations are singular."""
     joints = solution.mechanism.joints
     return {name for name in solution.mobility.redundant if name in joints and joints[name].kind.rows == 1}
 
@@ -65,7 +70,7 @@ def _is_said(force: Any) -> bool:
 
 
 def _loose(m: Any, joints: list[Any]) -> list[str]:
-    """Bodies whose place follows from no coordinate of a joint."""
+    """Return bodies whose place follows from no coordinate of a joint."""
     held, more = {GROUND}, {GROUND}
     while more:
         ends = [joint.bodies for joint in joints if joint.kind.name in COORDINATED]
@@ -83,7 +88,7 @@ def _world(m: Any, size: float) -> str:
 
 
 def _start_of(body: Any, start: Start, picked: set[tuple[str, str]]) -> dict[str, str]:
-    """Modifiers of a body: where its centre of mass is, as a guess or to start from."""
+    """Return modifiers of a body: where its centre of mass is, as a guess or to start from."""
     at = body.at(*body.com)
     x, y = place(start.poses, at)
     rates = [start.rate(lambda poses, k=k: place(poses, at)[k]) for k in (0, 1)]

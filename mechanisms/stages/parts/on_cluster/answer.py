@@ -1,4 +1,4 @@
-"""What a worker sends of the parts of a mechanism, and whether it can be believed.
+"""The parts of a mechanism as a worker sends them, and the checks before they are believed.
 
 Nothing here runs what came, and no file is written under a name that came: names are those that parts.json gives, each
 a plain name beside it. The solids themselves are read by a process of their own (solids_check.py).
@@ -35,12 +35,12 @@ PROJECT = Path(__file__).parents[4]
 
 
 class Notes(msgspec.Struct, forbid_unknown_fields=True):
-    """What the stamp of the stage says of its inputs."""
+    """Notes in the stamp of the stage about its inputs."""
 
     parameters: list[str]
     inputs: dict[str, list[str]]
     machine: bool = True
-    """Whether parts of a model may follow from those of the machine."""
+    """True if parts of a model may follow from those of the machine."""
 
 
 class Made(msgspec.Struct, forbid_unknown_fields=True):
@@ -57,7 +57,7 @@ class Made(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def read(name: str, content: bytes, own_file: str, program: Mapping[str, str]) -> Made:
-    """The parts of the mechanism ``name`` from the bytes that a worker sent.
+    """Return the parts of the mechanism ``name`` from the bytes that a worker sent.
 
     ``own_file`` is the author's file that they must follow from, ``program`` has the versions of the packages here.
     Raises WrongAnswer unless everything holds together: document, names, hashes, solids with their meshes and masses.
@@ -86,7 +86,7 @@ def read(name: str, content: bytes, own_file: str, program: Mapping[str, str]) -
 
 
 def parts_from(content: bytes, where: str) -> Parts:
-    """The parts.json with these bytes; raises UserError unless it holds together."""
+    """Return the parts.json with these bytes; raises UserError unless it holds together."""
     document = jsonfile.decode(content, Parts, where)
     consistency.refuse_other_words("units", document.units, PARTS_UNITS, where)
     consistency.refuse_inconsistent_parts(document, where)

@@ -1,4 +1,4 @@
-"""What authors have written, as contents by their hash, and as files again on a worker.
+"""Files of authors, as contents by their hash, and as files again on a worker.
 
 Of ``mechanisms/`` every file of the mechanism whose parts are made travels, because parts.py may read any of them; of
 the others the Python files, which it may import. Of a user's own folder, which may hold anything, the files of the
@@ -27,7 +27,7 @@ PROGRAM = ("stages",)
 
 
 class Order(msgspec.Struct, frozen=True, kw_only=True):
-    """What a worker receives of the parts of one mechanism."""
+    """An order for the parts of one mechanism, as a worker receives it."""
 
     name: str
     files: dict[str, str]
@@ -35,15 +35,15 @@ class Order(msgspec.Struct, frozen=True, kw_only=True):
     program: dict[str, str]
     """Versions and sources of who asks, as ``identity`` gives them."""
     folder: str = ""
-    """What the user's own folder is called, in which the mechanism is."""
+    """Name of the user's own folder in which the mechanism is."""
     scale: str = ""
-    """That of a model, such as 1:20; empty for the machine itself."""
+    """Scale of a model, such as 1:20; empty for the machine itself."""
     machine: str = ""
     """Hash of the parts.json of the machine itself, where the motion of its model follows from it."""
 
 
 def collected(name: str, read: Iterable[str] = ()) -> dict[str, bytes]:
-    """The files of authors, by the name that inputs have, that go along for the mechanism or variant ``name``.
+    """Return the files of authors, by the name that inputs have, that go along for the mechanism or variant ``name``.
 
     ``read`` are names of files of a user's own folder that the parts were made from before. One that cannot be read,
     or goes meanwhile, stays here; that it is missing is reported from here.
@@ -57,7 +57,7 @@ def collected(name: str, read: Iterable[str] = ()) -> dict[str, bytes]:
 
 
 def by_content(files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """The same contents by their hash."""
+    """Return the same contents by their hash."""
     return {content_hash(content): content for content in files.values()}
 
 
@@ -73,7 +73,7 @@ def _paths(owner: str) -> Iterator[Path]:
 
 
 def _own_paths(owner: str, read: Iterable[str]) -> Iterator[Path]:
-    """Files of a user's own folder."""
+    """Yield files of a user's own folder."""
     folder = paths.mechanism_folder(owner)
     if folder != paths.MECHANISMS:
         yield from (path for path in folder.rglob("*") if path.is_file() and not _is_hidden(path.relative_to(folder)))
@@ -83,12 +83,12 @@ def _own_paths(owner: str, read: Iterable[str]) -> Iterator[Path]:
 
 
 def _is_hidden(path: Path) -> bool:
-    """Whether it is of a tool rather than of the author."""
+    """Return True if it is of a tool rather than of the author."""
     return any(part == "__pycache__" or part.startswith(".") for part in path.parts)
 
 
 def _imported(waiting: list[tuple[Path, str]]) -> Iterator[Path]:
-    """These files, each with its package, and those of the user's folder that their import statements name."""
+    """Return these files, each with its package, and those of the user's folder that their import statements name."""
     seen: set[Path] = set()
     while waiting:
         file, package = waiting.pop()
@@ -103,7 +103,7 @@ def _imported(waiting: list[tuple[Path, str]]) -> Iterator[Path]:
 
 
 def _place(module: str) -> Path:
-    """Where a module of the user's folder would be, without its suffix."""
+    """Return where a module of the user's folder would be, without its suffix."""
     top, *rest = module.split(".")
     if top != "mechanisms" or not rest:
         return paths.MECHANISMS.joinpath(top, *rest)

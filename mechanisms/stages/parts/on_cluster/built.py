@@ -1,4 +1,4 @@
-"""What a worker of a cluster does for parts: the same stage in a copy of the program with the author's files in it.
+"""Parts on a worker of a cluster: the same stage in a copy of the program with the author's files in it.
 
 The stage is a process of its own, so neither the author's code nor the CAD kernel can hurt the worker, and nothing of
 one mechanism is left for the next.
@@ -41,7 +41,8 @@ LEAST = 50e6
 
 
 def parts(files: Mapping[str, Path], common: str, name: str) -> bytes:
-    """The parts of the mechanism ``name`` from the contents ``files``, of which ``common`` is the :class:`Order`.
+    """Return the parts of the mechanism ``name`` from the contents ``files``, of which ``common`` is the
+    :class:`Order`.
 
     They are :class:`Made` as MessagePack. Raises UserError where this worker, rather than the mechanism, is at fault:
     its sources have changed since it was started, its disk is full, or the system ended the stage.
@@ -55,7 +56,7 @@ def parts(files: Mapping[str, Path], common: str, name: str) -> bytes:
         if any(order.program.get(f"sources of {room}") != sources_of(room, tree) for room in PARTS):
             raise UserError("its sources have changed since it was started; start it again")
         for path, content in order.files.items():
-            _put(tree, path, files[content].read_bytes(), own_folder(tree, order.folder))
+            _write_file(tree, path, files[content].read_bytes(), own_folder(tree, order.folder))
         if order.machine:
             write_bytes(tree / RESULTS / name / "parts" / "parts.json", files[order.machine].read_bytes())
         return msgspec.msgpack.encode(_stage(tree, order))
@@ -84,11 +85,11 @@ def copy_program(tree: Path) -> None:
 
 
 def own_folder(tree: Path, called: str) -> Path | None:
-    """The copy of a user's own folder, beside the program; None where the mechanism is not in one."""
+    """Return the copy of a user's own folder, beside the program; None where the mechanism is not in one."""
     return tree.parent / "own" / Path(called).name if called else None
 
 
-def _put(tree: Path, path: str, content: bytes, own: Path | None = None) -> None:
+def _write_file(tree: Path, path: str, content: bytes, own: Path | None = None) -> None:
     """Write one of the author's files. Raises UserError for one that is not the author's."""
     place = tree / "mechanisms" if own is None else own
     target = Path(os.path.abspath(tree / path if own is None else own / path.removeprefix(WORKSHOP)))

@@ -30,7 +30,8 @@ GRACE = 120.0
 
 
 def made_elsewhere(name: str, scale: Scale | None, machine: bytes, before: Iterable[str]) -> Made | None:
-    """The parts of ``name`` as a worker made them; None where the stage there refused, which is reported from here.
+    """Return the parts of ``name`` as a worker made them; None where the stage there refused, which is reported from
+    here.
 
     ``machine`` is the parts.json of the machine itself, where its model at ``scale`` needs it; ``before`` are names of
     files from which the parts were made before. Raises UserError if no scheduler answers, no worker is fit, or several

@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from mechanisms.stages.parts.mass_properties import combined, mass_of
-from mechanisms.stages.parts.mesh_check import VOLUME_TOLERANCE
+from mechanisms.stages.parts.meshes import VOLUME_TOLERANCE, combined, mass_of
 from mechanisms.stages.parts.on_cluster.answer import parts_from
 from mechanisms.stages.parts_files import read_mesh
 from shared.contract import BodyParts, Mass, Piece
@@ -58,7 +57,7 @@ def _refuse_wrong_piece(folder: Path, where: str, piece: Piece) -> None:
         )
     heights = tuple(metres(float(height)) for height in mesh.bounds[:, 2])
     if not np.allclose(heights, piece.z_range, rtol=0.0, atol=1e-9):
-        raise UserError(f"{where}: {piece.stl} is not between the heights that parts.json tells")
+        raise UserError(f"{where}: {piece.stl} has the heights {heights} m, parts.json {piece.z_range}")
     solid = _solid(folder / piece.step, where)
     if abs(mesh.volume / volume_of(solid) - 1) > VOLUME_TOLERANCE:
         raise UserError(f"{where}: the mesh has {mesh.volume:.1f} mm^3, the solid {volume_of(solid):.1f} mm^3")
@@ -71,11 +70,11 @@ def _refuse_wrong_piece(folder: Path, where: str, piece: Piece) -> None:
     size = metres(box.DiagonalLength)
     along = piece.mass.z is not None
     if not _alike(mass_of(solid, MATERIALS[piece.material].density, along), piece.mass, size, RELATIVE):
-        raise UserError(f"{where}: parts.json tells another mass than its solid has")
+        raise UserError(f"{where}: the mass in parts.json is not that of its solid")
 
 
 def _solid(path: Path, where: str) -> Any:
-    """The one solid of a STEP file."""
+    """Return the one solid of a STEP file."""
     import cadquery
 
     content = path.read_bytes()
@@ -102,7 +101,7 @@ def _refuse_wrong_sums(body: str, solids: BodyParts) -> None:
 
 
 def _alike(first: Mass, second: Mass, size: float, relative: float) -> bool:
-    """Whether two masses agree, ``size`` (m) being how large the solid is."""
+    """Return True if two masses agree, ``size`` (m) being how large the solid is."""
     near = np.isclose([first.mass, first.volume], [second.mass, second.volume], rtol=relative, atol=1e-15).all()
     at = np.allclose(first.com, second.com, rtol=0.0, atol=relative * size + 1e-9)
     close = relative * (first.inertia + first.mass * size**2)

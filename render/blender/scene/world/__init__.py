@@ -1,1 +1,1 @@
-"""What stands and shines around a machine: lights, sky, ground, walls, and the things of a workshop."""
+"""The world around a machine: lights, sky, ground, walls, and the things of a workshop."""

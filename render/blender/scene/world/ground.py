@@ -1,14 +1,20 @@
-"""Grounds: paint, boards of wood, concrete, asphalt with its marks, rippled sand. Textures are in radii."""
+"""The ground and the backdrop of a scene."""
 
-# pyright: reportAttributeAccessIssue=false
-# bpy fills itself in when it is imported, its stubs are empty.
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
-from render.blender.scene.nodes import Graph
-from render.looks.look import Colour, Ground
+from render.blender.scene.materials import Graph
+from render.film.scene import StudioSpec
+from render.looks import Colour, Ground
+
+# Grounds: paint, boards of wood, concrete, asphalt with its marks, rippled sand. Textures are in radii.
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+
 
 BOARD, BOARD_LENGTH, GAP = 0.62, 6.4, 0.006
 HAZE_FROM, HAZE_TO = 5.5, 34.0
@@ -18,8 +24,9 @@ LANE = 1.55
 
 
 def paint(ground: Ground, radius: float, haze: Colour | None = None, bounce: float = 0.0) -> Any:
-    """The material of a ground around the origin of its object; it fades into ``haze`` far away. ``bounce``: see
-    Light in render/looks/look.py."""
+    """Return the material of a ground around the origin of its object; it fades into ``haze`` far away. ``bounce``: see
+    Light in render/looks.py.
+    """
     import bpy
 
     made = bpy.data.materials.new(ground.texture)
@@ -37,7 +44,7 @@ def paint(ground: Ground, radius: float, haze: Colour | None = None, bounce: flo
 
 
 def _seen_only(graph: Graph, shader: Any, ground: Ground, bounce: float) -> Any:
-    """The texture for the eye; light that bounces meets the colour between its two: half the time of a frame."""
+    """Return the texture for the eye; light that bounces meets the colour between its two: half the time of a frame."""
     middle: Colour = tuple((a + b) / 2 for a, b in zip(ground.colour, ground.other, strict=True))  # pyright: ignore[reportAssignmentType]
     plain = graph.add("BsdfDiffuse", Color=middle).outputs[0]
     if bounce > 0.0:
@@ -46,12 +53,14 @@ def _seen_only(graph: Graph, shader: Any, ground: Ground, bounce: float) -> Any:
 
 
 def glow(graph: Graph, colour: Colour, bounce: float) -> Any:
-    """What light that bounces meets instead of a bright surface that would be lit once more: a tenth of a frame."""
+    """Return the glow that bounced light meets instead of a bright surface: a tenth of the time of a frame."""
     return graph.add("Emission", Color=colour, Strength=bounce).outputs[0]
 
 
 def _hazed(graph: Graph, shader: Any, haze: Colour, radius: float) -> Any:
-    """As the eye sees it from far; light that falls on it and what it reflects stay as they are."""
+    """Return a shader with haze, as the eye sees it from far; light that falls on it and what it reflects stay as they
+    are.
+    """
     away = graph.math("DIVIDE", graph.add("CameraData").outputs["View Distance"], radius)
     part = graph.add(
         "MapRange", {"interpolation_type": "SMOOTHERSTEP"}, Value=away, From_Min=HAZE_FROM, From_Max=HAZE_TO
@@ -131,7 +140,7 @@ def _asphalt(graph: Graph, ground: Ground, place: Any) -> Any:
 
 
 def _lined(graph: Graph, colour: Any, line: Colour, place: Any, worn: Any) -> Any:
-    """A dashed line behind the machine and a whole one before it; tyres have worn them."""
+    """Return a dashed line behind the machine and a whole one before it; tyres have worn them."""
     split = graph.add("SeparateXYZ", Vector=place)
     y = split.outputs["Y"]
     behind = graph.math("COMPARE", y, LANE, 0.055)
@@ -172,3 +181,65 @@ TEXTURES: dict[str, Callable[[Graph, Ground, Any], Any]] = {
     "asphalt": _asphalt,
     "sand": _sand,
 }
+
+
+# The floor, and what it ends in: a bend without a horizon, a wall, or the haze of the distance.
+
+# pyright: reportAttributeAccessIssue=false
+# bpy fills itself in when it is imported, its stubs are empty.
+
+
+HALF, BEFORE = 14.0, -12.0
+BEND, HIGH = 3.0, 14.0
+OPEN = 300.0
+"""How far an open ground goes, in radii."""
+PLASTER = (0.58, 0.57, 0.55)
+
+
+def build(scene: Any, studio: StudioSpec, bounce: float) -> Any:
+    """Return one sheet around the origin under the machine's middle, its x along the picture."""
+    import bpy
+
+    look, radius = studio.look, studio.radius
+    if look.wall is None:
+        corners = [(a * OPEN, b * OPEN, 0.0) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        faces = [(0, 1, 2, 3)]
+    else:
+        profile = _bent(look.wall.away) if look.wall.kind == "sweep" else [(BEFORE, 0.0), (HALF, 0.0)]
+        corners = [(side * HALF, away, up) for away, up in profile for side in (-1, 1)]
+        faces = [(2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2) for i in range(len(profile) - 1)]
+    mesh = bpy.data.meshes.new("backdrop")
+    mesh.from_pydata([tuple(radius * c for c in corner) for corner in corners], [], faces)
+    mesh.polygons.foreach_set("use_smooth", [True] * len(faces))
+    thing = bpy.data.objects.new("backdrop", mesh)
+    thing.location = (studio.centre[0], studio.centre[1], studio.floor)
+    thing.rotation_euler = (0.0, 0.0, studio.azimuth)
+    scene.collection.objects.link(thing)
+    haze = look.sky.horizon if look.wall is None else None
+    mesh.materials.append(paint(look.ground, radius, haze, bounce))
+    return thing
+
+
+def wall(scene: Any, studio: StudioSpec) -> Any:
+    """Return a wall in the plane of the motion, at which the machine hangs."""
+    import bpy
+
+    look, radius = studio.look, studio.radius
+    mesh = bpy.data.meshes.new("wall")
+    corners = [(a * HALF, 0.0, b * HIGH) for a, b in ((-1, 0), (1, 0), (1, 1), (-1, 1))]
+    mesh.from_pydata([tuple(radius * c for c in corner) for corner in corners], [], [(0, 1, 2, 3)])
+    thing = bpy.data.objects.new("wall", mesh)
+    thing.location = (studio.centre[0], studio.wall or 0.0, studio.floor)
+    scene.collection.objects.link(thing)
+    plaster = look.wall.colour if look.wall is not None else PLASTER
+    mesh.materials.append(paint(Ground(texture="paint", colour=plaster, roughness=0.7), radius))
+    return thing
+
+
+def _bent(away: float) -> list[tuple[float, float]]:
+    """Return a profile (away, up) that bends upwards."""
+    profile = [(BEFORE, 0.0), (away, 0.0)]
+    for step in range(1, 33):
+        angle = math.pi / 2 * step / 32
+        profile.append((away + BEND * math.sin(angle), BEND * (1 - math.cos(angle))))
+    return [*profile, (away + BEND, HIGH)]

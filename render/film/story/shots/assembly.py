@@ -1,4 +1,4 @@
-"""The assembly: parts lift apart in the order in which they are put together, get their names, and settle in."""
+"""The shot that takes a machine apart, with leaders to the names of its parts."""
 
 from __future__ import annotations
 
@@ -7,15 +7,74 @@ import math
 import numpy as np
 
 from render.film.camera import Subject, angles
-from render.film.composing.filling import View
-from render.film.story import cameras, layout
-from render.film.story.cameras import Stand
-from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
-from render.film.story.lifting import EACH, lifted
-from render.film.story.ramp import eased
-from render.film.story.scenery import MARGIN, Array, Scenery
-from render.film.story.shots.leaders import leaders
+from render.film.composing import View
+from render.film.framing import CameraPose, project
+from render.film.story import frame
+from render.film.story.frame import Caption, Leader, Over, Picture, Shot, shown_in
+from render.film.story.ramps import EACH, eased, lifted
+from render.film.story.scenery import MARGIN, Array, Scenery, Stand, between, posed, raised, stand
+from render.film.story.words import plain
 from shared.contract.quantity import written
+
+# Leader lines of an exploded machine: from each body's main piece to its name and mass at an edge of the picture.
+
+MOST_LEADERS = 8
+"""Bodies that are named: of more, the heaviest."""
+ROW = 0.085
+"""From one name to the next at least, in the picture's shorter side."""
+
+
+def leaders(scenery: Scenery, camera: CameraPose) -> tuple[Leader, ...]:
+    """Return the leader lines of the machine when it is apart, as a camera sees it."""
+    film = scenery.film
+    wide, high = max(1.0, film.aspect), max(1.0, 1 / film.aspect)
+    places: list[tuple[float, float, str, str]] = []
+    for body, mass in _named(scenery):
+        pieces = [lift for lift in scenery.lifts if lift.body == body]
+        solids = film.parts.bodies[body].pieces
+        main = max(pieces, key=lambda lift: (not solids[lift.piece].buy, solids[lift.piece].mass.volume))
+        middle = scenery.piece(main, 1.0)
+        at = (middle.min(axis=0) + middle.max(axis=0)) / 2
+        x, y = (float(v) for v in project(camera, at, wide, high)[0])
+        name = scenery.say("frame") if body == "ground" else plain(body)
+        places.append((x / wide, y / high, name, written(mass, "kg") if mass > 0 else ""))
+    places.sort()
+    half = (len(places) + 1) // 2
+    left, right = places[:half], places[half:]
+    row = ROW / high
+    low, top = 1 - frame.CAPTION / high - row, 0.07 / high
+    return (*_side(left, False, row, top, low), *_side(right, True, row, top, low))
+
+
+def _named(scenery: Scenery) -> list[tuple[str, float]]:
+    """Return bodies with solids that get a name, and their masses (kg)."""
+    film = scenery.film
+    masses = {
+        body: film.motion.bodies[body].mass if body in film.motion.bodies else solids.mass.mass
+        for body, solids in film.parts.bodies.items()
+        if solids.pieces and solids.spans is None
+    }
+    return sorted(masses.items(), key=lambda entry: -entry[1])[:MOST_LEADERS]
+
+
+def _side(places: list[tuple[float, float, str, str]], right: bool, row: float, top: float, low: float) -> list[Leader]:
+    """Return names at one side, from above in the order of their places, so that no two lines cross; ``row`` apart."""
+    places = sorted(places, key=lambda place: place[1])
+    heights = [min(max(y, top), low) for _, y, _, _ in places]
+    for k in range(1, len(heights)):
+        heights[k] = max(heights[k], heights[k - 1] + row)
+    over = max(0.0, heights[-1] - low) if heights else 0.0
+    if over:
+        heights[-1] -= over
+        for k in range(len(heights) - 2, -1, -1):
+            heights[k] = min(heights[k], heights[k + 1] - row)
+    return [
+        Leader(x, y, name, mass, right, float(np.round(height, 6)))
+        for (x, y, name, mass), height in zip(places, heights, strict=True)
+    ]
+
+
+# The assembly: parts lift apart in the order in which they are put together, get their names, and settle in.
 
 WHOLE, LIFTS, APART, SETTLED = 0.5, 1.7, 3.2, 0.5
 """Seconds: as a whole, coming apart (and together), apart, and as a whole again."""
@@ -27,7 +86,7 @@ MOST = 25.0
 
 
 def assembly(scenery: Scenery) -> Shot | None:
-    """The assembly; None of a machine of one layer."""
+    """Return the assembly; None for a machine of one layer."""
     if not any(lift.distance for lift in scenery.lifts):
         return None
     lifts, move = scenery.lifts, scenery.moving(LIFTS)
@@ -35,7 +94,7 @@ def assembly(scenery: Scenery) -> Shot | None:
     spread = _points(scenery, 1.0)
     points = np.concatenate([together, spread])
     top = float(points[:, 2].max())
-    near, wide = (cameras.raised(_stand(scenery, held), scenery.up, top) for held in (together, points))
+    near, wide = (raised(_stand(scenery, held), scenery.up, top) for held in (together, points))
     blur = scenery.film.shot.camera.blur
     whole, rests = scenery.whole(WHOLE), scenery.whole(APART)
     out = whole + move
@@ -43,7 +102,7 @@ def assembly(scenery: Scenery) -> Shot | None:
     seconds = back + move + SETTLED
 
     def apart(s: float) -> float:
-        """How far all is apart, 0 .. 1: what came last goes first, and comes back last."""
+        """Return how far all is apart, 0 .. 1: what came last goes first, and comes back last."""
         return min(max((s - whole) / move, 0.0), 1.0, max((back + move - s) / move, 0.0))
 
     def picture(s: float) -> Picture:
@@ -52,7 +111,7 @@ def assembly(scenery: Scenery) -> Shot | None:
         placed = [(lift.name, round(height, 9)) for lift, height in heights if height > 0]
         way = eased(part / EACH)  # all of it is seen while what came last leaves first
         sharp = together + way * (spread - together)
-        camera = cameras.posed(cameras.between(near, wide, way), scenery.up, sharp, blur)
+        camera = posed(between(near, wide, way), scenery.up, sharp, blur)
         return Picture(at=0.0, camera=camera, lifts=tuple(sorted(placed)), hidden="all")
 
     lines, text = leaders(scenery, picture(out + rests / 2).camera), _caption(scenery)
@@ -78,12 +137,12 @@ def _caption(scenery: Scenery) -> str:
 
 
 def _points(scenery: Scenery, apart: float) -> Array:
-    """Points (n, 3) around all pieces, lifted by a part of their distances (m)."""
+    """Return points (n, 3) around all pieces, lifted by a part of their distances (m)."""
     return np.concatenate([scenery.piece(lift, apart) for lift in scenery.lifts])
 
 
 def _stand(scenery: Scenery, points: Array) -> Stand:
-    """A stand that holds points (n, 3) around the machine."""
+    """Return a stand that holds points (n, 3) around the machine."""
     film = scenery.film
     lies = film.parts.mount.kind == "desk"
     azimuth, elevation = LYING if lies else STANDING
@@ -92,6 +151,6 @@ def _stand(scenery: Scenery, points: Array) -> Stand:
         azimuth = min(max(math.copysign(azimuth, usual) - usual, -MOST), MOST)
     subject = Subject(points, np.zeros((0, 3)), np.zeros((0, 3)), points)
     at = scenery.stand(azimuth, elevation, strip=False)
-    empty = layout.above(film.aspect), layout.below(film.aspect, False)
+    empty = frame.above(film.aspect), frame.below(film.aspect, False)
     view = View(at.azimuth, at.elevation, film.shot.camera.lens, MARGIN, empty, film.aspect)
-    return cameras.stand(subject, scenery.up, view)
+    return stand(subject, scenery.up, view)

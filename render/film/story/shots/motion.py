@@ -1,14 +1,32 @@
-"""The machine in motion, three-quarter view: the camera swings past it, and the strip has its curves."""
+"""Plain shots of the motion: the title, the run, and the last picture."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from render.film.story.cameras import between
 from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
-from render.film.story.ramp import Ramp, Warp, eased, warped
-from render.film.story.scenery import Scenery
+from render.film.story.ramps import Ramp, Warp, eased, into, warped
+from render.film.story.scenery import Scenery, between, turned
 from shared.contract.quantity import figures
+
+# The title: name and what it is, over the first picture of what follows, dark and out of focus.
+
+SECONDS, FADE = 3.0, 0.5
+
+
+def title(scenery: Scenery, after: Shot | None) -> Shot | None:
+    """Return the title before a shot, whose first picture it shows; None where no shot follows."""
+    if after is None:
+        return None
+    first = after.picture(0.0)
+
+    def over(s: float) -> Over:
+        return Over(title=shown_in(s, -FADE, SECONDS - FADE, FADE), focus=eased((s - SECONDS + FADE) / FADE))
+
+    return Shot("title", scenery.say("title"), SECONDS, lambda s: first, over, lambda s: after.model(0.0))
+
+
+# The machine in motion, three-quarter view: the camera swings past it, and the strip has its curves.
 
 SWING = 9.0
 """Degrees of azimuth to each side."""
@@ -19,7 +37,7 @@ REST = 0.7
 
 
 def motion(scenery: Scenery) -> Shot:
-    """Whole turns at the rate of the loop film; a longer motion once, fast through what is dull."""
+    """Return the whole turns at the rate of the loop film; a longer motion once, fast through what is dull."""
     clock = scenery.film.clock
     whole = clock.moving / scenery.fps
     showings = max(1, int(np.ceil(SHORT / (whole if clock.repeats else whole + REST) - 1e-9)))
@@ -33,7 +51,7 @@ def motion(scenery: Scenery) -> Shot:
 
 
 def _lively(scenery: Scenery, start: float, end: float, seconds: float) -> Warp:
-    """Slow where what the strip shows changes much, and where something happens."""
+    """Return a ramp that is slow where what the strip shows changes much, and where something happens."""
     time = np.asarray(scenery.film.motion.time)
     happens = np.zeros(len(time))
     for curve in scenery.curves:
@@ -52,7 +70,7 @@ def _shot(scenery: Scenery, passes: Ramp | Warp, seconds: float, again: float = 
     first, last = (scenery.stand(azimuth) for azimuth in (-side, side))
 
     def model(s: float) -> float:
-        return passes.at(s % again if again else s)
+        return passes.time_at(s % again if again else s)
 
     def picture(s: float) -> Picture:
         return scenery.picture(between(first, last, eased(s / seconds)), model(s))
@@ -72,3 +90,28 @@ def _caption(scenery: Scenery) -> str:
     clock, say = scenery.film.clock, scenery.say
     span = clock.end - clock.start
     return say("repeats" if clock.repeats else "lasts", time=f"{figures(span, 3)} s")
+
+
+# The last shot: the machine comes to the pose of its poster and rests there, under its name.
+
+MOVES, SLOWS, RESTS = 0.8, 1.2, 2.4
+"""Seconds: at the rate of the loop, slowing down, at rest."""
+
+
+def last(scenery: Scenery) -> Shot:
+    """Return the shot from a little aside into the three-quarter view, and to the moment of the poster."""
+    clock = scenery.film.clock
+    goes, slows = scenery.moving(MOVES), scenery.moving(SLOWS)
+    poster = clock.moment(clock.frame_at(scenery.film.shot.poster)).time
+    ramp = into(poster, -1e300 if clock.repeats else clock.start, clock.rate, goes, slows)
+    stop = goes + slows
+    end = scenery.stand(strip=False)
+    begin = turned(end, -14.0, 3.0, 1.1)
+
+    def picture(s: float) -> Picture:
+        return scenery.picture(between(begin, end, eased(s / stop)), ramp.time_at(min(s, stop)))
+
+    def over(s: float) -> Over:
+        return Over(ending=shown_in(s, stop - 0.4, 1e9, 0.5))
+
+    return Shot("last", scenery.say("last"), stop + RESTS, picture, over, ramp.time_at)

@@ -10,10 +10,8 @@ import pytest
 from mbsd.machines.engines.engine import engine
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.shafts.along import Along
-from mechanisms.stages.automatic.shafts.solids.carried import Load, loads
-from mechanisms.stages.automatic.shafts.solids.counterweights import balanced_webs
-from mechanisms.stages.automatic.shafts.solids.shaft_solid import shaft_solid
-from mechanisms.stages.parts.mass_properties import combined, mass_of
+from mechanisms.stages.automatic.shafts.shaft_solids import Load, balanced_webs, loads, shaft_solid
+from mechanisms.stages.parts.meshes import combined, mass_of
 from mechanisms.stages.solve.masses import give_masses
 from shared.contract import BodyParts, Mass, Parts, Provenance
 from shared.contract.materials import MATERIALS

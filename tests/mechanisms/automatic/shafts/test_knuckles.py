@@ -12,7 +12,7 @@ from mbsd.machines.engines.engine import engine
 from mbsd.machines.engines.master_rod import MasterRod
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.shafts.along import Along
-from mechanisms.stages.automatic.shafts.knuckles import KNUCKLE_EYE, carrier, flange, knuckle_eyes, middle
+from mechanisms.stages.automatic.shafts.bodies import KNUCKLE_EYE, carrier, flange, knuckle_eyes, middle
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.shafts.proofs import box
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from mechanisms.stages.parts.described_body import described_body
-from mechanisms.stages.parts.mass_properties import combined, mass_of
+from mechanisms.stages.parts.bodies import described_body
+from mechanisms.stages.parts.meshes import combined, mass_of
 from mechanisms.stages.solve.masses import give_masses
 from shared.contract import BodyParts, Mass, Parts, Provenance
 from shared.contract.materials import MATERIALS

@@ -35,7 +35,7 @@ def test_gears_in_a_train_and_a_belt_are_built_and_nothing_touches() -> None:
 
 def test_gears_of_a_train_stand_tooth_in_space() -> None:
     plan = along(models.geared_shafts())
-    first, second, third = (plan.wheels.of(f"shaft_{k}")[0].wheel for k in (1, 2, 3))
+    first, second, third = (plan.wheels.wheels_on(f"shaft_{k}")[0].wheel for k in (1, 2, 3))
     assert (first.teeth, second.teeth, third.teeth) == (20, 30, 25)
     for left, right in ((first, second), (second, third)):
         turned = [plan.machine.poses[wheel.body][0, 2] + (wheel.phase or 0.0) for wheel in (left, right)]

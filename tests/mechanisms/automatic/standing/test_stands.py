@@ -9,7 +9,7 @@ import pytest
 
 from mbsd import Mechanism, Solution, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.loading.wished_mount import wishing
+from mechanisms.stages.loading.wishes import wishing
 from shared.contract import consistency
 from shared.contract.materials import MATERIALS
 from shared.contract.mount import Kind

@@ -1,5 +1,5 @@
 /**
- * The payload from its bytes, as render/view/binary.py writes them: a header in JSON with arrays beside it.
+ * The payload from its bytes, as render/view/document.py writes them: a header in JSON with arrays beside it.
  * What is in a payload is told in render/view/payload.py.
  *
  * @typedef {Record<string, any>} Payload

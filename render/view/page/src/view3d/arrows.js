@@ -4,7 +4,7 @@ import { arcsAt, arrowsAt } from "../view2d/arrows.js";
 import { HEADS } from "../view2d/inks.js";
 
 const SHAFT = 0.0042, HEAD = 0.0125, POINT = 0.037;
-/** Parts of the size, render/film/arrows/arrows.py. */
+/** Parts of the size, render/film/arrows.py. */
 const SEGMENTS = 64;
 /** The halo round an arrow, in radii of its shaft; arcs, which stand on parts, are stouter. */
 const HALO = 0.55, STOUT = 1.3;

@@ -1,4 +1,4 @@
-/** Meshes of the payload as geometries; the format is told in render/view/meshes.py. */
+/** Meshes of the payload as geometries; the format is told in render/view/solid.py. */
 import { BufferAttribute, BufferGeometry } from "three";
 
 /**

@@ -11,7 +11,7 @@ import msgspec
 
 from mbsd.dealing.report import Report, encoded
 from render.blender.picture_file import name_of
-from render.frames.served import Made
+from render.frames.cluster import Made
 from shared.cluster import hands
 from tests.studio.night.torture.stage import STAMP
 

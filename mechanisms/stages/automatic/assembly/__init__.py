@@ -1,1 +1,0 @@
-"""From the plan to solids: plates, the base, engraved words."""

@@ -1,1 +1,0 @@
-"""Bodies and points that no joint shapes."""

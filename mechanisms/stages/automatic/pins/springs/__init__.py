@@ -1,1 +1,0 @@
-"""Springs, dampers, actuators and ropes between two points: their room, and the studs that hold their ends."""

@@ -1,1 +1,0 @@
-"""What parts as they are made do to a mechanism, by its tolerances.py: tables, plots, which dimension to tighten."""

@@ -1,1 +1,0 @@
-"""What a picture holds and where: how much of it the machine fills, how a camera follows it, where words stand."""

@@ -1,1 +1,0 @@
-"""Pieces that turn as they roll."""

@@ -1,0 +1,191 @@
+"""Close shots: a detail, and a section."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from render.film.camera import angles, point
+from render.film.film import Film
+from render.film.framing import half_field, in_studio
+from render.film.heights import tops as tops_of
+from render.film.poses import Moment
+from render.film.story.frame import Caption, Over, Picture, Shot, shown_in
+from render.film.story.ramps import Ramp, eased
+from render.film.story.scenery import Scenery, Stand, between, focused, raised
+from render.film.story.words import plain
+from shared.contract.quantity import written
+from shared.contract.shot import Section
+from shared.stage.errors import UserError
+
+# A close look along one joint with a shallow depth, while the machine moves slowly.
+
+SECONDS, MOVES = 4.4, 3.8
+"""Seconds of the shot, and of its move."""
+LENS, WIDE = 90.0, 0.36
+"""mm, and the width of what is seen, in sizes of the machine."""
+SLOWER = 0.4
+"""The rate beside that of the loop."""
+FOLLOWED = 0.85
+"""How much of the joint's way the camera goes."""
+LYING, STANDING = ((-34.0, 34.0), (14.0, 44.0)), ((-40.0, 16.0), (6.0, 26.0))
+"""Azimuth and elevation (degrees) at the start and at the end of the move."""
+
+
+def macro(scenery: Scenery) -> Shot | None:
+    """Return the macro; None for a machine without joints."""
+    name = _joint(scenery)
+    if name is None:
+        return None
+    clock, move = scenery.film.clock, scenery.moving(MOVES)
+    rate = SLOWER * clock.rate
+    begin = clock.start if clock.repeats else max(clock.start, _busy(scenery) - rate * move / 2)
+    ramp = Ramp(begin, ((move * 0.75, rate, rate), (move * 0.25, rate, 0.0)))
+    stands = _stands(scenery)
+
+    def picture(s: float) -> Picture:
+        time = ramp.time_at(min(s, move))
+        at = scenery.loop_frame(time)
+        a, b = (_aimed(scenery, stand, _place(scenery, name, at)) for stand in stands)
+        camera = focused(between(a, b, eased(s / move)), scenery.up, scenery.blur)
+        return Picture(at=at, camera=camera, hidden="trails")
+
+    text = _caption(scenery, name)
+
+    def over(s: float) -> Over:
+        shown = shown_in(s, 0.5, SECONDS - 0.2)
+        return scenery.going(
+            ramp.time_at(s), ramp.rate(s) if s < move else 0.0, strip=False, caption=text, caption_shown=shown
+        )
+
+    captions = (Caption(0.5, SECONDS - 0.2, text),)
+    return Shot("macro", scenery.say("macro"), SECONDS, picture, over, ramp.time_at, captions)
+
+
+def _busy(scenery: Scenery) -> float:
+    """Return when what the story is about happens (s)."""
+    return scenery.reasons[0].time if scenery.reasons else scenery.film.clock.start
+
+
+def _joint(scenery: Scenery) -> str | None:
+    """Return the joint that is asked for; else of those on top the one of the event, or that carries most."""
+    joints = scenery.film.motion.joints
+    if scenery.wishes.joint is not None:
+        return scenery.wishes.joint
+    if not joints:
+        return None
+    tops = {name: _height(scenery, name) for name in joints}
+    first = scenery.reasons[0].joint if scenery.reasons else ""
+    highest = max(tops.values())
+    stack = highest - min(tops.values())
+
+    def worth(name: str) -> tuple[bool, bool, bool, bool, float]:
+        joint = joints[name]
+        on_top = tops[name] >= highest - 0.35 * stack - 1e-9
+        moves = float(max(np.ptp(joint.x), np.ptp(joint.y))) > 0.02 * scenery.across
+        return joint.pair == "pin", on_top, moves, name == first, float(np.hypot(joint.fx, joint.fy).max())
+
+    return max(joints, key=worth)
+
+
+def _height(scenery: Scenery, name: str) -> float:
+    """Return the highest piece of a moving body at a joint, at the start of the motion (m)."""
+    film = scenery.film
+    at = film.clock.moment(0)
+    x, y = film.poses.joint(name, at)
+    bodies = [body for body in film.motion.joints[name].bodies if body in film.motion.bodies]
+    heights = [top for body in bodies for top in film.space.tops_at(body, x, y, at)]
+    heights = heights or [top for body in bodies for top in tops_of(film.parts, body)]
+    return max(heights, default=scenery.top)
+
+
+def _place(scenery: Scenery, name: str, at: float) -> tuple[float, float, float]:
+    """Return where the joint is at a frame of the loop, for a camera that does not follow all of its way (m, world)."""
+    moment = scenery.film.clock.moment(at)
+    x, y = scenery.film.poses.joint(name, Moment(moment.time, 0))
+    joint = scenery.film.motion.joints[name]
+    middle = np.array([np.mean(joint.x), np.mean(joint.y)])
+    away = scenery.film.way(at).any()
+    part = 1.0 if away else FOLLOWED
+    x, y = middle + part * (np.array([x, y]) - middle)
+    return float(x), float(y), _height(scenery, name)
+
+
+def _stands(scenery: Scenery) -> tuple[Stand, Stand]:
+    film = scenery.film
+    lies = film.parts.mount.kind == "desk"
+    azimuths, elevations = LYING if lies else STANDING
+    base = angles(film.shot.camera, film.parts.mount, film.aspect)[0]
+    size = min(scenery.across, film.size)
+    distance = WIDE * size / (2 * half_field(LENS, max(film.aspect, 1.0))[0])
+    first, last = (
+        Stand((0.0, 0.0, 0.0), base + math.radians(a), math.radians(e), distance * part, LENS)
+        for a, e, part in zip(azimuths, elevations, (1.0, 0.86), strict=True)
+    )
+    return first, last
+
+
+def _aimed(scenery: Scenery, stand: Stand, place: tuple[float, float, float]) -> Stand:
+    target = point(in_studio(np.array(place), scenery.up))
+    return raised(Stand(target, stand.azimuth, stand.elevation, stand.distance, stand.lens), scenery.up, scenery.top)
+
+
+def _caption(scenery: Scenery, name: str) -> str:
+    joint = scenery.film.motion.joints[name]
+    most = float(np.hypot(joint.fx, joint.fy).max())
+    if most <= 0:
+        return scenery.say("joint", name=plain(name))
+    return scenery.say("carries", name=plain(name), amount=written(most, "N"))
+
+
+# The section: the machine in motion as its shot cuts it open; the camera walks a little to the side of the cut.
+
+SECTION_SECONDS, SECTION_MOVES = 4.8, 4.0
+"""Seconds of the shot, and of its move."""
+BEGIN, END = (-12.0, 4.0), (8.0, -2.0)
+"""Azimuth and elevation (degrees) beside those of the cut film, from which its faces are seen; what is cut from the
+left is seen the other way round."""
+
+
+def section(scenery: Scenery) -> Shot | None:
+    """Return the section; None for a shot that cuts nothing open. Raises UserError where it is asked for all the
+    same.
+    """
+    if scenery.cut is None:
+        if "section" in (scenery.wishes.shots or ()):
+            raise UserError(
+                f"{scenery.film.motion.mechanism}: shot.story.shots has a section, and shot.section cuts nothing open; "
+                "give the shot one, such as section=0.4"
+            )
+        return None
+    clock, move = scenery.film.clock, scenery.moving(SECTION_MOVES)
+    begin = clock.start if clock.repeats else max(clock.start, _busy(scenery) - clock.rate * move / 2)
+    ramp = Ramp(begin, ((0.75 * move, clock.rate, clock.rate), (0.25 * move, clock.rate, 0.0)))
+    side, turn = _side(scenery), _turn(scenery, scenery.cut)
+    first, last = (scenery.stand(turn + side * azimuth, high, strip=False) for azimuth, high in (BEGIN, END))
+
+    def picture(s: float) -> Picture:
+        stand = between(first, last, eased(s / move))
+        return scenery.picture(stand, ramp.time_at(min(s, move)), hidden="trails", cut=True)
+
+    text = scenery.say("cut_open")
+
+    def over(s: float) -> Over:
+        rate, shown = ramp.rate(s) if s < move else 0.0, shown_in(s, 0.4, SECTION_SECONDS - 0.2)
+        return scenery.going(ramp.time_at(s), rate, strip=False, caption=text, caption_shown=shown)
+
+    captions = (Caption(0.4, SECTION_SECONDS - 0.2, text),)
+    return Shot("section", scenery.say("section"), SECTION_SECONDS, picture, over, ramp.time_at, captions)
+
+
+def _turn(scenery: Scenery, cut: Film) -> float:
+    """Return degrees from the azimuth of the story to that of the film that is cut open, with its light."""
+    here, there = (angles(film.shot.camera, film.parts.mount, film.aspect)[0] for film in (scenery.film, cut))
+    return math.degrees(there - here)
+
+
+def _side(scenery: Scenery) -> float:
+    """Return 1 for a cut that is seen from the right, or the front; -1 from the left."""
+    cut = scenery.cut.shot.section if scenery.cut is not None else 0.0
+    return -1.0 if isinstance(cut, Section) and cut.left else 1.0

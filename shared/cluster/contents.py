@@ -57,7 +57,7 @@ class Contents:
         """Return the contents that are missing here."""
         return [name for name in names if self.find(name) is None]
 
-    def put(self, contents: Mapping[str, bytes], needed: Collection[str] = ()) -> None:
+    def keep(self, contents: Mapping[str, bytes], needed: Collection[str] = ()) -> None:
         """Keep these contents; the longest unused others are removed if there is too much.
 
         Raises UserError if the disk has no room.

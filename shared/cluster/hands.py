@@ -54,7 +54,7 @@ def perform(
     with _one_at_a_time.setdefault(get_worker().address, threading.Lock()):
         started = time.perf_counter()
         try:
-            kept.put(sent, needed)
+            kept.keep(sent, needed)
             lacking = kept.lacking(needed)
             if lacking:
                 return encoded(Report(lacking=lacking))

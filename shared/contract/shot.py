@@ -265,7 +265,7 @@ class Names:
     """Drivers, forces and contacts."""
 
     @classmethod
-    def of(cls, motion: Motion, parts: Parts) -> Names:
+    def from_motion(cls, motion: Motion, parts: Parts) -> Names:
         """Return the names in a motion and its parts."""
         pieces = {body: tuple(solids.pieces) for body, solids in parts.bodies.items()}
         forces = [name for name, force in motion.forces.items() if force.effort is not None]

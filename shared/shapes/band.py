@@ -24,10 +24,10 @@ def band(path: np.ndarray, half: float) -> cq.Wire:
     for at, way in ((-1, 1.0), (0, -1.0)):
         along = np.array([normal[at, 1], -normal[at, 0]])
         ends.append(path[at] + way * half * along)
-    sides = [cq.Edge.makeSpline([_at(p) for p in side]) for side in (right, left[::-1])]
+    sides = [cq.Edge.makeSpline([_vector(p) for p in side]) for side in (right, left[::-1])]
     caps = [
-        cq.Edge.makeThreePointArc(_at(right[-1]), _at(ends[0]), _at(left[-1])),
-        cq.Edge.makeThreePointArc(_at(left[0]), _at(ends[1]), _at(right[0])),
+        cq.Edge.makeThreePointArc(_vector(right[-1]), _vector(ends[0]), _vector(left[-1])),
+        cq.Edge.makeThreePointArc(_vector(left[0]), _vector(ends[1]), _vector(right[0])),
     ]
     return cq.Wire.assembleEdges([sides[0], caps[0], sides[1], caps[1]])
 
@@ -44,7 +44,7 @@ def loop(path: np.ndarray, beyond: float) -> cq.Wire:
     moved = path + beyond * outward
     if ((np.diff(moved, axis=0) * np.diff(path, axis=0)).sum(axis=1) <= 0).any():
         raise ValueError(f"a groove does not follow a curve at {abs(beyond):.3g} mm that bends as sharply")
-    edge = cq.Edge.makeSpline([_at(p) for p in moved[:-1]], periodic=True)
+    edge = cq.Edge.makeSpline([_vector(p) for p in moved[:-1]], periodic=True)
     return cq.Wire.assembleEdges([edge])
 
 
@@ -66,5 +66,5 @@ def sharpest(path: np.ndarray) -> float:
     return speed**3 / float(bend) if bend > 1e-12 else math.inf
 
 
-def _at(point: np.ndarray) -> cq.Vector:
+def _vector(point: np.ndarray) -> cq.Vector:
     return cq.Vector(float(point[0]), float(point[1]), 0.0)

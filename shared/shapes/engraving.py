@@ -128,10 +128,10 @@ def _overlap(a: cq.BoundBox, b: cq.BoundBox) -> bool:
 
 
 def _stroke(stroke: Stroke, height: float, shift: float, width: float) -> cq.Face:
-    def at(u: float, v: float) -> cq.Vector:
+    def place(u: float, v: float) -> cq.Vector:
         return cq.Vector(u * height + shift, v * height, 0)
 
-    points = [at(*entry[-2:]) for entry in stroke]
+    points = [place(*entry[-2:]) for entry in stroke]
     if len(stroke) == 2 and len(stroke[1]) == 2:
         return groove((points[0].x, points[0].y), (points[1].x, points[1].y), width)
     edges = []
@@ -139,7 +139,7 @@ def _stroke(stroke: Stroke, height: float, shift: float, width: float) -> cq.Fac
         if len(entry) == 2:
             edges.append(cq.Edge.makeLine(before, after))
         else:
-            edges.append(cq.Edge.makeThreePointArc(before, at(*entry[:2]), after))
+            edges.append(cq.Edge.makeThreePointArc(before, place(*entry[:2]), after))
     line = cq.Wire.assembleEdges(edges)
     outer = line.offset2D(width / 2, "arc")[0]
     return cq.Face.makeFromWires(outer, line.offset2D(-width / 2, "arc") if line.IsClosed() else [])

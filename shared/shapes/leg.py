@@ -125,19 +125,19 @@ def _slot(middle: float, angle: float, radius: float, half: float) -> cq.Wire:
     turn = (half - radius) / middle
     low, high = middle - radius, middle + radius
 
-    def at(r: float, a: float) -> cq.Vector:
+    def polar(r: float, a: float) -> cq.Vector:
         return cq.Vector(r * math.cos(a), r * math.sin(a), 0)
 
     def end(a: float, outward: float) -> cq.Vector:
-        return at(middle, a) + cq.Vector(-math.sin(a), math.cos(a), 0) * (outward * radius)
+        return polar(middle, a) + cq.Vector(-math.sin(a), math.cos(a), 0) * (outward * radius)
 
     first, last = angle - turn, angle + turn
     return cq.Wire.assembleEdges(
         [
-            cq.Edge.makeThreePointArc(at(high, first), at(high, angle), at(high, last)),
-            cq.Edge.makeThreePointArc(at(high, last), end(last, 1.0), at(low, last)),
-            cq.Edge.makeThreePointArc(at(low, last), at(low, angle), at(low, first)),
-            cq.Edge.makeThreePointArc(at(low, first), end(first, -1.0), at(high, first)),
+            cq.Edge.makeThreePointArc(polar(high, first), polar(high, angle), polar(high, last)),
+            cq.Edge.makeThreePointArc(polar(high, last), end(last, 1.0), polar(low, last)),
+            cq.Edge.makeThreePointArc(polar(low, last), polar(low, angle), polar(low, first)),
+            cq.Edge.makeThreePointArc(polar(low, first), end(first, -1.0), polar(high, first)),
         ]
     )
 

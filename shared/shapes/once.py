@@ -16,7 +16,7 @@ def built_once[**P](builder: Callable[P, cq.Workplane]) -> Callable[P, cq.Workpl
         return builder(*args, **kwargs).val()  # pyright: ignore[reportReturnType]  (a builder's value is a shape)
 
     @wraps(builder)
-    def made(*args: P.args, **kwargs: P.kwargs) -> cq.Workplane:
+    def build_once(*args: P.args, **kwargs: P.kwargs) -> cq.Workplane:
         return cq.Workplane(obj=solid(*args, **kwargs))
 
-    return made
+    return build_once

@@ -87,7 +87,7 @@ def _locked_file(path: Path) -> tuple[int, Path]:
         except FileExistsError:
             continue
         with suppress(OSError):  # a disk without locks: what a kill leaves there stays
-            locks.take(handle)
+            locks.try_lock(handle)
         if os.fstat(handle).st_nlink:
             return handle, temporary
         os.close(handle)  # another process took it for a leftover before it was locked

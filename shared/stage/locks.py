@@ -11,7 +11,7 @@ import os
 from pathlib import Path
 
 
-def take(handle: int) -> bool:
+def try_lock(handle: int) -> bool:
     """Lock an open file for this process, without waiting; False if another process holds it.
 
     Raises OSError where the disk knows no locks.
@@ -30,7 +30,7 @@ def is_abandoned(path: Path) -> bool:
     except OSError:
         return False
     try:
-        return take(handle)
+        return try_lock(handle)
     except OSError:
         return False
     finally:

@@ -81,7 +81,7 @@ class Stage:
             self._is_whole(name, recorded) for name, recorded in stamp.outputs.items()
         )
 
-    def done(self, **notes: Any) -> None:
+    def record(self, **notes: Any) -> None:
         """Record that the outputs now stand for this key. Raises UserError if an output is missing."""
         for path in self.outputs:
             if not path.is_file():
@@ -93,7 +93,7 @@ class Stage:
         jsonfile.write(self.stamp, stamp)
 
     def notes(self) -> dict[str, Any]:
-        """Return the notes of the last :meth:`done`; empty if the stage never ended."""
+        """Return the notes of the last :meth:`record`; empty if the stage never ended."""
         stamp = self._read()
         return stamp.notes if stamp else {}
 

@@ -93,7 +93,7 @@ def _locked(folder: Path) -> Iterator[int]:
     try:
         while True:
             handle = _lock_of(folder)
-            if locks.take(handle) and os.fstat(handle).st_nlink:
+            if locks.try_lock(handle) and os.fstat(handle).st_nlink:
                 yield handle
                 return
             os.close(handle)

@@ -126,11 +126,13 @@ def _closed(count: int, pins: Any, slides: Any, turned: list[tuple[int, float]])
         poses = np.concatenate([np.zeros((1, 3, q.shape[1])), q.reshape(-1, 3, q.shape[1])])
         out: list[Any] = []
         for pin in pins:
-            out += list(_at(poses[pin["body_i"]], pin["point_i"]) - _at(poses[pin["body_j"]], pin["point_j"]))
+            out += list(
+                _in_world(poses[pin["body_i"]], pin["point_i"]) - _in_world(poses[pin["body_j"]], pin["point_j"])
+            )
         for slide in slides:
             i, j = poses[slide["rail_body"]], poses[slide["slider_body"]]
-            apart = _at(i, slide["point_rail"]) - _at(j, slide["point_slider"])
-            across = _at(np.array([0.0 * i[2], 0.0 * i[2], i[2]]), [-slide["axis"][1], slide["axis"][0]])
+            apart = _in_world(i, slide["point_rail"]) - _in_world(j, slide["point_slider"])
+            across = _in_world(np.array([0.0 * i[2], 0.0 * i[2], i[2]]), [-slide["axis"][1], slide["axis"][0]])
             out += [size * (i[2] - j[2]), (across * apart).sum(axis=0)]
         out += [size * (poses[body][2] - phase) for body, phase in turned]
         return np.array(out).reshape(-1, q.shape[1])
@@ -165,6 +167,6 @@ def _newton(gaps: Any, q: np.ndarray, size: float) -> np.ndarray | None:
     return None
 
 
-def _at(pose: np.ndarray, point: Any) -> np.ndarray:
+def _in_world(pose: np.ndarray, point: Any) -> np.ndarray:
     c, s = np.cos(pose[2]), np.sin(pose[2])
     return np.array([pose[0] + c * point[0] - s * point[1], pose[1] + s * point[0] + c * point[1]])

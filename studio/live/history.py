@@ -28,7 +28,7 @@ class History:
         """True if something was undone."""
         return self._now < len(self._states) - 1
 
-    def put(self, values: dict[str, float]) -> None:
+    def add(self, values: dict[str, float]) -> None:
         """Add a new state; undone states are forgotten."""
         if values == self._states[self._now]:
             return
@@ -56,8 +56,8 @@ class History:
         undoing goes on to the value that the file held before.
         """
 
-        def beside(state: dict[str, float]) -> dict[str, float]:
+        def rebased(state: dict[str, float]) -> dict[str, float]:
             meant = {name: before[name] for name in values if name in before} | state
             return {name: value for name, value in meant.items() if values.get(name) != value}
 
-        self._states = [beside(state) for state in self._states]
+        self._states = [rebased(state) for state in self._states]

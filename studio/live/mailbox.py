@@ -19,17 +19,17 @@ class Mailbox:
         self._bytes = 0
         self._some = asyncio.Event()
 
-    def put(self, frame: bytes, replaces: bool = False) -> None:
+    def add(self, frame: bytes, replaces: bool = False) -> None:
         """Add a frame; with ``replaces`` it takes the place of an older replaceable one."""
         if replaces:
             self._bytes -= sum(len(message) for message, replaced in self._waiting if replaced)
             self._waiting = deque(message for message in self._waiting if not message[1])
-        self._add(frame, replaces)
+        self._append(frame, replaces)
         if len(self._waiting) > MOST or self._bytes > LARGEST:
             self._waiting.clear()
             self._bytes = 0
             for message in self._anew():
-                self._add(message, False)
+                self._append(message, False)
         self._some.set()
 
     async def get(self) -> bytes:
@@ -41,7 +41,7 @@ class Mailbox:
         self._bytes -= len(frame)
         return frame
 
-    def _add(self, frame: bytes, replaces: bool) -> None:
+    def _append(self, frame: bytes, replaces: bool) -> None:
         self._waiting.append((frame, replaces))
         self._bytes += len(frame)
 

@@ -40,7 +40,7 @@ class Pages:
     def push(self, frame: bytes, replaces: bool = False) -> None:
         """Send every page a frame; with ``replaces`` it makes older such frames needless."""
         for box in self._boxes:
-            box.put(frame, replaces)
+            box.add(frame, replaces)
 
     def open(self, greeting: Callable[[], list[bytes]]) -> Mailbox:
         """Return the messages of a new page; ``greeting`` brings it up to date."""
@@ -126,29 +126,29 @@ class Live:
         await socket.accept()
         box = self.pages.open(session.greeting)
         for frame in session.greeting():
-            box.put(frame)
+            box.add(frame)
         sending = asyncio.create_task(_send_all(socket, box))
         try:
             while True:
                 message = await socket.receive()
                 if message["type"] == "websocket.disconnect":
                     break
-                self._take(session, message.get("text") or message.get("bytes") or b"", box)
+                self._carry_out(session, message.get("text") or message.get("bytes") or b"", box)
         except (WebSocketDisconnect, RuntimeError):
             pass
         finally:
             self.pages.close(box)
             sending.cancel()
 
-    def _take(self, session: Session, text: str | bytes, box: Mailbox) -> None:
+    def _carry_out(self, session: Session, text: str | bytes, box: Mailbox) -> None:
         """Carry out a page's request; errors, also internal ones, are reported to that page."""
         try:
             session.ask(wish_of(text))
         except UserError as error:
-            box.put(framed({"kind": "refused", "text": str(error)}))
+            box.add(framed({"kind": "refused", "text": str(error)}))
         except Exception as error:
             traceback.print_exc()
-            box.put(framed({"kind": "refused", "text": f"the live page has failed at this: {error}"}))
+            box.add(framed({"kind": "refused", "text": f"the live page has failed at this: {error}"}))
 
 
 async def _send_all(socket: WebSocket, box: Mailbox) -> None:

@@ -110,7 +110,7 @@ class Session:
         if not self.history.now:
             return False
         self.board.line(f"the numbers of the sliders do not fit this file, so they were dropped: {text}")
-        self.history.put({})
+        self.history.add({})
         self.reload()
         return True
 
@@ -140,7 +140,7 @@ class Session:
         wishes.known(wish.values, self.board.numbers)
         values = self.history.now | wish.values
         if wish.final:
-            self.history.put(values)
+            self.history.add(values)
             self.board.tell_values()
         self._solve({**to_builtins(wish), "values": values})
 
@@ -169,7 +169,7 @@ class Session:
         whole = {number["name"] for number in self.board.numbers if number["whole"]}
         before = {number["name"]: number["value"] for number in self.board.numbers}
 
-        def done(written: Written) -> None:
+        def report(written: Written) -> None:
             self.history.written(values, before)
             self.board.tell_values()
             self.board.line(written.text)
@@ -177,7 +177,7 @@ class Session:
         self.writer.begin(
             {name: round(value) if name in whole else value for name, value in values.items()},
             self.board.numbers,
-            done,
+            report,
             lambda text: self.board.tell({"kind": "refused", "text": text}),
         )
 
@@ -187,7 +187,7 @@ class Session:
         self._solve(request)
 
     def _fitted(self, values: dict[str, float]) -> None:
-        self.history.put(values)
+        self.history.add(values)
         self.board.tell_values()
         self._solve({"do": "set", "values": values, "final": True})
 
@@ -219,7 +219,7 @@ class Session:
         elif kind == "motion":
             values = header.get("values") or (asked or {}).get("values") or {}
             if asked and asked["do"] == "drag" and asked.get("final"):
-                self.history.put(header["values"])
+                self.history.add(header["values"])
                 self.board.tell_values()
             self.board.motion(header, payload, values)
         elif (asked or {}).get("do") == "solid":

@@ -82,11 +82,11 @@ class Coordinator:
         while self._is_place_free(places) and self._start_first(renders=False):
             pass
 
-    def _beside(self) -> list[Process]:
+    def _others(self) -> list[Process]:
         return [process for process in self.running if not self.steps[process.step].renders]
 
     def _is_place_free(self, places: int) -> bool:
-        beside = self._beside()
+        beside = self._others()
         away = sum(process.step in AWAY for process in beside) if address() else 0
         return len(beside) - min(away, MOST_AWAY) < places
 
@@ -97,7 +97,7 @@ class Coordinator:
             if self._elsewhere.get(name, now) > now:
                 continue
             try:
-                who = self.claims.take(name)
+                who = self.claims.claim(name)
             except UserError as error:
                 self.log.fail(f"{name}: {error}")
                 self.books.error(name, f"{step}: {error}")
@@ -160,7 +160,7 @@ class Coordinator:
         self.claims.give_back(name)
         self.books.ended(name, step, time.monotonic() - process.started)
         if process.code() == 0 and not process.hung:
-            self.board.done(name, step)
+            self.board.finish(name, step)
         elif process.code() == BUSY:
             self._tries[name, step] -= 1
             self._elsewhere[name] = time.monotonic() + BUSY_ELSEWHERE
@@ -182,7 +182,7 @@ class Coordinator:
     def _stop_after_frame(self) -> None:
         """End the steps beside the render at once, the render after its next picture."""
         self.log.say("asked to stop; it ends after the frame in flight")
-        for process in self._beside():
+        for process in self._others():
             process.end()
         while self.running:
             time.sleep(TICK)
@@ -198,7 +198,7 @@ class Coordinator:
                     process.close()
                     self.claims.give_back(process.name)
                     good = process.code() == 0
-                    (self.board.done if good else self.board.wait)(process.name, process.step)
+                    (self.board.finish if good else self.board.wait)(process.name, process.step)
             self.books.write_if_due()
 
     def _end_all(self) -> None:

@@ -32,7 +32,7 @@ def run(names: Sequence[str]) -> int:
     if todo:
         with progress("pages", len(todo), "page") as shown:
             for name in todo:
-                error = _made(name, name in current, browser, version)
+                error = _write_page(name, name in current, browser, version)
                 if error:
                     failed[name] = error
                     warn("pages", f"{name}: {error}")
@@ -80,7 +80,7 @@ def _is_pictured(name: str, version: str) -> bool:
     return out.view.is_file() and pictures.stage_of(out, version).is_fresh()
 
 
-def _made(name: str, is_current: bool, browser: str | None, version: str) -> str:
+def _write_page(name: str, is_current: bool, browser: str | None, version: str) -> str:
     """Write a page and its picture; return what went wrong, or ""."""
     if not is_current:
         for module, step, *more in STEPS:
@@ -96,7 +96,7 @@ def _made(name: str, is_current: bool, browser: str | None, version: str) -> str
         stage = pictures.stage_of(out, version)
         if not stage.is_fresh():
             pictures.take_picture(out, browser)
-            stage.done()
+            stage.record()
     except UserError as error:
         return f"picture: {error}"
     return ""

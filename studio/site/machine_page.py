@@ -35,7 +35,7 @@ def write_machine_page(name: str, target: Path) -> bool:
         more = _script(table) if table else ""
         page = document(payload["title"], encode(payload), bundle(), more, sketch=sketch(payload["skeleton"]))
         write_bytes(target, page)
-        stage.done()
+        stage.record()
     return bool(table)
 
 
@@ -65,5 +65,5 @@ def _designs(name: str) -> Path:
         warn("site", f"{name}: its page has no sliders: {said}")
         path.unlink(missing_ok=True)
     else:
-        stage.done()
+        stage.record()
     return path

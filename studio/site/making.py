@@ -57,7 +57,7 @@ def _alone(folder: Path) -> Iterator[None]:
         raise UserError(refusal(lock, error)) from error
     try:
         try:
-            own = locks.take(handle)
+            own = locks.try_lock(handle)
         except OSError as error:
             raise UserError(refusal(lock, error, "lock")) from error
         if not own:
@@ -74,7 +74,7 @@ def _run(names: Sequence[str], folder: Path) -> int:
     with progress("site", len(names), "machine") as shown:
         for name in names:
             try:
-                entries.append(_made(name, folder / name, freshness))
+                entries.append(_write_mechanism(name, folder / name, freshness))
             except (UserError, OSError) as error:
                 warn("site", f"{name} is left out: {error}")
             shown.advance(note=name)
@@ -110,7 +110,7 @@ class _Shown:
             )
 
 
-def _made(name: str, folder: Path, freshness: Freshness) -> Entry:
+def _write_mechanism(name: str, folder: Path, freshness: Freshness) -> Entry:
     """Write all files of a mechanism but its own page, which names the others; return its entry."""
     out = Out(name)
     if not (out.motion.is_file() and out.view.is_file()):
@@ -165,7 +165,7 @@ def _once(source: Path, target: Path, write: Callable[[Path, Path], object]) -> 
     stage = Stage(Out(target.parent.name), f"site-{target.stem}", key_of(source), [target])
     if not stage.is_fresh():
         write(source, target)
-        stage.done()
+        stage.record()
     return target.name
 
 

@@ -12,7 +12,7 @@ from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from typing import Any
 
-from studio.live.processes.pipe import asked, heard
+from studio.live.processes.pipe import heard, request_frame
 from studio.live.processes.trees import end_with_below
 from studio.live.processes.warm_process import Failed, Link, ending
 
@@ -47,7 +47,7 @@ class Child:
         Its time begins with the process.
         """
         self.busy, self._waiting = True, number
-        frame = asked({"id": number, **request}, payload)
+        frame = request_frame({"id": number, **request}, payload)
         if self._link is None:
             self._asked.append(frame)
         else:
@@ -104,9 +104,9 @@ class Child:
 
     async def _hear(self, link: Link) -> None:
         while (message := await heard(link.reader)) is not None:
-            self._loop.call_soon(self._take, *message)
+            self._loop.call_soon(self._receive, *message)
 
-    def _take(self, header: dict[str, Any], payload: bytes) -> None:
+    def _receive(self, header: dict[str, Any], payload: bytes) -> None:
         if self.ended:
             return
         if header.get("kind") in ANSWERS:

@@ -62,7 +62,7 @@ async def heard(reader: asyncio.StreamReader) -> tuple[dict[str, Any], bytes] | 
         return None
 
 
-def asked(header: dict[str, Any], payload: bytes = b"") -> bytes:
+def request_frame(header: dict[str, Any], payload: bytes = b"") -> bytes:
     """Return the bytes that a child receives as one frame. It is called in the server."""
     frame = framed(header, payload)
     return LENGTH.pack(len(frame)) + frame

@@ -85,7 +85,7 @@ def taken() -> Iterator[Run]:
         for number in range(1, MOST + 1):
             run = Run(number)
             handle = _opened(run.lock)
-            if _take(handle):
+            if _try_lock(handle):
                 break
             os.close(handle)
             handle = -1
@@ -114,7 +114,7 @@ class Claims:
         self._held: dict[str, tuple[int, int]] = {}
         """By mechanism, the handle of its lock and the number of its steps that run."""
 
-    def take(self, name: str) -> str:
+    def claim(self, name: str) -> str:
         """Begin a step of a mechanism; else return who works on it: ``process 123 on machine``."""
         if name in self._held:
             handle, count = self._held[name]
@@ -125,7 +125,7 @@ class Claims:
             handle = _opened(path)
         except OSError as error:
             raise UserError(refusal(path, error)) from error
-        if not _take(handle):
+        if not _try_lock(handle):
             who = os.pread(handle, 200, 0).decode(errors="replace").strip()
             os.close(handle)
             return who or "another process"
@@ -147,9 +147,9 @@ def _opened(path: Path) -> int:
     return os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
 
 
-def _take(handle: int) -> bool:
+def _try_lock(handle: int) -> bool:
     try:
-        return locks.take(handle)
+        return locks.try_lock(handle)
     except OSError:
         return True  # a disk without locks: two runs do each other's work twice there, and no harm
 

@@ -34,7 +34,7 @@ class Board:
         """Return the state of a step."""
         return self._states[name, step]
 
-    def of(self, name: str) -> dict[str, State]:
+    def steps_of(self, name: str) -> dict[str, State]:
         """Return the steps of one mechanism in order."""
         return {step: self._states[name, step] for step in self.steps}
 
@@ -46,7 +46,7 @@ class Board:
         """Record that a step that ran has to run once more."""
         self._states[name, step] = "waiting"
 
-    def done(self, name: str, step: str) -> None:
+    def finish(self, name: str, step: str) -> None:
         """Record that a step has ended well."""
         self._states[name, step] = "done"
 
@@ -87,7 +87,7 @@ class Board:
 
     def outcome(self, name: str) -> Literal["waiting", "at work", "done", "failed"]:
         """Return the state of a whole mechanism."""
-        states = set(self.of(name).values())
+        states = set(self.steps_of(name).values())
         if states <= set(GOOD):
             return "done"
         if states <= set(OVER):

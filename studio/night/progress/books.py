@@ -156,10 +156,10 @@ class Books:
 
     def _write(self) -> None:
         for name, film in self._films.items():
-            film.outcome, film.steps = self.board.outcome(name), dict(self.board.of(name))
+            film.outcome, film.steps = self.board.outcome(name), dict(self.board.steps_of(name))
             if name in self.frames:
                 known = self.frames[name]
-                film.done, film.all, film.each = known.done, known.all, known.each
+                film.done, film.all, film.each = known.existing, known.all, known.each
                 film.left = None if known.each is None else known.left * known.each
         self._record.left = self.forecast().seconds
         self._record.updated = _now()

@@ -68,7 +68,7 @@ class Frames:
         return len(self.keys)
 
     @property
-    def done(self) -> int:
+    def existing(self) -> int:
         """Number of pictures of the film that exist."""
         return len({name.partition("-")[0] for name in self.files} & self.keys)
 
@@ -86,7 +86,7 @@ class Frames:
             pictures, fresh = {}, set()
         self.files = frozenset(pictures)
         if fresh:
-            self._seen.append((time.monotonic(), self.done))
+            self._seen.append((time.monotonic(), self.existing))
         return bool(fresh)
 
     def begin(self) -> None:
@@ -105,4 +105,4 @@ class Frames:
     @property
     def left(self) -> int:
         """Number of missing pictures."""
-        return self.all - self.done
+        return self.all - self.existing

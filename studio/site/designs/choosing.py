@@ -46,7 +46,7 @@ def axes_of(solved: Solved, numbers: list[Number], most: int) -> list[Axis]:
         axis = _widest(number)
         if axis is None or solved.is_late:
             continue
-        moved = solved.at({number.name: number.value + NUDGE * (number.high - number.low)})
+        moved = solved.numbers_at({number.name: number.value + NUDGE * (number.high - number.low)})
         if moved is None:
             continue
         places, efforts = solved.away(moved, solved.usual)
@@ -77,7 +77,7 @@ def _widest(number: Number) -> Axis | None:
 def _that_solves(solved: Solved, axis: Axis) -> Axis | None:
     """Return ends that both solve while all other numbers stay; None without such."""
     for _ in range(TRIES):
-        if all(solved.at({axis.name: end}) is not None for end in (axis.low, axis.high)):
+        if all(solved.numbers_at({axis.name: end}) is not None for end in (axis.low, axis.high)):
             return axis
         axis = axis.narrower()
     return None

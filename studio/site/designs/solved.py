@@ -38,11 +38,11 @@ class Solved:
         """True if the time is up."""
         return time.monotonic() > self.ends
 
-    def at(self, values: Mapping[str, float]) -> np.ndarray | None:
+    def numbers_at(self, values: Mapping[str, float]) -> np.ndarray | None:
         """Return the numbers of a design, (N,); None if it is not solved to its end or differs in form."""
         key = tuple(sorted(values.items()))
         if key not in self._kept:
-            self._kept[key] = None if self.is_late else self._made(dict(values))
+            self._kept[key] = None if self.is_late else self._solve(dict(values))
         return self._kept[key]
 
     def away(self, first: np.ndarray, second: np.ndarray) -> tuple[float, float]:
@@ -52,7 +52,7 @@ class Solved:
         places = float(gap[self.places].max(initial=0.0)) / self.size
         return places, float(gap[self.efforts].max(initial=0.0)) / largest
 
-    def _made(self, values: dict[str, float]) -> np.ndarray | None:
+    def _solve(self, values: dict[str, float]) -> np.ndarray | None:
         try:
             payload: dict[str, Any] = self.author.payload(values, quick=True)
             return vector(thinned(payload), self.base)

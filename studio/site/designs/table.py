@@ -67,7 +67,7 @@ def _filled(solved: Solved, axes: list[Axis], per_axis: int, words: dict[str, di
     names = [axis.name for axis in axes]
     rows = []
     for place in chebyshev.grid(points):
-        row = solved.at(dict(zip(names, place, strict=True)))
+        row = solved.numbers_at(dict(zip(names, place, strict=True)))
         if row is None:
             return None
         rows.append(row)
@@ -76,7 +76,7 @@ def _filled(solved: Solved, axes: list[Axis], per_axis: int, words: dict[str, di
     worst = [0.0, 0.0]
     for part in _between(names):
         place = [axis.low + x * (axis.high - axis.low) for axis, x in zip(axes, part, strict=True)]
-        exact = solved.at(dict(zip(names, place, strict=True)))
+        exact = solved.numbers_at(dict(zip(names, place, strict=True)))
         if exact is None:
             return None
         shown = low + span / STEPS * (chebyshev.tensor_weights(place, points) @ codes)

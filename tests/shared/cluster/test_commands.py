@@ -158,12 +158,12 @@ def test_contents_are_whole_and_the_longest_unused_go(tmp_path: Path) -> None:
     parts = [os.urandom(1000) for _ in range(3)]
     names = [content_hash(part) for part in parts]
     for name, part in zip(names[:2], parts[:2], strict=True):
-        kept.put({name: part})
+        kept.keep({name: part})
     os.utime(tmp_path / names[0], (1e9, 2e9))
     os.utime(tmp_path / names[1], (1e9, 1e9))
-    kept.put({names[2]: parts[2]})
+    kept.keep({names[2]: parts[2]})
     assert kept.lacking(names) == [names[1]]
     (tmp_path / names[0]).write_bytes(parts[0][:-1])
     assert Contents(tmp_path).lacking(names) == names[:2]
-    kept.put({names[1]: b"other bytes"})
+    kept.keep({names[1]: b"other bytes"})
     assert names[1] in kept.lacking(names)

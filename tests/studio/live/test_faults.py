@@ -117,7 +117,7 @@ def test_a_folder_that_was_renamed_may_come_back(live: Served) -> None:
         away.rename(folder)
         page.hear("solved")
         page.hear("motion")
-        live.session.history.put({})
+        live.session.history.add({})
         followed(live, page, 0.46)
 
 

@@ -158,13 +158,13 @@ def test_a_page_that_is_too_slow_gets_the_state_anew(monkeypatch: pytest.MonkeyP
     """Of what it did not take nothing is dropped by itself: it could be that an error is cured."""
     box = Mailbox(lambda: [b"state"])
     for k in range(mailbox.MOST):
-        box.put(b"%d" % k)
+        box.add(b"%d" % k)
     assert len(box) == mailbox.MOST
-    box.put(b"one more")
+    box.add(b"one more")
     assert len(box) == 1
     monkeypatch.setattr(mailbox, "LARGEST", 100)
     for _ in range(50):
-        box.put(b"x" * 40, replaces=True)
+        box.add(b"x" * 40, replaces=True)
     assert len(box) == 2
-    box.put(b"x" * 90)
+    box.add(b"x" * 90)
     assert len(box) == 1

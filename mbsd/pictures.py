@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mbsd.base.errors import ModelError
+from mbsd.base.names import Suggesting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +22,7 @@ DPI = 150
 
 
 @dataclass(frozen=True, eq=False)
-class Picture:
+class Picture(Suggesting):
     """A drawing in matplotlib axes. ``save(path)`` writes png, svg or pdf by the path's suffix."""
 
     ax: Axes
@@ -72,7 +73,7 @@ _UNDATED: dict[str, dict[str, Any]] = {
 
 
 @dataclass(frozen=True)
-class Svg:
+class Svg(Suggesting):
     """A diagram as SVG text."""
 
     text: str
@@ -90,7 +91,7 @@ class Svg:
 
 
 @dataclass(frozen=True)
-class Animation:
+class Animation(Suggesting):
     """A file that was written; a notebook shows it."""
 
     path: Path

@@ -19,6 +19,7 @@ from mbsd.analyses.pose_step import longest_step, pose_step
 from mbsd.analyses.statics import STEP, Statics
 from mbsd.analyses.tangent import tangent
 from mbsd.base.errors import EquilibriumError
+from mbsd.base.names import Suggesting
 from mbsd.base.quantity import written
 from mbsd.kinematics.pose.close import CLOSED, close
 
@@ -40,7 +41,7 @@ FLAT = 1e-8
 
 
 @dataclass
-class Balance:
+class Balance(Suggesting):
     """A pose as the search sees it."""
 
     basis: np.ndarray

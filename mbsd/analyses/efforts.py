@@ -27,7 +27,7 @@ from mbsd.arrays.start_state import AnyModel, copied
 from mbsd.arrays.states import own_states
 from mbsd.base.codes import CONSTANT
 from mbsd.base.errors import MobilityError, ModelError
-from mbsd.base.names import no_such, shown
+from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.kinematics.limits.closed_contacts import refuse_pushing
 from mbsd.kinematics.pose.phases import take_decided
 from mbsd.model.adding.forces import Amount, add_force, amount_given
@@ -106,7 +106,7 @@ def _actuator_of(m: Model, driver: Joint) -> tuple[ForceKind, dict[str, bool]]:
 
 
 @dataclass(frozen=True, eq=False)
-class ActuatedMotion:
+class ActuatedMotion(Suggesting):
     """A motion with the efforts of other actuators than those that imposed it."""
 
     solution: Solution

@@ -15,7 +15,6 @@ import numpy as np
 
 from mbsd.analyses.balance import FLAT, NoneFound, descend, look, newton
 from mbsd.analyses.pose_step import pose_step
-from mbsd.analyses.states_at_rest import refuse_states
 from mbsd.analyses.statics import STEP, Statics, statics
 from mbsd.analyses.tangent import Independent, independent_coordinates
 from mbsd.arrays.driver_laws import refuse_bad_laws
@@ -23,6 +22,7 @@ from mbsd.arrays.packing import pack
 from mbsd.arrays.reactions import wrenches
 from mbsd.arrays.start_state import held, started_at
 from mbsd.base.errors import ModelError, SingularPoseError
+from mbsd.base.names import Suggesting
 from mbsd.equations.assembly import tabulate
 from mbsd.kinematics.limits.closed_contacts import refuse_resting
 from mbsd.kinematics.pose.close import assemble
@@ -34,7 +34,7 @@ from mbsd.results.views import DriverView, EnergyView, FrameView, JointView, Sta
 
 
 @dataclass(frozen=True, eq=False)
-class Equilibrium:
+class Equilibrium(Suggesting):
     """A pose at rest where everything balances; views give single numbers."""
 
     solution: Solution
@@ -198,3 +198,14 @@ def _solution(m: Model, ready: Statics, q: np.ndarray, lam: np.ndarray, mobility
         mobility=mobility,
         route="equilibrium",
     )
+
+
+def refuse_states(m: Model, what: str) -> None:
+    """Raise ModelError where a force carries states, such as pressures: no pose gives its force to ``what``."""
+    for force in m.forces.values():
+        if force.kind.states is not None:
+            raise ModelError(
+                f"{m.name}: force '{force.name}' ({force.kind.name}) carries {' and '.join(force.kind.states.names)}, "
+                f"which no pose tells, and {what} looks at poses alone. Simulate until it rests, or put "
+                f"m.distance(...) of its length or m.actuator(...) of its force in its place"
+            )

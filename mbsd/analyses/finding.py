@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mbsd.base.names import Suggesting
+
 
 @dataclass(frozen=True)
-class Finding:
+class Finding(Suggesting):
     """One suspicious number: whose it is, what is odd, what to do."""
 
     name: str

@@ -21,7 +21,7 @@ import numpy as np
 
 from mbsd.arrays.inertias import connected
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
+from mbsd.base.names import Suggesting, no_such
 
 
 class Linear(Protocol):
@@ -68,7 +68,7 @@ ZERO = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
-class Mode:
+class Mode(Suggesting):
     """One mode."""
 
     eigenvalue: complex

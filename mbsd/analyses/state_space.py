@@ -28,7 +28,7 @@ from mbsd.arrays.inertias import coupled
 from mbsd.arrays.loads import SHARP
 from mbsd.arrays.states import columns_of, ones_of, without_states
 from mbsd.base.errors import MobilityError, ModelError, SingularPoseError
-from mbsd.base.names import no_such
+from mbsd.base.names import Suggesting, no_such
 from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
@@ -48,7 +48,7 @@ MASSLESS = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
-class Linearisation:
+class Linearisation(Suggesting):
     """dx' = A dx + B du about a state of a mechanism."""
 
     model: Model

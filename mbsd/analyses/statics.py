@@ -20,6 +20,7 @@ from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import generalised
+from mbsd.base.names import Suggesting
 from mbsd.equations.assembly import residual_and_jacobian, tabulate
 from mbsd.equations.laws import Laws
 from mbsd.equations.loads import Loads
@@ -31,7 +32,7 @@ OFFSETS = np.array([-2.0, -1.0, 1.0, 2.0])
 
 
 @dataclass
-class Statics:
+class Statics(Suggesting):
     """Evaluations at rest at one time; q (3 nb,) and loads (n,) without ground."""
 
     packed: Packed

@@ -23,7 +23,7 @@ from mbsd.balancing.least import least_mean_square, least_peak
 from mbsd.balancing.means import BalanceShaft, Counterweight
 from mbsd.base.arguments import finite_number, number_pair, positive_number
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
+from mbsd.base.names import Suggesting, no_such
 from mbsd.base.quantity import written
 from mbsd.model.body import Body
 from mbsd.results.vibration.crank import crank_of
@@ -57,7 +57,7 @@ class Shaft:
 
 
 @dataclass(frozen=True, eq=False)
-class Balance:
+class Balance(Suggesting):
     """Weights and shafts that balance a mechanism; ``before`` and ``after`` by quantity, RMS or peak (N, N m)."""
 
     weights: tuple[Weight, ...]

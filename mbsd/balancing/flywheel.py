@@ -18,10 +18,11 @@ from scipy.integrate import cumulative_simpson
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
+from mbsd.base.names import Suggesting
 
 
 @dataclass(frozen=True)
-class Flywheel:
+class Flywheel(Suggesting):
     """Inertia that a crank needs besides its own."""
 
     inertia: float

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from mbsd.base.arguments import finite_number, number_pair, positive_number
 from mbsd.base.errors import ModelError
+from mbsd.base.names import Suggesting
 from mbsd.model.body import Marker
 
 
 @dataclass(frozen=True)
-class Counterweight:
+class Counterweight(Suggesting):
     """A point mass on a body, at a given radius about a marker; how heavy it is and in which direction are sought."""
 
     about: Marker
@@ -48,7 +49,7 @@ class Counterweight:
 
 
 @dataclass(frozen=True)
-class BalanceShaft:
+class BalanceShaft(Suggesting):
     """A shaft with an eccentric mass that turns ``ratio`` times as fast as the crank, below 0 the other way round."""
 
     ratio: float

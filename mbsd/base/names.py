@@ -8,7 +8,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
-from typing import Any, Generic, NoReturn, TypeVar
+from typing import Any, ClassVar, Generic, NoReturn, TypeVar
 
 from mbsd.base.errors import ModelError
 
@@ -75,24 +75,35 @@ class Named(dict[str, Value], Generic[Value]):
         raise UnknownNameError(no_such(self.kind, name, self))
 
 
-class Suggesting:
-    """Raises AttributeErrors that suggest the attribute which was probably meant."""
+class UnknownAttributeError(AttributeError):
+    """An object has no attribute of this name; its words are found when they are asked for, as few are shown."""
 
-    other_words: Mapping[str, str] = {}
-    """Attributes by other common words for them: ``pin`` is ``revolute``."""
-
-    def __getattr__(self, name: str) -> Any:
-        kind = type(self)
+    def __str__(self) -> str:
+        thing, name = self.args
+        kind = type(thing)
         if name.startswith("_"):
-            raise AttributeError(f"{kind.__name__} has no attribute '{name}'")
-        public = [known for known in {**vars(self), **dict.fromkeys(dir(kind))} if not known.startswith("_")]
+            return f"{kind.__name__} has no attribute '{name}'"
+        public = [known for known in {**vars(thing), **dict.fromkeys(dir(kind))} if not known.startswith("_")]
         public.remove("other_words")
         word = kind.other_words.get(name)
         meant = word if word in public else _meant(name, public)
         hint = f", did you mean '{meant}'?" if meant else ""
         if not meant and len(public) <= LISTED:
             hint = f"; it has: {', '.join(public)}"
-        raise AttributeError(f"{kind.__name__} has no attribute '{name}'{hint}")
+        return f"{kind.__name__} has no attribute '{name}'{hint}"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return AttributeError, (str(self),)  # the object may not go along
+
+
+class Suggesting:
+    """Raises AttributeErrors that suggest the attribute which was probably meant."""
+
+    other_words: ClassVar[Mapping[str, str]] = {}
+    """Attributes by other common words for them: ``pin`` is ``revolute``."""
+
+    def __getattr__(self, name: str) -> Any:
+        raise UnknownAttributeError(self, name)
 
 
 LONGEST = 80

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from mbsd.base.errors import ModelError
-from mbsd.base.names import names_in, no_such
+from mbsd.base.names import Suggesting, names_in, no_such
 from mbsd.derivatives.asked import Wanted, labelled, needed, needs_models, needs_reactions, of_bodies, wanted
 from mbsd.derivatives.driven.sweeps import SweepTangents
 from mbsd.derivatives.free.indexing import watched
@@ -57,7 +57,7 @@ class Tangents(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Sensitivities:
+class Sensitivities(Suggesting):
     """Derivatives of quantities by numbers of the model, at T times."""
 
     t: np.ndarray

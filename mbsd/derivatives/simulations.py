@@ -15,7 +15,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import SimulationError
 from mbsd.derivatives.asked import OfBodies
-from mbsd.derivatives.driven.sweeps import displaced
+from mbsd.derivatives.driven.sweeps import displaced, extent
 from mbsd.derivatives.driven.tangents import Tangent, has_kinks
 from mbsd.derivatives.free.free_tangents import FreeTangents
 from mbsd.derivatives.free.guards import End, contacts_of, refuse_contact_at_start, unshared, ways_of
@@ -29,7 +29,7 @@ from mbsd.derivatives.numbers.near_numbers import Near
 from mbsd.derivatives.numbers.straight_variants import variants_beside
 from mbsd.derivatives.numbers.terms import Along
 from mbsd.derivatives.numbers.variants import KINKED, SECOND, TINY, Variants, Variation, models_of
-from mbsd.derivatives.refused_motions import refuse
+from mbsd.derivatives.refused_motions import refuse, refuse_opened, refuse_parted
 from mbsd.derivatives.smooth.independent_tangents import IndependentTangents, suits
 from mbsd.derivatives.smooth.sides import BothSides, Sides
 from mbsd.derivatives.smooth.smooth_motion import (
@@ -52,6 +52,12 @@ from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number
 from mbsd.results.solution import Solution
 
+FAR, ALLOWED = 1e-5, 4.0
+"""A variant's motion is this far from the motion itself, in sizes and rad, where its usual step takes it farther than
+so many times this: near a toggle, and after long, a small change of a number is a large one of the motion."""
+SOME = 5
+"""Looks at the motion for one that tells how far that is."""
+
 
 class SimulationTangents:
     """A simulation at output times ``grid`` (T,), and its tangents by numbers at rows that ``needed`` gives.
@@ -68,9 +74,13 @@ class SimulationTangents:
         self.values: dict[str, np.ndarray] = {}
         self.slopes: dict[str, np.ndarray] = {}
         self._ready: PreparedDynamics | None = None
-        self.redundant, self.ends = False, None
+        self.ends = None
         first = runs.course(looked_at(grid))
         refuse(first)
+        self.repeated: set[int] = {*first.dropped}
+        """Rows of joints that repeat others."""
+        self.closed = {*range(len(first.packed.ws.phi))}
+        """Rows that hold all along."""
         span = float(grid[0]), float(grid[-1])
         self.span = span
         self.terms = terms_along(runs, first)
@@ -96,14 +106,33 @@ class SimulationTangents:
         """Estimate of the largest error of the tangents, as part of the largest."""
         self.tangents = [] if made is None else [Tangent(*parts) for parts in zip(*made.parts(), strict=True)]
         """By number; none where ``slopes`` say all that was asked for."""
+        if self.tangents:
+            for own, tangent in zip(self.variants, self.tangents, strict=True):
+                refuse_parted(self.terms, self.along, own, tangent.q)
+                if self.repeated:
+                    refuse_opened(self.along, own, tangent.q, sorted(self.closed | self.repeated))
+            self._variants = [
+                self._nearer(own, tangent.q) for own, tangent in zip(self.variants, self.tangents, strict=True)
+            ]
 
     @property
     def variants(self) -> list[Variants]:
         """The mechanism with other values of each number."""
         if self._variants is None:
-            step = TINY * (KINKED if has_kinks(self.terms) else 1.0)
-            self._variants = [self.variation.of(number, SECOND, step) for number in self._numbers]
+            made = [self.variation.of(number, SECOND, self._step) for number in self._numbers]
+            still = np.zeros_like(self.terms.inertia)
+            self._variants = [self._nearer(own, own.begun(still)[0]) for own in made]
         return self._variants
+
+    @property
+    def _step(self) -> float:
+        """Step of a number, as part of its size."""
+        return TINY * (KINKED if has_kinks(self.terms) else 1.0)
+
+    def _nearer(self, variants: Variants, q: np.ndarray) -> Variants:
+        """Return variants that are not too far, where places change by q (..., 3 nb) with their number."""
+        far = extent(self.terms, q) * abs(variants.step)
+        return variants if far <= ALLOWED * FAR else self.variation.of(variants.number, SECOND, self._step * FAR / far)
 
     # -- ways to the tangents --------------------------------------------------------------------------------------
 
@@ -114,10 +143,15 @@ class SimulationTangents:
         if self._first.q is None or ready is None or coordinates is None or has_kinks(self.terms):
             raise NotSmooth
         asked, arrays = self._of_bodies, coordinates.copied(self._runs.tolerance)
+        begins = self._sides is None
         if self._sides is None:
-            both = BothSides(ready, coordinates, arrays)
-            self._sides, self._near = both.of(self.m, self.variation, self._numbers, asked is None), both.near
+            self._both = BothSides(ready, coordinates, arrays, self.variation)
+            self._sides, self._near = self._both.of(self.m, self._numbers, asked is None), self._both.near
         independent = IndependentTangents(ready, coordinates, arrays, self._sides)
+        if begins:
+            first, some = self._first, slice(None, None, SOME)
+            assert first.q is not None
+            self._come_nearer(independent, independent.reaches_alone(first.t[some], first.q[some], first.v[some]))
         line = independent.carry(self._first, nodes_of(edges, self._met))
 
         def finish() -> Tangents | None:
@@ -130,7 +164,10 @@ class SimulationTangents:
                 return independent.at(self.terms, along, compact, rows, line, self._variants)
             self.t, self.solve = out.t, out.solve
             there = out if len(needed) == len(out.t) else out.take(needed)
-            motions, weights = independent.motions(there, self.m.traces, line, asked.accelerations)
+            also = self.m.traces, line.at(there.t), asked.accelerations
+            motions, weights = independent.motions(there, *also)
+            if self._come_nearer(independent, independent.reaches(motions)):
+                motions, weights = independent.motions(there, *also)
             itself = independent.motion(out, self.m.traces)
             for label, of in asked.by_label.items():
                 self.values[label] = of(itself)[0]
@@ -138,6 +175,13 @@ class SimulationTangents:
             return None
 
         return line.errors, finish
+
+    def _come_nearer(self, independent: IndependentTangents, reaches: list[float]) -> bool:
+        """Take other sides of numbers that reach too far; True if some did."""
+        far = {p: reach for p, reach in enumerate(reaches) if reach > ALLOWED * FAR}
+        for p, reach in far.items():
+            independent.every[p] = self._both.nearer(p, TINY * FAR / reach, self.m.traces)
+        return bool(far)
 
     def _between_looks(self, edges: np.ndarray) -> tuple[np.ndarray, Finish]:
         """The same of a smooth motion in reference coordinates. Raises NotSmooth."""
@@ -168,7 +212,7 @@ class SimulationTangents:
         def finish() -> Tangents:
             assert whole.solution is not None
             self._take(rows_of(unwatched(whole.solution, self.m), rows), needed)
-            if self.redundant:
+            if self.repeated:
                 made.lam[:] = np.nan  # joints that repeat others share their loads in many ways
             if needed[-1] < len(rows) - 1:
                 self.ends = None
@@ -287,7 +331,8 @@ class SimulationTangents:
         jac = packed.spread(self.terms.rows(along.take(slice(k, k + 1)))[2])[0]
         scaled = jac * packed.row_scale()[:, None] * packed.column_scale()
         independent = rows[np.sort(np.array(independent_rows(scaled[rows]), np.int64))]
-        self.redundant = self.redundant or len(independent) < len(rows)
+        self.repeated |= {*rows.tolist()} - {*independent.tolist()}
+        self.closed &= {*rows.tolist()}
         return independent
 
     def ready(self) -> PreparedDynamics:

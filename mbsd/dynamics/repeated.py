@@ -49,6 +49,10 @@ class Course:
     """True if contacts remember how fast they were approached."""
     q: np.ndarray | None = None
     """(T, 3 nb), where it moves smoothly."""
+    masses_apart: bool = False
+    """Whether several freedoms join masses so far apart that one solution of the equations of motion is too coarse."""
+    dropped: tuple[int, ...] = ()
+    """Rows of joints that repeat others."""
 
 
 @dataclass
@@ -67,6 +71,10 @@ class Outputs:
     def take(self, rows: np.ndarray) -> Outputs:
         """Some of the times; the solution stays that of all."""
         return Outputs(self.t[rows], self.q[rows], self.v[rows], self.a[rows], self.solve)
+
+
+def _are_apart(ready: PreparedDynamics) -> bool:
+    return ready.masses_apart and ready.mobility.dof > 1
 
 
 class Repeated:
@@ -88,7 +96,8 @@ class Repeated:
             return self._smooth(ready, times)
         sol = self._simulated(times, ready)
         v, a = (part.reshape(len(sol.t), -1) for part in (sol.v, sol.a))
-        return Course(sol.packed, sol.t, v, a, sol.stats.steps, sol.approached is not None)
+        apart = _are_apart(ready)
+        return Course(sol.packed, sol.t, v, a, sol.stats.steps, sol.approached is not None, None, apart, ready.dropped)
 
     def closer(self, times: np.ndarray) -> Course:
         """The same at other times, of a motion that is smooth."""
@@ -103,7 +112,8 @@ class Repeated:
         q, v, a = (part[:, : 3 * len(shown.body_names)] for part in (out.y[:, 0], out.y[:, 1], out.a))
         if recording.independent:
             self.ready, self.run, self.recording = ready, run, recording
-        return Course(shown, out.t, v, a, recording.steps, remembers=False, q=q if recording.independent else None)
+        looked_at = q if recording.independent else None
+        return Course(shown, out.t, v, a, recording.steps, False, looked_at, _are_apart(ready), ready.dropped)
 
     def recorded(self, rows: np.ndarray) -> Outputs:
         """Some rows of the course that was looked at last, of a motion that is smooth."""

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from types import MappingProxyType
+from typing import Any, ClassVar, Protocol
 
 from mbsd.base.arguments import CHECKS, SMALLEST, finite_number, number_pair
 from mbsd.base.errors import ModelError
-from mbsd.base.names import shown
+from mbsd.base.names import Suggesting, shown
 from mbsd.base.pickled import with_copied_fields
 
 __all__ = ["Body", "Marker", "finite_number", "number_pair"]
@@ -34,7 +35,7 @@ class Owner(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Marker:
+class Marker(Suggesting):
     """A frame fixed to a body: ``x``, ``y`` (m) and ``angle`` (rad) in the body's frame."""
 
     body: Body
@@ -72,12 +73,17 @@ def at_end(marker: Marker, length: float | None) -> bool:
 
 
 @dataclass(eq=False)
-class Body:
+class Body(Suggesting):
     """A rigid body with the frame its author chose. Ground is body 0 and never moves.
 
     mass (kg), com (m, body frame), inertia about the centre of mass (kg m^2). They may be set at any time: the next
     solution has them; so may ``z`` and ``products``. ``owner`` is the mechanism's name, for errors.
     """
+
+    other_words: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"center": "com", "centre": "com", "centre_of_mass": "com", "center_of_mass": "com", "weight": "mass"}
+        | {"moment_of_inertia": "inertia", "marker": "at", "point": "at"}
+    )
 
     name: str
     owner: str = ""

@@ -9,14 +9,14 @@ from typing import Any
 
 from mbsd.base.arguments import finite_number
 from mbsd.base.errors import ModelError
-from mbsd.base.names import shown
+from mbsd.base.names import Suggesting, shown
 from mbsd.base.pickled import WithFunctions
 from mbsd.model.body import Body, Marker
 
 
 @dataclass(frozen=True, eq=False)
-class Event(WithFunctions):
-    """Event: a scalar function that a simulation monitors; see :meth:`mbsd.mechanism.Mechanism.event`."""
+class Event(Suggesting, WithFunctions):
+    """Scalar function that a simulation monitors; see :meth:`mbsd.mechanism.Mechanism.event`."""
 
     name: str
     value: Callable[..., float]
@@ -51,7 +51,7 @@ class Event(WithFunctions):
 
 
 @dataclass(frozen=True)
-class Happening:
+class Happening(Suggesting):
     """One event of a simulation; of a sweep, a law that makes forces jump."""
 
     time: float

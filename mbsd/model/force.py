@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from mbsd.base.arguments import adding
 from mbsd.base.codes import MOST_STATES, TURN
+from mbsd.base.names import Suggesting
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
@@ -244,7 +245,7 @@ def register(kind: ForceKind) -> ForceKind:
 
 
 @dataclass(frozen=True, eq=False)
-class Force(WithFunctions):
+class Force(Suggesting, WithFunctions):
     """A force between marker i (first body, or ground) and marker j (second body)."""
 
     kind: ForceKind

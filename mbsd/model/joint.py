@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mbsd.base.arguments import adding
+from mbsd.base.names import Suggesting
 from mbsd.base.pickled import ByName, WithFunctions
 from mbsd.model.body import Marker
 from mbsd.model.laws import Motion
@@ -71,6 +72,8 @@ class JointKind(ByName):
     """From a joint's params: the numbers of each special constraint, in their order."""
     problem: Callable[[Mapping[str, Any], float, float], str | None] | None = None
     """From params and the place (x, y) of marker j against marker i at the start: why this joint cannot be."""
+    kept: Callable[[Mapping[str, Any], Any, Any], Any] | None = None
+    """From params and places (x, y), arrays of them too: a length (m) that must stay for this joint to be."""
     lengths: tuple[str, ...] = ()
     """Params that are lengths (m), or places of a curve, and say how large the mechanism is."""
     touching: str = ""
@@ -163,7 +166,7 @@ def register(kind: JointKind) -> JointKind:
 
 
 @dataclass(frozen=True, eq=False)
-class Joint(WithFunctions):
+class Joint(Suggesting, WithFunctions):
     """A joint or driver between marker i (first body) and marker j (second body)."""
 
     kind: JointKind

@@ -20,6 +20,7 @@ from numba.core import types
 from mbsd.arrays.directory import directory
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import ModelError
+from mbsd.compiling.alternatives import kernel_for
 from mbsd.compiling.jit import kernel
 from mbsd.compiling.lazy_kernel import COMPILE
 from mbsd.equations.interactions import call
@@ -50,7 +51,7 @@ class MachineCode:
 
     def add_entry(self, name: str, function: Any, kinds: Sequence[Any]) -> None:
         """A kernel for arguments of numba's types ``kinds``, read from a table (table.py)."""
-        read = reader(types.Tuple(tuple(kinds)))
+        read, function = reader(types.Tuple(tuple(kinds))), kernel_for(function, kinds)
 
         def call(table):
             return function(*read(table))

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mbsd.base.names import Suggesting
 from mbsd.base.quantity import counted
 
 
 @dataclass(frozen=True)
-class Mobility:
+class Mobility(Suggesting):
     """Freedoms that the joints leave."""
 
     nominal: int

@@ -120,7 +120,7 @@ class EnergyView(ShownView):
 
 
 @dataclass(frozen=True)
-class Stats:
+class Stats(Suggesting):
     """How well the motion fulfils its equations: largest residuals over all times and rows."""
 
     position_residual: float

@@ -11,7 +11,7 @@ import numpy as np
 
 from mbsd.base.arguments import checked
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.names import shown
+from mbsd.base.names import Suggesting, shown
 from mbsd.base.users_function import described
 from mbsd.dynamics.batch.designs import Built, Designs, designs_of
 from mbsd.dynamics.batch.simulate_many import Simulations, checked_measures, quantities_of, simulations
@@ -32,7 +32,7 @@ Numbers = tuple[dict[str, float] | None, str | None]
 
 
 @dataclass(frozen=True)
-class Simulated:
+class Simulated(Suggesting):
     """Measures of a simulation: the ``measure`` of a study, which knows how to measure many mechanisms at once."""
 
     measures: Mapping[str, Measure]

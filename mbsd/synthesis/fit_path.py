@@ -11,7 +11,7 @@ import numpy as np
 
 from mbsd.base.arguments import checked, finite_number, number_array, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.names import no_such, shown
+from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.base.users_function import users_progress
 from mbsd.model.body import Marker
 from mbsd.model.mechanism import Model, Start, new_name, own_body
@@ -34,7 +34,7 @@ class SynthesisError(MechanismError):
 
 
 @dataclass(frozen=True, eq=False)
-class PathFit:
+class PathFit(Suggesting):
     """Result of :func:`fit_path`. Lengths in m, times in s, angles in rad."""
 
     mechanism: Any

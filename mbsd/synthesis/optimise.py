@@ -15,7 +15,7 @@ import numpy as np
 
 from mbsd.base.arguments import checked, finite_number, positive_number, switch, whole_number
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.names import no_such, shown
+from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.base.users_function import users_progress
 from mbsd.model.mechanism import Model
 from mbsd.synthesis.moves import Moves, Tried
@@ -31,7 +31,7 @@ HELD = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Optimum:
+class Optimum(Suggesting):
     """Result of :func:`optimise`."""
 
     mechanism: Any

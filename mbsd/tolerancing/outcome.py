@@ -12,6 +12,7 @@ import numpy as np
 from mbsd.base.csv_text import csv_text
 from mbsd.base.errors import ModelError
 from mbsd.base.files import write_whole
+from mbsd.base.names import Suggesting
 from mbsd.tolerancing.dimensions.dimension import Dimension
 from mbsd.tolerancing.statistics.derivatives import parts
 from mbsd.tolerancing.statistics.halving import Halving
@@ -50,7 +51,7 @@ class Row(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Tolerances:
+class Tolerances(Suggesting):
     """The result of n machines that stray, in its own unit."""
 
     values: np.ndarray

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from render.view import pictures
 from shared.stage.console import progress, say, warn
 from shared.stage.errors import UserError
-from shared.stage.paths import ROOT, Out
+from shared.stage.paths import ROOT, Out, out_root
 from shared.system import missing
 
 STEPS = (("mechanisms", "parts", "--or-none"), ("mechanisms", "solve"), ("mechanisms", "shot"), ("render", "view"))
@@ -41,9 +41,7 @@ def run(names: Sequence[str]) -> int:
         warn("pages", f"there are no pictures: they need Chromium ({missing.remedy(['chromium'])}); pages do not")
     if failed:
         _table(failed)
-    say(
-        "pages", f"{len(names) - len(failed)} of {len(names)} are there: {Out(names[0]).folder.parent}/<name>/view.html"
-    )
+    say("pages", f"{len(names) - len(failed)} of {len(names)} are there, as view.html in folders of {out_root()}")
     return int(bool(failed))
 
 

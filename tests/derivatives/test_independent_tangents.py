@@ -155,7 +155,7 @@ def test_how_bodies_move_is_read_along_the_tangents(
     mine = m.sensitivities(of, numbers, 0.4, 12, tolerance=1e-11)
     monkeypatch.setattr(simulations, "suits", lambda ready: None)
     others = m.sensitivities(of, numbers, 0.4, 12, tolerance=1e-11)
-    assert ways == ["_in_independent_coordinates", "_between_looks"]
+    assert list(dict.fromkeys(ways)) == ["_in_independent_coordinates", "_between_looks"]
     for label in of:
         assert mine[label].shape == others[label].shape
         for k in range(len(numbers)):

@@ -9,29 +9,39 @@ from mbsd.derivatives.free.linear_motion import NODES, PLACES, carried
 from mbsd.derivatives.free.mesh import first_edges, longest_steps, looked_at, nodes_of, refined
 
 
-def turning(steps: int) -> tuple[float, float, float]:
-    """Largest errors of a loaded oscillator at ends of steps and inside, and the estimate; in so many steps of 3 s."""
+def turning(steps: int) -> tuple[float, float, float, float]:
+    """Largest errors of a loaded oscillator at ends of steps and inside, and estimates of both; in steps of 3 s."""
     edges = np.linspace(0.0, 3.0, steps + 1)
     t = np.append((edges[:-1, None] + np.diff(edges)[:, None] * PLACES[:NODES]).ravel(), 3.0)
     a = np.broadcast_to(np.array([[-25.0, 0.0]]), (len(t), 1, 2))
     b = np.zeros((len(t), 1, 1))
     b[:, 0, 0] = 24.0 * np.cos(t)  # x = cos(t) + cos(5 t)
     line = carried(t, a, b, np.array([[2.0], [0.0]]), np.full((2, 1), 1e-9))
-    assert line.errors.shape == (steps,)
+    assert line.errors.shape == (steps, 2)
     assert np.allclose(line.at(t), line.y, rtol=0.0, atol=1e-13)
     times = np.linspace(0.0, 3.0, 200)
     ends, inside = (
         np.abs(y[:, 0, 0] - np.cos(at) - np.cos(5 * at)).max()
         for y, at in ((line.y[::NODES], edges), (line.at(times), times))
     )
-    return float(ends), float(inside), float(line.errors.sum())
+    return float(ends), float(inside), float(line.errors[:, 0].sum()), float(line.errors[:, 1].max())
 
 
 def test_collocation_is_of_order_16_at_ends_of_10_inside_and_knows_its_error() -> None:
-    (coarse, inside, estimate), (fine, finer, _) = turning(3), turning(6)
+    (coarse, inside, added, left), (fine, finer, *_) = turning(3), turning(6)
     assert 14.0 < np.log2(coarse / fine) < 18.0
     assert 9.0 < np.log2(inside / finer) < 11.0
-    assert coarse < estimate < 50.0 * inside
+    assert coarse < added < 50.0 * inside
+    assert inside < 2.0 * left < 50.0 * inside  # the largest y is 2
+
+
+def test_errors_are_parts_of_what_has_grown_so_far() -> None:
+    edges = np.linspace(0.0, 20.0, 21)
+    t = np.append((edges[:-1, None] + np.diff(edges)[:, None] * PLACES[:NODES]).ravel(), 20.0)
+    a = np.broadcast_to(np.array([[1.0, 0.0]]), (len(t), 1, 2))  # x'' = x: from 1 to exp(20)
+    line = carried(t, a, np.zeros((len(t), 1, 1)), np.ones((2, 1)), np.full((2, 1), 1e-9))
+    assert np.allclose(line.errors, line.errors[0], rtol=1e-3)
+    assert (line.errors > 0.0).all()
 
 
 def test_coupled_equations_are_those_of_an_integrator() -> None:
@@ -76,5 +86,7 @@ def test_an_event_is_an_edge_and_steps_come_closer_where_errors_are() -> None:
     t, met = np.linspace(0.0, 1.0, 11), np.array([0.234])
     edges = first_edges((0.0, 1.0), met, t, np.full(10, 0.2))
     assert 0.234 in edges
-    finer = refined(np.array([0.0, 1.0, 2.0]), np.array([1e-9, 1e-3]), 1e-5)
+    finer = refined(np.array([0.0, 1.0, 2.0]), np.array([[1e-9, 1e-6], [1e-3, 1e-6]]), 1e-5)
     assert finer.tolist() == [0.0, 1.0, 1.25, 1.5, 1.75, 2.0]
+    finer = refined(np.array([0.0, 1.0, 2.0]), np.array([[1e-9, 9e-6], [1e-9, 1.1e-5]]), 1e-5)
+    assert finer.tolist() == [0.0, 1.0, 1.5, 2.0]

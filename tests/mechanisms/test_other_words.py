@@ -15,12 +15,13 @@ from tools.hunt import case
 from tools.hunt.families import all_families
 from tools.hunt.judging.agreement import Words, compare_driven
 from tools.hunt.mechanisms.gallery import loaded
-from tools.hunt.outcome import AGREED
+from tools.hunt.outcome import AGREED, WRONG
 from tools.hunt.solving.simulating import RUNS
 from tools.hunt.solving.sweeping import SWEEPS
 from tools.hunt.words.similar import in_units, mirrored, renamed
 
 WORDS = ("world turned and moved", "another order", "mirror image", "other units", "other names")
+DERIVATIVES = "derivatives of the moved machine"
 FEW = ("four_bar", "slider_crank", "planetary_gear", "double_pendulum", "toggle_clamp")
 
 
@@ -32,6 +33,30 @@ def test_results_do_not_depend_on_the_words(name: str, monkeypatch: pytest.Monke
     outcomes = case.run(7, f"gallery {name}", every=True).outcomes
     assert {outcome.variation for outcome in outcomes} >= {*WORDS}
     assert [outcome for outcome in outcomes if outcome.state != AGREED] == []
+
+
+@pytest.mark.parametrize("name", ["four_bar", "slider_crank", "double_pendulum"])
+def test_derivatives_do_not_depend_on_the_words(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    _with_alone(DERIVATIVES, monkeypatch)
+    outcomes = case.run(7, f"gallery {name}", every=True).outcomes
+    assert {outcome.variation: outcome.state for outcome in outcomes}[DERIVATIVES] == AGREED
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [3, 4])
+def test_no_derivatives_of_the_gallery_depend_on_the_words(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    _with_alone(DERIVATIVES, monkeypatch)
+    names = [name for name in all_families() if name.startswith("gallery ")]
+    outcomes = [(name, outcome) for name in names for outcome in case.run(seed, name, every=True).outcomes]
+    assert [(name, outcome) for name, outcome in outcomes if outcome.state == WRONG] == []
+    compared = [name for name, outcome in outcomes if outcome.variation == DERIVATIVES and outcome.state == AGREED]
+    assert len(compared) > 10, compared
+
+
+def _with_alone(variation: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    for table in (RUNS, SWEEPS):
+        for other in [key for key in table if key != variation]:
+            monkeypatch.delitem(table, other)
 
 
 @pytest.mark.slow

@@ -8,10 +8,12 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 import mbsd
 from mbsd import Mechanism, ModelError, Solution, constant_rate
+from mbsd.derivatives.solution_rows import rows_of
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +43,14 @@ def test_an_unknown_key_lists_the_known_ones(
     assert isinstance(caught.value, KeyError)
 
 
+def undriven() -> Mechanism:
+    """A pendulum."""
+    m = Mechanism("pendulum")
+    m.revolute("A", m.ground.at(0, 0), m.bar("rod", 1.0, mass=1.0).start)
+    m.start_near(rod=-90)
+    return m
+
+
 @pytest.mark.parametrize(
     ("look_up", "message"),
     [
@@ -49,6 +59,14 @@ def test_an_unknown_key_lists_the_known_ones(
         (lambda sol: sol.body("crank").angle, "FrameView has no attribute 'angle', did you mean 'theta'?"),
         (lambda sol: sol.joint("A").angle, "JointView has no attribute 'angle'; it has: x, y, fx, fy, torque"),
         (lambda sol: sol.bodies, "Solution has no attribute 'bodies', did you mean 'body'?"),
+        (lambda sol: sol.mechanism.bodies["crank"].lenght, "Body has no attribute 'lenght', did you mean 'length'?"),
+        (lambda sol: sol.mechanism.bodies["crank"].center, "Body has no attribute 'center', did you mean 'com'?"),
+        (lambda sol: sol.mechanism.ground.at(0, 0).anlge, "Marker has no attribute 'anlge', did you mean 'angle'?"),
+        (lambda sol: sol.mechanism.joints["A"].parms, "Joint has no attribute 'parms', did you mean 'params'?"),
+        (lambda sol: sol.stats.step, "Stats has no attribute 'step', did you mean 'steps'?"),
+        (lambda sol: sol.mobility.dofs, "Mobility has no attribute 'dofs', did you mean 'dof'?"),
+        (lambda sol: undriven().linearise().frequency, "Linearisation has no attribute 'frequency', did you mean"),
+        (lambda sol: undriven().equilibrium().soltion, "Equilibrium has no attribute 'soltion', did you mean"),
         (lambda sol: mbsd.Mecanism, "module 'mbsd' has no attribute 'Mecanism', did you mean 'Mechanism'?"),
     ],
 )
@@ -59,11 +77,31 @@ def test_an_unknown_attribute_suggests_the_one_that_was_meant(
         look_up(solution)
 
 
+def test_a_misspelt_argument_is_suggested_beside_options(solution: Solution[Mechanism]) -> None:
+    with pytest.raises(ModelError, match=r"there is no option 'durration', did you mean 'duration'\?"):
+        solution.mechanism.simulate(durration=3.0)
+
+
+def test_one_of_a_thing_is_written_without_an_s() -> None:
+    m = Mechanism("small")
+    m.body("ball", mass=1.0, inertia=1.0)
+    assert repr(m) == "<Mechanism small: 1 body, no joints, no drivers>"
+    assert "<Solution small: 1 time, t = " in repr(rows_of(m.simulate(0.1, steps=2), np.array([0])))
+    m.revolute("A", m.ground.origin, m.bodies["ball"].origin)
+    assert repr(m) == "<Mechanism small: 1 body, 1 joint, no drivers>"
+
+
+def test_unknown_attributes_are_told_after_pickling(solution: Solution[Mechanism]) -> None:
+    with pytest.raises(AttributeError) as caught:
+        _ = solution.stats.step
+    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+
+
 def test_every_suggested_attribute_exists(solution: Solution[Mechanism]) -> None:
-    for thing in (solution, solution.mechanism, solution.body("crank")):
+    for thing in (solution, solution.mechanism, solution.body("crank"), solution.mechanism.ground):
         for word, meant in type(thing).other_words.items():
             assert not hasattr(thing, word)
-            assert hasattr(thing, meant) or not isinstance(thing, Mechanism | Solution), (word, meant)
+            assert hasattr(thing, meant) or not isinstance(thing, Mechanism | Solution | mbsd.Body), (word, meant)
 
 
 def test_copies_and_pickles_know_their_names(solution: Solution[Mechanism]) -> None:

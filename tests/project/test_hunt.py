@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsd import Mechanism, constant_rate, function
+from mbsd import Mechanism, constant_rate, function, table
 from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
@@ -248,6 +248,16 @@ def test_a_law_known_by_values_alone_errs_within_its_bound() -> None:
             assert 0.1 * bound.slope < off[0] < bound.slope
             assert 0.1 * bound.bend < off[1] < bound.bend < 1e-7 * abs(way) * 0.05 * w**2
     assert of_law(constant_rate(3.0), 0.0, 1.0).bend == 0.0
+
+
+def test_a_table_errs_as_its_values_are_rounded() -> None:
+    t = np.linspace(0.0, 0.3, 41)
+    values = np.round(np.sin(5.0 * t), 9)
+    plain, far = table(t, values), table(t, values + 1000.0)
+    off = np.abs(far(t)[:, 1:] - plain(t)[:, 1:]).max(axis=0)
+    bound = of_law(far, 0.0, 0.3)
+    assert 0.01 * bound.slope < off[0] < bound.slope
+    assert 0.01 * bound.bend < off[1] < bound.bend
 
 
 def _exact(way: float, lasts: float, t: np.ndarray) -> np.ndarray:

@@ -20,12 +20,12 @@ LONG = 100
 """Letters that the first line of a docstring may have."""
 AIM = 3.0, 3.0
 CEILINGS = {
-    "mbsd": (3.0, 13.5, 87),
-    "mechanisms": (9.8, 24.0, 28),
-    "render": (10.5, 25.0, 28),
+    "mbsd": (3.0, 14.0, 87),
+    "mechanisms": (3.0, 25.5, 1),
+    "render": (3.0, 27.0, 0),
     "shared": (3.0, 3.0, 0),
     "studio": (3.0, 3.0, 1),
-    "tools": (4.0, 16.0, 10),
+    "tools": (3.1, 16.0, 10),
     "benchmarks": (3.0, 20.5, 0),
 }
 """By room: per cent of docstrings that begin oddly, per cent with a long first line, BANNED names that are left."""

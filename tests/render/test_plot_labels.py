@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
-from render.plots.labels import Labels
-from render.plots.style import spread
+from render.plots.style import Labels, spread
 from shared.contract import EventMark
 from tests.render.plotted import MOTION, NAMES, figure, overlaps
 

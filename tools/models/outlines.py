@@ -21,7 +21,7 @@ def outline(wheel: Wheel | Rack) -> np.ndarray:
         points = rack_outline(
             last - first + 1, wheel.module, wheel.tip, wheel.root, 3.0, wheel.play / 2, phase + first * wheel.pitch
         )
-        return np.array([wheel.at(float(x), float(y)) for x, y in points])
+        return np.array([wheel.place(float(x), float(y)) for x, y in points])
     if wheel.ring:
         space = phase + math.pi / wheel.teeth
         points = toothed(wheel.teeth, wheel.module, wheel.root, wheel.tip, -wheel.play / 2, space)

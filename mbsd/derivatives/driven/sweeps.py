@@ -13,6 +13,7 @@ from mbsd.base.errors import ModelError
 from mbsd.derivatives.driven.tangents import Inverse, Tangent, has_kinks, tangent
 from mbsd.derivatives.numbers.terms import Along, Terms, terms_of
 from mbsd.derivatives.numbers.variants import KINKED, STEP, Variant, Variants, Variation, models_of
+from mbsd.derivatives.refused_motions import refuse_parted
 from mbsd.derivatives.solution_rows import along_of
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.states_along import states_along
@@ -44,7 +45,8 @@ class SweepTangents:
         for number in numbers:
             variants = variation.of(number, step=usual)
             tangent_of = tangent(self.terms, self.along, inverse, variants)
-            far = _extent(self.terms, tangent_of.q) * variants.step
+            refuse_parted(self.terms, self.along, variants, tangent_of.q)
+            far = extent(self.terms, tangent_of.q) * variants.step
             if far > FAR:  # near a toggle a small change of a length is a large one of the pose
                 variants = variation.of(number, step=usual * FAR / far)
             if sol.states is not None:
@@ -115,6 +117,6 @@ def displaced(
     )
 
 
-def _extent(terms: Terms, q: np.ndarray) -> float:
-    """Largest part of q (T, 3 nb), in sizes and rad."""
-    return float(np.abs(q[:, 3:] / terms.packed.column_scale()).max(initial=0.0))
+def extent(terms: Terms, q: np.ndarray) -> float:
+    """Return the largest part of q (..., 3 nb), in sizes and rad."""
+    return float(np.abs(q[..., 3:] / terms.packed.column_scale()).max(initial=0.0))

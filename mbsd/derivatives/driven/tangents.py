@@ -55,6 +55,14 @@ def refuse_large(terms: Terms, count: int) -> None:
     )  # fmt: skip
 
 
+def fits_alone(mechanism: str, number: str) -> str:
+    """Return the words of an error for a number at another value of which joints that repeat others open."""
+    return (
+        f"{mechanism}: no derivative by '{number}': joints repeat others, and fit at this value of it alone. Change "
+        "several numbers together by build=, or free a joint"
+    )
+
+
 class Inverse:
     """J of a motion, (T, m, n), and its inverse."""
 
@@ -76,10 +84,7 @@ class Inverse:
         if self.redundant and slight < np.inf:
             gap = right - np.einsum("tmn,tn->tm", self.jac, out[:, 3:])
             if np.abs(gap).max(initial=0.0) > max(OPENED * np.abs(right).max(initial=0.0), slight):
-                raise ModelError(
-                    f"{self.terms.packed.name}: no derivative by '{name}': joints repeat others, and fit at this value "
-                    "of it alone. Change several numbers together by build=, or free a joint"
-                )
+                raise ModelError(fits_alone(self.terms.packed.name, name))
         return out
 
     def multipliers(self, load: np.ndarray, share: np.ndarray | None) -> np.ndarray:

@@ -2,8 +2,9 @@
 
 Lobatto IIIA with nine stages: a step has nodes at its ends, its middle, and between. At ends of steps it is of order
 16; inside, where the polynomial of y' is integrated, of tenth. Legendre's coefficients of y' on the nodes tell the
-error: where they fall as those of a smooth motion do, by the same factor from the fourth to the eighth as from there
-on, the tenth is what the step leaves out inside. Source: Hairer, Wanner, Solving ODEs II, IV.5.
+errors: where they fall as those of a smooth motion do, by the same factor from the fourth to the eighth as from there
+on, the ninth is what the step leaves out inside, the fourteenth at its end. Both are parts of the largest y so far:
+what errs while y is small grows with it. Source: Hairer, Wanner, Solving ODEs II, IV.5.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class Carried:
     """(8 d + 1, k, c), k = 2 f, as rates, y'."""
     rates: np.ndarray
     errors: np.ndarray
-    """(d,) what each step adds, as part of the largest y."""
+    """(d, 2) what each step adds, and what it leaves out inside alone, as parts of the largest y so far."""
 
     def at(self, times: np.ndarray) -> np.ndarray:
         """(R, k, c) y at times (R,) (s)."""
@@ -69,7 +70,7 @@ class Carried:
 def carried(t: np.ndarray, a: np.ndarray, b: np.ndarray, begun: np.ndarray, slight: np.ndarray) -> Carried:
     """y at nodes t (8 d + 1,) (s) from ``begun`` (2 f, c), and beyond.
 
-    a (8 d + 1, f, 2 f), b (8 d + 1, f, c). Errors are parts of the largest y, or of ``slight`` (2 f, c)
+    a (8 d + 1, f, 2 f), b (8 d + 1, f, c). Errors are parts of the largest y so far, or of ``slight`` (2 f, c)
     if that is more.
     """
     f, c = b.shape[1:]
@@ -77,8 +78,9 @@ def carried(t: np.ndarray, a: np.ndarray, b: np.ndarray, begun: np.ndarray, slig
     out[0] = begun
     matrix, side = np.zeros((NODES * f, NODES * f)), np.zeros((NODES * f, c))
     march(t, np.ascontiguousarray(a), np.ascontiguousarray(b), WEIGHTS, matrix, side, out, rates)
-    per = 1.0 / np.maximum(np.abs(out).max(axis=0), slight)
-    errors = np.zeros((len(t) - 1) // NODES)
+    largest = np.maximum.accumulate(np.abs(out), axis=0)[NODES::NODES]
+    per = 1.0 / np.maximum(largest, slight)
+    errors = np.zeros(((len(t) - 1) // NODES, 2))
     estimate(t, rates, per, HALFWAY, LAST, errors)
     return Carried(t, out, rates, errors)
 
@@ -168,7 +170,7 @@ def march(t, a, b, weights, matrix, side, out, rates):
 
 @kernel
 def estimate(t, rates, per, halfway, last, errors):
-    """Fill errors (d,) of steps from rates (8 d + 1, k, c), ``per`` (k, c) the largest values."""
+    """Fill errors (d, 2) of steps from rates (8 d + 1, k, c); ``per`` (d, k, c): 1 / the largest values so far."""
     for step in range(errors.shape[0]):
         first = NODES * step
         middle = 0.0
@@ -180,7 +182,9 @@ def estimate(t, rates, per, halfway, last, errors):
                 for n in range(NODES + 1):
                     fourth += halfway[n] * rates[first + n, k, c]
                     eighth += last[n] * rates[first + n, k, c]
-                middle = max(middle, abs(fourth) * per[k, c])
-                high = max(high, abs(eighth) * per[k, c])
+                middle = max(middle, abs(fourth) * per[step, k, c])
+                high = max(high, abs(eighth) * per[step, k, c])
         fall = min(high / max(middle, 1e-300), 1.0)
-        errors[step] = (t[first + NODES] - t[first]) * high * fall**1.5
+        high *= t[first + NODES] - t[first]
+        errors[step, 0] = high * fall**1.5
+        errors[step, 1] = high * fall**0.25 / NODES

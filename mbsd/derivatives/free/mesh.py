@@ -76,11 +76,14 @@ def first_edges(ends: tuple[float, float], met: np.ndarray, t: np.ndarray, longe
 
 
 def refined(edges: np.ndarray, errors: np.ndarray, enough: float) -> np.ndarray:
-    """Edges of shorter steps where these add more than their share of ``enough``."""
-    share = enough / len(errors)
+    """Edges of shorter steps where these add more than their share of ``enough``, or leave out more inside.
+
+    errors (d, 2): what steps add, and what they leave out inside.
+    """
+    shares = np.array([enough / len(errors), enough])
     out = [edges[:1]]
-    for (a, b), error in zip(pairwise(edges), errors, strict=True):
-        parts = 1 if error <= share else 4 if error > 64 * share else 2
+    for (a, b), worst in zip(pairwise(edges), (errors / shares).max(axis=1), strict=True):
+        parts = 1 if worst <= 1.0 else 4 if worst > 64.0 else 2
         out.append(np.linspace(a, b, parts + 1)[1:])
     return np.concatenate(out)
 

@@ -27,7 +27,7 @@ MOST_STEPS = 20_000
 Finish = Callable[[], Tangents | None]
 """Evaluates tangents at the outputs of which they are asked; None where that gave the slopes themselves."""
 Way = Callable[[np.ndarray], tuple[np.ndarray, Finish]]
-"""Gives the errors of steps between edges, and what finishes them."""
+"""Gives the errors (d, 2) of steps between edges, and what finishes them."""
 
 
 def refined_to_error(way: Way, edges: np.ndarray, kinked: bool, name: str) -> tuple[Tangents | None, float]:
@@ -39,7 +39,7 @@ def refined_to_error(way: Way, edges: np.ndarray, kinked: bool, name: str) -> tu
     part = OF_KINKS if kinked else 1.0
     for turn in range(MOST):
         errors, finish = way(edges)
-        before, error = error, float(errors.sum())
+        before, error = error, float(errors[:, 0].sum() + errors[:, 1].max())
         if error <= part * ENOUGH or len(errors) != len(edges) - 1 or turn == MOST - 1:
             break
         finer = refined(edges, errors, part * AIMED)

@@ -54,7 +54,7 @@ class Carried:
     lam: np.ndarray
     """(P, m) lam' there."""
     errors: np.ndarray
-    """(d,) what each step adds, as part of the largest."""
+    """(d, 2) what each step adds, and what it leaves out inside alone, as parts of the largest so far."""
     off: float
     """By how much accelerations were other than about what was known, as part of the largest."""
 

@@ -3,7 +3,9 @@
     J q' = -Phi',   q'_held = given'             held: the given coordinates that the joints leave free
     J v' = -(J v - nu)',   P v' = (given - P v)'
 
-(...)' is the change with the number, and along q'. Source: Haug 1989, ch. 3.
+(...)' is the change with the number at the held motion, and along q'. Places and speeds are linear in most numbers, so
+that one value beside a number tells the first; the second is a central difference, as near a toggle q' is large and
+turns fast. Source: Haug 1989, ch. 3.
 """
 
 from __future__ import annotations
@@ -13,12 +15,20 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.equations.assembly import residual_and_jacobian
-from mbsd.kinematics.pose.initial import drive_at, given_coordinates, given_velocities, nearest_turn
-from mbsd.kinematics.pose.mobility import independent_rows
+from mbsd.kinematics.pose.held_values import held_values, is_choice, places_of
+from mbsd.kinematics.pose.initial import (
+    drive_at,
+    given_coordinates,
+    given_velocities,
+    nearest_turn,
+    velocity_places,
+)
 from mbsd.model.mechanism import Model
 
 CLOSE = 1e-9
 """Sizes and rad by which a held coordinate may differ from what is given."""
+ALONG = 1e-5
+"""How far differences along q' go, in sizes and rad."""
 
 
 class StartTangents:
@@ -26,7 +36,7 @@ class StartTangents:
 
     def __init__(self, m: Model, ready: PreparedDynamics) -> None:
         packed = ready.packed
-        self.packed = packed
+        self.m, self.packed = m, packed
         self.none = np.zeros_like(ready.initial.q), np.zeros_like(ready.initial.q)
         """What changes nothing."""
         self.q, self.v, self.drive = ready.initial.q, ready.initial.v, drive_at(packed, ready.start)
@@ -42,23 +52,22 @@ class StartTangents:
         self.values = np.array([value for _, value in given_coordinates(m, packed)])
         self.wanted = np.array([c for c, _ in given_coordinates(m, packed)], np.int64)
         scale, size = packed.row_scale()[:, None], packed.column_scale()
-        units = np.zeros((len(self.wanted), packed.coordinates))
-        units[np.arange(len(self.wanted)), self.wanted - 3] = 1.0
-        kept = independent_rows(np.vstack([jac * scale * size, units]))
-        self.held = np.array([k - len(jac) for k in kept if k >= len(jac)], np.int64)
-        self.places = self._inverse(np.vstack([jac, units[self.held]]), kept, len(jac))
-        at = self.wanted[self.held]
+        units = np.eye(packed.coordinates)[self.wanted - 3]
+        kept, self.held = held_values(jac * scale * size, units, places_of(self.wanted.tolist()))
+        self.places = self._inverse(jac, kept, self.held @ units)
         target = np.array(
-            [nearest_turn(self.q, int(c), float(self.values[k])) for c, k in zip(at, self.held, strict=True)]
+            [nearest_turn(self.q, int(c), float(value)) for c, value in zip(self.wanted, self.values, strict=True)]
         )
-        if (np.abs(self.q[at] - target) > CLOSE * size[at - 3]).any():
+        off = np.abs(self.q[self.wanted] - target) / size[self.wanted - 3]
+        if off[self.held.any(axis=0)].max(initial=0.0) > CLOSE:
             self.places = None
         self.speeds = None
         if not self.still:
             rows, self.given = self._given(m, packed, self.q), self._left(m, packed, self.q)
-            kept = independent_rows(np.vstack([jac * scale * size, rows * size]))
-            self.kept = np.array([k - len(jac) for k in kept if k >= len(jac)], np.int64)
-            self.speeds = self._inverse(np.vstack([jac, rows[self.kept]]), kept, len(jac))
+            kept, self.kept = held_values(jac * scale * size, rows * size, velocity_places(m))
+            off = np.abs(self.given[self.kept.any(axis=0)]).max(initial=0.0)
+            if is_choice(self.kept) or off <= CLOSE * np.abs(self.v).max(initial=0.0):
+                self.speeds = self._inverse(jac, kept, self.kept @ rows)
 
     def of(
         self, m: Model, packed: Packed | None, away: float, moved: bool, heavier: bool
@@ -78,14 +87,20 @@ class StartTangents:
             residual_and_jacobian(packed.system, self.q, self.drive, packed.ws)
             phi = packed.ws.phi
             values = np.array([value for _, value in given_coordinates(m, packed)])
-            q[3:] = self.places @ np.concatenate([(self.phi - phi) / away, (values - self.values)[self.held] / away])
+            q[3:] = self.places @ np.concatenate([(self.phi - phi) / away, self.held @ (values - self.values) / away])
         if self.still and not m.velocities:
             return q, v
         if self.speeds is None:  # the least kinetic energy decides as well
             return None
-        there = self.q + away * q
-        rate, given = self._evaluated(packed, there)[1], self._left(m, packed, there)
-        v[3:] = self.speeds @ np.concatenate([(self.rate - rate) / away, (given - self.given)[self.kept] / away])
+        rate, given = self._evaluated(packed, self.q)[1], self._left(m, packed, self.q)
+        rate, given = (rate - self.rate) / away, (given - self.given) / away
+        far = float(np.abs(q[3:] / self.packed.column_scale()).max(initial=0.0))
+        if far > 0.0:
+            step = ALONG / far
+            (_, fast), (_, slow) = (self._evaluated(self.packed, self.q + sign * step * q) for sign in (1.0, -1.0))
+            more, less = (self._left(self.m, self.packed, self.q + sign * step * q) for sign in (1.0, -1.0))
+            rate, given = rate + (fast - slow) / (2.0 * step), given + (more - less) / (2.0 * step)
+        v[3:] = self.speeds @ np.concatenate([-rate, self.kept @ given])
         return q, v
 
     def _evaluated(self, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -109,7 +124,10 @@ class StartTangents:
         return values - [sum(factor * self.v[c] for c, factor in factors.items()) for factors in entries]
 
     @staticmethod
-    def _inverse(matrix: np.ndarray, kept: list[int], rows: int) -> np.ndarray | None:
-        """Return the inverse of J and what is held; None where they leave something open, or joints repeat others."""
-        whole = len(kept) == matrix.shape[1] == len(matrix) and kept[:rows] == list(range(rows))
-        return np.linalg.inv(matrix) if whole else None
+    def _inverse(jac: np.ndarray, kept: list[int], held: np.ndarray) -> np.ndarray | None:
+        """Return the inverse of J (m, n) and ``held``; None where they leave something open, or joints repeat others.
+
+        ``kept``: rows of J that do not.
+        """
+        whole = len(kept) == len(jac) == jac.shape[1] - len(held)
+        return np.linalg.inv(np.vstack([jac, held])) if whole else None

@@ -27,11 +27,14 @@ from mbsd.dynamics.independent.arrays import Embedding
 from mbsd.dynamics.measures.quantities import Motions
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.repeated import Course, Outputs
-from mbsd.dynamics.runs.embedding import POOR, Embedded, begin_at, embedded_at_start, embedding_scratch
+from mbsd.dynamics.runs.embedding import Embedded, begin_at, embedded_at_start, embedding_scratch
 from mbsd.kinematics.groups.blocks import BLOCK
 from mbsd.kinematics.groups.carrying.columns import INERTIA, MASS, THETA
 from mbsd.kinematics.groups.groups import KIND
 from mbsd.model.body import Marker
+
+FASTEST = 5.0
+"""Rate of a body for one unit of a coordinate beyond which differences go too far: near a dead centre."""
 
 
 def suits(ready: PreparedDynamics | None) -> Embedded | None:
@@ -121,13 +124,13 @@ class IndependentTangents:
         return Motions(packed.body_names, q, v, a, np.zeros(q.shape[:2]), *own, along.t)
 
     def motions(
-        self, along: Outputs, traces: Mapping[str, Marker], line: Carried, accelerations: bool
+        self, along: Outputs, traces: Mapping[str, Marker], y: np.ndarray, accelerations: bool
     ) -> tuple[Motions, np.ndarray]:
-        """The motion along its tangents at R times, on all K sides of all numbers, and weights (P, K) of these.
+        """Return the motion along tangents y (R, 2 f, P) at R times, on K sides of all numbers, and weights (P, K).
 
         With ``traces``, and with ``accelerations`` if these are asked for. Raises NotSmooth.
         """
-        packed, y = self.ready.packed, line.at(along.t)
+        packed = self.ready.packed
         count, width = along.q.shape
         of = [p for p, sides in enumerate(self.every) for _ in sides.away]
         away = np.concatenate([sides.away for sides in self.every])
@@ -165,6 +168,33 @@ class IndependentTangents:
         work = np.zeros(q.shape[:2])
         return Motions(packed.body_names, q, v, a, work, com, mass, moment, self._places(traces), along.t), weights
 
+    def reaches_alone(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> list[float]:
+        """Return how far (sizes, rad) bodies go with each number alone at t (R,), q, v (R, 3 nb), coordinates held."""
+        scale, out = self.ready.packed.column_scale(), list[float]()
+        z, states = np.zeros((len(t), FIRST + self.f)), np.zeros((len(t), 2, FIRST + self.f))
+        z[:, FIRST:] = states[:, 0, FIRST:] = q @ self.basis.T
+        states[:, 1, FIRST:] = v @ self.basis.T
+        poses, a = np.zeros((len(t), 2, q.shape[1])), np.zeros_like(q)
+        for sides in self.every:
+            if sides.near is not None:
+                out.append(0.0)
+                continue
+            self._begin(sides.arrays[-1], sides.mass[-1], sides.moment[-1], states[0], float(t[0]))
+            if motions_beside(sides.arrays[-1], self.scratch, t, q, z, states, False, poses, a) < len(t):
+                raise NotSmooth
+            out.append(float(np.abs((poses[:, 0, 3:] - q[:, 3:]) / scale).max(initial=0.0)))
+        return out
+
+    def reaches(self, motions: Motions) -> list[float]:
+        """Return how far (sizes, rad) bodies go from one side of each number to the other, at most, halved."""
+        scale, first, out = self.ready.packed.column_scale(), 0, list[float]()
+        for sides in self.every:
+            last = first + len(sides.away)
+            own = motions.q[first:last, :, 1:].reshape(len(sides.away), -1, len(scale))
+            out.append(0.5 * float((np.ptp(own, axis=0) / scale).max(initial=0.0)))
+            first = last
+        return out
+
     def _places(self, traces: Mapping[str, Marker]) -> dict[str, tuple[int, np.ndarray, np.ndarray]]:
         """Body, places (K, 2) on all sides, and angle (1,) of each traced point."""
         out: dict[str, tuple[int, np.ndarray, np.ndarray]] = {}
@@ -189,7 +219,7 @@ class IndependentTangents:
         out, sensitivity = np.zeros((*states.shape[:2], self.f)), np.zeros(1)
         clear = rates_beside(arrays, self.scratch, t, states, held, sensitivity, out)
         self.ready.packed.specials.check()
-        if clear < len(t) or sensitivity[0] > POOR:
+        if clear < len(t) or sensitivity[0] > FASTEST:
             raise NotSmooth
         return out
 

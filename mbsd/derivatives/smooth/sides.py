@@ -60,32 +60,43 @@ class Sides:
 
 
 class BothSides:
-    """Makes the sides of numbers of a mechanism made ``ready``, with ``arrays`` of one run of ``made``."""
+    """Makes the sides of numbers of a mechanism made ``ready``, with ``arrays`` of one run of ``made``.
 
-    def __init__(self, ready: PreparedDynamics, made: Embedded, arrays: Embedding) -> None:
-        self.ready, self.made, self.arrays = ready, made, arrays
+    ``variation`` makes the mechanism with other values of them.
+    """
+
+    def __init__(self, ready: PreparedDynamics, made: Embedded, arrays: Embedding, variation: Variation) -> None:
+        self.ready, self.made, self.arrays, self.variation = ready, made, arrays, variation
+        self.numbers: Sequence[Number] = ()
         self.near: list[Near | None] = []
         """By number, how arrays change with it; None where they do not go on straight."""
 
-    def of(self, m: Model, variation: Variation, numbers: Sequence[Number], whole: bool) -> list[Sides]:
-        """Return sides of all numbers of ``m``, which ``variation`` varies; ``whole``: for more than how bodies move.
+    def of(self, m: Model, numbers: Sequence[Number], whole: bool) -> list[Sides]:
+        """Return sides of all numbers of ``m``; ``whole``: for more than how bodies move.
 
         Raises NotSmooth where the groups are others.
         """
-        near = NearNumbers(variation, StartTangents(m, self.ready), self.arrays.loads, whole)
-        self.near = [near.of(number) for number in numbers]
+        near = NearNumbers(self.variation, StartTangents(m, self.ready), self.arrays.loads, whole)
+        self.numbers, self.near = numbers, [near.of(number) for number in numbers]
         straight = iter(self.straight([own for own in self.near if own is not None]))
         return [
-            next(straight) if own is not None else self.packed(variation.of(number, SECOND, TINY), m.traces)
+            next(straight) if own is not None else self.packed(self.variation.of(number, SECOND, TINY), m.traces)
             for number, own in zip(numbers, self.near, strict=True)
         ]
 
-    def straight(self, every: Sequence[Near]) -> list[Sides]:
-        """Return the sides of numbers on both of whose sides all arrays go on straight."""
+    def nearer(self, p: int, step: float, traces: Mapping[str, Marker]) -> Sides:
+        """Return sides of number p that are ``step`` of its size away, less than usual. Raises NotSmooth likewise."""
+        near = self.near[p]
+        if near is not None:
+            return self.straight([near], step)[0]
+        return self.packed(self.variation.of(self.numbers[p], SECOND, step), traces)
+
+    def straight(self, every: Sequence[Near], step: float = TINY) -> list[Sides]:
+        """Return sides of numbers, ``step`` of their sizes away, on both of which all arrays go on straight."""
         if not every:
             return []
         system, com = self.ready.packed.system, self.ready.packed.com
-        away = np.array([step_of(TINY, near.size) for near in every])[:, None] * np.array([-1.0, 1.0])
+        away = np.array([step_of(step, near.size) for near in every])[:, None] * np.array([-1.0, 1.0])
         far, weights = away[:, :, None], 0.5 / away
         mass = system.mass + far * np.array([near.mass for near in every])[:, None]
         moment = system.inertia + far * np.array([near.moment for near in every])[:, None]

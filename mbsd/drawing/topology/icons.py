@@ -1,18 +1,38 @@
 """Small signs of the joint kinds for the topology diagram, as SVG elements about a centre.
 
-A kind without a sign of its own gets a diamond; drivers a turning or a straight arrow, forces a zigzag.
+A kind without a sign of its own gets a diamond; drivers a turning or a straight arrow, forces a zigzag. Numbers in SVG
+are given to a tenth of a pixel, so that equal diagrams are equal bytes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from html import escape
 
 from mbsd.drawing.look import PAPER
-from mbsd.drawing.topology.svg_text import d, tag
 from mbsd.model.force import Force, ForceKind
 from mbsd.model.joint import Joint
 
 STROKE = 1.8
+
+
+def tag(name: str, content: str | None = None, **attributes: str | float) -> str:
+    """Return an element; underscores in the names of attributes stand for hyphens."""
+    parts = [f'{key.replace("_", "-")}="{_value(value)}"' for key, value in attributes.items()]
+    opening = f"<{' '.join([name, *parts])}"
+    return f"{opening}/>" if content is None else f"{opening}>{escape(content)}</{name}>"
+
+
+def d(*parts: str | float) -> str:
+    """Return the data of a path: commands and numbers."""
+    return " ".join(part if isinstance(part, str) else _value(part) for part in parts)
+
+
+def _value(value: str | float) -> str:
+    if isinstance(value, str):
+        return escape(value)
+    text = f"{float(value):.1f}".removesuffix(".0")
+    return "0" if text == "-0" else text
 
 
 def icon(sign: str, x: float, y: float, radius: float, colour: str) -> list[str]:

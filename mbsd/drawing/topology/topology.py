@@ -10,8 +10,7 @@ from mbsd.base.errors import AssemblyError, ModelError
 from mbsd.base.quantity import counted, written
 from mbsd.drawing import look
 from mbsd.drawing.topology.graph_layout import layout
-from mbsd.drawing.topology.icons import icon, sign_of
-from mbsd.drawing.topology.svg_text import d, tag
+from mbsd.drawing.topology.icons import d, icon, sign_of, tag
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model

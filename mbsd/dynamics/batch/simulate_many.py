@@ -15,7 +15,7 @@ import numpy as np
 
 from mbsd.base.arguments import whole_number
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.names import no_such, shown
+from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.base.running import cores
 from mbsd.base.users_function import described, refuse_other_arguments, users_progress
 from mbsd.base.warning import quiet
@@ -55,7 +55,7 @@ WRONGLY_WRITTEN = (NameError, AttributeError, TypeError, KeyError, ImportError, 
 
 
 @dataclass(frozen=True, eq=False)
-class Simulations:
+class Simulations(Suggesting):
     """Measures of n simulations, in the order of the values that were given."""
 
     columns: dict[str, np.ndarray]

@@ -24,6 +24,7 @@ from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.single_run import Base
 from mbsd.equations.assembly import tabulate
 from mbsd.kinematics.pose.close import CLOSED
+from mbsd.kinematics.pose.held_values import free_direction, half_held, places_of
 from mbsd.kinematics.pose.initial import consistent, given_coordinates, given_velocities
 from mbsd.kinematics.pose.mobility import RANK_TOLERANCE, independent_rows
 
@@ -83,7 +84,8 @@ class StartsAtOnce(Starts):
         jac = self._jacobians(ready.initial.q[None])[1][0] * packed.column_scale()
         units = np.eye(packed.coordinates)[self.wanted - 3]
         kept = independent_rows(np.vstack([jac, units]))
-        self.held = np.array([k - len(jac) for k in kept if k >= len(jac)], np.int64)
+        self.held = [k - len(jac) for k in kept if k >= len(jac)]
+        self.halves = half_held(self.held, places_of(self.wanted.tolist()))
         self.suits = len(jac) + len(self.held) == packed.coordinates == len(kept)
         self.nu = np.zeros(len(jac))
         self.nu[packed.driver_rows :] = self.drive[1:, 1]
@@ -140,7 +142,6 @@ class StartsAtOnce(Starts):
 
     def _closed(self, q: np.ndarray, targets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         size = self.ready.packed.column_scale()
-        held = self.wanted[self.held]
         worst, left = np.full(len(q), np.inf), np.arange(len(q))
         for _ in range(STEPS):
             phi, jac = self._jacobians(q[left])
@@ -149,10 +150,21 @@ class StartsAtOnce(Starts):
             left, phi, jac = left[going], phi[going], jac[going]
             if not len(left):
                 break
-            units = np.broadcast_to(np.eye(len(size))[held - 3], (len(left), len(held), len(size)))
-            off = (q[left][:, held] - targets[left][:, self.held]) / size[held - 3]
+            held = self._held(jac * size)
+            units = held @ np.eye(len(size))[self.wanted - 3]
+            off = (held @ ((q[left][:, self.wanted] - targets[left]) / size[self.wanted - 3])[..., None])[..., 0]
             q[left, 3:] += _solved(np.concatenate([jac * size, units], 1), -np.concatenate([phi, off], 1)) * size
         return q, worst
+
+    def _held(self, jac: np.ndarray) -> np.ndarray:
+        """(R, h, k) what is held of the given values, by J (R, m, n) in sizes; see kinematics/pose/held_values.py."""
+        units = np.eye(jac.shape[2])[self.wanted - 3]
+        out = np.repeat(np.eye(len(self.wanted))[self.held][None], len(jac), axis=0)
+        for x, y in self.halves:
+            before = np.repeat(units[[k for k in self.held if k < x]][None], len(jac), axis=0)
+            at = next(n for n, k in enumerate(self.held) if k in (x, y))
+            out[:, at, [x, y]] = free_direction(np.concatenate([jac, before], axis=1), units[[x, y]])
+        return out
 
     def _velocities(self, rows: Sequence[int], q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(R, 3 nb), and (R,) whether what is given contradicts neither the joints nor itself."""

@@ -12,7 +12,7 @@ import numpy as np
 from mbsd.arrays.states import own_states, states_of
 from mbsd.base.arguments import LARGEST
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such, shown
+from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.base.users_function import described
 from mbsd.compiling.callback import as_numbers
 from mbsd.model.body import Marker, at_end, finite_number
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Frame:
+class Frame(Suggesting):
     """A frame now: m, rad, m/s, rad/s."""
 
     x: float
@@ -34,7 +34,7 @@ class Frame:
     omega: float
 
 
-class Moment:
+class Moment(Suggesting):
     """``moment.t``, ``moment.body("crank").omega``, ``moment.point(marker).x``; actions may also change it."""
 
     def __init__(self, packed: Packed, t: float, q: np.ndarray, v: np.ndarray) -> None:

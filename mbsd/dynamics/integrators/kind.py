@@ -16,6 +16,9 @@ from mbsd.base.names import no_such, shown
 if TYPE_CHECKING:
     from mbsd.dynamics.reference.arrays import Dynamics
 
+ARGUMENTS = ("duration", "steps", "times", "method", "tolerance", "step", "progress", "event_rows", "formulation")
+"""What a simulation takes beside options of its method, for a message: one of them may have been misspelt."""
+
 
 @dataclass(frozen=True)
 class Option:
@@ -81,7 +84,8 @@ class Integrator:
         """Return (options,) as given, else the defaults. Raises ModelError for unknown names and impossible values."""
         for name, value in given.items():
             if name not in self.options:
-                raise ModelError(f"{model}: method '{self.name}': {no_such('option', name, self.options)}")
+                known = no_such("option", name, [*self.options, *ARGUMENTS])
+                raise ModelError(f"{model}: method '{self.name}': {known}")
             option = self.options[name]
             if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not math.isfinite(value):
                 raise ModelError(

@@ -1,7 +1,8 @@
 """Consistent initial conditions: a closed pose and allowed velocities near the given ones.
 
 Pose: what ``start_near`` gives is held exactly as far as the joints leave it free, first given first held; the rest
-moves until everything closes. Velocities: what ``start_moving`` gives is held likewise,
+moves until everything closes. A place of which they leave one direction is as near as it can be, see held_values.py.
+Velocities: what ``start_moving`` gives is held likewise,
 
     J v = nu,   P v = given,   kinetic energy of what was left open as small as it can be.
 
@@ -21,8 +22,8 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.kept import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
+from mbsd.kinematics.pose.held_values import held_values, is_choice, places_of
 from mbsd.kinematics.pose.ideal_joints import closed_ideally
-from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
 
@@ -118,12 +119,7 @@ def _start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tup
     wanted = np.array([c for c, _ in given])
     if (np.abs(q[wanted] - targets) / size[wanted]).max() > 1e-12:
         residual_and_jacobian(packed.system, q, drive, packed.ws)
-        rows = packed.jacobian() * packed.row_scale()[:, None] * packed.column_scale()
-        units = np.zeros((len(given), packed.coordinates))
-        units[np.arange(len(given)), wanted - 3] = 1.0
-        kept = independent_rows(np.vstack([rows, units]))
-        held = [k - len(rows) for k in kept if k >= len(rows)]
-        q = _close_holding(packed, q, drive, wanted[held], targets[held])
+        q = _close_holding(packed, q, drive, wanted, targets)
     if take_phases(packed, q, drive):
         q = close(packed, q, drive)[0]
     refuse_impossible(packed, q)
@@ -167,20 +163,24 @@ def nearest_turn(q: np.ndarray, c: int, value: float) -> float:
 
 
 def _close_holding(
-    packed: Packed, q: np.ndarray, drive: np.ndarray, held: np.ndarray, targets: np.ndarray
+    packed: Packed, q: np.ndarray, drive: np.ndarray, wanted: np.ndarray, targets: np.ndarray
 ) -> np.ndarray:
-    """The closed pose with coordinates ``held`` at ``targets``; the given pose if there is none near it."""
+    """The closed pose with coordinates ``wanted`` at ``targets`` as far as they can be; the given pose if none is near.
+
+    Directions in which places are held may turn on the way.
+    """
     closed, row_scale, column_scale = q, packed.row_scale(), packed.column_scale()
-    size = column_scale[held - 3]
-    units = np.zeros((len(held), packed.coordinates))
-    units[np.arange(len(held)), held - 3] = 1.0
-    q = q.copy()
+    size, units = column_scale[wanted - 3], np.eye(packed.coordinates)[wanted - 3]
+    q, held = q.copy(), np.zeros((0, len(wanted)))
     for _ in range(50):
         residual_and_jacobian(packed.system, q, drive, packed.ws)
-        phi = np.concatenate([packed.ws.phi * row_scale, (q[held] - targets) / size])
+        rows = packed.jacobian() * row_scale[:, None] * column_scale
+        if not len(held) or not is_choice(held):
+            held = held_values(rows, units, places_of(wanted.tolist()))[1]
+        phi = np.concatenate([packed.ws.phi * row_scale, held @ ((q[wanted] - targets) / size)])
         if np.abs(phi).max() <= 1e-13:
             break
-        jac = np.vstack([packed.jacobian() * row_scale[:, None] * column_scale, units])
+        jac = np.vstack([rows, held @ units])
         step = np.linalg.lstsq(jac, -phi, rcond=1e-10)[0]
         longest = float(np.abs(step).max(initial=0.0))
         if longest < 1e-15:
@@ -202,9 +202,9 @@ def _velocities(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> t
     given, values, names = given_velocities(m, packed, q)
     rows = _as_matrix(given, packed.coordinates)
     column_scale = packed.column_scale()
-    kept = independent_rows(np.vstack([jac * column_scale, rows * column_scale]))
-    everything = np.vstack([jac, rows])[kept]
-    wanted = np.concatenate([nu * scale, values])[kept]
+    kept, held = held_values(jac * column_scale, rows * column_scale, velocity_places(m))
+    everything = np.vstack([jac[kept], held @ rows])
+    wanted = np.concatenate([(nu * scale)[kept], held @ values])
     root = np.sqrt(1.0 / usual_inertia(packed)[3:])
     v[3:] = root * np.linalg.lstsq(everything * root, wanted, rcond=1e-13)[0]
     inertia = inertia_of(packed)[3:]
@@ -242,6 +242,17 @@ def given_velocities(
         values += velocity.place
         names += [(f"vx of '{name}'", "m/s"), (f"vy of '{name}'", "m/s")]
     return rows, np.array(values, float), names
+
+
+def velocity_places(m: Model) -> list[tuple[int, int]]:
+    """Return the pairs vx, vy among the rows of :func:`given_velocities`."""
+    pairs, k = list[tuple[int, int]](), 0
+    for velocity in m.velocities.values():
+        k += 1
+        if velocity.place is not None:
+            pairs.append((k, k + 1))
+            k += 2
+    return pairs
 
 
 def _as_matrix(rows: list[dict[int, float]], coordinates: int) -> np.ndarray:

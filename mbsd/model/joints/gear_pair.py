@@ -14,6 +14,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from mbsd.base.errors import ModelError
 from mbsd.model.adding.joints import join, phase_given, wheels_given
 from mbsd.model.body import Marker
@@ -34,6 +36,7 @@ GEAR_PAIR = register(
         example=lambda m, i, j: m.gear_pair("example", i, j, radius_i=0.5, radius_j=0.2, internal=True),
         numbers=_numbers,
         problem=gear_problem,
+        kept=lambda params, x, y: np.hypot(x, y),
         lengths=("radius_i", "radius_j"),
         touching="place",
     )

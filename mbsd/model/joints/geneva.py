@@ -14,6 +14,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
 from mbsd.model.adding.joints import join, radii_given
@@ -44,6 +46,7 @@ GENEVA = register(
         example=lambda m, i, j: m.geneva("example", i, j, slots=5, radius=0.3),
         numbers=lambda params: [(params["slots"], params["radius"], params["radius"])],
         problem=_problem,
+        kept=lambda params, x, y: np.hypot(x, y) * math.sin(math.pi / params["slots"]) - params["radius"],
         lengths=("radius",),
         touching="place",
         symmetry=lambda params: params["slots"],

@@ -24,6 +24,7 @@ RACK_AND_PINION = register(
         example=lambda m, i, j: m.rack_and_pinion("example", i, j, radius=0.3),
         numbers=lambda params: [(1.0, 0.0, with_radii(params)["radius"], 0.0)],
         problem=rack_problem,
+        kept=lambda params, x, y: y,
         lengths=("radius",),
         touching="place",
     )

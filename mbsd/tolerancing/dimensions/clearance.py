@@ -13,7 +13,7 @@ from typing import Any
 
 from mbsd.base.arguments import not_negative_number
 from mbsd.base.errors import ModelError
-from mbsd.base.names import no_such
+from mbsd.base.names import Suggesting, no_such
 from mbsd.tolerancing.dimensions.spreads import Normal, Spread, Triangular, Uniform
 from mbsd.tolerancing.dimensions.standards import fit
 
@@ -22,7 +22,7 @@ SPREADS: dict[str, type[Spread]] = {"normal": Normal, "uniform": Uniform, "trian
 
 
 @dataclass(frozen=True)
-class Clearance:
+class Clearance(Suggesting):
     """A pin whose bore is wider than it by ``play`` (m, difference of the diameters), give or take ``tolerance`` (m).
 
     The pin's centre lies half the play off the centre of its bore, by ``direction``: "reaction", against the force that

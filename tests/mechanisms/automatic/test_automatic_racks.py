@@ -99,7 +99,7 @@ def test_a_pinion_off_the_pitch_line_is_told_with_its_distance() -> None:
     m.prismatic("guide", m.ground.origin, slider.origin)
     m.rack_and_pinion("mesh", slider.origin, pinion.origin, radius=0.02)
     m.drive_angle("motor", pinion, harmonic(1.0, 2.0))
-    with pytest.raises(UserError, match=r"'mesh': at t=.* s the pinion's centre is 25 mm above .* radius of 20 mm"):
+    with pytest.raises(UserError, match=r"'mesh': at t=.* s the pinion's centre is 25 mm above .* radius, 20 mm"):
         _ = Automatic(m, m.sweep(0.5, steps=20)).levels
 
 

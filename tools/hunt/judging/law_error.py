@@ -1,11 +1,15 @@
-"""How exactly the derivatives of a driver's law are known that is a Python function alone: they come from a fit.
+"""How exactly derivatives of a driver's law are known of which values alone are given.
+
+Those of a Python function come from a fit.
 
 Of a piece of the fit, w wide, the last Chebyshev coefficients are below c, and rounding hides r of f
 (mbsd/model/laws/fitting/leaves.py: both are in its Leaves). T_8' = 64 and T_8'' = 1344 at the ends of -1 .. 1, so
 
     |error of f''| <= 1344 (2 / w)^2 max(c, r),      |error of f'| <= 64 (2 / w) max(c, r)
 
-Fits over other spans err otherwise, so two solutions differ by the sum of both. What that makes of the motion is in
+Fits over other spans err otherwise, so two solutions differ by the sum of both. A table of values at times h apart is a
+spline of degree 5. Each value is rounded by eps |f| / 2; at its ends, where derivatives are those of the polynomial
+through six values, their weights add up to 21 / h and 53 / h^2. What that makes of the motion is in
 agreement.py.
 """
 
@@ -22,11 +26,14 @@ from mbsd.model.laws.fitting.leaves import BEND_OF_LAST, ROUNDING
 from mbsd.model.laws.fitting.look import look_times
 from mbsd.model.laws.fitting.sampled import Sampled
 from mbsd.model.laws.function import Function
+from mbsd.model.laws.table import Table
 from mbsd.results.solution import Solution
 from tools.hunt.words.raised import Raised
 
 SLOPE_OF_LAST = 64.0
 """T_8' at the ends."""
+SLOPE_OF_SIX, BEND_OF_SIX = 21.0, 53.0
+"""What weights of six values at even times add up to, without their signs, in the derivatives at the first of them."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +67,10 @@ def of_law(law: Motion, first: float, last: float) -> LawError:
     raised_by = 0.0
     while isinstance(law, Raised):
         law, raised_by = law.law, raised_by + abs(law.by)
+    if isinstance(law, Table):
+        shortest, largest = float(np.diff(law.times).min()), float(np.abs(law.values).max()) + raised_by
+        rounding = float(np.finfo(float).eps) * largest
+        return LawError(SLOPE_OF_SIX / 2 * rounding / shortest, BEND_OF_SIX / 2 * rounding / shortest**2)
     if not isinstance(law, Function) or law.df is not None:
         return LawError()
     looks, f = look_times(first, last, law.shortest), law.f

@@ -104,6 +104,8 @@ class Free:
             return Outcome(name, WRONG, "against its own equations", "; ".join(problems))
         if self.first is None or self.growth is None:
             margin = float(other.singularity_margin.min())
+            if "jumps there" in str(self.refused):
+                return Outcome(name, UNCLEAR, "a force jumps, which steps meet or miss by chance")
             if margin < HEALTHY or {"stiff", "contacts"} & self.subject.traits:
                 return Outcome(name, AGREED, "proved what was refused as built")
             return Outcome(name, WRONG, "solved, but refused as built", f"margin {margin:.3g}; {self.refused}")

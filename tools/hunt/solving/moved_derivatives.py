@@ -8,8 +8,7 @@ outputs. With the turn and mirror R of the world, and lengths and masses L and M
 
 The bound is a part ``STEPS`` of the largest derivative of its kind, and of what the size of the quantity over that of
 the number is; of a driven motion over the square of its margin, of a free one it grows as derivatives change where the
-motion is nudged. Which of the given numbers a start keeps depends on the axes where they do not agree: such motions
-are not compared.
+motion is nudged.
 """
 
 from __future__ import annotations
@@ -242,8 +241,6 @@ def _judged(
         odd = np.flatnonzero(~(gap <= bound))
         if not len(odd):
             continue
-        if odd[0] == 0 and nearby is not None:
-            return Outcome(name, UNCLEAR, "which of the given numbers the start keeps depends on the axes")
         k = int(odd[np.argmax(gap[odd])])
         r, c = np.unravel_index(int(np.argmax(np.abs(there[k] - here[k]))), there[k].shape)
         of, to = asked.labels(rows[int(r)], range(own.shape[2])[column][int(c)])

@@ -20,7 +20,7 @@ def out(out_root: Path) -> Out:
 
 
 def made(out: Out, key: str = "k") -> Stage:
-    """A finished stage with two outputs, one of them outside the mechanism's folder."""
+    """Return a finished stage with two outputs, one outside the mechanism's folder."""
     stage = Stage(out, "film", key, [out.motion, out.film("draft")])
     for path in stage.outputs:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -134,7 +134,7 @@ def test_versions_names_what_is_installed() -> None:
 
 
 def _chain(out: Out) -> None:
-    """A motion, a clearance made of it, and a report made of both."""
+    """Record a motion, a clearance made of it, and a report made of both."""
     out.folder.mkdir(parents=True, exist_ok=True)
     out.motion.write_text("motion")
     Stage(out, "solve", "k", [out.motion]).record()
@@ -184,7 +184,7 @@ def test_a_file_that_no_stage_recorded_is_not_up_to_date(out: Out) -> None:
 
 
 def test_a_stamp_that_does_not_say_what_it_was_made_of_is_written_again(out: Out) -> None:
-    """Those of earlier versions."""
+    """Stamps of earlier versions do not."""
     _chain(out)
     key = key_of(key_of(out.motion, out.clearance), "words")
     assert Stage(out, "report", key, [out.report]).is_fresh()

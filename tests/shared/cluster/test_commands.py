@@ -25,12 +25,12 @@ from tests.running.processes import ends_with_us
 from tests.shared.cluster import acting
 
 HOST, OTHER_HOST = ("127.0.0.2", "127.0.0.3") if sys.platform == "linux" else ("127.0.0.1", "127.0.0.1")
-"""Of scheduler and worker; other systems than Linux have one address of loopback."""
+"""Addresses of scheduler and worker; systems other than Linux have one address of loopback."""
 
 
 @contextmanager
 def started(*words: str, log: Path) -> Iterator[subprocess.Popen[bytes]]:
-    """A scheduler or worker until the block ends."""
+    """Yield a scheduler or worker until the block ends."""
     with log.open("w") as said:
         process = subprocess.Popen(
             [sys.executable, "-m", "shared.cluster", *words], cwd=ROOT, stdout=said, stderr=said,
@@ -64,7 +64,7 @@ def answers_at(port: int) -> bool:
 
 
 def listening(process: subprocess.Popen[bytes]) -> list[tuple[str, int]]:
-    """Addresses on which the process and all that it has started listen."""
+    """Return the addresses on which the process and its descendants listen."""
     family = [psutil.Process(process.pid), *psutil.Process(process.pid).children(recursive=True)]
     connections = [connection for member in family for connection in member.net_connections("inet")]
     return [

@@ -31,7 +31,7 @@ def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 
 def followed(live: Served, page: Page, length: float) -> None:
-    """A save is solved and seen."""
+    """Save a length and wait until the page shows it."""
     live.write(good(length))
     page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == length)
     assert page.hear("motion")["payload"]

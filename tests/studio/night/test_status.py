@@ -18,7 +18,7 @@ NAMES = ["four_bar", "pendulum", "trammel"]
 
 @pytest.fixture
 def recorded(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> NightRecord:
-    """A run that is over, with a film of each; that of the trammel was brought from elsewhere."""
+    """Return the record of a finished run; the trammel's film comes from elsewhere."""
     monkeypatch.setattr(freshness, "current_names", set)
     for name in NAMES:
         out = Out(name)

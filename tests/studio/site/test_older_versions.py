@@ -37,7 +37,7 @@ def _stamped(out: Out, name: str, path: Path, *read: Path) -> None:
 
 @pytest.fixture
 def out(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> Out:
-    """A machine with all its results, whose pages are made by others."""
+    """Return a mechanism with all its results, whose pages are built by others."""
     out = film_fixture.write()
     for name, path in (("solve", out.motion), ("shot", out.shot)):
         _stamped(out, name, path)

@@ -21,7 +21,7 @@ def _mesh(shape) -> manifold3d.Manifold:
 
 
 def _wheel_angle(shape: Geneva, crank: float) -> float:
-    """Return the angle of the wheel for the crank's pin at ``crank``, at rest beside its slot."""
+    """Return the angle of the slot that holds the pin, or of the wheel at rest before or after it."""
     half = math.pi / 2 - math.pi / shape.slots
     inside = min(max(crank, -half), half)
     x, y = shape.radius * math.cos(inside) - shape.distance, shape.radius * math.sin(inside)

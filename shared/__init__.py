@@ -1,1 +1,1 @@
-"""What both sides of the line use; it knows no other room."""
+"""Code that both the solver's and the pictures' rooms use; it imports no other room."""

@@ -1,4 +1,4 @@
-"""The door of ``shot.py``: how a motion is filmed."""
+"""Names for ``shot.py``: how a motion is filmed."""
 
 from shared.contract.shot import Camera, Label, Section, Shot, Sound, Story, Surface, Title, Trail
 

@@ -1,1 +1,1 @@
-"""What runs the stages for a user who is elsewhere: the night shift, and the page that follows the editor."""
+"""Programs that run the stages for a user: the command line, the live page, the night shift, the site."""

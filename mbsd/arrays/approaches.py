@@ -1,4 +1,4 @@
-"""How fast contacts by penalty approached when they began, along a motion: what their damping may depend on.
+"""Approach speeds of contacts by penalty at their beginnings, along a motion, for their damping.
 
 A simulation notes it at each accepted step (mbsd/dynamics/prepare/prepared.py). A driven motion is known at its
 outputs alone; there the depth between two outputs is the cubic through both with their rates, and the approach is its
@@ -27,7 +27,10 @@ def remembers(loads: Loads) -> bool:
 
 
 def stretches(loads: Loads, approached: np.ndarray | None, count: int) -> Iterator[slice]:
-    """Rows 0 .. ``count`` in stretches of equal approach (T, n) (m/s), set in ``loads`` meanwhile; None: as it is."""
+    """Yield stretches of rows 0 .. ``count`` with equal approach (T, n) (m/s), set in ``loads`` meanwhile.
+
+    With None it stays as it is.
+    """
     if approached is None or not remembers(loads):
         yield slice(0, count)
         return
@@ -45,7 +48,10 @@ def stretches(loads: Loads, approached: np.ndarray | None, count: int) -> Iterat
 def approached_along(
     packed: Packed, loads: Loads, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarray
 ) -> np.ndarray | None:
-    """(T, n) approach of all interactions (m/s) along a motion q, v (T, 3 nb) at times (T,); None where none asks."""
+    """Return (T, n) approach speeds of all interactions (m/s) along a motion; None if none needs them.
+
+    q, v (T, 3 nb) are given at times (T,).
+    """
     if not remembers(loads):
         return None
     count, table = len(loads.switch) - 1, loads.switch
@@ -69,7 +75,10 @@ def approached_along(
 
 
 def _slope_at_zero(h: float, depth: np.ndarray, rate: np.ndarray) -> float:
-    """Slope of the cubic over h (s) through ``depth`` (2,), below and above 0, with ``rate`` (2,), where it is 0."""
+    """Return the slope at its zero of the cubic over h (s) through ``depth`` (2,) with ``rate`` (2,).
+
+    The depth is below 0 at first and above 0 then.
+    """
     rise, (a, b) = depth[1] - depth[0], h * rate
     cubic = np.polynomial.Polynomial([depth[0], a, 3 * rise - 2 * a - b, a + b - 2 * rise])
     roots = cubic.roots()

@@ -1,4 +1,4 @@
-"""Gas in cylinders along a motion: the angles of their cranks, volumes that cannot be, changes of phase on the way."""
+"""Gas in cylinders along a motion: crank angles, impossible volumes, changes of phase."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Placed:
     """Columns of the angles of the cylinder's body and of the crank, -1 without a cycle."""
 
     def angle(self, state: np.ndarray) -> np.ndarray:
-        """(T,) of q, v or a (T, 3 nb): how far the crank has turned since it fired, in its own direction; its rates."""
+        """Return (T,) of q, v or a (T, 3 nb): the crank's turn since it fired, in its direction, or its rates."""
         assert self.chamber.cycle is not None
         return self.chamber.cycle.sense * (state[:, self.crank] - state[:, self.frame])
 
@@ -105,7 +105,10 @@ def _height(packed: Packed, placed: Placed, q: np.ndarray) -> np.ndarray:
 
 
 def whole_cycles(packed: Packed, first: np.ndarray, last: np.ndarray) -> int:
-    """How often a motion between two poses (3 nb,) repeats until all gas is where its cycle began; 1 where none is."""
+    """Return how often a motion repeats until all gas is where its cycle began; 1 without gas.
+
+    The motion is between two poses (3 nb,).
+    """
     times = 1
     for placed in chambers(packed):
         if placed.chamber.cycle is not None:
@@ -122,7 +125,7 @@ def phase_changes(
     states: tuple[np.ndarray, np.ndarray, np.ndarray],
     motion: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
 ) -> list[tuple[float, float, str]]:
-    """Where pressures change phase along a motion: right before (s), right after (s), and the force's name.
+    """Return changes of phase of pressures: right before (s), right after (s), and the force's name.
 
     ``states``: q, v, a (T, 3 nb) at times t (T,); ``motion`` gives q, v at other rising times.
     """

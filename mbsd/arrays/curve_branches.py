@@ -1,4 +1,4 @@
-"""Points on curves that cross themselves or their continuations: on which branch of its curve each one is.
+"""Branches of points on curves that cross themselves or their continuations.
 
 Such a row keeps the parameter of its foot where the motion was accepted last (mbsd/equations/relative/curve_pieces.py),
 in LAST of its relative pose.
@@ -84,7 +84,7 @@ class CurveBranches:
 
     @staticmethod
     def _begun(numbers: np.ndarray, x: float, y: float) -> list[float]:
-        """Parameters from which the branches near (x, y) are looked for, those of the continuations among them."""
+        """Return parameters from which the branches near (x, y) are searched, also of continuations."""
         end = TABLE + WIDTH * int(numbers[COUNT])
         nodes = numbers[TABLE:end].reshape(-1, WIDTH)
         square = (nodes[:, 1] - x) ** 2 + (nodes[:, 7] - y) ** 2
@@ -113,7 +113,7 @@ class CurveBranches:
         return abs(tx * vy - ty * vx) if abs(off) < NEAR * self.packed.size else math.inf
 
     def moved(self, q: np.ndarray) -> tuple[list[float], float]:
-        """Parameters of the feet at q (3 nb,), and the farthest that one of them goes, as part of how far it may."""
+        """Return parameters of the feet at q (3 nb,), and the largest move relative to its limit."""
         feet, farthest = [], 0.0
         for i, j, numbers, own in self.rows:
             x, y, _, _ = self._relative(q, np.zeros_like(q), i, j)

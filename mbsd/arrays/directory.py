@@ -1,4 +1,6 @@
-"""Where the numbers of each force stand in the tables of a packed mechanism: the one place that counts them.
+"""Directory of the numbers of each force in the tables of a packed mechanism.
+
+It is the one place that counts them.
 
     law         rows of Laws: 0 is the constant zero, then drivers, then the laws of forces
     element     rows of Loads.element and Loads.place
@@ -114,6 +116,6 @@ def made_of_masses(packed: Packed) -> list[str]:
 
 
 def numbers_of(force: Force, masses: Masses) -> list[Any]:
-    """Return a, b and c of all terms of a force, then the numbers of its interactions, in the order of packing."""
+    """Return a, b and c of all terms of a force, then its interactions' numbers, in packing order."""
     out = [value for addend in terms_of(force.kind.elements(force)) for value in (addend.a, addend.b, addend.c)]
     return out + [value for interaction in force.kind.interactions(force, masses) for value in interaction.numbers]

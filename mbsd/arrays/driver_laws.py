@@ -1,5 +1,4 @@
-"""Checks of drivers' laws before anything is solved: finite, positive where they are distances, with f' and f''
-that are the derivatives of f.
+"""Checks of drivers' laws before solving: finite, positive distances, consistent f' and f''.
 
 A sweep takes f, f' and f'' as the law gives them. Where its author gave the derivatives, they are compared with f once,
 by making the quintic pieces of which a simulation is made (mbsd/model/laws/fitting/exact.py).
@@ -31,9 +30,7 @@ _CHECKED: dict[int, tuple[weakref.ref[Motion], set[bytes]]] = {}
 
 
 def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
-    """Raise ModelError for a law that is not finite, imposes a distance that is not positive, or whose derivatives
-    are not those of its values.
-    """
+    """Raise ModelError for an infinite law, a distance that is not positive, or wrong derivatives."""
     drivers = packed.drivers
     if not drivers:
         return
@@ -72,7 +69,7 @@ def refuse_bad_laws(packed: Packed, start: float, end: float) -> None:
 
 
 def _refuse_wrong_derivatives(given: Motion, law: Motion, start: float, end: float, values: np.ndarray) -> None:
-    """Compare a law with its derivatives over ``start`` .. ``end`` (s), unless that was done with the same values.
+    """Compare a law with its derivatives over ``start`` .. ``end`` (s), unless its values were compared.
 
     ``given``: the law as its author made it, ``law``: the same made ready; ``values`` (LOOKS, 3): what it gives now, by
     which a function that changes meanwhile is noticed.

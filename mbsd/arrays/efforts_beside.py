@@ -31,7 +31,7 @@ AT_ROOT = 1e-8
 
 
 def lagrange(nodes: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """(P, N) weights of values at ``nodes`` (N,) in those of the polynomial through them at ``places`` (P,)."""
+    """Return (P, N) weights at ``places`` (P,) of the polynomial through values at ``nodes`` (N,)."""
     out = np.ones((len(places), len(nodes)))
     for i, node in enumerate(nodes):
         others = np.delete(nodes, i)
@@ -74,7 +74,7 @@ class Side:
         return max(1, round(float(slope)))
 
     def _with_factor(self, factor: np.ndarray, beside: np.ndarray, arms: np.ndarray) -> np.ndarray:
-        """Return the values at the rows where ``factor`` (N + R,) times the multipliers is smooth; NaN elsewhere."""
+        """Return values at rows where ``factor`` (N + R,) times the multipliers is smooth; NaN elsewhere."""
         count = len(self.nodes)
         scaled = factor / np.abs(factor[:count]).max()
         y = scaled[:count, None] * beside
@@ -105,7 +105,7 @@ def fill_beside(
     nodes: np.ndarray,
     rows: np.ndarray,
 ) -> None:
-    """Fill lam (T, m) and wrench (T, joints, 3) at ``rows`` (R,) from those at ``nodes`` (N,); NaN without nodes.
+    """Fill lam (T, m) and wrench (T, joints, 3) at ``rows`` (R,) from ``nodes`` (N,); NaN without nodes.
 
     ``factor`` (N + R,): D at these.
     """

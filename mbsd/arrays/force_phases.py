@@ -1,4 +1,4 @@
-"""Where gears with play stand in their teeth: the constant of their equation, which the closed start pose decides.
+"""Phases of gears with play: the constant of their equation, decided by the closed start pose.
 
 It belongs to the packed mechanism, as the phases of gears without play do (mbsd/kinematics/pose/phases.py).
 """

@@ -28,7 +28,10 @@ REMEDY = (
 def friction_along(
     packed: Packed, loads: Loads, q: np.ndarray, v: np.ndarray, compact: np.ndarray, lam: np.ndarray
 ) -> np.ndarray:
-    """(T, 3 nb) friction of joints along a motion q, v (T, 3 nb) with multipliers lam (T, m); zero for ground."""
+    """Return (T, 3 nb) friction of joints along q, v (T, 3 nb) with multipliers lam (T, m).
+
+    It is zero for ground.
+    """
     normal = normals_along(packed, loads, q, compact, lam)
     return friction_under(packed, loads, q, v, normal)
 
@@ -57,7 +60,9 @@ def with_friction(
     compact: np.ndarray,
     solve: Callable[[np.ndarray], tuple[np.ndarray, ...]],
 ) -> tuple[tuple[np.ndarray, ...], np.ndarray]:
-    """Return the result of ``solve`` under the friction that belongs to its multipliers, and that friction (T, 3 nb).
+    """Return the result of ``solve`` under consistent friction, and that friction (T, 3 nb).
+
+    Consistent friction belongs to the multipliers of the result.
 
     motion: t (T,), q and v (T, 3 nb); compact J (T, m, 6). ``solve`` takes friction (T, 3 nb) and gives multipliers
     (T, m) first. Raises SimulationError where joints jam.

@@ -22,7 +22,7 @@ def inertia_of(packed: Packed) -> np.ndarray:
 
 
 def usual_inertia(packed: Packed) -> np.ndarray:
-    """Return (3 nb,) M where it is not zero, elsewhere the largest mass and the size of what joints connect."""
+    """Return M (3 nb,), with the largest mass and the size of connected bodies where M is zero."""
     inertia, mass = inertia_of(packed), packed.system.mass
     heaviest = float(mass.max()) or 1.0
     if inertia[3:].all():
@@ -53,7 +53,7 @@ def connected(pairs: np.ndarray, bodies: int) -> np.ndarray:
 
 
 def coupled(packed: Packed) -> np.ndarray:
-    """Return (nb,) the least number among the bodies that joints, drivers and forces connect without ground."""
+    """Return (nb,) the least number among bodies that joints, drivers and forces connect without ground."""
     number = {name: b for b, name in enumerate(packed.body_names)}
     pairs = packed.system.row_body.tolist()
     for force in packed.forces:
@@ -65,7 +65,7 @@ def coupled(packed: Packed) -> np.ndarray:
 
 
 def least_energy(v: np.ndarray, rows: np.ndarray, inertia: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Return the velocities (..., n) of least kinetic energy that have the same rates of ``rows`` as v (..., n).
+    """Return velocities (..., n) of least kinetic energy with the rates of ``rows`` that v (..., n) has.
 
     ``rows`` (..., m, n) are independent of each other, ``inertia`` (n,) may be zero; ``size`` (n,) of a unit step of
     each coordinate. Of velocities with equal energy those are taken that are nearest to v.

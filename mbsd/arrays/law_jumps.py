@@ -20,7 +20,9 @@ BESIDE = 1e-12
 
 
 def disagreeing(own: np.ndarray, order: int, part: float, over: float = 0.0) -> list[float]:
-    """Where the pieces of a law with numbers ``own`` disagree in a derivative by more than this part of its size.
+    """Return times at which pieces of a law disagree in a derivative by more than ``part`` of its size.
+
+    The law has the numbers ``own``.
 
     Within ``over`` (s) if that is given: where the next derivative does.
     """
@@ -37,7 +39,7 @@ def disagreeing(own: np.ndarray, order: int, part: float, over: float = 0.0) -> 
 
 
 def jump_times(packed: Packed, laws: Laws, start: float, end: float) -> dict[float, tuple[str, ...]]:
-    """Times (s) between ``start`` and ``end`` at which something may jump, with the drivers and forces that do.
+    """Return times (s) between ``start`` and ``end`` of possible jumps, with their drivers and forces.
 
     For functions of the user, the breaks that were given count.
     """

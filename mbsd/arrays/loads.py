@@ -131,7 +131,10 @@ def _friction(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.ndarray, 
 
 
 def pack_user_forces(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the table (u, 3), the bodies (b,) and their centres of mass (b, 2) in the author's frames, for Loads."""
+    """Return the table (u, 3), bodies (b,) and centres of mass (b, 2) of user forces, for Loads.
+
+    Centres are in the author's frames.
+    """
     own = [each for each in forces if each.user]
     rows = [(_callback(packed, each.force).address, each.user_body.start, len(each.user_body)) for each in own]
     which = np.array([packed.body_names.index(name) for each in own for name in each.force.params["bodies"]], np.int64)

@@ -26,7 +26,9 @@ def loads_along(
     approached: np.ndarray | None = None,
     states: np.ndarray | None = None,
 ) -> np.ndarray:
-    """(T, 3 nb) generalised forces of all loads but friction along a motion q, v (T, 3 nb); zero for ground.
+    """Return (T, 3 nb) forces of all loads but friction along a motion q, v (T, 3 nb).
+
+    They are generalised forces, zero for ground.
 
     ``approached`` (T, n): how fast contacts approached (m/s), where they ask for it; None: as kernels remember it now.
     ``states`` (T, n): those of forces (SI), of a mechanism that is packed without them.

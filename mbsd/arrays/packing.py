@@ -62,7 +62,7 @@ class Packed:
     """Lengths of the bars by their names (m)."""
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Unpickled or copied: equations and functions of the user are called by the addresses of this process."""
+        """Restore a pickle or copy: user equations and functions get their addresses in this process."""
         self.__dict__.update(state)
         self.system = self.specials.connected(self.system, self.size)
 
@@ -89,7 +89,10 @@ class Packed:
         return int(self.first_row[len(self.joints) - self.contacts])
 
     def numbers(self) -> tuple[bytes, ...] | None:
-        """The system by its numbers; None where it is large, or has relative poses: functions of the user, phases."""
+        """Return the system by its numbers; None if it is large or has relative poses.
+
+        These have functions of the user and phases.
+        """
         return None if self.constant is None else (*self.constant, self.system.angle_offset.tobytes())
 
     def contact_gaps(self) -> dict[str, int]:
@@ -149,7 +152,7 @@ class Packed:
         return i, j
 
     def settle_laws(self, start: float, end: float) -> None:
-        """Make the laws of the drivers ready for ``start`` .. ``end`` (s). Raises ModelError naming the driver."""
+        """Prepare the laws of the drivers for ``start`` .. ``end`` (s). Raises ModelError naming the driver."""
         for k, (name, law) in enumerate(zip(self.driver_names, self.motions, strict=True)):
             with law_of(f"{self.name}: driver '{name}'"):
                 self.motions[k] = law.over(start, end)

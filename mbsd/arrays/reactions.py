@@ -17,7 +17,7 @@ def rows_of_joints(packed: Packed, joints: np.ndarray) -> np.ndarray:
 def wrenches(
     packed: Packed, compact: np.ndarray, q: np.ndarray, lam: np.ndarray, joints: np.ndarray | None = None
 ) -> np.ndarray:
-    """(T, joints, 3) -J_b^T lam on each joint's second body b, moved from its centre of mass to the second marker.
+    """Return (T, joints, 3) forces -J_b^T lam on each joint's second body b, at the second marker.
 
     compact (T, m, 6), q (T, 3 nb), lam (T, m); N and N m. Ground as second body takes the opposite of what the first
     body gets. With ``joints`` (k,) (T, k, 3) of these, whose rows compact and lam hold (:func:`rows_of_joints`).
@@ -64,7 +64,10 @@ def marker_axes(packed: Packed, q: np.ndarray, marker: int, turned: bool = False
 
 
 def relative_velocity(packed: Packed, q: np.ndarray, v: np.ndarray, i: int | None, j: int) -> np.ndarray:
-    """(T, 2) velocity (m/s, world axes) of marker j as the body of marker i sees it; as ground does where i is None."""
+    """Return (T, 2) velocity of marker j as seen by marker i's body (m/s, world axes).
+
+    With None as i it is seen by ground.
+    """
     place = marker_places(packed, q, j)
     out = _velocity(q, v, packed.system.marker_body[j], place)
     return out if i is None else out - _velocity(q, v, packed.system.marker_body[i], place)

@@ -1,4 +1,4 @@
-"""Copies of a mechanism that differ in their start, their drivers or their forces; bodies and joints are shared."""
+"""Copies of a mechanism that differ in start, drivers or forces; bodies and joints are shared."""
 
 from __future__ import annotations
 
@@ -45,7 +45,9 @@ def held(m: AnyModel, time: float) -> AnyModel:
 
 
 def started_at(m: AnyModel, packed: Packed, q: np.ndarray, v: np.ndarray, states: np.ndarray | None = None) -> AnyModel:
-    """The same mechanism that starts exactly at q, v (3 nb,), with ``states`` (n,) of its forces (SI) if known.
+    """Return the mechanism started exactly at q, v (3 nb,), with ``states`` (n,) of its forces if known.
+
+    States are in SI units.
 
     Those of a mechanism that is packed with its states are in v.
     """

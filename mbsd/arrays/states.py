@@ -1,4 +1,4 @@
-"""States that forces carry through a motion, such as the pressures of a cylinder, as bodies of a packed mechanism.
+"""States of forces through a motion, such as a cylinder's pressures, as bodies of a packed mechanism.
 
     s' = f(t, q, v, s)        as   P'' = f,  P' = s:   a body of mass 1 that slides along the x axis of ground
 
@@ -33,7 +33,10 @@ def holding_names(force: Force) -> list[str]:
 
 
 def first_holding(force: Force, number: Mapping[str, int]) -> tuple[int, int]:
-    """The first body that holds a state of a force, and how many do; none do where only the mechanism is packed."""
+    """Return the first body that holds a state of a force, and their number.
+
+    The number is 0 if only the mechanism is packed.
+    """
     names = holding_names(force)
     return (number[names[0]], len(names)) if names and names[0] in number else (0, 0)
 
@@ -104,7 +107,10 @@ def states_of(packed: Packed, v: np.ndarray) -> np.ndarray:
 
 
 def widened(packed: Packed, part: np.ndarray, states: np.ndarray | None = None) -> np.ndarray:
-    """q, v or a (..., 3 nb) with columns for the bodies that ``packed`` has for states (..., n) (SI); zero if None."""
+    """Return q, v or a (..., 3 nb) with columns for the bodies of states (..., n) (SI).
+
+    The columns are zero if ``states`` is None.
+    """
     out = np.zeros((*part.shape[:-1], 3 * len(packed.body_names)))
     out[..., : part.shape[-1]] = part
     if states is not None:

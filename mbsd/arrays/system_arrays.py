@@ -1,4 +1,4 @@
-"""The arrays of a mechanism from its numbers and tables; of a small one they are kept for the next solution."""
+"""Arrays of a mechanism from its numbers and tables; those of a small one are kept for the next solve."""
 
 from __future__ import annotations
 

@@ -53,7 +53,10 @@ _COMPILED: Kept[Callable] = Kept()
 
 
 def _of_numbers(function: Callable) -> Callable:
-    """The function with a check that it gives a number, real or complex; sums of True and None would hide it."""
+    """Return the function with a check for a real or complex number.
+
+    Sums of True and None would hide a wrong result.
+    """
 
     def checked(x: Any, y: Any, a: Any) -> Any:
         value = function(x, y, a)

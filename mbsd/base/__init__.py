@@ -1,3 +1,4 @@
-"""Foundations of every room: errors, checked arguments, words for messages, codes, files written whole. It imports
-none.
+"""Foundations of every room: errors, checked arguments, words, codes, files written whole.
+
+They import no other room.
 """

@@ -1,4 +1,4 @@
-"""Arguments of the public functions: numbers that are numbers, switches that are True or False, names that are text.
+"""Arguments of public functions: finite numbers, switches that are True or False, names that are text.
 
 A public function is checked by the annotations of its parameters before it runs: ``float`` takes finite numbers,
 ``bool`` True or False, ``int`` whole numbers, ``str`` text; ``| None`` allows None. What other annotations mean, the
@@ -74,7 +74,7 @@ def number_pair(what: str, value: object) -> tuple[float, float]:
 
 
 def several_numbers(what: str, value: object, count: int, wanted: str) -> tuple[float, ...]:
-    """``value``, a list of ``count`` numbers, as floats; raises ModelError, which ends with what is ``wanted``."""
+    """Return ``value``, a list of ``count`` numbers, as floats; raises ModelError that names ``wanted``."""
     try:
         if isinstance(value, str | bytes | dict | set | frozenset):
             raise TypeError
@@ -302,7 +302,10 @@ def _word(given: object) -> str:
 
 
 def checked_methods(cls: C) -> C:
-    """A class whose public methods, inherited ones too, are :func:`checked`. They name the object's ``name``."""
+    """Return a class whose public methods, inherited ones too, are :func:`checked`.
+
+    They name the object's ``name``.
+    """
     for name, member in inspect.getmembers(cls, inspect.isfunction):
         if not name.startswith("_") and not isinstance(inspect.getattr_static(cls, name), staticmethod):
             setattr(cls, name, checked(member))
@@ -310,7 +313,9 @@ def checked_methods(cls: C) -> C:
 
 
 def adding(function: F) -> F:
-    """``function(m, name, ...)``, which adds a joint, driver, force or contact, with its arguments checked.
+    """Return ``function(m, name, ...)``, which adds a joint, driver, force or contact, with checks.
+
+    Its arguments are checked.
 
     What it enters knows which of its params are ``derived``.
     """

@@ -1,4 +1,4 @@
-"""Codes that the model writes into tables and kernels read; the equations stand where they are evaluated."""
+"""Codes that the model writes into tables and kernels read; equations stand with their kernels."""
 
 from __future__ import annotations
 

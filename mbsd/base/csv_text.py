@@ -1,4 +1,4 @@
-"""Tables as CSV that a spreadsheet reads as they are: names of the user stay text, whatever they begin with.
+"""Tables as CSV that spreadsheets read unchanged: the user's names stay text, however they begin.
 
 A spreadsheet takes a cell that begins with = + - @, a tab or a line end for a formula, which may open files and
 addresses. Such a text gets an apostrophe in front, as OWASP advises (CSV Injection); numbers stay numbers.
@@ -35,7 +35,7 @@ def cell(value: Any) -> Any:
 
 
 def frame_csv(frame: pandas.DataFrame, **options: Any) -> str:
-    """Return a table of pandas as CSV by its own ``to_csv`` with these ``options``, names and texts as :func:`cell`."""
+    """Return a table of pandas as CSV by its ``to_csv`` with ``options``, names and texts as :func:`cell`."""
     plain = frame.rename(columns=cell).rename_axis(index=cell)
     for place, kind in enumerate(frame.dtypes):
         if kind.kind == "O":

@@ -23,7 +23,7 @@ except ImportError:  # Windows
 
 
 def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
-    """Write a file: no part of a file ever has the final name. Raises ModelError where the disk refuses it."""
+    """Write a file whole: no part ever has the final name. Raises ModelError if the disk takes none."""
     _refuse_no_path(path)
     with whole_file(Path(path)) as temporary:
         temporary.write_bytes(content)
@@ -31,7 +31,9 @@ def write_whole(path: str | os.PathLike[str], content: bytes) -> None:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Yield a temporary path with the suffix of ``path``, which it replaces at the end; an error leaves the old file.
+    """Yield a temporary path with the suffix of ``path``, which it replaces at the end.
+
+    An error leaves the old file.
 
     Raises ModelError where the disk refuses it.
     """
@@ -44,7 +46,7 @@ def whole_file(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def temporary_file(path: Path) -> Iterator[Path]:
-    """Yield a new hidden file beside ``path``, with its suffix, that is locked meanwhile and removed at the end.
+    """Yield a new hidden file beside ``path``, with its suffix, locked meanwhile and removed at the end.
 
     Those that killed writers of ``path`` have left are removed first. Raises ModelError where the disk refuses it.
     """

@@ -115,7 +115,10 @@ _short.maxarray, _short.maxstring, _short.maxother = 6, 60, 60
 
 
 def shown(value: object) -> str:
-    """``repr(value)``, cut where it is long; the type alone where that fails, as of a number of 5000 digits."""
+    """Return ``repr(value)``, cut if it is long.
+
+    It is the type alone if repr fails, as for a number of 5000 digits.
+    """
     try:
         text = " ".join(_short.repr(value).split())
     except Exception:

@@ -1,4 +1,4 @@
-"""Pickling of what the standard pickle refuses: functions of the user, and kinds of joints, forces and contacts.
+"""Pickling of objects beyond the standard pickle: functions of the user, kinds of joints and forces.
 
 A function that pickle finds again by its name is left to it. Any other, such as a lambda, goes by its code, which
 takes cloudpickle; bodies, markers and mechanisms that it closes over are those that come with it, no copies.

@@ -1,4 +1,4 @@
-"""Numbers with units as people write them: engineering prefixes, few digits, a true minus sign, no exponents.
+"""Numbers with units as people write them: prefixes, few digits, a true minus sign, no exponents.
 
 render/view/page/src/data/numbers.js follows the same rules; the cases in tests/shared/quantities.json hold both to the
 same answers.
@@ -29,7 +29,7 @@ ANGLES = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
 
 
 def written(value: float, unit: str, digits: int = 3) -> str:
-    """``value`` (SI) with an engineering prefix: ``12.3 mN``, ``0 N``, ``1.29 kN m``, ``−40 µm``, ``3.46 t``."""
+    """Return ``value`` (SI) with an engineering prefix: ``12.3 mN``, ``0 N``, ``1.29 kN m``, ``−40 µm``."""
     if not math.isfinite(value):
         return f"no number of {unit}" if math.isnan(value) else f"{MINUS if value < 0 else ''}∞ {unit}".rstrip()
     factor, named = prefixed(float(f"{abs(value):.{digits}g}"), unit)  # rounded first: 999.9996 is 1 k
@@ -38,7 +38,10 @@ def written(value: float, unit: str, digits: int = 3) -> str:
 
 
 def prefixed(largest: float, unit: str) -> tuple[float, str]:
-    """The factor from SI, and the unit with its prefix, for numbers up to ``largest``: 1290 N are 0.001, ``kN``."""
+    """Return the factor from SI and the unit with its prefix for numbers up to ``largest``.
+
+    For 1290 N they are 0.001 and ``kN``.
+    """
     if unit in PLAIN or not largest or not math.isfinite(largest):
         return 1.0, unit
     if unit in STEPS:
@@ -49,7 +52,7 @@ def prefixed(largest: float, unit: str) -> tuple[float, str]:
 
 
 def figures(value: float, digits: int = DIGITS) -> str:
-    """A number with so many significant digits and without an exponent: ``1230``, ``−0.02``, ``2.5 × 10¹⁸``."""
+    """Return a number with significant digits, without an exponent: ``1230``, ``−0.02``, ``2.5 × 10¹⁸``."""
     number = float(f"{value:.{digits}g}")
     if number == 0.0:
         return "0"
@@ -70,7 +73,10 @@ def counted(count: int, noun: str) -> str:
 
 
 def live(values: Iterable[float], unit: str, digits: int = DIGITS) -> Callable[[float], str]:
-    """Writes numbers of a series with one prefix and as many decimals as its largest needs: they stand still."""
+    """Return a writer of numbers of a series with one prefix and one count of decimals.
+
+    So they stand still.
+    """
     top = max((abs(float(value)) for value in values), default=0.0)
     top = float(f"{top:.{digits}g}")
     factor, named = prefixed(top, unit)
@@ -88,14 +94,19 @@ def live(values: Iterable[float], unit: str, digits: int = DIGITS) -> Callable[[
 
 
 def labelled(words: str, unit: str) -> str:
-    """Return the label of an axis: ``force / kN``, ``velocity / (m/s)``, ``order`` without a unit (ISO 80000-1)."""
+    """Return the label of an axis: ``force / kN``, ``velocity / (m/s)``; ``order`` without a unit.
+
+    It follows ISO 80000-1.
+    """
     if unit in ("", "1"):
         return words
     return f"{words} / ({unit})" if set(unit) & set("/ ") else f"{words} / {unit}"
 
 
 def angle_step(span: float, most: int = 9) -> float:
-    """Step of ticks (degrees) over a ``span`` of angle: parts and multiples of a right angle, ``most`` ticks at most.
+    """Return the step of ticks (degrees) over a ``span`` of angle, with at most ``most`` ticks.
+
+    Steps are parts and multiples of a right angle.
 
     From 180 degrees on they are 45, 90 or whole multiples of 90.
     """

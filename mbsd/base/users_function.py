@@ -1,4 +1,4 @@
-"""Functions and laws of the user, called so that whatever they do wrong is reported with their name and the time."""
+"""Functions and laws of the user, called so that errors are reported with their name and the time."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def value_at(function: Callable[[float], Any], t: float, what: str) -> float:
 
 
 class law_of:
-    """Put ``what``, a mechanism, driver or force, before the text of an error that a law raises within this context."""
+    """Context that puts ``what``, a mechanism, driver or force, before the text of a law's error."""
 
     def __init__(self, what: str) -> None:
         self.what = what
@@ -54,14 +54,14 @@ class law_of:
 
 
 def tell_missed(what: str, law: object) -> None:
-    """Warn of what the fit of a law could not resolve; ``what`` names the mechanism and the driver or force."""
+    """Warn of parts of a law that its fit did not resolve; ``what`` names mechanism and driver or force."""
     missed = getattr(law, "missed", None)
     if missed:
         warnings.warn(f"{what}: {missed}", ModelWarning, stacklevel=5)
 
 
 def refuse_other_arguments(what: str, function: Callable[..., Any], given: str) -> None:
-    """Raise ModelError for a ``function`` that cannot be called with one argument, as far as its signature says."""
+    """Raise ModelError if ``function`` cannot be called with one argument, by its signature."""
     try:
         inspect.signature(function).bind(None)
     except ValueError:  # compiled functions may not say what they take

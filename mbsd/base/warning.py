@@ -27,7 +27,10 @@ def warn(message: str, category: type[Warning]) -> None:
 
 
 def _depth_of_user(frame: FrameType) -> int:
-    """Frames from ``frame`` out to the first one outside this package, ``frame`` counted; the outermost if none is."""
+    """Return the number of frames from ``frame`` out to the first one outside this package.
+
+    ``frame`` counts; it is the outermost if none is outside.
+    """
     depth = 1
     while frame.f_code.co_filename.startswith(PACKAGE) and frame.f_back is not None:
         frame, depth = frame.f_back, depth + 1

@@ -1,4 +1,4 @@
-"""One name for several kernels: which of them a call means follows from the first argument of the kernel that calls.
+"""One name for several kernels, chosen by the first argument of the calling kernel.
 
     accelerate = alternatives({Dynamics: ..., Embedding: ...})
 
@@ -51,7 +51,7 @@ class Alternatives:
 
 
 def alternatives(kernels: Mapping[type, Any], otherwise: Any = None) -> Any:
-    """Return a name for kernels by the class of their first argument, and for one that serves all other classes."""
+    """Return a name for kernels by the class of their first argument, and one for all other classes."""
     return Alternatives(kernels, otherwise)
 
 
@@ -61,7 +61,7 @@ def kernel_for(name: Any, arguments: Sequence[Any]) -> Any:
 
 
 def choose(blocks: Iterable[ir.Block], first: Any) -> None:
-    """Put kernels in place of their names in a kernel's code; ``first`` is numba's type of its first argument."""
+    """Replace names of kernels in a kernel's code; ``first`` is numba's type of its first argument."""
     if not isinstance(first, types.BaseNamedTuple):
         return
     for block in blocks:

@@ -1,4 +1,4 @@
-"""User functions that kernels call: a plain Python function, or one compiled with numba, by its machine address.
+"""User functions that kernels call by address: plain Python functions, or ones compiled with numba.
 
     void f(double t, const double *in, double *out)
 
@@ -51,7 +51,10 @@ class WrongValue(Exception):
 
 
 def as_numbers(values: Any, count: int) -> np.ndarray:
-    """Return what a user's function gave, in a row or in rows, as (count,) numbers. Raises WrongValue otherwise."""
+    """Return a user function's result, in a row or in rows, as (count,) numbers.
+
+    Raises WrongValue otherwise.
+    """
     wanted = "a number" if count == 1 else f"{count} numbers"
     try:
         array = np.atleast_1d(np.asarray(values))

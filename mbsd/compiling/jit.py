@@ -51,7 +51,7 @@ class _Kernel(CPUDispatcher):
         self._cache = KernelCache(self.py_func)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        """A number that a caller writes out is one like any other: else each has a copy of the kernel made for it."""
+        """Treat a literal number of a caller as any number; else each would compile its own copy."""
         return super().get_call_template(
             tuple(map(types.unliteral, args)), {name: types.unliteral(kind) for name, kind in kws.items()}
         )
@@ -169,7 +169,7 @@ threaded = _compiled(True, nogil=True)
 
 
 def at_address(signature: Any) -> Callable[[Callable[..., Any]], Any]:
-    """The same for functions that are called through ``.address``; without the compiler the function itself."""
+    """Return a decorator for functions called through ``.address``; without the compiler the function."""
 
     def decorate(function: Callable[..., Any]) -> Any:
         if not COMPILED:

@@ -71,7 +71,7 @@ WORD = 8
 
 
 def mark(builder: Any, instruction: Any, kind: str) -> None:
-    """Tell LLVM what kind of memory an instruction reads or writes: what is written to one kind changes no other."""
+    """Mark for LLVM the kind of memory that an instruction uses; writes to one kind change no other."""
     module = builder.module
     root = module.add_metadata(["mbsd"])
     own = module.add_metadata([kind, root, cgutils.int32_t(0)])
@@ -212,7 +212,7 @@ class KernelContext(CPUContext):
 
 
 def refuse_others(caller: Any, called: Any) -> None:
-    """Raise TypeError where a kernel's module hands an array over to a function of a module that is no kernel's."""
+    """Raise TypeError if a kernel's module passes an array to a function of a module without kernels."""
     kinds = {function.name: _kind(function) for function in caller.functions if function.is_declaration}
     for function in called.functions:
         if not function.is_declaration and kinds.get(function.name, _kind(function)) != _kind(function):

@@ -56,8 +56,10 @@ _IMPORT = re.compile(r"^(?:from\s+([\w.]+)\s+import\s+(\([^)]*\)|[^\n]*)|import\
 
 @lru_cache(maxsize=1)
 def cache_root() -> Path:
-    """The first folder that is writable: numba's NUMBA_CACHE_DIR if it is set, beside the package, the user's cache, a
-    temporary one of the user's own.
+    """Return the first writable folder for compiled kernels.
+
+    Candidates are numba's NUMBA_CACHE_DIR if set, the folder beside the package, the user's cache, and a temporary
+    folder of the user's own.
     """
     for parent in _parents():
         folder = parent / "kernels"
@@ -90,8 +92,9 @@ def _beside_package() -> Path:
 
 
 def _folders_to_read() -> tuple[Path, ...]:
-    """Folders with kernels of others that are read before the user's own: the wheel's, and those of a clone that this
-    user cannot write to.
+    """Return folders of others' kernels that are read before the user's own.
+
+    They are the wheel's, and those of a clone that this user cannot write to.
     """
     clones = _beside_package() / "kernels"
     others = () if os.environ.get("NUMBA_CACHE_DIR") or clones == cache_root() else (clones,)
@@ -99,7 +102,10 @@ def _folders_to_read() -> tuple[Path, ...]:
 
 
 def _own_temporary() -> Path | None:
-    """A temporary folder into which nobody else writes: what is in it is run. None where others have made it."""
+    """Return a temporary folder that nobody else can write to, since its files are run.
+
+    It is None if others have made it.
+    """
     user = os.getuid() if hasattr(os, "getuid") else None  # Windows has a temporary folder for each user
     try:
         folder = Path(tempfile.gettempdir()) / ("mbsd" if user is None else f"mbsd-{user}")
@@ -113,7 +119,10 @@ def _own_temporary() -> Path | None:
 
 @cache
 def _read(path: str) -> tuple[bytes, tuple[tuple[str, tuple[str, ...]], ...]]:
-    """Hash of a source file; the modules that it imports at its top, each with the names that it takes from there."""
+    """Return the hash of a source file and its imports: modules, each with the names taken from it.
+
+    Only imports at the top count.
+    """
     source = Path(path).read_bytes()
     imports: list[tuple[str, tuple[str, ...]]] = []
     for match in _IMPORT.finditer(source.decode()):
@@ -297,7 +306,7 @@ def _tell_of_full_disk(folder: str, reason: str) -> None:
 
 
 class KernelCache(_Cache):
-    """numba's cache of one function, opened when the function is first compiled: by then all it imports is loaded."""
+    """Cache of one function, opened when it is first compiled: by then all its imports are loaded."""
 
     def __init__(self, py_func: Callable[..., Any]) -> None:
         self._py_func = py_func

@@ -1,4 +1,4 @@
-"""Files of compiled kernels on the disk: written whole with a digest; damaged ones are removed, and that is logged.
+"""Files of compiled kernels: written whole with a digest; damaged ones are removed and logged.
 
 numba writes an index (.nbi) and a data file (.nbc) for each function, both pickled. It neither flushes them to the disk
 nor checks what it reads, so after a power cut every later run would end in an EOFError. Here each file ends with a

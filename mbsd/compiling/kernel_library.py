@@ -1,4 +1,4 @@
-"""Machine code of one kernel: what it calls is called where it stands, and not copied in and optimised again.
+"""Machine code of one kernel: its callees are called in place, neither copied nor optimised again.
 
 numba links the code of every callee into every caller and optimises all of it again, for each compiled function; the
 derivative of a motion is in twenty of them. Here a kernel that stands apart is a name, which the engine resolves to

@@ -1,4 +1,4 @@
-"""How numba reads a kernel: names that are the same in every process, and each inlined function read once.
+"""Pipeline by which numba reads kernels: stable names in all processes, inlined functions read once.
 
 numba numbers the functions that it compiles, and the number is part of a function's name in machine code. Kernels that
 call one another by name need a number that depends on the function alone, because the caller's code is kept and read by

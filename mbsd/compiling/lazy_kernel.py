@@ -95,7 +95,7 @@ llvm.add_symbol(COMPILE, ctypes.cast(_HELD, ctypes.c_void_p).value)
 
 
 def by_cell(dispatcher: Any, returns: Any) -> Any:
-    """Return what kernels call instead of ``dispatcher``, which returns values of numba's type ``returns``."""
+    """Return the function that kernels call instead of ``dispatcher``, which returns numba's ``returns``."""
 
     def called(typing: Any, *arguments: Any) -> Any:  # pyright: ignore[reportUnusedParameter]
         return returns(*map(types.unliteral, arguments)), _through_cell(dispatcher)

@@ -1,4 +1,4 @@
-"""The version of numba that kernels are made for: its inner parts are used, which change between versions."""
+"""The version of numba that kernels need: they use inner parts, which change between versions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The compiled evaluation: residual, Jacobian, velocity and acceleration right-hand sides of all constraints.
+"""Compiled evaluation of all constraints: residual, Jacobian, velocity and acceleration terms.
 
 Phi(q, t) = 0,   J v = nu,   J a = gamma
 """
@@ -103,7 +103,9 @@ def tabulate_some(system, drives, q, v, ws, phi, jacobians, gamma):
 
 
 def tabulate(system, drives, q, v, ws, phi, jacobians, gamma):
-    """phi, gamma (T, m) and compact Jacobians (T, m, 6) along a motion q, v (T, 3 nb); none of them if phi is empty.
+    """Fill phi, gamma (T, m) and compact J (T, m, 6) along q, v (T, 3 nb); none if phi is empty.
+
+    Called from Python.
 
     From Python.
     """

@@ -110,7 +110,7 @@ def friction_of(loads, k, rate, normal, whole):
 
 @lazy(float)
 def apply_friction(system, loads, v, ws, normal, whole, load):
-    """Add the friction under normal forces (f,) to load (3 nb,), after place and move; returns its power (W).
+    """Add friction under normal forces (f,) to load (3 nb,), after place and move; return its power (W).
 
     ``whole`` is 1, or 0 for a change of normal forces: then preload and viscous part are left out.
     """
@@ -142,7 +142,7 @@ def apply_friction(system, loads, v, ws, normal, whole, load):
 
 @lazy(None)
 def note_friction(system, loads, v, ws, lam):
-    """Set lam of the ways of sliding joints that may stick: J^T lam holds their friction, as it does in sticking."""
+    """Set lam of the rows of joints that may stick: J^T lam is their friction, as in sticking."""
     for k in range(loads.friction.shape[0]):
         way = loads.friction[k, WAY]
         if way >= 0 and loads.friction_number[k, SENSE] != NONE:
@@ -216,7 +216,7 @@ def settle(dyn, ws, a, lam):
 
 @kernel
 def tabulate_normals(system, loads, q, compact, lam, ws, out):
-    """out (T, f) normal forces along poses q (T, 3 nb) with compact J (T, m, 6) and multipliers lam (T, m)."""
+    """Fill out (T, f) with normal forces along q (T, 3 nb) for compact J (T, m, 6) and lam (T, m)."""
     for k in range(q.shape[0]):
         place(system, q[k], ws)
         normal_forces(loads, ws, compact[k], lam[k], out[k])
@@ -233,7 +233,7 @@ def tabulate_friction(system, loads, q, v, normal, ws, out, power):
 
 @kernel
 def tabulate_rates(system, loads, k, q, v, normal, ws, rate, force):
-    """Rate (T,) of joint k with friction along a motion, and the friction (T,) under its normal forces (T,)."""
+    """Fill rate (T,) of joint k with friction along a motion, and its friction (T,) at ``normal`` (T,)."""
     for i in range(q.shape[0]):
         place(system, q[i], ws)
         move(system, v[i], ws)

@@ -1,4 +1,4 @@
-"""Functions of one variable that kernels can evaluate: driver laws of time, characteristic curves of length or speed.
+"""Functions of one variable for kernels: laws of time, characteristic curves of length or speed.
 
     POLYNOMIAL   c0 + c1 x + c2 x^2 + ...
     HARMONIC     mean + amplitude sin(rate x + phase)

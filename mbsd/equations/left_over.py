@@ -1,4 +1,7 @@
-"""Compiled: what the equations of motion leave over along states beside a known motion, accelerations and lam held."""
+"""Compiled residuals of the equations of motion along states beside a known motion.
+
+Accelerations and lam are held.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,9 @@ from mbsd.compiling.jit import kernel
 
 @kernel
 def leave(row_body, first, inertia, weight, drives, compact, v, a, lam, velocity, acceleration, load):
-    """Fill velocity (S, m) with J v - nu, make gamma in ``acceleration`` J a - gamma, and finish load (S, 3 nb).
+    """Fill velocity (S, m) with J v - nu, change gamma to J a - gamma, and finish load (S, 3 nb).
+
+    gamma is in ``acceleration``.
 
     ``load`` has the forces: m g - M a - J^T lam are added. drives, a and lam are (T, ...), and S states v (S, 3 nb)
     with compact J (S, m, 6) are T of one kind after the other. ``first`` is the row of the first driver.

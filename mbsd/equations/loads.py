@@ -69,7 +69,7 @@ def arm_of(cos_sin, body, x, y):
 
 @inlined
 def between(kind, axis, arm_i, arm_j, i, j, t, q, v):
-    """The direction of a force, the vector from marker i to marker j, its length x along that direction, and dx/dt.
+    """Return the direction of a force, the vector from marker i to j, its length x along it, and dx/dt.
 
     A push acts on body j alone: its x is the time, and its rate is the speed of marker j.
     """
@@ -164,7 +164,9 @@ def apply_elements(element, place, term, number, laws, law, t, q, v, cos_sin, lo
 
 @inlined
 def apply_loads(loads, laws, t, q, v, cos_sin, load):
-    """Add the generalised forces of all loads but friction to load (3 nb,); cos_sin (nb, 2) turns the bodies.
+    """Add the generalised forces of all loads but friction to load (3 nb,).
+
+    cos_sin (nb, 2) turns the bodies.
 
     Returns their power (W).
     What falls on ground is added too and means nothing.

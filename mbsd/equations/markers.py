@@ -50,7 +50,7 @@ def place(system, q, ws):
 
 @inlined
 def move(system, v, ws):
-    """Fill velocity and convective acceleration of the markers from v (3 nb,), after place at the same pose."""
+    """Fill velocity and convective acceleration of the markers from v (3 nb,), after place."""
     for coded in system.moving:
         k = coded & PLACE
         b = 3 * (system.marker_body[k] & PLACE)

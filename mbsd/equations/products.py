@@ -10,7 +10,7 @@ from mbsd.compiling.jit import kernel
 
 @kernel
 def spread_rows(row_body, compact, out):
-    """Fill out (T, m, 3 nb), zero before, with compact Jacobians (T, m, 6) as matrices; ground's columns come first."""
+    """Fill out (T, m, 3 nb), zero before, with compact J (T, m, 6) as matrices; ground comes first."""
     for k in range(compact.shape[0]):
         for r in range(row_body.shape[0]):
             for side in range(2):
@@ -49,7 +49,7 @@ def times_columns(row_body, compact, lam, out):
 
 @kernel
 def tabulate_wrenches(joints, first_row, markers, marker_body, marker_arm, place, turn, compact, q, lam, out):
-    """Fill out (T, k, 3) with what ``joints`` (k,) do to their second bodies, at the second marker (N, N m).
+    """Fill out (T, k, 3) with forces of ``joints`` (k,) on second bodies, at the second marker (N, N m).
 
     compact (T, n, 6) and lam (T, n) hold the rows of these joints alone, one joint after the other. ``turn`` (2, T, b):
     cosine and sine of the angles of bodies, that of body ``place`` (nb,); ground needs none.

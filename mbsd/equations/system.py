@@ -1,4 +1,4 @@
-"""Arrays that the kernels work on: System, the mechanism, and Workspace, scratch. Made by arrays/packing.py.
+"""Arrays of the kernels: System, the mechanism, and Workspace, scratch. arrays/packing.py builds them.
 
 System is constant: its arrays cannot be written into. Closing the start makes another one, with its own ARM and ACTIVE
 of ``special``, first four of each constraint's ``numbers`` (kinematics/pose/phases.py) and turns of ``angle_offset``
@@ -114,7 +114,10 @@ def constant_system(*arrays: np.ndarray) -> System:
 
 
 def workspace(system: System, rows: int) -> Workspace:
-    """Scratch for ``rows`` constraint rows. Entries of ``jac`` that no constraint writes stay zero for ever."""
+    """Return scratch for ``rows`` constraint rows.
+
+    Entries of ``jac`` that no constraint writes stay zero for ever.
+    """
     bodies = len(system.mass)
     cos_sin = np.zeros((bodies, 2))
     cos_sin[:, 0] = 1.0

@@ -1,4 +1,4 @@
-"""Many designs of one mechanism in one call: names and their values to numbers, and the sweeps of these."""
+"""Many designs of one mechanism in one call: named values to numbers, and their sweeps."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def parameters(
     lengths: Mapping[str, Sequence[float] | np.ndarray],
     places: Mapping[str, Sequence[Sequence[float]] | np.ndarray],
 ) -> tuple[np.ndarray, list[Moved]]:
-    """Changes (n, p) against the mechanism itself, and what each moves: marker coordinates, or one of a trace."""
+    """Return changes (n, p) against the mechanism, and what each moves: marker or trace coordinates."""
     columns: list[np.ndarray] = []
     moved: list[Moved] = []
     fixed = {_own_marker(m, packed, name) for name in places if name in m.joints and name not in m.traces}
@@ -115,7 +115,10 @@ def _own_marker(m: Model, packed: Packed, name: str) -> int:
 
 
 def _rod(m: Model, packed: Packed, name: str) -> int | None:
-    """The row among the distance constraints of a rod of this name, if there is one. Raises ModelError if unclear."""
+    """Return the row of a rod of this name among distance constraints, if any.
+
+    Raises ModelError if it is unclear.
+    """
     joint = m.joints.get(name) if isinstance(name, str) else None
     if joint is None or joint.kind.constraints != ("distance",):
         return None

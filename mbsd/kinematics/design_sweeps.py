@@ -1,4 +1,4 @@
-"""Sweeps of many designs of one mechanism: prepared once, then called with the numbers of n designs, over and over.
+"""Sweeps of many designs of one mechanism: prepared once, called with the numbers of n designs.
 
 The numbers of the groups (mbsd/kinematics/groups) are linear in the places of the markers, so those of all designs are
 one matrix product. Designs share the branch of the mechanism itself.
@@ -147,7 +147,7 @@ class DesignSweeps:
     def pushed(
         self, values: np.ndarray, pushes: Sequence[Push], poses: np.ndarray, threads: int | None = None
     ) -> Batch:
-        """Poses of designs whose numbers differ from one time to the next: by ``values`` (n, moved) and ``pushes``.
+        """Return poses of designs whose numbers vary in time: by ``values`` (n, moved) and ``pushes``.
 
         Each time is solved alone, on the branch of the mechanism itself, whose poses (T, 3 nb) angles are near.
         """
@@ -200,7 +200,7 @@ class DesignSweeps:
         self, numbers: np.ndarray, start: np.ndarray, steps: slice, every: int, arms: np.ndarray, out: np.ndarray,
         out_angles: np.ndarray, status: np.ndarray,
     ) -> None:  # fmt: skip
-        """Fill rows of results with the poses of designs with ``numbers`` (n, g, 14); angles go on from ``start``."""
+        """Fill rows of results with poses of designs with ``numbers`` (n, g, 14); angles begin at ``start``."""
         place = np.zeros((len(self.packed.body_names), 7))
         place[0, COS] = 1.0
         scratch = Scratch(place, np.zeros((1, 1)), np.zeros((len(self.groups.kind), 2)), np.zeros(len(self.turned)))
@@ -219,7 +219,7 @@ class DesignSweeps:
 
 
 def slopes(packed: Packed, q0: np.ndarray, groups: Groups, moved: Sequence[Moved]) -> list[np.ndarray | None]:
-    """By how much each parameter changes the (g, 14) numbers of the groups; None for those of traced points."""
+    """Return the change of the groups' (g, 14) numbers by each parameter; None for traced points."""
     out: list[np.ndarray | None] = []
     arms = packed.system.marker_arm
     for change in moved:

@@ -1,4 +1,4 @@
-"""Designs that a batch gives up where assemblies come near each other: swept in finer steps, then each by itself.
+"""Designs that a batch gives up near other assemblies: swept in finer steps, then one by one.
 
 A batch looks at no pose between its steps, so it cannot tell a change point from a near miss. The march of a single
 sweep can (march.py): it passes change points on the smooth continuation, and refuses what does not close.
@@ -72,7 +72,10 @@ def _put_alone(sweeps: DesignSweeps, batch: Batch, row: int, values: np.ndarray,
 
 
 def _swept(sweeps: DesignSweeps, values: np.ndarray) -> np.ndarray | None:
-    """Return the poses (T, 3 nb) of one design; None where it starts on another branch. Raises MechanismError."""
+    """Return the poses (T, 3 nb) of one design; None if it starts on another branch.
+
+    Raises MechanismError.
+    """
     ready, grid = sweeps.ready, sweeps.grid
     system = sweeps.system_of(values)
     scratch = workspace(system, len(ready.packed.ws.phi))

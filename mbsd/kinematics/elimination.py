@@ -79,7 +79,7 @@ class Factors(NamedTuple):
 
 
 def plan(samples: np.ndarray, kept_rows: np.ndarray, row_body: np.ndarray) -> tuple[Elimination, Factors]:
-    """Find the sequence from Jacobians (s, m, n) at s unrelated poses: what is the same in all is constant.
+    """Find the sequence from Jacobians (s, m, n) at s unrelated poses; equal entries are constant.
 
     ``row_body`` (m, 2): the bodies of each row, to find an entry in the compact J (m, 6).
     """
@@ -116,7 +116,7 @@ _PLANS: Kept[tuple[Elimination, np.ndarray]] = Kept()
 def _planned(
     own_bytes: bytes, constant_bytes: bytes, value_bytes: bytes, rows_bytes: bytes, bodies_bytes: bytes
 ) -> tuple[Elimination, np.ndarray]:
-    """The sequence and the values of its constants, which depend on the pattern of J and its constant entries alone.
+    """Return the sequence and values of its constants, from J's pattern and constant entries alone.
 
     They are kept for the next call, so nobody writes into them.
     """
@@ -196,7 +196,7 @@ def _planned(
 
 
 def irreducible_parts(pattern: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Number (n,) of the irreducible diagonal block of each row and of each column of a square pattern (n, n).
+    """Return the irreducible diagonal block, (n,) numbers, of rows and columns of a pattern (n, n).
 
     Ordered by these numbers the matrix is upper triangular by blocks. A structurally singular one counts as one block.
     """
@@ -262,7 +262,10 @@ def factorise(seq, jac, fac):
 
 @inlined
 def _factorise_block(seq, fac):
-    """LU of the dense block with partial pivoting in each diagonal block; its diagonal keeps the inverse pivots."""
+    """Factorise the dense block with partial pivoting in each diagonal block (LU).
+
+    Its diagonal keeps the inverse pivots.
+    """
     block, order = fac.block, fac.order
     k = block.shape[0]
     smallest, largest = np.inf, 0.0

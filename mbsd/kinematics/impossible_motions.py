@@ -1,4 +1,4 @@
-"""Errors of a motion that the links cannot make: a toggle, a jump to the other assembly, a joint that opens."""
+"""Errors of impossible motions: a toggle, a jump to the other assembly, a joint that opens."""
 
 from __future__ import annotations
 

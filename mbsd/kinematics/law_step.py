@@ -10,7 +10,10 @@ JUMP = 0.25
 
 @inlined
 def jumps(law, before, h, stride):
-    """Return True if a law's value (3,) is over ``stride`` from that h seconds before, or not where its rates lead."""
+    """Return True if a law's value (3,) is over ``stride`` from that h before, or off its rates' lead.
+
+    h is in s.
+    """
     step = law[0] - before[0]
     gap = step - h * (0.5 * (law[1] + before[1]) - h / 12.0 * (law[2] - before[2]))
     if not (abs(step) <= stride and h * abs(law[1]) <= stride and h * abs(before[1]) <= stride):

@@ -1,4 +1,4 @@
-"""The march along a driven motion: poses one after the other, closed forms first; steps that are refused are halved."""
+"""March along a driven motion, pose by pose, closed forms first; failed steps are halved."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class March:
         """(T, motions + 1, 3) what the laws gave."""
 
     def closely(self) -> tuple[np.ndarray, np.ndarray]:
-        """Times (N,) and poses (N, 3 nb) of all steps and of seven times within each, by quintics through its ends."""
+        """Return times (N,) and poses (N, 3 nb) of all steps and seven times within each, by quintics."""
         from mbsd.model.cams.profile import hermite
 
         times, (q, v, a) = self.steps.times, self._all
@@ -64,7 +64,10 @@ class March:
 
 
 def kinematics_at(ready: Prepared, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(T, nb, 3) positions, velocities and accelerations of the centres of mass and angles; ground is body 0."""
+    """Return (T, nb, 3) positions, velocities and accelerations of centres of mass and angles.
+
+    Ground is body 0.
+    """
     motion = march_along(ready, times)
     shape = (len(times), -1, 3)
     return motion.q.reshape(shape), motion.v.reshape(shape), motion.a.reshape(shape)
@@ -103,7 +106,7 @@ def _near_ends(ready: Prepared, times: np.ndarray) -> March | None:
 def _closed_form(
     ready: Prepared, groups: Groups, steps: Steps
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, bool] | None:
-    """Positions, velocities, accelerations (T, 3 nb) at all steps; None where branches meet or a group opens.
+    """Return positions, velocities, accelerations (T, 3 nb); None if branches meet or a group opens.
 
     Last, whether the two poses of a group or block come close to each other at the first or the last step.
     """
@@ -143,7 +146,7 @@ def _closed_form(
 
 
 def _ends_close(determinant: np.ndarray) -> bool:
-    """Return True if a block is nearly singular at the first or the last step: ``determinant`` (blocks, T, 1)."""
+    """Return True if a block is nearly singular at either end: ``determinant`` (blocks, T, 1)."""
     if not len(determinant):
         return False
     ends = np.abs(determinant[:, [0, -1], 0])
@@ -213,7 +216,7 @@ def _newton(
 
 
 def _gone_on(passage: Passage, steps: Steps, arrays: tuple[np.ndarray, ...]) -> tuple[tuple[np.ndarray, ...], int]:
-    """The arrays (T, ...) for the steps left, filled right beyond a passage, and the first step to be solved."""
+    """Return the arrays (T, ...) of steps left, filled right beyond a passage, and the first to solve."""
     kept = int(np.searchsorted(steps.times, passage.start, side="right"))
     out = tuple(
         np.concatenate([array[:kept], np.zeros((len(steps.times) - kept, *array.shape[1:]))]) for array in arrays

@@ -136,7 +136,9 @@ def _tabulated(
 def _take_nearer_side(
     packed: Packed, drives: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray, bend: np.ndarray
 ) -> None:
-    """Where accelerations jump, as a Geneva's pin enters its slot, that of either side is right: bend (T, m) follows a.
+    """Correct bend (T, m) to the side that a follows where accelerations jump.
+
+    They jump as a Geneva's pin enters its slot; either side is right.
 
     Rounding decides on which side of the jump an output on it is.
     """

@@ -86,7 +86,7 @@ def _extent(delta, per_metre):
 
 @inlined
 def heads_for_zero(determinants, times, k, first):
-    """Index of the step in which a determinant may have vanished: k, or the one after row ``first``; 0 if in none.
+    """Return the step in which a determinant may have vanished: k, or the one after ``first``; else 0.
 
     ``first``: the row at which the determinants begin.
     """
@@ -108,7 +108,10 @@ def heads_for_zero(determinants, times, k, first):
 
 @inlined
 def _unexplained(q, v, a, k, h, per_metre):
-    """Largest part of step k that the rates at its ends do not explain, in sizes and rad; NaN counts as infinite."""
+    """Return the largest part of step k that its end rates do not explain, in sizes and rad.
+
+    NaN counts as infinite.
+    """
     largest = 0.0
     half = 0.5 * h
     twelfth = h * h / 12.0
@@ -124,7 +127,9 @@ def _unexplained(q, v, a, k, h, per_metre):
 
 @kernel
 def sweep(system, seq, fac, ws, size, motion, residual, determinant, start, chosen):
-    """Solve positions, velocities and accelerations of ``motion`` from row ``start`` on; rows before are known.
+    """Solve positions, velocities and accelerations of ``motion`` from row ``start`` on.
+
+    Rows before are known.
 
     The rows of J in ``seq`` are those chosen for times from row ``chosen`` on. residual (T,) largest |Phi| and
     determinant (T, d) of each block of J are filled, too. With ``start`` 0, q[0] must hold the assembled pose. ``size``

@@ -58,7 +58,7 @@ def period(m: Model) -> float | None:
 
 
 def common_period(drivers: Iterable[Joint]) -> float | None:
-    """The least time (s) after which the laws of all drivers repeat; None where there is none within MOST_TURNS.
+    """Return the least time (s) after which all drivers' laws repeat; None within MOST_TURNS turns.
 
     An angle repeats after whole turns. A law that holds its value repeats after any time.
     """
@@ -125,7 +125,7 @@ def _ends(q: np.ndarray, v: np.ndarray, a: np.ndarray, i: int, j: int) -> Ends:
 
 
 def _least_turns(ends: Ends) -> int | None:
-    """The number of turns of which that of the period is a multiple; None if a body turns in no whole number of them.
+    """Return the number of turns that divides that of the period; None for a body without whole turns.
 
     It shows in bodies that stand where they stood, move as they moved, and have turned.
     """

@@ -1,4 +1,4 @@
-"""Where a pose is looked for first: the quintic through the last two poses with their velocities and accelerations."""
+"""Prediction of a pose: the quintic through the last two poses, velocities and accelerations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ LONGEST_STRETCH = 4.0
 
 @inlined
 def quintic_factors(t, k, time):
-    """Return weights of the data of poses k - 1 and k - 2 at ``time``: q apart, v and a of the last, of the other.
+    """Return weights at ``time`` of the data of poses k - 1, k - 2: the difference of q, v and a of each.
 
     With s = ahead / h the quintic is linear in the six data, so its five factors are found once for all coordinates.
     """

@@ -1,4 +1,4 @@
-"""Make a mechanism ready: its mobility, its closed start pose, the sequence of its elimination, its groups."""
+"""Preparation of a mechanism: mobility, closed start pose, elimination sequence, groups."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ from mbsd.model.mechanism import Model
 
 
 def prepare_beside(m: Model, other: Prepared, start: float, end: float) -> Prepared:
-    """The same of ``m``, which is what ``other`` was made of but for numbers: its mobility and its plan are those.
+    """Return the preparation of ``m``, which differs from that of ``other`` in numbers alone.
+
+    Its mobility and its plan are the same.
 
     Newton-Raphson solves it as a whole. It takes a fraction of the time where a mechanism is large, and a motion of few
     steps. Raises ModelError and AssemblyError as :func:`prepare` does.

@@ -1,4 +1,4 @@
-"""States of forces, such as pressures, along a driven motion: equations of first order along known poses.
+"""States of forces, such as pressures, along a driven motion: first-order equations.
 
     s' = f(t, q(t), v(t), s)     q, v: quintics through the outputs;  LSODA, stiff or not, from jump to jump of laws
 
@@ -27,7 +27,9 @@ TOLERANCE = 1e-9
 
 
 def states_along(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray | None:
-    """(T, n) states (SI) along a motion q, v, a (T, 3 nb) at rising times (T,); None where no force has any.
+    """Return (T, n) states (SI) along a motion q, v, a (T, 3 nb) at times (T,); None without states.
+
+    Times rise.
 
     Raises SimulationError where they grow without bound.
     """
@@ -79,7 +81,7 @@ class _Flow:
         self.time, self.power = np.zeros(1), np.zeros(1)
 
     def follow(self, first: float, last: float, out: np.ndarray) -> None:
-        """Fill the rows of ``out`` (T, n) after ``first`` (s) up to ``last``; that before or at ``first`` is known."""
+        """Fill the rows of ``out`` (T, n) after ``first`` (s) up to ``last``; earlier ones are known."""
         from scipy.integrate import solve_ivp
 
         k = int(np.searchsorted(self.t, first, side="right"))

@@ -30,12 +30,12 @@ AT_ONCE = 64
 
 
 def strides(packed: Packed) -> np.ndarray:
-    """(motions + 1,) how far each law may go in one step (rad or m); entry 0 is the law that is always zero."""
+    """Return (motions + 1,) largest steps of each law (rad or m); entry 0 is the zero law."""
     return np.array([np.inf, *(TURN if driver.kind.angular else LENGTH * packed.size for driver in packed.drivers)])
 
 
 def divisions(packed: Packed, times: np.ndarray) -> int:
-    """Equal parts of the steps of ``times`` (T,), themselves equal, in which no law goes further than its stride."""
+    """Return equal parts of the even steps of ``times`` (T,) in which no law exceeds its stride."""
     first, last, steps = float(times[0]), float(times[-1]), len(times) - 1
     stride = strides(packed)
     crowd = np.diff(np.flatnonzero(Steps(packed, times).wanted))  # outputs and knots within each step
@@ -58,7 +58,7 @@ def _strides_taken(times: np.ndarray, drives: np.ndarray, stride: np.ndarray) ->
 
 
 def refuse_endless(packed: Packed, times: np.ndarray, steps: float) -> None:
-    """Raise ModelError where following the drivers over ``times`` (T,) takes more steps than there is room for."""
+    """Raise ModelError if following the drivers over ``times`` (T,) takes more steps than fit."""
     if steps * 3 * len(packed.body_names) <= MOST:
         return
     drives = packed.drives(times)
@@ -71,7 +71,7 @@ def refuse_endless(packed: Packed, times: np.ndarray, steps: float) -> None:
 
 
 class Steps:
-    """Times of a motion (T,), the laws' values there (T, motions + 1, 3), and which of them were asked for."""
+    """Times of a motion (T,), the laws' values there (T, motions + 1, 3), and the requested ones."""
 
     def __init__(self, packed: Packed, times: np.ndarray) -> None:
         self.packed, self.stride = packed, strides(packed)
@@ -108,7 +108,7 @@ class Steps:
         return True
 
     def leave_out(self, start: float, end: float, more: np.ndarray) -> np.ndarray:
-        """Take out the steps strictly between ``start`` and ``end`` (s) and put ``more`` (n,) before the last time.
+        """Remove the steps strictly between ``start`` and ``end`` (s), and add ``more`` (n,) before the last.
 
         Returns the times taken out that were asked for.
         """
@@ -164,7 +164,7 @@ class Steps:
         return len(self.times) > count
 
     def _put_knots(self, knots: np.ndarray) -> None:
-        """Take those at which a law is not where the ends of its step lead: it may go and come back in that step."""
+        """Keep knots at which a law is off the line of its step's ends: it may go and come back there."""
         knots = knots[~np.isin(knots, self.times) & (knots > self.times[0]) & (knots < self.times[-1])]
         if not len(knots):
             return

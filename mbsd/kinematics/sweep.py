@@ -45,7 +45,10 @@ def sweep(
     beside: Prepared | None = None,
     switch_at: Sequence[float] | np.ndarray = (),
 ) -> Solution:
-    """See :meth:`mbsd.mechanism.Mechanism.sweep`; ``beside``: a mechanism made ready that differs in numbers alone."""
+    """Return a sweep; see :meth:`mbsd.mechanism.Mechanism.sweep`.
+
+    ``beside`` is a prepared mechanism that differs in numbers alone.
+    """
     grid = sweep_times(m, duration, steps, times)
     switches = switch_times(m, switch_at)
     ready = _ready(m, beside, float(grid[0]), float(grid[-1]))
@@ -78,7 +81,10 @@ def sweep(
 
 
 def _solution(m: Model, ready: Prepared, grid: np.ndarray, march: March) -> Solution:
-    """The motion at the times (s) of ``grid`` (T,) with its efforts; those near change points from poses beside."""
+    """Return the motion at the times (s) of ``grid`` (T,) with its efforts.
+
+    Efforts near change points come from poses beside.
+    """
     sides = [(passage, side) for passage in march.passages for side in sides_of(passage, grid)]
     if not sides:
         q, v, a, drives = march.q, march.v, march.a, march.drives
@@ -202,7 +208,7 @@ def sweep_times(m: Model, duration: float | None, steps: int, times: Sequence[fl
 
 
 def _law_duration(m: Model) -> float:
-    """The common period of the laws (s), or the longest of theirs where there is none. Raises ModelError for none."""
+    """Return the common period of the laws (s), else the longest of theirs. Raises ModelError without."""
     if not m.drivers:
         return 1.0  # mobility will name the missing driver
     common = common_period(m.drivers.values())

@@ -1,3 +1,4 @@
-"""A mechanism by name, which refuses what cannot be: bodies, joints, drivers, forces, contacts, laws. No kernel, no
-compiler.
+"""A mechanism by name, checked as it is built: bodies, joints, drivers, forces, contacts, laws.
+
+It needs no kernel and no compiler.
 """

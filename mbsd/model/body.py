@@ -50,7 +50,7 @@ class Marker(Suggesting):
 
     @property
     def plane(self) -> float | None:
-        """Where it lies along the normal of the plane (m): its own place, else its body's; None if neither is given."""
+        """Position along the normal of the plane (m): its own, else its body's; None if neither is given."""
         return self.body.z if self.z is None else self.z
 
     def __repr__(self) -> str:
@@ -65,7 +65,10 @@ def rod_inertia(mass: float, length: float) -> float:
 
 
 def at_end(marker: Marker, length: float | None) -> bool:
-    """Return True for a marker at the end of its bar, whose length (m) this is; a body without one has no end."""
+    """Return True for a marker at the end of its bar of this length (m).
+
+    A body without a length has no end.
+    """
     return length is not None and marker.x == length and marker.y == 0.0
 
 
@@ -144,7 +147,7 @@ class Body(Suggesting):
         return Marker(self, *self._place("at", x, y, angle), z=self._along("at", z))
 
     def at_world(self, x: float, y: float, angle: float = 0.0, z: float | None = None) -> Marker:
-        """The marker that is at (x, y) in the world at the start (m), its x axis turned by ``angle`` there (rad).
+        """Return the marker at (x, y) in the world at the start (m), its x axis turned by ``angle`` (rad).
 
         The start is that of the model as it is now, at time 0: links closed, what start_near gives held; on ground it
         is ``at``. From then on the marker is fixed to the body, whatever is changed. ``z`` is that of ``at``. Raises

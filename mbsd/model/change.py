@@ -1,4 +1,4 @@
-"""Numbers and laws of a mechanism changed where it stands, so that it is solved again without being built again.
+"""Changes of numbers and laws of a mechanism in place, so that it is solved again without a rebuild.
 
 A joint, driver, force or contact is made anew by the method of its kind's name, from its own markers, what the user
 gave of numbers and laws, and the new ones; so what the method refuses stays refused, and what it derives from them is
@@ -66,7 +66,10 @@ def change(m: Model, name: str, values: Mapping[str, Any]) -> None:
 
 
 def given(entry: Joint | Force) -> dict[str, Any]:
-    """Arguments of the method that added it, but for its markers and bodies: what the user gave, laws included."""
+    """Return the arguments of the method that added it, but for markers and bodies.
+
+    They are those that the user gave, laws included.
+    """
     named = entry.given
     if isinstance(entry, Force):
         return {**named, **entry.laws}
@@ -128,7 +131,7 @@ def takes(m: Model, name: str, key: str) -> bool:
 
 
 def values_of(m: Model, name: str) -> dict[str, Any] | None:
-    """Return what :func:`change` takes for a name, with its values, derived ones too; None if the name is unknown."""
+    """Return what :func:`change` takes for a name, with values, also derived; None if unknown."""
     for table in connections(m):
         if name in table:
             entry: Any = table[name]

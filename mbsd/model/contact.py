@@ -34,7 +34,7 @@ CONTACT_KINDS: dict[str, ContactKind] = {}
 
 
 def register(kind: ContactKind) -> ContactKind:
-    """Enter a kind; raises ValueError if its name is taken or it is not made of constraints of relative pose."""
+    """Register a kind; raises ValueError if its name is taken or a constraint is not of relative pose."""
     if not kind.constraints or any(name not in SPECIALS or ROWS[name] != 1 for name in kind.constraints):
         raise ValueError(f"{kind.name}: constraints {kind.constraints}; there are {', '.join(SPECIALS)}")
     refuse_unknown_look(kind.name, kind.look)

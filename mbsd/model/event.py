@@ -16,7 +16,7 @@ from mbsd.model.body import Body, Marker
 
 @dataclass(frozen=True, eq=False)
 class Event(Suggesting, WithFunctions):
-    """A scalar function of time and motion that a simulation monitors; see :meth:`mbsd.mechanism.Mechanism.event`."""
+    """Scalar function that a simulation monitors; see :meth:`mbsd.mechanism.Mechanism.event`."""
 
     name: str
     value: Callable[..., float]

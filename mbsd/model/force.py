@@ -68,7 +68,7 @@ class Element:
 
 @dataclass(frozen=True)
 class Interaction:
-    """A function in mbsd/equations/interactions between two markers, its numbers, and the law of time it reads.
+    """Function in mbsd/equations/interactions between two markers, its numbers, and its law of time.
 
     Where it ``calls_law``, the address of the force's own ``law``, a function of the user, comes before the numbers.
     One that ``remembers`` asks for the speed at which its contact began; one with a ``crank`` reads the angle of the
@@ -105,7 +105,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class States:
-    """The states that a force carries through a motion, as a cylinder its pressures: equations of first order."""
+    """States that a force carries through a motion, as a cylinder its pressures: first-order equations."""
 
     names: tuple[str, ...]
     """Also of the params that give them at the start, each a number or None."""
@@ -232,7 +232,7 @@ FORCE_KINDS: dict[str, ForceKind] = {}
 
 
 def register(kind: ForceKind) -> ForceKind:
-    """Enter a kind; raises ValueError if its name is taken, the example missing, or its states are too many."""
+    """Register a kind; raises ValueError if the name is taken, the example missing, states too many."""
     if not callable(kind.example):
         raise ValueError(f"{kind.name}: an example is missing; the registry test needs one")
     refuse_unknown_look(kind.name, kind.look)

@@ -1,4 +1,4 @@
-"""Looks: what pictures of solids draw for a joint, driver, force or contact beside the parts of its bodies.
+"""Looks: drawings of joints, drivers, forces and contacts in pictures of solids, beside the parts.
 
 band        a belt or chain round both wheels
 roller      a roller about marker j that is pressed on one side: a cam's

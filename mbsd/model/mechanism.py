@@ -1,4 +1,4 @@
-"""The model of a mechanism: named bodies, joints, drivers, traces and rough starts; bodies and shared checks."""
+"""Model of a mechanism: named bodies, joints, drivers, traces and rough starts, with shared checks."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class StartVelocity:
 
 @dataclass(eq=False)
 class Model(Suggesting):
-    """The model of a mechanism, and checks that all its methods share. See :class:`mbsd.mechanism.Mechanism`."""
+    """Model of a mechanism, and checks for all its methods. See :class:`mbsd.mechanism.Mechanism`."""
 
     name: str
     gravity: tuple[float, float] | None = STANDARD_GRAVITY
@@ -222,7 +222,10 @@ def connections(m: Model) -> tuple[Mapping[str, object], ...]:
 
 
 def own_body(m: Model, body: Body | str, what: str) -> Body:
-    """Return a body of this mechanism, which is given itself or by its name; raises ModelError. ``what`` uses it."""
+    """Return a body of this mechanism, given as body or name; raises ModelError.
+
+    ``what`` uses it.
+    """
     if isinstance(body, str):
         if body not in m.bodies:
             raise ModelError(f"{m.name}: {what}: {no_such('body', body, m.bodies)}")
@@ -235,7 +238,9 @@ def own_body(m: Model, body: Body | str, what: str) -> Body:
 
 
 def own_joint(m: Model, joint: Joint | str, what: str) -> Joint:
-    """Return a joint of this mechanism, which is given itself or by its name; raises ModelError. ``what`` uses it.
+    """Return a joint of this mechanism, given as joint or name; raises ModelError.
+
+    ``what`` uses it.
 
     A joint that :meth:`Mechanism.change` has replaced since counts as the one in its place.
     """
@@ -255,7 +260,9 @@ def name_of(thing: Any) -> Any:
 
 
 def names_given(what: str, value: Any) -> list[str]:
-    """Return names of bodies, joints, drivers, forces or contacts, given themselves or by names, one or a list.
+    """Return names of bodies, joints, drivers, forces or contacts, given as objects or names.
+
+    One or a list is taken.
 
     Raises ModelError, which says ``what`` they are for.
     """
@@ -301,7 +308,7 @@ def start_given(m: Model, name: str, degrees: float, place: tuple[float, float] 
 
 
 def two_bodies(m: Model, what: str, i: Marker, j: Marker, same_body: bool = False) -> None:
-    """Raise ModelError unless i and j are markers of two bodies of this mechanism; ``same_body``: of one will do."""
+    """Raise ModelError unless i and j are markers of two bodies here; ``same_body`` allows one body."""
     for marker in (i, j):
         if not isinstance(marker, Marker):
             raise ModelError(

@@ -1,4 +1,4 @@
-"""Oil in both chambers of a hydraulic cylinder: volumes, flows, how pressures change, what they are in a steady state.
+"""Oil in both chambers of a hydraulic cylinder: volumes, flows, pressure rates, steady states.
 
     s = l - L                              how far the rod is out;  l: distance of the points, L where it is fully in
     V_a = D_a + A_a s,   V_b = D_b + A_b (S - s)

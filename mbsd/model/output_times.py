@@ -1,4 +1,4 @@
-"""The times of a motion as the user gives them: checked, and refused where they or the results are beyond measure."""
+"""Output times of a motion as given by the user, with checks of their order and of the results' size."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ COPIES = 3
 
 
 def rising_times(m: Model, times: Sequence[float] | np.ndarray, least: int) -> np.ndarray:
-    """``times`` (T,) as given, at least so many. Raises ModelError for what is no list of rising finite numbers."""
+    """Return ``times`` (T,) as given, at least ``least``.
+
+    Raises ModelError unless it is a list of rising finite numbers.
+    """
     refuse_too_many(m, _length(times))  # before a copy is made
     grid = number_array(f"{m.name}: times", times)
     if grid.ndim != 1 or len(grid) < least:

@@ -41,7 +41,9 @@ LEAST_PIECES, LEAST_PARTS = 128, 4
 
 
 def curve_pieces(points: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Breaks (p + 1,) and coefficients (p, 2, 6), lowest first, of a spline of degree 5 through points (k, 2).
+    """Return breaks (p + 1,) and coefficients (p, 2, 6) of a degree-5 spline through points (k, 2).
+
+    Coefficients go from the lowest power up.
 
     Fewer than six points give a lower degree, two a straight line. A closed curve returns to its first point smoothly.
     """
@@ -107,7 +109,9 @@ def curve_numbers(
 
 
 def _passes_itself(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> bool:
-    """Return True if another part of a curve is so close by that the nearest node of a point may not lead to its foot.
+    """Return True if another part of a curve is so close that a point's nearest node may mislead.
+
+    It may then not lead to the point's foot.
 
     Looked for as the kernel does (find_foot), from places at ``distance`` (m, left) of the curve.
     """
@@ -143,7 +147,7 @@ def _wrong_nodes(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, dis
         return along > ROUNDABOUT * np.hypot(*np.moveaxis(nodes[node] - on, -1, 0))
 
     def squares(node: np.ndarray) -> np.ndarray:
-        """(n, k) squared distances of places and nodes, infinite where there is none; less for those elsewhere."""
+        """Return (n, k) squared distances of places and nodes, infinite if there is none; less elsewhere."""
         inside = (node >= 0) & (node <= last)
         node = np.where(inside, node, 0)
         square = ((nodes[node] - place) ** 2).sum(axis=2)
@@ -160,7 +164,9 @@ def _wrong_nodes(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, dis
 
 
 def disc_numbers(params: Mapping[str, Any], follows: bool) -> list[np.ndarray]:
-    """Return the numbers of the constraints `curve` and `curve_rolling` of a disc: ``points``, ``closed``, ``radius``.
+    """Return numbers of constraints `curve` and `curve_rolling` of a disc: points, closed, radius.
+
+    These are entries of ``params``.
 
     ``follows``: it never leaves its branch of a curve that crosses itself; a contact is with the nearest branch.
     """
@@ -174,7 +180,9 @@ def disc_numbers(params: Mapping[str, Any], follows: bool) -> list[np.ndarray]:
 def crossings(
     breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float, continued: bool = False
 ) -> np.ndarray:
-    """(c, 2) pairs of parameters at which the curve parallel at ``distance`` (m, left) crosses itself, roughly.
+    """Return (c, 2) parameters at which the curve parallel at ``distance`` (m, left) crosses itself.
+
+    They are rough.
 
     ``continued``: an open curve with its straight continuations, which have parameters beyond its own. They cross it
     after the crossings of the curve alone in this list, and each other at its end.
@@ -201,7 +209,10 @@ def crossings(
 def _chords(
     breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Parameters (n,), places and slopes (n, 2) of the ends of chords; an open curve's last end is the last one."""
+    """Return parameters (n,), places and slopes (n, 2) of the ends of chords.
+
+    An open curve's last end is the last one.
+    """
     fine = max(1, min(FINE, MOST_CHORDS // len(coefficients)))
     s = (np.diff(breaks)[:, None] * np.arange(fine) / fine)[..., None]
     u = (breaks[:-1, None] + s[..., 0]).ravel()
@@ -243,7 +254,7 @@ def _continued_crossings(u: np.ndarray, place: np.ndarray, slope: np.ndarray) ->
 
 
 def farthest_step(breaks: np.ndarray, coefficients: np.ndarray, closed: bool, distance: float) -> float:
-    """How far the foot may go at once (m): a part of the shortest loop of a curve that crosses itself, else 0.
+    """Return how far the foot may go at once (m): part of a self-crossing curve's shortest loop, else 0.
 
     The straight continuations of an open curve count as parts of it.
     """
@@ -327,7 +338,10 @@ def refuse_crossing(what: str, points: list[list[float]], closed: bool) -> None:
 
 
 def refuse_tight(what: str, points: list[list[float]], closed: bool, radius: float) -> None:
-    """Raise ModelError where a curve bends to the left so tightly that a disc of ``radius`` (m) touches twice."""
+    """Raise ModelError if a curve bends to the left too tightly for a disc of ``radius`` (m).
+
+    The disc would touch twice.
+    """
     tightest = float(curvature(*curve_pieces(np.array(points), closed)).max())
     if tightest * radius >= 1.0:
         raise ModelError(

@@ -22,8 +22,7 @@ ROUNDED = 1e-3
 
 
 def with_radii(params: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The params of a joint with the pitch radii (m) of wheels that are given by teeth: ``radius_i``, ``radius_j``,
-    ``radius``."""
+    """Return a joint's params with pitch radii (m) from teeth: ``radius_i``, ``radius_j``, ``radius``."""
     teeth = params.get("teeth")
     if teeth is None:
         return params

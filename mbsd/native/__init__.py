@@ -1,1 +1,1 @@
-"""Kernels without Python: machine code of a mechanism's equations, and its arrays as one block of memory."""
+"""Kernels without Python: machine code of a mechanism's equations, and its arrays as one block."""

@@ -1,4 +1,4 @@
-"""A mechanism's equations of motion for programs without Python: machine code, memory, and what is called with what.
+"""Equations of motion for programs without Python: machine code, memory, and the calls.
 
 In reference coordinates, so that any mechanism goes; what Python itself decides between steps does not: events, limits,
 impacts and joints that stick. Contacts by penalty are in the compiled loop.
@@ -51,7 +51,10 @@ class NativeEquations:
     """
 
     def __init__(self, m: Model, start: float, end: float, tolerance: float) -> None:
-        """``start`` and ``end`` (s): the span for which laws are looked at; ``tolerance``: as that of simulate."""
+        """Prepare the equations; laws are looked at from ``start`` to ``end`` (s).
+
+        ``tolerance`` is that of simulate.
+        """
         _refuse(m)
         self.model = m
         self.ready: PreparedDynamics = prepare_dynamics(m, start, end, contacts=True)
@@ -89,7 +92,10 @@ class NativeEquations:
 
     @property
     def exchange(self) -> bool:
-        """True if rates follow from the state alone: damping by restitution also needs the speed of the approach."""
+        """True if rates follow from the state alone.
+
+        Damping by restitution also needs the speed of the approach.
+        """
         return not self.ready.approaches
 
     @property

@@ -1,4 +1,4 @@
-"""Machine code of kernels with all that they call, for any program: no numba, no Python, no address of this process.
+"""Machine code of kernels and their callees for any program, without numba, Python or addresses.
 
 A kernel's module in LLVM's own language is kept beside its machine code. Those of the entries, of what they call and of
 the kernels behind their cells (mbsd/compiling/lazy_kernel.py) are linked into one, what nobody calls is dropped, and
@@ -156,7 +156,10 @@ def _drop_unused(module: Any) -> None:
 
 
 def _stand_ins(module: Any) -> str:
-    """Definitions that do nothing of what wrappers name. Raises ModelError for what no program without Python has."""
+    """Return empty definitions of names in wrappers.
+
+    Raises ModelError for names that no program without Python has.
+    """
     lines = []
     for function in module.functions:
         name = function.name

@@ -1,4 +1,4 @@
-"""Arrays of kernels' arguments as one block of memory: its bytes at the start, and where each array is in it.
+"""Arguments of kernels as one block of memory: its bytes at the start, and each array's place.
 
 Arrays that share memory share it in the block.
 """

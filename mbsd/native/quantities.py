@@ -48,7 +48,10 @@ class Quantity:
 
 
 def with_inputs(m: Model) -> Any:
-    """A copy of a mechanism with a force along x and y at the centre of mass and a torque on each body, all zero."""
+    """Return a copy of a mechanism with zero forces along x and y and a zero torque on each body.
+
+    Forces act at the centre of mass.
+    """
     import copy
 
     out: Any = copy.deepcopy(m)
@@ -63,7 +66,7 @@ def with_inputs(m: Model) -> Any:
 
 
 def quantities_of(equations: NativeEquations) -> list[Quantity]:
-    """All of them, in the order states, inputs, parameters, outputs; rates of states are outputs of their own."""
+    """Return all quantities: states, inputs, parameters, outputs; rates of states are outputs too."""
     named: dict[str, Quantity] = {}
     for part in (_states, _inputs, _parameters, _outputs):
         for quantity in part(equations):
@@ -126,7 +129,7 @@ def _constants(equations: NativeEquations) -> Iterator[tuple[str, str, int, floa
 
 
 def _terms(equations: NativeEquations) -> Iterator[tuple[Any, str, int, bool, bool]]:
-    """Term, what it belongs to, row of Loads.number, whether the force is this term alone, whether it is a torque."""
+    """Yield terms: term, owner, row of Loads.number, True if the force is only it, True for a torque."""
     for name, rows in directory(equations.ready.packed).items():
         every = [(element, number) for number, element in enumerate(rows.elements, 1) for _ in element.terms]
         for (element, number), term, row in zip(every, terms_of(rows.elements), rows.term, strict=True):
@@ -176,7 +179,10 @@ def _traces(equations: NativeEquations) -> list[tuple[str, Any]]:
 
 
 def frames_of(equations: NativeEquations) -> list[tuple[int, float, float, float]]:
-    """Body, place (m) from its centre of mass in its axes and angle (rad) of each frame: of bodies, then of traces."""
+    """Return body, place (m) and angle (rad) of each frame: of bodies, then of traces.
+
+    The place is from the body's centre of mass in its axes.
+    """
     packed = equations.ready.packed
     bodies = range(len(packed.body_names) - packed.states)
     frames = [(b, -float(packed.com[b, 0]), -float(packed.com[b, 1]), 0.0) for b in bodies]

@@ -1,4 +1,4 @@
-"""Arguments of kernels read from a table of machine words, as a caller in another language can fill it.
+"""Arguments of kernels in a table of machine words, which a caller in another language fills.
 
 Each leaf takes consecutive words of 8 bytes: a number takes one, an array the address of its first element, its shape
 and its strides in bytes. Named tuples are their fields one after another.
@@ -33,7 +33,7 @@ def words(value: Any) -> int:
 
 
 def reader(kind: Any) -> Any:
-    """Return the function by which kernels read a value of numba's type ``kind`` from a table (pointer to int64)."""
+    """Return the function by which kernels read numba's type ``kind`` from a table (pointer to int64)."""
 
     @intrinsic
     def read(typing, table):  # pyright: ignore[reportUnusedParameter]

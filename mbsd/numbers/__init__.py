@@ -1,1 +1,1 @@
-"""Numbers of a model by name: set in it, varied over many rows, and as arrays beside those that it had."""
+"""Numbers of a model by name: set in it, varied over many rows, and as arrays beside the old ones."""

@@ -93,13 +93,19 @@ def number_named(m: Model, name: str) -> Number:
 
 
 def twin_of(number: Number, other: Model, value: float, numbers: Iterable[Number]) -> Number | None:
-    """Return the one of ``numbers`` that is ``number`` by another name, which has ``value`` in the model ``other``."""
+    """Return the one of ``numbers`` that is ``number`` by another name, with ``value`` in ``other``.
+
+    ``other`` is a model.
+    """
     alike = (twin for twin in numbers if twin.value == number.value)
     return next((twin for twin in alike if number_named(other, twin.name).value == value), None)
 
 
 def number_in(m: Model, whole: str, rest: str, asked: str) -> Number:
-    """The number ``rest`` of a thing: "x" of a joint. Raises ModelError, which says that ``asked`` asked for it."""
+    """Return the number ``rest`` of a thing: "x" of a joint.
+
+    Raises ModelError, which says that ``asked`` asked for it.
+    """
     number = _number(m, whole, rest)
     if number is None:
         raise _no_number(m, whole, rest, asked)
@@ -107,7 +113,7 @@ def number_in(m: Model, whole: str, rest: str, asked: str) -> Number:
 
 
 def place_in(m: Model, name: str, axis: str) -> Number:
-    """Return the coordinate "x" or "y" of a traced point, or else of the place of a joint. Raises ModelError."""
+    """Return the coordinate "x" or "y" of a traced point, or of a joint's place. Raises ModelError."""
     if name not in m.traces and name not in m.joints:
         raise ModelError(f"{m.name}: {no_such('joint or traced point', name, [*m.joints, *m.traces])}")
     if name in m.traces:
@@ -166,7 +172,7 @@ def _no_number(m: Model, whole: str, rest: str, asked: str) -> ModelError:
 
 @contextmanager
 def with_value(m: Model, number: Number, value: float, saved: SavedModel | None = None) -> Iterator[Model]:
-    """The model ``m`` with another value of a number, for as long as the context lasts; ``saved``: as it is now."""
+    """Yield the model ``m`` with another value of a number in this context; ``saved``: as it is now."""
     if number.built is not None:
         yield number.built(value)
         return
@@ -186,7 +192,9 @@ def with_values(m: Any, numbers: Sequence[Number], values: Sequence[float]) -> A
 
 
 def changed(m: Model, values: Mapping[str, object]) -> Model:
-    """A copy of ``m`` with lengths of bars and rods (one number, m) and places of joints and traced points ((x, y), m).
+    """Return a copy of ``m`` with other lengths of bars and rods, and places of joints and traced points.
+
+    A length is one number (m), a place is (x, y) (m).
 
     A bar's new end moves whatever is at its end, forces included, and a uniform rod stays one; other masses are kept.
     Raises ModelError for a name of none.
@@ -207,7 +215,7 @@ def put_together(
     values: Sequence[float],
     changes: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> None:
-    """Give a model other values of numbers where it stands; ``changes``: other arguments of ``change`` by name.
+    """Set other values of numbers in a model in place; ``changes``: other arguments of ``change`` by name.
 
     All of one thing are changed at once, so that what it refuses are the new numbers alone. Places come last, as the
     end of a bar follows its length. Raises ModelError for what the model refuses.
@@ -276,7 +284,10 @@ def _is_number(value: Any) -> bool:
 
 
 def _within(path: str, value: Any) -> tuple[float, Callable[[float], Any]] | None:
-    """The number at ``path`` of a value, a number, several, or a law; and the value with another in its place."""
+    """Return the number at ``path`` of a value, and a function that gives the value with another one.
+
+    The value is a number, several, or a law.
+    """
     if not path:
         return (float(value), lambda new: new) if _is_number(value) else None
     first, _, rest = path.partition(".")
@@ -388,7 +399,7 @@ def _gravity(m: Model, axis: int) -> Number:
 
 
 def law_with(m: Model, number: Number) -> Callable[[float], Any] | None:
-    """Return what gives the law that a number of ``m`` belongs to with another value of it; None of others."""
+    """Return a function that gives the law of a number of ``m`` with another value; None without a law."""
     at = number.within
     if at is None or not at.path:
         return None

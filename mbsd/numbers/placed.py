@@ -1,4 +1,4 @@
-"""Arrays of a mechanism whose numbers have changed: what a number does not concern is taken over, the rest packed anew.
+"""Arrays of a mechanism with changed numbers: only affected arrays are packed anew.
 
 Most numbers are a mass, a number of a force, gravity or a start: markers, joints and tables stay as they are, and only
 a few entries are written anew. Whatever moves a marker or a joint is packed as a whole.
@@ -27,7 +27,7 @@ TABLES_OF_LOADS = ("element", "term", "interaction", "user", "user_body", "frict
 
 
 def repacked(m: Model, packed: Packed, saved: SavedModel) -> Packed | None:
-    """``packed`` of the model that was ``saved``, with what has changed in ``m`` since; None where a place has."""
+    """Return ``packed`` of the ``saved`` model, with the changes in ``m``; None if a place has changed."""
     joints = m.joints, m.drivers, m.contacts
     if m is not saved.m or packed.specials.names or not all(unchanged(table, saved) for table in joints):
         return None
@@ -76,7 +76,7 @@ def laws_of(packed: Packed) -> list[Any]:
 
 
 def alike(arrays: Any, others: Any, names: Sequence[str]) -> bool:
-    """Return True where arrays of these names have the same numbers in two systems or loads, or neither is there."""
+    """Return True if arrays of these names are equal in two systems or loads, or both are missing."""
     if arrays is None or others is None:
         return arrays is others
     pairs = [(getattr(arrays, name), getattr(others, name)) for name in names]

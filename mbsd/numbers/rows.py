@@ -1,4 +1,4 @@
-"""Numbers that vary, by name: arguments of ``change``, and places, numbers of laws and others that it does not take.
+"""Numbers that vary, by name: arguments of ``change``, and places, laws' numbers and others.
 
 vary={"closer": {"stiffness": [...], "damping": [...]}, "door": {"mass": [...]}}     as m.change takes them
 vary={"hinge": {"x": [...]}, "motor": {"rate": [...]}, "door": {"hinge.y": [...]}}   as numbers/names.py names them

@@ -30,7 +30,7 @@ ROUNDING = 1e-9
 
 
 def acting(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> Wrench:
-    """Return the wrench of joint, driver or contact number ``k`` on its second body, at the point where it acts.
+    """Return the wrench of joint, driver or contact number ``k`` on its second body, where it acts.
 
     q (T, nb, 3) poses, wrench (T, joints, 3) as a solution has them: N and N m about the second marker.
     """
@@ -64,7 +64,10 @@ def actions(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> list[A
 
 
 def felt(packed: Packed, q: np.ndarray, wrench: np.ndarray, k: int) -> Action:
-    """Return the wrench of joint, driver or contact ``k`` on its moving body: the first if the second is ground."""
+    """Return the wrench of joint, driver or contact ``k`` on its moving body.
+
+    It is the second body, or the first if the second is ground.
+    """
     on, (first, second) = acting(packed, q, wrench, k), packed.joints[k].bodies
     body, sign = (first, -1.0) if second == "ground" else (second, 1.0)
     return Action(on.x, on.y, sign * on.fx, sign * on.fy, sign * on.torque, body)
@@ -81,7 +84,10 @@ def _pin_of(packed: Packed, q: np.ndarray, driver: Joint, otherwise: np.ndarray)
 def _touch(
     joint: Joint, first: np.ndarray, axis: np.ndarray, second: np.ndarray, force: np.ndarray, torque: np.ndarray
 ) -> np.ndarray:
-    """(T, 2) from the second marker to where the bodies touch; ``first`` and ``axis`` (T, 2) are of the first one."""
+    """Return (T, 2) vectors from the second marker to the touching point.
+
+    ``first`` and ``axis`` (T, 2) are of the first one.
+    """
     radius = joint.params.get("radius", 0.0)
     if joint.kind.touching == "line":
         return -radius * np.stack([-axis[:, 1], axis[:, 0]], axis=1)
@@ -98,7 +104,10 @@ def _touch(
 
 
 def _toward(force: np.ndarray, torque: np.ndarray, radius: float) -> np.ndarray:
-    """(T, 2) from a disc's centre to where it is pushed at its rim with this torque: against the normal force."""
+    """Return (T, 2) from a disc's centre to the rim point that this force and torque push.
+
+    It is against the normal force.
+    """
     size = np.hypot(*force.T)
     lever = np.divide(torque, size, out=np.zeros(len(torque)), where=size > 0)
     lean = np.arcsin(np.clip(lever / radius, -1.0, 1.0)) if radius > 0 else np.zeros(len(torque))

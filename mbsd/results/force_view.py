@@ -28,7 +28,9 @@ class Action(Wrench):
 
 @dataclass(frozen=True)
 class ForceView(Suggesting):
-    """A force along a motion, (T, ...) arrays; x, y, fx, fy, force, torque and magnitude are those on the second body.
+    """Force along a motion, (T, ...) arrays; x, y, fx, fy, force and torque are on the second body.
+
+    So is the magnitude.
 
     A load from outside acts on one body, which is the second. One that acts on several bodies (a user's function, a
     rotating frame) has no second body: ask ``on(body)``.
@@ -131,7 +133,10 @@ class ForceView(Suggesting):
         return self._measured("gap")
 
     def columns(self, title: str) -> dict[str, np.ndarray]:
-        """Its results as (T,) arrays named with units, ``spring.fx [N]``; of several bodies ``wind on cart.fx [N]``."""
+        """Return its results as (T,) arrays named with units: ``spring.fx [N]``, ``wind on cart.fx [N]``.
+
+        The body is named if there are several.
+        """
         out: dict[str, np.ndarray] = {}
         if self.measures is not None and self.value is not None:
             out[f"{title}.{self.measures} [{UNITS[self.measures]}]"] = self.value

@@ -49,7 +49,10 @@ MEASURES = {LINE: "length", TURN: "angle", AXIS: "coordinate"}
 
 
 def force_view(moved: Moved, name: str, effort: np.ndarray | None = None) -> ForceView:
-    """View of the force ``name``; ``effort`` (T,) replaces its own law's. Raises ModelError for a failing law."""
+    """Return the view of force ``name``; ``effort`` (T,) replaces its own law's.
+
+    Raises ModelError for a failing law.
+    """
     packed = moved.packed
     k = [force.name for force in packed.forces].index(name)
     force, markers = packed.forces[k], (int(packed.force_markers[k, 0]), int(packed.force_markers[k, 1]))

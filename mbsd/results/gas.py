@@ -28,7 +28,7 @@ HALVINGS = 48
 
 @dataclass(frozen=True, kw_only=True)
 class GasView(ForceView):
-    """A force that gas exerts on a piston, with (T,) pressure and volume; cycles count from the first row on."""
+    """Force of gas on a piston, with (T,) pressure and volume; cycles count from the first row on."""
 
     pressure: np.ndarray
     """(T,) absolute (Pa)."""
@@ -76,7 +76,7 @@ def gas_view(moved: Moved, view: ForceView, chamber: Chamber, power: Callable[[M
 
 
 def _turned(moved: Moved, state: np.ndarray, cycle: CrankCycle, view: ForceView) -> np.ndarray:
-    """(T,) of q or v (T, 3 nb): how far the crank has turned against the cylinder's body, in its own direction."""
+    """Return (T,) of q or v (T, 3 nb): the crank's turn against the cylinder, in its own direction."""
     crank, frame = (3 * moved.packed.body_names.index(name) + 2 for name in (cycle.crank, view.bodies[0]))
     return cycle.sense * (state[:, crank] - state[:, frame])
 

@@ -23,7 +23,10 @@ from mbsd.results.moved import Moved
 
 @dataclass(frozen=True, kw_only=True)
 class HydraulicView(ForceView):
-    """Results of a hydraulic cylinder, (T,) arrays. Chamber A is that of the whole piston; pressures are absolute."""
+    """Results of a hydraulic cylinder, (T,) arrays. Chamber A is the whole piston's.
+
+    Pressures are absolute.
+    """
 
     pressure_a: np.ndarray
     """Pa"""

@@ -1,4 +1,4 @@
-"""Two rows where forces jump at a known time: right before it and right after it; they share that time.
+"""Two rows at a known time at which forces jump: right before it and right after it, at equal times.
 
 A motion is solved at times beside what may jump; where neither accelerations nor reactions do, these rows go.
 """
@@ -39,7 +39,10 @@ class Jumps:
         return len(self.before) > 0
 
     def among(self, asked: np.ndarray) -> Asked:
-        """Output times ``asked`` (T,) with those on both sides of each jump; one that falls on it is right after it."""
+        """Return output times ``asked`` (T,) with both sides of each jump.
+
+        An output on a jump is right after it.
+        """
         solved, shown, added, jumps = asked.copy(), asked.copy(), [], []
         for before, after, names in self._apart(AT_ONCE * float(asked[-1] - asked[0])):
             on = np.flatnonzero((asked >= before) & (asked <= after))

@@ -42,7 +42,7 @@ def measured_rate(packed: Packed, element: Element, i: int, j: int, q: np.ndarra
 
 
 def check_states(packed: Packed, t: np.ndarray, q: np.ndarray, states: np.ndarray) -> None:
-    """Let each force check its states (T, n) (SI) along poses q (T, 3 nb) at times (T,); raises ModelError."""
+    """Check each force's states (T, n) (SI) along q (T, 3 nb) at times (T,); raises ModelError."""
     for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
         if force.kind.states is not None:
             assert force.kind.along is not None

@@ -1,4 +1,4 @@
-"""Joints and drivers that events of the user release in a simulation: when, and at which outputs they are released."""
+"""Joints and drivers that user events release in a simulation, with the times and outputs."""
 
 from __future__ import annotations
 

@@ -14,7 +14,10 @@ Ends = tuple[tuple[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.nda
 
 
 def returned(ends: Ends) -> bool:
-    """Return True if poses, velocities and accelerations (nb, 3) of both ends are the same but for whole turns."""
+    """Return True if both ends have the same pose and rates (nb, 3) but for whole turns.
+
+    Rates are velocities and accelerations.
+    """
     first, last = ends
     for order, (start, end) in enumerate(zip(first, last, strict=True)):
         gap = end - start

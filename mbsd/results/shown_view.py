@@ -86,7 +86,7 @@ LEFT_OUT = (".ax [m/s^2]", ".ay [m/s^2]", ".vx [m/s]", ".vy [m/s]")
 
 
 def html_of(name: str, about: str, columns: Mapping[str, np.ndarray], moving: str) -> str:
-    """HTML: a mechanism's name, what is said ``about`` it, the HTML of its skeleton ``moving``, and its results."""
+    """Return HTML: a mechanism's name, text ``about`` it, its skeleton ``moving``, and its results."""
     rows = [
         (column, *(f"{end(values, initial=np.nan):.6g}" for end in (np.fmin.reduce, np.fmax.reduce)))
         for column, values in columns.items()

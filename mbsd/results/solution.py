@@ -70,7 +70,7 @@ SHOWN = 40
 
 @dataclass(frozen=True, eq=False)
 class Solution(Suggesting, Generic[AnyModel]):
-    """The motion of one mechanism. q, v, a hold centres of mass, (T, nb, 3); the views give the author's frames."""
+    """Motion of one mechanism. q, v, a hold centres of mass, (T, nb, 3); views have the author's frames."""
 
     other_words = MappingProxyType(
         {
@@ -141,7 +141,9 @@ class Solution(Suggesting, Generic[AnyModel]):
         return self.margin() if callable(self.margin) else self.margin
 
     def at(self, times: float | Sequence[float] | np.ndarray) -> Solution:
-        """A simulation at rising times (s), as exact as at its outputs; at the time of an event the motion after it.
+        """Return a simulation at rising times (s), as exact as at its outputs.
+
+        At the time of an event it is the motion after it.
 
         Raises ModelError for a sweep and for times outside.
         """
@@ -271,7 +273,7 @@ class Solution(Suggesting, Generic[AnyModel]):
 
     @cached_property
     def energy(self) -> EnergyView:
-        """Kinetic and potential energy of the whole mechanism, springs included; weight counts from the origin."""
+        """Kinetic and potential energy of the mechanism, springs included; weight counts from the origin."""
         mass, inertia, gravity = self.packed.system.mass, self.packed.system.inertia, self.packed.system.gravity
         kinetic = 0.5 * (mass * (self.v[..., 0] ** 2 + self.v[..., 1] ** 2) + inertia * self.v[..., 2] ** 2).sum(axis=1)
         potential = -(mass[:, None] * self.q[..., :2] @ gravity[:, None]).sum(axis=(1, 2))
@@ -284,7 +286,9 @@ class Solution(Suggesting, Generic[AnyModel]):
         return centre_of_mass(self.packed, self.q, self.v, self.a)
 
     def shaking(self, about: tuple[float, float] = (0.0, 0.0), z: float = 0.0) -> Shaking:
-        """Force (N), moment and couples (N m, about a place on ground, m) of the inertia of all bodies on the frame.
+        """Return force (N), moment and couples (N m) of all bodies' inertia on the frame.
+
+        They are about a place on ground (m).
 
         The moment is about the axis through ``about``, normal to the plane; the couples mx and my, of bodies in
         different places z, about axes through ``z``. Weight, springs, gas and other forces are not in it. Raises
@@ -296,7 +300,9 @@ class Solution(Suggesting, Generic[AnyModel]):
         return shaking(self.packed, self.planes, self.q, self.v, self.a, place)
 
     def orders(self, quantity: np.ndarray, crank: str | None = None, turns: int | None = None) -> Orders:
-        """Harmonics of a (T,) or (T, 2) result, such as ``sol.shaking().force``, against the angle of ``crank``.
+        """Return harmonics of a (T,) or (T, 2) result against the angle of ``crank``.
+
+        Such a result is ``sol.shaking().force``.
 
         ``crank``: a body that turns one way; by default the one that a driver turns, else the first on a pin of ground
         that makes a whole turn. ``turns``: whole turns of a cycle; by default as many as it takes to repeat. Raises
@@ -312,7 +318,7 @@ class Solution(Suggesting, Generic[AnyModel]):
 
     @cached_property
     def audit(self) -> np.ndarray | None:
-        """(T,) T + V - work of what has no potential (J), of a simulation: constant but for the integrator's error.
+        """(T,) T + V - work without potential (J) of a simulation: constant but for integration errors.
 
         V holds gravity, springs and other forces with a potential; drivers, dampers and loads from outside do work.
         """
@@ -331,7 +337,10 @@ class Solution(Suggesting, Generic[AnyModel]):
         return float(self.t[-1] - self.t[0]) if returned((first, last)) else None
 
     def to_frame(self) -> pandas.DataFrame:
-        """All results as a pandas DataFrame indexed by time; columns name their units. Needs the extra ``pandas``."""
+        """Return all results as a pandas DataFrame indexed by time; columns name their units.
+
+        It needs the extra ``pandas``.
+        """
         try:
             import pandas
         except ImportError as error:
@@ -354,7 +363,7 @@ class Solution(Suggesting, Generic[AnyModel]):
         frames: bool = False,
         names: bool = True,
     ) -> Picture:
-        """The skeleton at time ``t`` (s, the nearest output) or at an output ``step``, with the paths of traced points.
+        """Draw the skeleton at time ``t`` (s, nearest output) or output ``step``, with traced paths.
 
         See :meth:`mbsd.mechanism.Mechanism.draw`.
         """

@@ -1,4 +1,4 @@
-"""Where the disc of a contact by penalty, or of a tyre, stands to its surface, and a journal to its bearing."""
+"""Position of a penalty contact's disc, or a tyre, to its surface, and of a journal to its bearing."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Foot(NamedTuple):
-    """Where a disc stands to a surface, (T, ...) arrays in the world's axes; a bearing is one around its journal."""
+    """Position of a disc to a surface, (T, ...) arrays in world axes; a bearing is around its journal."""
 
     gap: np.ndarray
     """(T,) distance of the surface less the disc's radius (m)."""
@@ -31,7 +31,10 @@ class Foot(NamedTuple):
 
 
 def foot_of(packed: Packed, force: Force, q: np.ndarray) -> Foot:
-    """Where the disc of a force whose kind has a ``surface`` or ``journal`` stands to it along poses q (T, 3 nb)."""
+    """Return the foot of the disc or journal of a force along poses q (T, 3 nb).
+
+    The force's kind has a ``surface`` or ``journal``.
+    """
     if force.kind.journal is not None:
         return _in_bearing(packed, force, q)
     assert force.kind.surface is not None
@@ -46,7 +49,7 @@ def foot_of(packed: Packed, force: Force, q: np.ndarray) -> Foot:
 
 
 def _in_bearing(packed: Packed, force: Force, q: np.ndarray) -> Foot:
-    """Foot of a journal; in the middle of its bearing it is next to no place of it, and the normal is zero."""
+    """Return the foot of a journal; in the middle of its bearing there is none, and the normal is zero."""
     assert force.kind.journal is not None
     i, j = packed.markers_of(force)
     radius, clearance = force.kind.journal(force)
@@ -58,7 +61,10 @@ def _in_bearing(packed: Packed, force: Force, q: np.ndarray) -> Foot:
 
 
 def gaps_of(packed: Packed, force: Force, q: np.ndarray) -> list[float]:
-    """Gaps or depths (m), above 0, of a journal or of both flanks of gears in the pose q (1, 3 nb); none of others."""
+    """Return gaps or depths (m), above 0, of a journal or gears' flanks in a pose q (1, 3 nb).
+
+    Other forces have none.
+    """
     if force.kind.journal is not None:
         return [abs(float(foot_of(packed, force, q).gap[0]))]
     if force.kind.mesh is not None:

@@ -172,7 +172,10 @@ def contact_view(packed: Packed, row: int, q: np.ndarray, v: np.ndarray, lam: np
 
 
 def moved_frame(q: np.ndarray, v: np.ndarray, a: np.ndarray, local: np.ndarray, turned: float = 0.0) -> FrameView:
-    """From q, v, a (T, 3) of the centre of mass; ``local`` (2,) from there in body axes (m), ``turned`` by an angle."""
+    """Return a frame at ``local`` (2,) from the centre of mass, from q, v, a (T, 3) of the latter.
+
+    ``local`` is in body axes (m), and the frame is turned by the angle ``turned``.
+    """
     c, s = np.cos(q[:, 2]), np.sin(q[:, 2])
     arm_x, arm_y = c * local[0] - s * local[1], s * local[0] + c * local[1]
     omega, alpha = v[:, 2], a[:, 2]

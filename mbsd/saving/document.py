@@ -44,7 +44,10 @@ def document(m: Model) -> dict[str, Any]:
 
 
 def build(written: Mapping[str, Any], make: type[M], where: str = "model") -> M:
-    """The mechanism of a document. Raises ModelError naming the field (``where`` is the file) and the remedy."""
+    """Return a document's mechanism. Raises ModelError naming the field and the remedy.
+
+    ``where`` is the file.
+    """
     top = Entry(written, where)
     _refuse_other_version(top)
     m = top.within(lambda: make(top.text("name"), top.numbers("gravity", 2)))

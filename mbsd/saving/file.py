@@ -1,4 +1,4 @@
-"""The model's file: JSON, written whole, the same bytes for the same model; read with every refusal worded."""
+"""File of the model: JSON, written whole, the same bytes for the same model; read with clear errors."""
 
 from __future__ import annotations
 

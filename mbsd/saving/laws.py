@@ -30,7 +30,10 @@ LAW_PLACES = ("mbsd.model.laws", CYCLES)
 
 @cache
 def factories() -> dict[str, Callable[..., Any]]:
-    """Every law's function by its name, which is that of its class in small letters: ConstantRate, constant_rate."""
+    """Return every law's function by its name, its class in small letters.
+
+    That of ConstantRate is constant_rate.
+    """
     makers: dict[str, Callable[..., Any]] = {}
     for place in LAW_PLACES:
         module = importlib.import_module(place)
@@ -56,7 +59,7 @@ def loadable_laws() -> dict[str, Callable[..., Any]]:
 
 
 def plain(value: Any, where: str) -> Any:
-    """``value`` as JSON types; raises ModelError naming ``where`` if it is a function or another live object."""
+    """Return ``value`` as JSON types; raises ModelError naming ``where`` for a function or live object."""
     if value is None or isinstance(value, bool | str | int | float):
         return value
     if isinstance(value, np.ndarray | np.generic):

@@ -142,7 +142,10 @@ def _register_all() -> None:
 
 
 def _parameters(function: Callable[..., Any]) -> dict[str, tuple[dict[str, Any], bool]]:
-    """Return schemas of what a method or law takes beside names, markers, bodies and laws, and which must be there."""
+    """Return schemas of a method's or law's own arguments, with True if one is required.
+
+    Names, markers, bodies and laws are left out.
+    """
     out = {}
     for parameter in arguments(function):
         if parameter.role in (Role.VALUE, Role.AMOUNT):

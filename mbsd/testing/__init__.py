@@ -1,4 +1,4 @@
-"""Checks of joints, drivers, contacts, forces and integrators of one's own, by differences of their equations.
+"""Checks of user-defined joints, drivers, contacts, forces and integrators, by differences.
 
     check_joint(PARALLEL_ARM)         Phi, J, nu, gamma of a joint, driver or contact
     check_force(STIFFENING_SPRING)    power, action and reaction, potential

@@ -14,7 +14,7 @@ def compare(
     tolerance: float | np.ndarray,
     place: Callable[..., str] = lambda *index: f"at {index}",
 ) -> None:
-    """Raise AssertionError where ``given`` is further from ``expected`` than ``tolerance``, or is no number.
+    """Raise AssertionError if ``given`` is too far from ``expected``, or is no number.
 
     ``place`` puts the index of the worst element into words.
     """

@@ -1,4 +1,4 @@
-"""A kind of force on random motions: its power, action and reaction, and its potential by central differences.
+"""Checks of a kind of force on random motions: power, action and reaction, potential.
 
 P = Q v,   sum of forces and of moments = 0,   Q = -dV/dq
 """

@@ -1,4 +1,4 @@
-"""An integrator on a pendulum whose motion is known: its order; and on a four-bar: constraints closed at outputs.
+"""Checks of an integrator: its order on a pendulum, and closed constraints on a four-bar.
 
 sin(phi / 2) = k sn(K(k) - w t, k),   k = sin(phi_0 / 2),   w^2 = g / l
 """
@@ -52,7 +52,7 @@ def measured_order(method: Integrator) -> float:
 
 
 def errors_of(method: Integrator, make, body: str, exact, durations=(1.0, 10.0)) -> tuple[np.ndarray, np.ndarray]:
-    """Steps and errors (rad, rms of the outputs) of finer and finer runs; those that rounding hides are left out.
+    """Return steps and errors (rad, rms of outputs) of finer and finer runs, above rounding.
 
     ``make`` builds the mechanism, and ``exact`` gives the angle of a body at times (s). Fixed steps run over the first
     duration (s), tolerances over the second, so that their steps are not bound by it.

@@ -1,4 +1,4 @@
-"""The equations of a joint, driver or contact against central differences, on random paths off the constraint.
+"""Checks of a joint, driver or contact by central differences, on random paths off the constraint.
 
 J = dPhi/dq,   J v - nu = dPhi/dt,   J a - gamma = d(J v - nu)/dt
 """
@@ -26,7 +26,7 @@ SLOPE, RATE, BEND = 1e-7, 1e-6, 1e-5
 
 
 def check_joint(kind: JointKind, seeds: Iterable[int] = SEEDS) -> None:
-    """Compare J, nu and gamma of a kind of joint, driver or contact with differences of Phi and of J v - nu.
+    """Compare J, nu and gamma of a kind of joint, driver or contact with differences.
 
     Its ``example`` is added between two bodies, then between ground and a body, at random markers; both move along
     random polynomials of time. What ``adds`` decorates must keep its arguments, so that change() and files work. Raises
@@ -41,7 +41,7 @@ def check_joint(kind: JointKind, seeds: Iterable[int] = SEEDS) -> None:
 
 
 def example(kind: JointKind, seed: int = 0, to_ground: bool = False, turn: float = 0.0) -> Mechanism:
-    """A mechanism with the example of a kind alone, between random markers of bodies of random centres of mass.
+    """Return a mechanism with a kind's example alone, between random markers and centres of mass.
 
     The second marker is turned by ``turn`` (rad).
     """

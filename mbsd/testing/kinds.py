@@ -53,7 +53,7 @@ def integrators() -> list[Integrator]:
 
 
 def check_kept(m: Mechanism) -> None:
-    """Change each number of what joins the bodies of ``m`` to what it is, then write the model and read it back.
+    """Change each number of the joining entry of ``m`` to itself, then write the model and read it back.
 
     Raises AssertionError where something else comes of it. Functions of the user are left out: no file holds them.
     """

@@ -1,4 +1,7 @@
-"""Velocities that drivers impose, as kernels give them; in a file of its own, so that no edit beside compiles it."""
+"""Velocities that drivers impose, as kernels give them.
+
+They have a file of their own, so that no other edit recompiles it.
+"""
 
 from __future__ import annotations
 

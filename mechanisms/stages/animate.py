@@ -57,7 +57,7 @@ def run(name: str, view: str = "") -> None:
         paths = _paths(out, words)
         for path in paths:
             _draw(solution, path, words, parts)
-        Stage(out, paths[0].stem, _key(parts, inputs), paths).done(inputs=inputs.names())
+        Stage(out, paths[0].stem, _key(parts, inputs), paths).record(inputs=inputs.names())
 
 
 def films_of(view: str) -> list[str]:

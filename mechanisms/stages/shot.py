@@ -51,7 +51,7 @@ def run(name: str) -> None:
     if names:
         refuse_unknown(shot, names)
     write_shot(out.shot, _looking(shot))
-    Stage(out, "shot", _key(names, inputs), [out.shot]).done(inputs=inputs.names())
+    Stage(out, "shot", _key(names, inputs), [out.shot]).record(inputs=inputs.names())
     say("shot", f"{out.name}: {shot.turns} turns at {shot.fps} frames a second")
 
 
@@ -77,7 +77,7 @@ def _without_file(out: Out) -> None:
         say("shot", f"{out.name}: nothing to do")
         return
     write_shot(out.shot, _looking(Shot()))
-    stage.done()
+    stage.record()
     say("shot", f"{out.name}: without a shot.py, {Shot().turns} turns at {Shot().fps} frames a second")
 
 

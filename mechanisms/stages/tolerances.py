@@ -172,7 +172,7 @@ def run(name: str) -> None:
     for file in set(files) - set(written):
         file.unlink(missing_ok=True)
     notes = {"inputs": inputs.names(), "files": [file.name for file in written]}
-    Stage(out, "tolerances", _key(parts, inputs), written).done(**notes)
+    Stage(out, "tolerances", _key(parts, inputs), written).record(**notes)
     for result, t in results.items():
         console.say("tolerances", f"{name}: {sentence(result, t)}")
     console.say("tolerances", f"{name}: {_folder(out) / 'summary.md'}, and a table and a plot of each result")

@@ -108,7 +108,7 @@ def _locked_folder(home: Path) -> tuple[Path, int]:
         with suppress(FileNotFoundError):
             lock = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
             with suppress(OSError):  # a disk without locks: what a kill leaves there stays
-                locks.take(lock)
+                locks.try_lock(lock)
             if os.fstat(lock).st_nlink:
                 return folder, lock
             os.close(lock)  # another process took the folder for a leftover before it was locked

@@ -49,7 +49,7 @@ class Film:
         self.motion, self.parts, self.shot, self.folder, self.aspect = motion, parts, shot, folder, aspect
         self.poses = Poses(motion)
         self.clock = Clock(motion, shot)
-        refuse_unknown(shot, Names.of(motion, parts))
+        refuse_unknown(shot, Names.from_motion(motion, parts))
         refuse_mismatch(motion, parts, folder)
         paths = trail_heights(motion, parts, trails_of(motion, shot))
         self.space = SweptSpace(self.poses, parts, folder, paths)

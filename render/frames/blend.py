@@ -58,7 +58,7 @@ def save(name: str, preset: Preset, show: str = "") -> Path:
     finally:
         for part in out.folder.glob(".*.part.blend*"):
             part.unlink(missing_ok=True)
-    stage.done()
+    stage.record()
     say("scene", f"{out.name}: {target}: {counted(len(job.states), 'frame')}, {target.stat().st_size / 1e6:.1f} MB")
     return target
 

@@ -48,7 +48,7 @@ def run(name: str, preset: Preset, show: str = "", sound: str = "") -> None:
     else:
         wav_of(film).unlink(missing_ok=True)
         write_bytes(film, silent.read_bytes())
-    stage.done()
+    stage.record()
     seconds, words = len(index.frames) / index.fps, "with its sound" if heard else "silent"
     size = film.stat().st_size / 1e6
     say("film", f"{out.name}: {film}: {seconds:.1f} s, {index.fps} frames a second, {words}, {size:.1f} MB")
@@ -95,7 +95,7 @@ def _silent_film(out: Out, preset: Preset, show: str, store: FrameStore, index: 
     stage = Stage(out, film.stem.replace(out.name, "pictures", 1), key, [target])
     if not stage.is_fresh():
         encode.encode(_pictures(out.name, store, index.frames), len(index.frames), preset, index.fps, target)
-        stage.done()
+        stage.record()
     return target
 
 

@@ -127,7 +127,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
         jsonfile.write(store.index, index)
         store.prune(set(made), spare=len(set(made)))
     stage.outputs.extend(sorted(set(made)))
-    stage.done()
+    stage.record()
 
 
 def picture_of(pictures: Pictures, store: FrameStore, frame: int) -> Path:

@@ -77,7 +77,7 @@ def _make(out: Out, preset: Preset, frame: int | None, target: Path, stage: Stag
         frames.render(pictures, store, [frame], f"frame {frame}", tally)
         tally.write(store, preset, time.perf_counter() - started)  # it tells what the film will take
         write_bytes(target, frames.picture_of(pictures, store, frame).read_bytes())
-    stage.done()
+    stage.record()
     say(word, f"{out.name}: {target}")
 
 
@@ -112,7 +112,7 @@ def run(name: str, preset: Preset, show: str = "") -> None:
         frames.render(pictures, store, sorted(set(chosen)), "for the contact sheet", frames.Tally())
         frames_shown = [frames.picture_of(pictures, store, frame) for frame in chosen]
         write_bytes(target, sheet(frames_shown, _captions(film, chosen), out.name.replace("_", " ").replace("-", ": ")))
-    stage.done()
+    stage.record()
     say("contact", f"{out.name}: {target}")
 
 

@@ -131,7 +131,7 @@ class FrameStore:
     def _lock(self, handle: int) -> None:
         end, announced = time.monotonic() + WAIT, False
         try:
-            while not locks.take(handle):
+            while not locks.try_lock(handle):
                 if time.monotonic() >= end:
                     raise Busy(f"another process renders into {self.folder}; wait for it or stop it")
                 if not announced:

@@ -25,7 +25,7 @@ def run(name: str) -> None:
     write_bytes(out.glb, glb(film))
     if said := said_of(film):
         say("glb", said)
-    stage.done()
+    stage.record()
     seconds = film.motion.time[-1] - film.motion.time[0]
     say("glb", f"{out.name}: {out.glb}: {seconds:.4g} s, {out.glb.stat().st_size / 1e6:.1f} MB")
 

@@ -37,7 +37,7 @@ def run(name: str) -> None:
     film = read_film(out)
     whole = msgspec.structs.replace(film.shot, section=0.0)  # as the picture beside it
     write_bytes(target, exploded_glb(Film(film.motion, film.parts, whole, film.folder)))
-    stage.done()
+    stage.record()
     say("exploded", f"{out.name}: {target}: {_LAST:.1f} s, {target.stat().st_size / 1e6:.1f} MB")
 
 

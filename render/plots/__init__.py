@@ -41,7 +41,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     stage = _stage(out, names)
     if stage.is_fresh():
         if not is_fresh(name, spectra, every):  # asked for in other words
-            stage.done(plots=names, asked=[*spectra_asked(out.name, spectra), every])
+            stage.record(plots=names, asked=[*spectra_asked(out.name, spectra), every])
         say("plots", f"{out.name}: nothing to do")
         return
 
@@ -53,7 +53,7 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
             figure(plot, motion, skeleton).savefig(temporary, format="png", metadata={"Software": None})
     for older in set(out.plots.glob("*.png")) - set(outputs.values()):
         older.unlink()
-    stage.done(plots=names, asked=[*spectra_asked(out.name, spectra), every])
+    stage.record(plots=names, asked=[*spectra_asked(out.name, spectra), every])
     say("plots", f"{out.name}: {counted(len(outputs), 'plot')} in {out.plots}")
 
 

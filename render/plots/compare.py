@@ -58,5 +58,5 @@ def run(name: str, spectra: str = "", every: bool = False) -> None:
     for older in set(out.compare.glob("*.png")) - set(outputs.values()):
         older.unlink()
     stage.outputs.extend(outputs.values())
-    stage.done()
+    stage.record()
     say("compare", f"{owner}: {counted(len(outputs), 'plot')} of {counted(len(motions), 'variant')} in {out.compare}")

@@ -34,7 +34,7 @@ def run(name: str) -> None:
         say("report", f"{out.name}: nothing to do")
         return
     write_bytes(out.report, report(motion, parts, clearance, said).encode())
-    stage.done()
+    stage.record()
     say("report", f"{out.name}: {out.report}")
 
 

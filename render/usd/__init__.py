@@ -41,7 +41,7 @@ def run(name: str, form: str = "usd") -> None:
     stage = _stage(out, form)
     path = stage.outputs[0]
     write_bytes(path, content(stage_of(film), out.name, form))
-    stage.done()
+    stage.record()
     if said := said_of(film):
         say("export", said)
     seconds = film.motion.time[-1] - film.motion.time[0]

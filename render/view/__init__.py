@@ -35,7 +35,7 @@ def run(name: str) -> None:
             "use fewer or coarser solids, or fewer times"
         )
     write_bytes(out.view, content)
-    stage.done()
+    stage.record()
     say("view", f"{out.name}: {out.view}: {len(content) / 1e6:.1f} MB")
 
 

@@ -1,1 +1,1 @@
-"""Work of stages on many machines: where the cluster is, its scheduler and workers, and files by content."""
+"""Work of stages on many machines: the cluster's address, its scheduler and workers, its files."""

@@ -1,4 +1,4 @@
-"""``python -m shared.cluster scheduler | worker ADDRESS | certificates FOLDER``: what a cluster is made of."""
+"""``python -m shared.cluster scheduler | worker ADDRESS | certificates FOLDER``: parts of a cluster."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ WITHOUT_HTTP = ("--no-dashboard", "--dashboard-address", "127.0.0.1:0", "--prelo
 
 
 def main() -> None:
-    """Read the command line. The scheduler takes the place of this process; a worker is kept by it (keeper.py)."""
+    """Read the command line and run its command.
+
+    The scheduler takes the place of this process; a worker is kept by it (keeper.py).
+    """
     parser = argparse.ArgumentParser(prog="python -m shared.cluster", description="Scheduler, workers, certificates.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     scheduler = commands.add_parser("scheduler", help="the one that knows all workers")
@@ -63,7 +66,7 @@ def main() -> None:
 
 
 def scheduler_command(host: str, port: int) -> list[str]:
-    """Dask's scheduler. Nothing is left of its HTTP server, which has no password (preload.py)."""
+    """Return the command of Dask's scheduler, without its HTTP server, which has no password (preload.py)."""
     scheme = "tls" if address.certificates() else "tcp"
     program = [
         sys.executable,
@@ -78,7 +81,10 @@ def scheduler_command(host: str, port: int) -> list[str]:
 
 
 def worker_command(scheduler: str, host: str, name: str, folder: Path) -> list[str]:
-    """Dask's worker, which a nanny starts again when it ends; ``folder`` is for its own files."""
+    """Return the command of Dask's worker.
+
+    A nanny starts it again when it ends; ``folder`` is for its own files.
+    """
     scheme = "tls" if address.certificates() else "tcp"
     program = [sys.executable, "-m", "distributed.cli.dask_worker", scheduler, "--host", f"{scheme}://{host}"]
     options = ["--nworkers", "1", "--nthreads", "1", "--memory-limit", "0", "--local-directory", str(folder)]
@@ -87,7 +93,7 @@ def worker_command(scheduler: str, host: str, name: str, folder: Path) -> list[s
 
 
 def refuse_open(host: str, plain: bool) -> None:
-    """Raise UserError for an address that others reach without certificates: a worker runs what it is sent."""
+    """Raise UserError for an address that others reach without certificates: a worker runs any code."""
     if plain or address.certificates() or is_loopback(host):
         return
     raise UserError(
@@ -97,7 +103,7 @@ def refuse_open(host: str, plain: bool) -> None:
 
 
 def is_loopback(host: str) -> bool:
-    """Whether only this machine reaches it."""
+    """Return True if only this machine reaches the address."""
     if host == "localhost":
         return True
     try:

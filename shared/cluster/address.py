@@ -1,4 +1,4 @@
-"""Where the cluster is: ``CLUSTER=tcp://scheduler:8786``, and the certificates that keep others out of it.
+"""Address of the cluster: ``CLUSTER=tcp://scheduler:8786``, and the certificates that protect it.
 
 What deals work out is mbsd/dealing; it is loaded where there is something to deal.
 """
@@ -20,7 +20,7 @@ VARIABLE = "CLUSTER"
 
 
 def address() -> str:
-    """The scheduler's address; empty where none is given. Raises UserError if it is no address."""
+    """Return the scheduler's address, empty if none is given. Raises UserError for an invalid one."""
     given = os.environ.get(VARIABLE, "").strip()
     scheme, _, rest = given.partition("://")
     if given and (scheme not in ("tcp", "tls") or ":" not in rest):
@@ -31,7 +31,7 @@ def address() -> str:
 
 
 def certificates() -> tuple[str, str, str] | None:
-    """Paths of the authority's certificate, our own and its key; None where none are given.
+    """Return the paths of the authority's certificate, our own and its key; None without them.
 
     Raises UserError if one is missing.
     """
@@ -43,7 +43,10 @@ def certificates() -> tuple[str, str, str] | None:
 
 @contextmanager
 def connected(where: str = "") -> Iterator[Client]:
-    """A client of the scheduler at ``where``, by default that of the environment. Raises UserError if none answers."""
+    """Yield a client of the scheduler at ``where``, by default that of the environment.
+
+    Raises UserError if none answers.
+    """
     from mbsd.dealing import connection
     from shared.cluster.voice import stage_voice
 

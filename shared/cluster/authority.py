@@ -1,4 +1,4 @@
-"""Certificates for a cluster of one's own: an authority, and a certificate with its key that all machines share."""
+"""Certificates for a cluster: an authority, and a certificate with its key for all machines."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ NAME = "mbsd cluster"
 
 
 def make(folder: Path) -> None:
-    """Write ca.pem, cert.pem and key.pem. The authority's own key is not kept, so that nobody signs more.
+    """Write ca.pem, cert.pem and key.pem.
+
+    The authority's own key is not kept, so that nobody signs more.
 
     Raises UserError if one of the files is there already.
     """

@@ -1,4 +1,7 @@
-"""Inputs on a worker: files named by the SHA-256 of their bytes, so that none is sent twice and none is stale."""
+"""Inputs on a worker: files named by the SHA-256 of their bytes.
+
+So none is sent twice and none is stale.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +21,12 @@ VARIABLE = "CLUSTER_CACHE_MB"
 
 
 def content_hash(content: bytes) -> str:
-    """The name of these bytes."""
+    """Return the name of these bytes."""
     return hashlib.sha256(content).hexdigest()
 
 
 class Contents:
-    """The folder of a machine; several workers may share it."""
+    """Folder of contents on a machine; several workers may share it."""
 
     def __init__(self, folder: Path | None = None, limit: int | None = None) -> None:
         self.folder = folder or out_root() / ".cluster" / "contents"
@@ -32,7 +35,10 @@ class Contents:
         self._whole: dict[str, tuple[int, int]] = {}
 
     def find(self, name: str) -> Path | None:
-        """The file with this content, looked at once in a process and again when it changes; a damaged one goes."""
+        """Return the file with this content; a damaged one is removed.
+
+        It is checked once in a process and again when it changes.
+        """
         path = self.folder / name
         try:
             stat = path.stat()
@@ -48,11 +54,11 @@ class Contents:
         return path
 
     def lacking(self, names: Collection[str]) -> list[str]:
-        """Those of the contents that are not here."""
+        """Return the contents that are missing here."""
         return [name for name in names if self.find(name) is None]
 
-    def put(self, contents: Mapping[str, bytes], needed: Collection[str] = ()) -> None:
-        """Keep these; the longest unused others go where there would be too much.
+    def keep(self, contents: Mapping[str, bytes], needed: Collection[str] = ()) -> None:
+        """Keep these contents; the longest unused others are removed if there is too much.
 
         Raises UserError if the disk has no room.
         """

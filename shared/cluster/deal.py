@@ -1,4 +1,4 @@
-"""Orders of a stage for the workers of a cluster: the files that they need go along by content."""
+"""Orders of a stage for the workers of a cluster: the files that they need are sent by content."""
 
 from __future__ import annotations
 

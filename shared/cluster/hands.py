@@ -1,4 +1,4 @@
-"""What runs on a worker: it asks for the inputs it lacks, does its orders one by one, and reports."""
+"""Work on a worker: it requests the inputs it lacks, does its orders one by one, and reports."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LONGEST_REASON = 2000
 
 
 class Work(NamedTuple):
-    """One kind of work, as a worker does it and as its answer is read by who ordered it."""
+    """One kind of work: how a worker does it, and how its answer is read."""
 
     do: Callable[[Mapping[str, Path], str, Any], bytes]
     """Does one order: the files of all needed contents by name, the name of what all orders have in common, the order.
@@ -42,7 +42,7 @@ def perform(
     orders: Sequence[tuple[str, Any]],
     sent: Mapping[str, bytes],
 ) -> bytes:
-    """Do the orders (key, what to do) by ``do``; ``sent`` are contents that this worker asked for.
+    """Do the orders (key, order) by ``do``; ``sent`` are contents that this worker requested.
 
     Returns a :class:`Report` as bytes.
     """
@@ -54,7 +54,7 @@ def perform(
     with _one_at_a_time.setdefault(get_worker().address, threading.Lock()):
         started = time.perf_counter()
         try:
-            kept.put(sent, needed)
+            kept.keep(sent, needed)
             lacking = kept.lacking(needed)
             if lacking:
                 return encoded(Report(lacking=lacking))

@@ -1,4 +1,4 @@
-"""What a machine works with that makes files of a mechanism: packages, and the sources of rooms."""
+"""Identity of a machine that builds files of a mechanism: packages, and the sources of rooms."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from shared.stage.files import sources_hash
 from shared.stage.paths import ROOT, SOLVER
 
 PACKAGES = ("bpy", "distributed", "msgspec", "numpy", "pillow")
-"""Those whose version decides what comes out of a picture, or how machines speak with each other."""
+"""Packages whose version decides the pixels of a picture, or how machines talk to each other."""
 
 
 @functools.cache
 def identity(rooms: Iterable[str], packages: Iterable[str] = PACKAGES) -> dict[str, str]:
-    """Python, packages, and the sources of these rooms, by name.
+    """Return the versions of Python and packages, and hashes of the sources of these rooms, by name.
 
     It is found once in a process, so a worker reports what it was started with.
     """
@@ -24,7 +24,7 @@ def identity(rooms: Iterable[str], packages: Iterable[str] = PACKAGES) -> dict[s
 
 
 def sources_of(room: str, root: Path = ROOT) -> str:
-    """A short hash of the Python sources of a room, or of one file, in the project at ``root``."""
+    """Return a short hash of the Python sources of a room or file in the project at ``root``."""
     top, *below = Path(room).parts
     folder = SOLVER.joinpath(*below) if top == "mbsd" and not (root / top).exists() else root / room
     others = [folder / "rooms"] if room == "mbsd" else []  # where an installed package has the other rooms

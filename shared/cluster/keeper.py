@@ -1,4 +1,4 @@
-"""A worker outlives its scheduler: Dask's worker ends with it, and another one is started that waits for the next."""
+"""Keeper of a worker: Dask's worker ends with its scheduler, and another one waits for the next."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ END = 20.0
 
 
 def keep(command: Sequence[str], scheduler: str) -> int:
-    """Run Dask's worker by ``command`` again and again; its exit code where it ended with an error.
+    """Run Dask's worker by ``command`` again and again; return its exit code after an error.
 
     SIGTERM, SIGHUP or Ctrl-C end it, and the worker with it. The worker gets SIGTERM if this process is killed.
     """

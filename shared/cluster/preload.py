@@ -1,4 +1,4 @@
-"""What scheduler and workers load when they start: no HTTP server, and workers remember the sources of their start."""
+"""Setup of scheduler and workers: no HTTP server, and workers remember the sources of their start."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ OF_PARTS = (
 
 
 def dask_setup(server: Any) -> None:
-    """Called by Dask with the scheduler or the worker, which then listens on its own address alone.
+    """Prepare the scheduler or the worker, which then listens on its own address alone. Dask calls it.
 
     Dask's HTTP server shows logs to whoever asks and passes requests on to other machines, so it is closed.
     """

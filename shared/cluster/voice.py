@@ -1,4 +1,4 @@
-"""What a stage says of the workers that it has work for: lines on the console, and UserError."""
+"""Messages of a stage on its workers: lines on the console, and UserError."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from shared.stage.face import to_run
 
 
 def stage_voice() -> Voice:
-    """The words, with commands of the program through which the stage was called."""
+    """Return the messages, with commands of the program through which the stage was called."""
     return Voice(
         say=partial(say, "cluster"),
         warn=partial(warn, "cluster"),

@@ -1,4 +1,4 @@
-"""The files that cross a process, and what both sides must compute alike.
+"""Files that cross a process, and computations that both sides must share.
 
 data.json (the motion) is motion.py and loads.py, parts.json (the solids) parts.py; base.py is in both. shot.json,
 clearance.json and skeleton.json are files of their own. This module reads, checks and writes the first two.
@@ -72,7 +72,10 @@ __all__ = [
 
 
 def read_motion(path: Path, mechanism: str | None = None) -> Motion:
-    """Read data.json; raises UserError if it does not hold together, or if it is of another ``mechanism``."""
+    """Read data.json.
+
+    Raises UserError if it is inconsistent or of another ``mechanism``.
+    """
     motion = jsonfile.read(path, Motion)
     _refuse_inconsistent(motion, path)
     _refuse_other_mechanism(motion.mechanism, mechanism, path)
@@ -86,7 +89,7 @@ def write_motion(path: Path, motion: Motion) -> None:
 
 
 def read_parts(path: Path, mechanism: str | None = None) -> Parts:
-    """Read parts.json and see that its STL files stand beside it; raises UserError as :func:`read_motion`."""
+    """Read parts.json and check that its STL files exist; raises UserError as :func:`read_motion`."""
     parts = jsonfile.read(path, Parts)
     _refuse_inconsistent(parts, path)
     _refuse_other_mechanism(parts.mechanism, mechanism, path)
@@ -114,7 +117,7 @@ def _refuse_other_mechanism(mechanism: str, expected: str | None, path: Path) ->
 
 
 def _refuse_inconsistent(document: Motion | Parts, path: Path) -> None:
-    """Raise UserError for what the types cannot say."""
+    """Raise UserError for inconsistencies that types cannot express."""
     if isinstance(document, Motion):
         consistency.refuse_other_words("units", document.units, UNITS, path)
         consistency.refuse_other_words(

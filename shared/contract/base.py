@@ -1,4 +1,4 @@
-"""What the files that cross a process have in common: units, provenance, kinds of numbers.
+"""Common parts of the files that cross a process: units, provenance, kinds of numbers.
 
 Metres, seconds, kilograms, radians, newtons everywhere; x right, y up, angles counter-clockwise and never wrapped.
 """
@@ -28,11 +28,11 @@ Series = list[float]
 
 
 class Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
-    """Unknown and missing fields are refused."""
+    """Struct that rejects unknown and missing fields."""
 
 
 class Provenance(Strict, kw_only=True):
-    """What the file was made from. Nothing here depends on when or where it was made."""
+    """Inputs of the file. Nothing here depends on when or where it was written."""
 
     inputs: str
     """SHA-256 over every input: the mechanism's file, the solver's sources, the masses."""

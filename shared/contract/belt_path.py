@@ -1,4 +1,4 @@
-"""The way of a belt or chain round two pulleys: its length, and places along it.
+"""Path of a belt or chain round two pulleys: its length, and places along it.
 
 The first pulley's centre is the origin, the second's at (distance, 0). The belt goes counter-clockwise round the first,
 on straight along the common tangent, round the second (clockwise if it is crossed), and back:
@@ -31,7 +31,7 @@ class BeltPath:
 
     @property
     def has_room(self) -> bool:
-        """Whether the pulleys lie so far apart that there are tangents."""
+        """True if the pulleys lie so far apart that there are tangents."""
         return abs(self._difference) < self.distance
 
     @property
@@ -40,7 +40,7 @@ class BeltPath:
 
     @property
     def beta(self) -> float:
-        """See the file (rad)."""
+        """Angle beta of the file's formulas (rad)."""
         return math.acos(self._difference / self.distance)
 
     @property
@@ -60,8 +60,10 @@ class BeltPath:
         return sum(self.parts)
 
     def places(self, along: Array) -> tuple[Array, Array]:
-        """(n, 2) places at lengths along the belt from where it comes onto the first pulley, and how far each is on
-        its strand: 0 .. 1, below zero on the strand back, 0 on pulleys.
+        """Return (n, 2) places along the belt, and their (n,) positions on its strands.
+
+        ``along`` (n,) are lengths from where the belt meets the first pulley. Positions are 0 .. 1, below zero on the
+        strand back, 0 on pulleys.
         """
         s = np.mod(along, self.length)
         off_first, onto_second, off_second, _ = np.cumsum(self.parts)
@@ -87,7 +89,7 @@ class BeltPath:
         return out, rest
 
     def on_second(self, along: float) -> float:
-        """The angle (rad) on the second pulley, from the line of centres, of a place on its arc."""
+        """Return the angle (rad) of a place on the arc of the second pulley, from the line of centres."""
         arc, strand, _, _ = self.parts
         start, sense = (math.pi - self.beta, -1.0) if self.crossed else (-self.beta, 1.0)
         return start + sense * (along - arc - strand) / self.second

@@ -1,4 +1,4 @@
-"""How thick a belt or chain is where the film draws it and the clearance is proven, in the radius that its rim gives.
+"""Thickness of a belt or chain in the film and in the clearance proof, from its rim's radius.
 
 A round belt carries marks that stand out a little. A chain has rollers on pins between two rows of plates.
 """
@@ -16,10 +16,10 @@ APART = 1.1
 
 
 def half_width(radius: float, chain: bool) -> float:
-    """From the middle line out, in the plane."""
+    """Return the extent from the middle line out, in the plane."""
     return radius * (ROLLER if chain else PROUD)
 
 
 def half_height(radius: float, chain: bool, crossed: bool) -> float:
-    """From the middle line up."""
+    """Return the extent from the middle line up."""
     return radius * ((PIN if chain else PROUD) + (APART if crossed else 0.0))

@@ -1,4 +1,4 @@
-"""clearance.json: how near the parts of a mechanism come to each other over its whole motion. Metres and seconds."""
+"""clearance.json: the least distances of a mechanism's parts over its motion. Metres and seconds."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class PairClearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 
 class Clearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
-    """clearance.json: the outcome of a check that found no two parts touching."""
+    """Outcome of a check that found no two parts touching: clearance.json."""
 
     schema: Literal["mbsd.clearance"] = "mbsd.clearance"
     schema_version: Literal[2] = 2
@@ -60,7 +60,7 @@ class Clearance(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 
 def read_clearance(path: Path) -> Clearance:
-    """Read clearance.json; raises UserError on anything that does not hold together."""
+    """Read clearance.json; raises UserError if it is inconsistent."""
     clearance = jsonfile.read(path, Clearance)
     refuse_other_words("units", clearance.units, CLEARANCE_UNITS, path)
     return clearance

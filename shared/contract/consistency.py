@@ -1,4 +1,4 @@
-"""Checks what the types of a file cannot say: that its units, lengths, times, names and files fit together.
+"""Consistency of a file beyond its types: units, lengths, times, names and files fit together.
 
 Each function raises UserError naming the file and the field. ``path`` is the file's, for the message.
 """
@@ -27,11 +27,11 @@ UNIT_TOLERANCE = 1e-9
 _NO_SERIES = {"redundant", "events", "start_changes", "notes", "shape", "indicated_work", "order", "harmonics"}
 """Fields with lists that are not of time."""
 _UNFIT = re.compile(r"[/\\\x00-\x1f\x7f]")
-"""What the name of a body, joint, driver or point cannot hold, because files are named after it."""
+"""Characters that no name of a body, joint, driver or point may hold, as files are named after it."""
 
 
 def refuse_other_words(field: str, words: Mapping[str, str], expected: Mapping[str, str], path: Path | str) -> None:
-    """Refuse units (or conventions) unlike those that this program reads."""
+    """Raise UserError for units (or conventions) that this program does not read."""
     for key in sorted(expected.keys() | words.keys()):
         if words.get(key) != expected.get(key):
             said = repr(words[key]) if key in words else "missing"
@@ -40,7 +40,10 @@ def refuse_other_words(field: str, words: Mapping[str, str], expected: Mapping[s
 
 
 def refuse_inconsistent_motion(motion: Motion, path: Path | str) -> None:
-    """Refuse ragged series, times that do not rise, a period that the times do not span, and unknown bodies."""
+    """Raise UserError for inconsistent series, times, period or bodies.
+
+    Series must not be ragged, times must rise, the period must be the time spanned, and bodies must be known.
+    """
     _refuse_ragged(motion, path)
     _refuse_unfit_names(
         {
@@ -71,8 +74,10 @@ def refuse_inconsistent_motion(motion: Motion, path: Path | str) -> None:
 
 
 def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
-    """Refuse unfit names, files that are not beside parts.json by their names, heights that are upside down, bodies
-    without solids that have some, and pairs of bodies that are not there.
+    """Raise UserError for inconsistent names, files, heights or bodies of parts.
+
+    Names must be fit, files must be beside parts.json by their names, the lowest height comes first, bodies without
+    solids have none, and pairs of bodies must exist.
     """
     refuse_wrong_mount(parts.mount, f"{path}: mount")
     _refuse_unfit_names({"bodies": parts.bodies, "without_solids": parts.without_solids}, path)
@@ -108,7 +113,7 @@ def refuse_inconsistent_parts(parts: Parts, path: Path | str) -> None:
 
 
 def refuse_wrong_mount(mount: Mount, where: str) -> None:
-    """On a desk z points up, else a unit vector in the plane."""
+    """Raise UserError for a wrong direction up: z on a desk, else a unit vector in the plane."""
     x, y, z = mount.up
     if mount.kind == "desk" and (x, y, z) != (0.0, 0.0, 1.0):
         raise UserError(f"{where}: up is ({x:g}, {y:g}, {z:g}); on a desk it is (0, 0, 1)")
@@ -117,7 +122,7 @@ def refuse_wrong_mount(mount: Mount, where: str) -> None:
 
 
 def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
-    """Fields of forces, contacts and shapes that name a body, with that name."""
+    """Return the fields of forces, contacts and shapes that name a body, each with that name."""
     used = [(f"contacts.{name}.bodies", body) for name, contact in motion.contacts.items() for body in contact.bodies]
     used += [
         (f"drivers.{name}.bodies", body) for name, driver in motion.drivers.items() for body in driver.bodies or ()
@@ -139,7 +144,7 @@ def _bodies_of_loads(motion: Motion) -> list[tuple[str, str]]:
 
 
 def _refuse_wrong_events(motion: Motion, path: Path | str) -> None:
-    """Events come in the order of their times, within the time of the motion."""
+    """Raise UserError unless events are in the order of their times, within the motion."""
     first, last = motion.time[0], motion.time[-1]
     for index, event in enumerate(motion.events):
         before = motion.events[index - 1].time if index else first
@@ -161,7 +166,10 @@ def _refuse_unfit_names(names: Mapping[str, Iterable[str]], path: Path | str) ->
 
 
 def _refuse_ragged(motion: Motion, path: Path | str) -> None:
-    """Every series is as long as ``time``, which has two values or more and grows, but for both rows of an event."""
+    """Raise UserError unless every series is as long as ``time``.
+
+    Time has two values or more and grows, but for both rows of an event.
+    """
     count = len(motion.time)
     if count < 2:
         raise UserError(f"{path}: time has {count} values; a motion needs two or more")
@@ -183,7 +191,7 @@ def _refuse_ragged(motion: Motion, path: Path | str) -> None:
 
 
 def _refuse_leap(motion: Motion, index: int, path: Path | str) -> None:
-    """At an event velocities may jump, poses may not."""
+    """Raise UserError if a pose jumps at an event; velocities may."""
     for name, body in motion.bodies.items():
         for field, series in (("x", body.x), ("y", body.y), ("theta", body.theta)):
             before, now = series[index - 1 : index + 1]
@@ -195,7 +203,10 @@ def _refuse_leap(motion: Motion, index: int, path: Path | str) -> None:
 
 
 def _refuse_wrong_period(motion: Motion, path: Path | str) -> None:
-    """A period is exactly the time spanned, and every pose returns after it (angles but for whole turns)."""
+    """Raise UserError unless the period is the time spanned, and every pose returns after it.
+
+    Angles may differ by whole turns.
+    """
     if motion.period is None:
         return
     span = motion.time[-1] - motion.time[0]
@@ -217,7 +228,7 @@ def _refuse_wrong_period(motion: Motion, path: Path | str) -> None:
 
 
 def _series(value: Any, field: str) -> Iterator[tuple[str, list[Any]]]:
-    """All lists that have a value for each time, with their fields."""
+    """Yield all lists that have a value for each time, with their fields."""
     if isinstance(value, msgspec.Struct):
         for name in value.__struct_fields__:
             if name not in _NO_SERIES:

@@ -1,4 +1,4 @@
-"""What a joint or contact does to the body that moves: its second one, or its first where the second is ground."""
+"""Reaction on the body that moves: the second one, or the first if the second is ground."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 class Felt(NamedTuple):
-    """A reaction over time."""
+    """Reaction over time."""
 
     place: Array
     """(T, 2) where it acts (m)."""
@@ -25,7 +25,10 @@ class Felt(NamedTuple):
 
 
 def felt(connection: JointMotion | ContactMotion) -> Felt:
-    """The reaction, with the sign that it has on that body: data.json has it as the second body feels it."""
+    """Return the reaction with the sign for that body.
+
+    The file data.json has it as the second body feels it.
+    """
     at = connection.acts or connection
     sign = -1.0 if connection.bodies[1] == "ground" else 1.0
     place = np.array([at.x, at.y], float).T

@@ -1,4 +1,4 @@
-"""What acts in a motion, as data.json has it: forces, rigid contacts, and how they look."""
+"""Loads of a motion in data.json: forces, rigid contacts, and how they look."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ Pair = Literal["pin", "guide", "slot"]
 """How two bodies move on each other: they turn about a point, slide along the first marker's x axis without turning,
 or slide there and turn."""
 Look = Literal["", "band", "roller", "captive", "coil", "cylinder", "spiral", "cord"]
-"""What pictures of solids draw beside the parts of the bodies, of whatever kind it is: a belt or chain round both
+"""Drawing in pictures of solids beside the parts of the bodies: a belt or chain round both
 wheels, a roller pressed on one side, a roller between two walls, a coil spring, a cylinder with its rod, a flat spiral
 over a pin, a rope."""
 
 
 class Shape(Strict, kw_only=True):
-    """What a picture needs of a joint, force or contact and cannot know from poses: markers, wheels, curves.
+    """Data for a picture of a joint, force or contact beyond poses: markers, wheels, curves.
 
     Fields that do not concern the kind keep their defaults.
     """
 
     bodies: tuple[str, str]
-    """That carry the first and the second marker."""
+    """Bodies that carry the first and the second marker."""
     markers: tuple[tuple[float, float, float], tuple[float, float, float]]
     """x, y (m) and angle (rad) of both in the frames of these bodies."""
     radius_first: Positive | None = None
@@ -35,9 +35,9 @@ class Shape(Strict, kw_only=True):
     teeth: list[int] = []
     """Teeth of the first and second wheel, or of the pinion alone."""
     ring: bool = False
-    """Whether the first wheel lies around the second."""
+    """True if the first wheel lies around the second."""
     crossed: bool = False
-    """Whether the belt is crossed."""
+    """True if the belt is crossed."""
     slots: int | None = None
     """Slots of a Geneva wheel about the second marker; the pin is ``pin_radius`` from the first along its x axis."""
     pin_radius: Positive | None = None
@@ -49,7 +49,7 @@ class Shape(Strict, kw_only=True):
 
 
 class Acts(Strict, kw_only=True):
-    """Where a joint or contact acts that does not act at its second marker, and with which torque there."""
+    """Place and torque of a joint or contact that does not act at its second marker."""
 
     x: Series
     """m"""
@@ -59,7 +59,7 @@ class Acts(Strict, kw_only=True):
 
 
 class Action(Strict, kw_only=True):
-    """What a force does to one body over time: N along the world's axes, N m about the point (x, y) (m)."""
+    """Force on one body over time: N in the world's axes, N m about the point (x, y) (m)."""
 
     body: str
     x: Series
@@ -70,7 +70,7 @@ class Action(Strict, kw_only=True):
 
 
 class GasMotion(Strict, kw_only=True):
-    """The gas that makes a force on a piston, over time, and what each cycle of its crank gives."""
+    """Gas behind a force on a piston, over time, with the results of each cycle of its crank."""
 
     pressure: Series
     """Absolute (Pa)."""
@@ -91,7 +91,7 @@ class GasMotion(Strict, kw_only=True):
 
 
 class HydraulicMotion(Strict, kw_only=True):
-    """A hydraulic cylinder over time; chamber A is that of the whole piston."""
+    """Hydraulic cylinder over time; chamber A is that of the whole piston."""
 
     pressure_a: Series
     """Absolute (Pa)."""
@@ -104,25 +104,25 @@ class HydraulicMotion(Strict, kw_only=True):
     supply_flow: Series
     """Taken from the supply (m^3/s)."""
     supply_power: Series
-    """What supply and tank give to the oil (W): lost in valve and leak, in the oil, or for the piston."""
+    """Power of supply and tank to the oil (W): lost in valve and leak, in the oil, or for the piston."""
     valve_loss: Series
     """W"""
     leak_loss: Series
     oil_power: Series
-    """What compresses the oil (W)."""
+    """Power that compresses the oil (W)."""
     piston_power: Series
 
 
 class ForceMotion(Strict, kw_only=True):
-    """One force over time: spring, damper, motor, load, contact by penalty, friction, a function of the user."""
+    """One force over time: spring, damper, motor, load, contact by penalty, friction, user's function."""
 
     kind: str
     actions: list[Action]
     """On every body that feels it; of a pair the first body's and then the second's."""
     several: bool
-    """Whether it acts on several bodies, none of which is the second (rotating frame, function of the user)."""
+    """True if it acts on several bodies, none of which is the second (rotating frame, function of the user)."""
     measures: Literal["length", "angle", "coordinate", "gap"] | None
-    """What ``value`` is: length (m), angle of second against first (rad), coordinate along the first marker's x axis
+    """Meaning of ``value``: length (m), angle of second against first (rad), coordinate along the first marker's x axis
     (m), gap (m, negative where pressed in); null: there is no one such value."""
     value: Series | None
     rate: Series | None
@@ -130,9 +130,9 @@ class ForceMotion(Strict, kw_only=True):
     effort: Series | None
     """Its size with a sign (N or N m): positive where it makes the value grow, or acts in its direction."""
     normal: Series | None
-    """What presses the joint of friction, without preload (N)."""
+    """Normal force on the joint of friction, without preload (N)."""
     power: Series
-    """What it gives to the motion (W); negative where it takes."""
+    """Power that it gives to the motion (W); negative if it takes power."""
     potential: Series
     """Potential energy it holds (J); 0 of a force without."""
     unit: ValueUnit | None = None
@@ -140,7 +140,7 @@ class ForceMotion(Strict, kw_only=True):
     effort_unit: EffortUnit = "N"
     """Unit of its effort."""
     drives: bool = False
-    """Whether it may move the mechanism in place of drivers: a given torque or push, a motor."""
+    """True if it may move the mechanism in place of drivers: a given torque or push, a motor."""
     look: Look = ""
     shape: Shape | None
     """Null of a force between no two markers."""
@@ -167,7 +167,7 @@ class ContactMotion(Strict, kw_only=True):
     """m, or rad of angles; 0 where it is closed."""
     rate: Series
     normal: Series
-    """What pushes the gap open (N, or N m of angles)."""
+    """Effort that pushes the gap open (N, or N m of angles)."""
     friction: Series
     """Force along the sliding way (N)."""
     state: list[State]

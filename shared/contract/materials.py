@@ -1,4 +1,4 @@
-"""Materials by name: density for the physics, appearance for the film. parts.py names one for each piece.
+"""Materials by name: density for physics, appearance for the film. parts.py names one for each piece.
 
 Densities are handbook values (kg/m^3); colours are linear RGB. Inks of anodised aluminium are those of the solver's
 drawings (mbsd/drawing/inks.py).
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Material:
-    """What a piece is made of. ``finish`` picks the film's shader; the numbers tune it."""
+    """Material of a piece. ``finish`` picks the film's shader; the numbers tune it."""
 
     density: float
     """kg/m^3."""

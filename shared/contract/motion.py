@@ -76,7 +76,7 @@ class BodyMotion(Strict, kw_only=True):
 
 
 class JointMotion(Strict, kw_only=True):
-    """One joint over time: where its second marker is, and the reaction on the second body."""
+    """One joint over time: the place of its second marker, and the reaction on the second body."""
 
     kind: str
     bodies: tuple[str, str]
@@ -95,7 +95,7 @@ class JointMotion(Strict, kw_only=True):
     """Time (s) of the event that released it; null if it holds to the end."""
 
     def rows_held(self, time: Sequence[float]) -> int:
-        """Return how many of the rows, at these times, it holds: of two at its release the first."""
+        """Return how many rows at these times it holds: of two at its release the first."""
         if self.released is None:
             return len(time)
         at = bisect_right(time, self.released)
@@ -115,7 +115,7 @@ class DriverMotion(Strict, kw_only=True):
     effort_unit: EffortUnit = "N m"
     look: Look = ""
     actions: list[Action] = []
-    """What it does to its first body and to its second, each where it acts; none in files of versions 1 and 2."""
+    """Actions on its first and on its second body, each where it acts; none in files of versions 1 and 2."""
     value: Series
     effort: Series
     power: Series
@@ -147,7 +147,7 @@ class Energy(Strict, kw_only=True):
 
 
 class Couple(Strict, kw_only=True):
-    """What the inertia of bodies in different places along the normal of the plane does to the frame (N m)."""
+    """Moment of inertia forces on the frame, from bodies at different heights along the normal (N m)."""
 
     about: float
     """Place along that normal (m), halfway between the outermost bodies."""
@@ -160,7 +160,7 @@ class Couple(Strict, kw_only=True):
 
 
 class EventMark(Strict, kw_only=True):
-    """Something that happened at one moment: an impact, a contact that opens, an event of the user, a force's jump."""
+    """Event at one moment: an impact, a contact that opens, an event of the user, a force's jump."""
 
     time: float
     name: str
@@ -173,7 +173,7 @@ class EventMark(Strict, kw_only=True):
 
 
 class Diagnostics(Strict, kw_only=True):
-    """How good the numbers are."""
+    """Measures of numerical accuracy."""
 
     position_residual: NonNegative
     """Largest constraint residual (m or rad) over the motion."""
@@ -189,7 +189,7 @@ class Diagnostics(Strict, kw_only=True):
 
 
 class Motion(Strict, kw_only=True):
-    """data.json: the motion of one mechanism.
+    """Motion of one mechanism: data.json.
 
     Version 2 did not say where things act, in which units and how they look (older.py); version 1 had no forces and
     contacts, and less of the rest.
@@ -203,7 +203,7 @@ class Motion(Strict, kw_only=True):
     provenance: Provenance
     gravity: tuple[float, float]
     analysis: Literal["sweep", "simulation"] = "sweep"
-    """Whether drivers or forces move it."""
+    """Kind of the motion: moved by drivers or by forces."""
     period: Positive | None
     """Every pose repeats after this time (s), and ``time`` spans it exactly, both ends included; else null."""
     time: Series
@@ -222,7 +222,7 @@ class Motion(Strict, kw_only=True):
     events: list[EventMark] = []
     """In the order of their times."""
     start_changes: list[str] = []
-    """What was changed of the given start to make it consistent, a sentence each."""
+    """Changes of the given start that made it consistent, a sentence each."""
     notes: list[str] = []
     """Times left out because efforts do not exist there, a sentence each."""
     diagnostics: Diagnostics

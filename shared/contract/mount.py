@@ -1,4 +1,4 @@
-"""How the ground of a machine stands in the world: on a desk, on a stand, at a wall or on the ground.
+"""Mount of a mechanism's ground: on a desk, on a stand, at a wall or on the ground.
 
 The parts stage decides it once and writes it into parts.json; film, page, GLB and prints read it there.
 """
@@ -17,7 +17,7 @@ Y: Vector = (0.0, 1.0, 0.0)
 
 
 class Mount(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=True):
-    """What holds the ground of a machine, and what points up in every picture of it.
+    """Holder of the ground, and the direction up in every picture.
 
     ``desk``: its base lies on a desk, and ``up`` is the normal of the plane, (0, 0, 1). For the others ``up`` is in the
     plane, against gravity. ``stand``: its base is a back plate on a foot. ``wall``: the back plate hangs at a wall.
@@ -30,7 +30,7 @@ class Mount(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=Tru
 
 
 def mounted(gravity: tuple[float, float], kind: Kind | None = None, runs_on_ground: bool = False) -> Mount:
-    """The mount of a machine with this ``gravity`` in the plane (m/s^2); ``kind`` is what its author wishes.
+    """Return the mount for this ``gravity`` in the plane (m/s^2); ``kind`` is the author's choice.
 
     By default a machine without gravity in the plane lies on a desk, one that ``runs_on_ground`` stands on that, and
     any other on a stand. Without gravity y points up where an author has it stand.

@@ -1,4 +1,4 @@
-"""What files of versions 1 and 2 of data.json do not say: it follows from the kinds that there were then."""
+"""Fields that data.json of versions 1 and 2 lacks: they follow from the kinds of that time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ DRIVING = ("torque", "force", "actuator")
 
 
 def completed(motion: Motion) -> Motion:
-    """The motion with pairs and units; nothing is known of looks, or of what acts beside a marker."""
+    """Return the motion with pairs and units.
+
+    Nothing is known of looks, or of loads that act beside a marker.
+    """
     if motion.schema_version >= 3:
         return motion
     replace = msgspec.structs.replace

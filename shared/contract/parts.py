@@ -29,14 +29,14 @@ class Mass(Strict, kw_only=True, omit_defaults=True):
 
 
 class Held(Strict, kw_only=True):
-    """Where the film draws a spring that is fixed to a piece (m): height of its axis, radius of its coil."""
+    """Place where the film draws a spring fixed to a piece (m): height of its axis, radius of its coil."""
 
     z: float
     radius: Positive
 
 
 class Rolling(Strict, kw_only=True):
-    """A roller that turns about (x, y) of its body's frame (m) as it rolls without slip in a joint."""
+    """Roller about (x, y) of its body's frame (m) that rolls without slip in a joint."""
 
     joint: str
     x: float
@@ -60,15 +60,15 @@ class Piece(Strict, kw_only=True):
     holds: dict[str, Held] = {}
     """By the names of forces: springs, dampers and actuators that have an end here."""
     buy: str = ""
-    """What to buy, such as "circlip 8x0.8 DIN 471"; empty if the piece is to be made."""
+    """Name in a shop, such as "circlip 8x0.8 DIN 471"; empty if the piece is to be made."""
     rolls: Rolling | None = None
     """Null of what does not turn against its body."""
     dressing: bool = False
-    """Whether it shows what the machine works on, and is none of the mass of its body."""
+    """True if it shows what the machine works on, and is none of the mass of its body."""
 
 
 class End(Strict, kw_only=True):
-    """A place (m) of a body of data.json, or of ground, in its frame: where a rod has its eye."""
+    """Eye of a rod: a place (m) of a body of data.json, or of ground, in its frame."""
 
     body: str
     x: float
@@ -88,7 +88,7 @@ class BodyParts(Strict, kw_only=True):
 
 
 class Parts(Strict, kw_only=True):
-    """parts.json: the solids of one mechanism."""
+    """Solids of one mechanism: parts.json."""
 
     schema: Literal["mbsd.parts"] = "mbsd.parts"
     schema_version: Literal[1] = 1

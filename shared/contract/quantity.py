@@ -1,4 +1,4 @@
-"""Numbers with units, and counted things, as the solver writes them: one implementation for messages and pictures."""
+"""Numbers with units and counted things, written the same in messages and pictures."""
 
 from mbsd.base.quantity import MINUS, angle_step, counted, figures, labelled, live, prefixed, written
 

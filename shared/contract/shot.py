@@ -1,4 +1,4 @@
-"""shot.json: how a motion is filmed. Data only; ``Shot()`` alone gives a good film.
+"""shot.json: how a motion is filmed, as data only; ``Shot()`` alone gives a good film.
 
 Metres and seconds; angles in degrees, because this is written by hand; colours linear RGB 0..1.
 """
@@ -26,15 +26,18 @@ Colour = tuple[Unit, Unit, Unit]
 
 
 class _Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, frozen=True):
-    """Unknown fields are refused."""
+    """Struct that rejects unknown fields."""
 
 
 LookName = Literal["studio", "cyclorama", "bench", "daylight", "road", "sand", "blueprint"]
 
 
 class Camera(_Strict, frozen=True):
-    """Where the camera stands. Its distance follows from the swept motion: all of it is in the frame and fills four
-    fifths of its width or height; base and stand are in it as far as that leaves room, trails as it happens."""
+    """Camera of a shot.
+
+    Its distance follows from the swept motion: all of it is in the frame and fills four fifths of its width or height;
+    base and stand are in it as far as that leaves room, trails as it happens.
+    """
 
     azimuth: Annotated[float, msgspec.Meta(ge=-180, le=180)] | None = None
     """Degrees about what points up; 0 looks along +y at what lies on a desk, and against z at what stands; positive
@@ -51,7 +54,7 @@ class Camera(_Strict, frozen=True):
     orbit: Annotated[float, msgspec.Meta(ge=0, le=45)] = 0.0
     """Degrees the camera swings to each side, once a turn, so that the film still loops."""
     follow: bool | None = None
-    """Whether the camera goes along with the machine, damped. Null follows what goes away and does not come back: a
+    """True if the camera goes along with the machine, damped. Null follows what goes away and does not come back: a
     car, a walker, a projectile."""
 
 
@@ -68,7 +71,7 @@ class Trail(_Strict, frozen=True):
     z: float | None = None
     """Height (m); null is just above the body that carries the point."""
     ink: bool = False
-    """Whether it lies on something bright, such as paper: it is then as deep as ink in every look, and never shines."""
+    """True if it lies on something bright, such as paper: it is then as deep as ink in every look, and never shines."""
 
 
 class Label(_Strict, frozen=True):
@@ -85,7 +88,7 @@ Quantity = Literal["velocities", "accelerations", "forces", "reactions"]
 
 
 class Title(_Strict, frozen=True):
-    """Words over the picture: a name, the rate of time, and a number that lives."""
+    """Words over the picture: a name, the rate of time, and a number that follows the motion."""
 
     text: Annotated[str, msgspec.Meta(min_length=1, max_length=60)] | None = None
     """null is the mechanism's name."""
@@ -95,11 +98,11 @@ class Title(_Strict, frozen=True):
 
 
 Source = Literal["impacts", "knocks", "mesh", "gas", "motors", "friction", "springs"]
-"""What makes sound: blows, pins that change sides in their bores, teeth, combustion, drivers, what rubs, springs."""
+"""Sources of sound: blows, pins that change sides in their bores, teeth, combustion, drivers, what rubs, springs."""
 
 
 class Sound(_Strict, frozen=True):
-    """What is heard. Everything is made from the motion; a shot says what is not to be heard."""
+    """Sound of the film, computed from the motion; a shot says which sounds are left out."""
 
     without: tuple[Source, ...] = ()
     """Sources that are left out altogether."""
@@ -112,15 +115,15 @@ STORY_SHOTS = ("title", "assembly", "motion", "macro", "section", "reason", "las
 
 
 class Story(_Strict, frozen=True):
-    """What the story (``STORY=explain``) shows other than it would by itself; docs/stories.md."""
+    """Changes of the story (``STORY=explain``); docs/stories.md."""
 
     shots: Annotated[tuple[str, ...], msgspec.Meta(min_length=1, max_length=12)] | None = None
     """Names of :data:`STORY_SHOTS` in the order of the film; null is all of them, as far as the motion has them."""
     event: str | None = None
-    """What time stops for: words of a moment, "rocker turns back", or a joint, driver or point at its peak; null is
+    """Moment of a stop: words of a moment, "rocker turns back", or a joint, driver or point at its peak; null is
     the first that the motion has of impacts, dead points, peaks."""
     caption: Annotated[str, msgspec.Meta(min_length=1, max_length=200)] | None = None
-    """What is written there instead of the words of the report."""
+    """Text there in place of the words of the report."""
     joint: str | None = None
     """Joint of the macro; null is a joint of the event, or the one that lies on top."""
     curves: Annotated[tuple[str, ...], msgspec.Meta(max_length=3)] | None = None
@@ -130,7 +133,7 @@ class Story(_Strict, frozen=True):
 
 
 class Surface(_Strict, frozen=True):
-    """A surface for a piece, where none of the named materials will do."""
+    """Surface of a piece that none of the named materials has."""
 
     colour: Colour
     finish: Literal[
@@ -143,8 +146,11 @@ Part = Annotated[float, msgspec.Meta(ge=0, lt=1)]
 
 
 class Section(_Strict, frozen=True):
-    """What is cut away, as parts of the reach of the pieces that are cut. From one side it is what is beyond a plane;
-    from two, as ``Section(front=0.5, right=0.5)``, the quarter that is beyond both."""
+    """Cut through the pieces, as fractions of the extent of the pieces that are cut.
+
+    From one side it removes all beyond a plane; from two, as ``Section(front=0.5, right=0.5)``, the quarter beyond
+    both.
+    """
 
     front: Part = 0.0
     """Along the normal of the plane of the motion, from where it is seen."""
@@ -158,12 +164,12 @@ class Section(_Strict, frozen=True):
     """Bodies, or pieces as "body/piece", that are cut; () is all of them from the front alone, and from other sides
     what stands still. What moves is cut as it stands at the start."""
     fixed: bool = False
-    """Whether planes stay where they are while bodies move through them, so that each moment has a cut of its own: all
+    """True if planes stay where they are while bodies move through them, so that each moment has a cut of its own: all
     bodies are cut then, or those of ``only``, and parts are those of their reach over the whole motion."""
 
 
 class Shot(_Strict, frozen=True):
-    """shot.json: camera, look and film of one mechanism."""
+    """Camera, look and film of one mechanism: shot.json."""
 
     schema: Literal["mbsd.shot"] = "mbsd.shot"
     schema_version: Literal[1] = 1
@@ -191,7 +197,7 @@ class Shot(_Strict, frozen=True):
     """null trails every traced point; () trails none."""
     labels: tuple[Label, ...] = ()
     show: tuple[Quantity, ...] = ()
-    """What arrows show: velocities and accelerations of traced points and centres of mass, forces (springs, loads,
+    """Quantities of arrows: velocities and accelerations of traced points and centres of mass, forces (springs, loads,
     contacts by penalty, weights), reactions (of joints and rigid contacts)."""
     title: Title | None = None
     """null writes nothing but the rate of a motion without a period that is not in real time."""
@@ -204,9 +210,9 @@ class Shot(_Strict, frozen=True):
     """Bodies, or pieces as "body/piece", that are seen through as tinted glass is, such as covers."""
     sound: Sound = Sound()
     poster: Unit = 0.3
-    """Which moment the poster shows, as a part of the motion."""
+    """Moment of the poster, as a fraction of the motion."""
     story: Story = Story()
-    """What STORY=explain shows other than by itself."""
+    """Changes of the story (``STORY=explain``)."""
 
 
 def read_shot(path: Path) -> Shot:
@@ -220,8 +226,9 @@ def write_shot(path: Path, shot: Shot) -> None:
 
 
 def refuse_unsound(shot: Shot, where: Path | str) -> Shot:
-    """The shot with the types of its fields; raises UserError naming ``where`` and the field whose type or range is
-    not that of a shot.
+    """Return the shot with the types of its fields.
+
+    Raises UserError naming ``where`` and the field whose type or range is wrong.
     """
     if shot.rate is not None and shot.seconds_per_turn is not None:
         raise UserError(f"{where}: rate and seconds_per_turn both say how fast the film goes; give one of them")
@@ -236,7 +243,7 @@ def refuse_unsound(shot: Shot, where: Path | str) -> Shot:
 
 
 def shown(shot: Shot, words: str) -> Shot:
-    """The shot with what the ``words`` of SHOW (in order, with commas) ask for; without words as it is."""
+    """Return the shot changed by the ``words`` of SHOW, in order; without words unchanged."""
     asked = words.split(",")
     if not words:
         return shot
@@ -246,7 +253,7 @@ def shown(shot: Shot, words: str) -> Shot:
 
 @dataclass(frozen=True)
 class Names:
-    """What a shot may name: joints, traced points, and the pieces of each body."""
+    """Names that a shot may use: joints, traced points, and the pieces of each body."""
 
     mechanism: str
     joints: tuple[str, ...]
@@ -258,20 +265,20 @@ class Names:
     """Drivers, forces and contacts."""
 
     @classmethod
-    def of(cls, motion: Motion, parts: Parts) -> Names:
-        """The names in a motion and its parts."""
+    def from_motion(cls, motion: Motion, parts: Parts) -> Names:
+        """Return the names in a motion and its parts."""
         pieces = {body: tuple(solids.pieces) for body, solids in parts.bodies.items()}
         forces = [name for name, force in motion.forces.items() if force.effort is not None]
         efforts, acting = (*motion.drivers, *forces), (*motion.drivers, *motion.forces, *motion.contacts)
         return cls(motion.mechanism, tuple(motion.joints), tuple(motion.points), pieces, efforts, acting)
 
     def listed(self) -> tuple[object, ...]:
-        """All of them, for the key of a stage."""
+        """Return all names, for the key of a stage."""
         return self.mechanism, self.joints, self.points, tuple(self.pieces.items()), self.efforts, self.acting
 
 
 def refuse_unknown(shot: Shot, names: Names) -> None:
-    """Raise UserError for the first name in the shot that motion and parts do not have, with the names they have."""
+    """Raise UserError for the first unknown name in the shot, with the known names."""
     known = partial(_known, names.mechanism)
     for index, trail in enumerate(shot.trails or ()):
         known(f"trails[{index}].point", trail.point, names.points)

@@ -1,4 +1,4 @@
-"""Signal colours: they belong to quantities alone, in every picture, and arrows differ by their heads as well.
+"""Signal colours: each belongs to one quantity in every picture; arrows differ by their heads too.
 
 open      a line bent to a point: motions            solid      a filled point: loads from outside
 double    two of them: what follows from others, accelerations from velocities, reactions from loads
@@ -15,7 +15,7 @@ Head = Literal["open", "open double", "solid", "solid double"]
 
 
 class Signal(NamedTuple):
-    """How a quantity looks."""
+    """Colour and arrow of a quantity."""
 
     light: str
     """``#rrggbb`` on light paper."""
@@ -36,12 +36,12 @@ SIGNALS = {
 
 
 def rgb(colour: str) -> tuple[float, float, float]:
-    """``#rrggbb`` as 0..1 each (sRGB)."""
+    """Return ``#rrggbb`` as 0..1 each (sRGB)."""
     red, green, blue = (int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5))
     return red, green, blue
 
 
 def linear(colour: str) -> tuple[float, float, float]:
-    """``#rrggbb`` in linear light, 0..1 each (IEC 61966-2-1)."""
+    """Return ``#rrggbb`` in linear light, 0..1 each (IEC 61966-2-1)."""
     red, green, blue = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in rgb(colour))
     return red, green, blue

@@ -1,4 +1,6 @@
-"""skeleton.json: the mechanism as polylines with the standard symbols, in poses over its motion. Metres and seconds.
+"""skeleton.json: the mechanism as polylines with standard symbols, over its motion.
+
+Metres and seconds.
 
 The solve stage writes it, because the symbols belong to the kinds of joints that the solver knows; plots draw it.
 """
@@ -20,7 +22,7 @@ Positive = Annotated[float, msgspec.Meta(gt=0)]
 
 
 class _Strict(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
-    """Unknown and missing fields are refused."""
+    """Struct that rejects unknown and missing fields."""
 
 
 class Stroke(_Strict, kw_only=True, omit_defaults=True):
@@ -42,7 +44,7 @@ class Stroke(_Strict, kw_only=True, omit_defaults=True):
     dash: list[Positive]
     """Lengths of strokes and gaps in line widths; empty: solid."""
     sign: Literal["centre of mass"] | None = None
-    """What the stroke marks, where pictures show it on demand."""
+    """Mark that pictures show on demand."""
 
 
 class Name(_Strict, kw_only=True):
@@ -72,7 +74,7 @@ class End(_Strict, kw_only=True):
 
 
 class Carrier(_Strict, kw_only=True):
-    """What something moves with, for any moment of the motion."""
+    """Carrier of a stroke or name, for any moment of the motion."""
 
     kind: Literal["ground", "body", "place", "line", "shapes"]
     """It stays; it moves with a body's frame; it moves with a point and does not turn; it moves with the line between
@@ -82,7 +84,7 @@ class Carrier(_Strict, kw_only=True):
 
 
 class Carried(_Strict, kw_only=True):
-    """A stroke where it is at the start of the motion, and what carries it from there."""
+    """Stroke at the start of the motion, and its carrier."""
 
     stroke: Stroke
     carrier: Carrier
@@ -91,7 +93,7 @@ class Carried(_Strict, kw_only=True):
 
 
 class CarriedName(_Strict, kw_only=True):
-    """A name, as it is at the start of the motion."""
+    """Name at the start of the motion."""
 
     name: Name
     carrier: Carrier
@@ -112,7 +114,7 @@ class Moving(_Strict, kw_only=True):
 
 
 class Skeleton(_Strict, kw_only=True):
-    """skeleton.json."""
+    """Skeleton of one mechanism: skeleton.json."""
 
     schema: Literal["mbsd.skeleton"] = "mbsd.skeleton"
     schema_version: Literal[1] = 1
@@ -130,7 +132,7 @@ class Skeleton(_Strict, kw_only=True):
 
 
 def read_skeleton(path: Path) -> Skeleton:
-    """Read skeleton.json; raises UserError on anything that does not hold together."""
+    """Read skeleton.json; raises UserError if it is inconsistent."""
     skeleton = jsonfile.read(path, Skeleton)
     for index, pose in enumerate(skeleton.poses):
         for number, stroke in enumerate(pose.strokes):
@@ -150,7 +152,7 @@ def write_skeleton(path: Path, skeleton: Skeleton) -> None:
 
 
 def _refuse_inconsistent(moving: Moving, path: Path) -> None:
-    """Raise UserError unless each carrier has its ends, and each recorded stroke a shape for every time."""
+    """Raise UserError unless carriers have ends, and recorded strokes a shape for every time."""
     ends = {"ground": 0, "shapes": 0, "body": 1, "place": 1, "line": 2}
     for number, stroke in enumerate(moving.strokes):
         where = f"{path}: moving.strokes[{number}]"

@@ -17,7 +17,10 @@ from shared.stage.errors import UserError
 
 
 def with_rods(motion: Motion, parts: Parts) -> Motion:
-    """The motion with a body for each rod of the parts. Raises UserError where a rod ends on no body, or on itself."""
+    """Return the motion with a body for each rod of the parts.
+
+    Raises UserError if a rod ends on no body, or on itself.
+    """
     rods = {name: body.spans for name, body in parts.bodies.items() if body.spans is not None}
     if not rods:
         return motion
@@ -61,7 +64,7 @@ def _moved(name: str, ends: tuple[End, End], z: float, motion: Motion) -> BodyMo
 
 
 def _leave(rod: BodyMotion, body: BodyMotion | None, rows: int) -> None:
-    """Have a rod turn with ``body``, which is ground if None, from the row after ``rows`` on."""
+    """Turn a rod with ``body``, which is ground if None, from the row after ``rows`` on."""
     at = rod.theta[rows - 1]
     count = len(rod.theta) - rows
     if body is None:
@@ -72,7 +75,7 @@ def _leave(rod: BodyMotion, body: BodyMotion | None, rows: int) -> None:
 
 
 def _place(name: str, end: End, motion: Motion) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(T, 2) where a place of a body is, its velocity and its acceleration."""
+    """Return the place of an end, its velocity and its acceleration, (T, 2) each."""
     if end.body == "ground":
         still = np.zeros((len(motion.time), 2))
         return still + np.array([end.x, end.y]), still, still

@@ -1,4 +1,4 @@
-"""What makes the frame vibrate, in data.json: inertia on the frame, the centre of mass, harmonics against the crank."""
+"""Vibration of the frame in data.json: inertia forces, centre of mass, harmonics of the crank."""
 
 from __future__ import annotations
 

@@ -9,7 +9,9 @@ import numpy as np
 
 
 def band(path: np.ndarray, half: float) -> cq.Wire:
-    """All within ``half`` of a smooth open curve through ``path`` (n, 2), n > 2, at even steps.
+    """Return all points within ``half`` of a smooth open curve.
+
+    The curve goes through ``path`` (n, 2), n > 2, at even steps.
 
     Raises ValueError if the curve bends so sharply that the band meets itself.
     """
@@ -22,17 +24,19 @@ def band(path: np.ndarray, half: float) -> cq.Wire:
     for at, way in ((-1, 1.0), (0, -1.0)):
         along = np.array([normal[at, 1], -normal[at, 0]])
         ends.append(path[at] + way * half * along)
-    sides = [cq.Edge.makeSpline([_at(p) for p in side]) for side in (right, left[::-1])]
+    sides = [cq.Edge.makeSpline([_vector(p) for p in side]) for side in (right, left[::-1])]
     caps = [
-        cq.Edge.makeThreePointArc(_at(right[-1]), _at(ends[0]), _at(left[-1])),
-        cq.Edge.makeThreePointArc(_at(left[0]), _at(ends[1]), _at(right[0])),
+        cq.Edge.makeThreePointArc(_vector(right[-1]), _vector(ends[0]), _vector(left[-1])),
+        cq.Edge.makeThreePointArc(_vector(left[0]), _vector(ends[1]), _vector(right[0])),
     ]
     return cq.Wire.assembleEdges([sides[0], caps[0], sides[1], caps[1]])
 
 
 def loop(path: np.ndarray, beyond: float) -> cq.Wire:
-    """The closed curve at a distance outside of a smooth closed curve through ``path`` (n, 2), whose last place is its
-    first; a negative distance is inside. Raises ValueError if the curve bends too sharply for that.
+    """Return the closed curve at a distance outside of a smooth closed curve.
+
+    That one goes through ``path`` (n, 2), whose last place is its first; a negative distance is inside. Raises
+    ValueError if the curve bends too sharply for that.
     """
     area = float((path[:-1, 0] * path[1:, 1] - path[1:, 0] * path[:-1, 1]).sum())
     around = np.vstack([path[-2], path, path[1]])
@@ -40,24 +44,27 @@ def loop(path: np.ndarray, beyond: float) -> cq.Wire:
     moved = path + beyond * outward
     if ((np.diff(moved, axis=0) * np.diff(path, axis=0)).sum(axis=1) <= 0).any():
         raise ValueError(f"a groove does not follow a curve at {abs(beyond):.3g} mm that bends as sharply")
-    edge = cq.Edge.makeSpline([_at(p) for p in moved[:-1]], periodic=True)
+    edge = cq.Edge.makeSpline([_vector(p) for p in moved[:-1]], periodic=True)
     return cq.Wire.assembleEdges([edge])
 
 
 def normals(path: np.ndarray) -> np.ndarray:
-    """(n, 2): unit vectors to the left of a curve through ``path``."""
+    """Return unit vectors (n, 2) to the left of a curve through ``path``."""
     way = np.gradient(path, axis=0, edge_order=2)
     way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-12)
     return np.stack([-way[:, 1], way[:, 0]], axis=1)
 
 
 def sharpest(path: np.ndarray) -> float:
-    """The least radius of curvature of a curve through ``path`` at even steps; infinite where it is straight."""
+    """Return the least radius of curvature of a curve through ``path``; infinite if it is straight.
+
+    The path has even steps.
+    """
     first, second = np.gradient(path, axis=0, edge_order=2), np.gradient(np.gradient(path, axis=0), axis=0)
     bend = np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])[2:-2].max(initial=0.0)
     speed = float(np.linalg.norm(first, axis=1).max())
     return speed**3 / float(bend) if bend > 1e-12 else math.inf
 
 
-def _at(point: np.ndarray) -> cq.Vector:
+def _vector(point: np.ndarray) -> cq.Vector:
     return cq.Vector(float(point[0]), float(point[1]), 0.0)

@@ -23,7 +23,7 @@ def base_plate(
     tapped: Sequence[tuple[float, float, float, float]] = (),
     edge: float = 1.2,
 ) -> cq.Workplane:
-    """A plate (x0, y0, x1, y1) with its top at z = 0 and its underside at z = -thickness.
+    """Return a plate (x0, y0, x1, y1) with its top at z = 0 and its underside at z = -thickness.
 
     ``counterbores`` are through holes for screws of diameter ``screw``, with room for a ``head`` (diameter, depth);
     ``tapped`` are blind holes (x, y, diameter, depth). Through holes: the counterbores.
@@ -63,7 +63,7 @@ def pedestal(
     root: float = 2.0,
     start: float = 90.0,
 ) -> cq.Workplane:
-    """A bearing pedestal from z = 0 to height (mm, diameters).
+    """Return a bearing pedestal from z = 0 to height (mm, diameters).
 
     A flange held by ``screws`` screws on a pitch circle carries a column that tapers from ``foot`` to ``top``; the
     bore goes right through. Through holes: 1 + screws.
@@ -93,7 +93,10 @@ def pedestal(
 
 
 def column(height: float, hole: float, top: float, foot: float) -> cq.Workplane:
-    """A plain post from z = 0 to height (mm), tapered from diameter ``foot`` to ``top``, its bore right through."""
+    """Return a plain post from z = 0 to height (mm), with its bore right through.
+
+    It tapers from diameter ``foot`` to ``top``.
+    """
     r = hole / 2
     return turned(
         [
@@ -111,12 +114,12 @@ def column(height: float, hole: float, top: float, foot: float) -> cq.Workplane:
 
 @built_once
 def foot(diameter: float, height: float, hole: float) -> cq.Workplane:
-    """A round foot below z = 0, tapered, with a hole for its screw: one through hole."""
+    """Return a round tapered foot below z = 0, with a hole for its screw: one through hole."""
     r, a = diameter / 2, hole / 2
     return turned([(a, -height), (r - 1.2, -height), (r - 0.6, -height + 0.6), (r, -0.2), (r - 0.2, 0), (a, 0)])
 
 
 def bolt_circle(diameter: float, count: int, start: float = 90.0) -> list[tuple[float, float]]:
-    """Points (x, y) on a pitch circle, the first at ``start`` degrees."""
+    """Return points (x, y) on a pitch circle, the first at ``start`` degrees."""
     angles = [math.radians(start + 360.0 * i / count) for i in range(count)]
     return [(diameter / 2 * math.cos(a), diameter / 2 * math.sin(a)) for a in angles]

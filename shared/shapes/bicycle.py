@@ -1,4 +1,6 @@
-"""A bicycle and an ergometer in side view, flat on a base plate (mm): the bracket is the origin, the rider faces right.
+"""Bicycle and ergometer in side view, flat on a base plate (mm).
+
+The bracket is the origin, the rider faces right.
 
 Sizes are those of a road bicycle for a rider of 1.75 m; the saddle is that of leg.py.
 """
@@ -36,7 +38,7 @@ FEET = ((-300.0, -312.0), (664.0, -312.0))
 
 
 def wheel(name: str, at: Point, low: float, thick: float) -> list[Solid]:
-    """Tyre, and rim with spokes."""
+    """Return the tyre, and the rim with spokes."""
     radius, tall, rim, hub = WHEEL
     inner = radius - tall
     tyre = eased(extruded(circle(*at, radius), thick, low, [circle(*at, inner)]), 0.3 * thick, ">Z")
@@ -49,7 +51,7 @@ def wheel(name: str, at: Point, low: float, thick: float) -> list[Solid]:
 
 
 def frame(hip: Point, low: float, thick: float) -> Solid:
-    """The tubes, fork and handlebar of a bicycle whose saddle is under a hip."""
+    """Return tubes, fork and handlebar of a bicycle whose saddle is under a hip."""
     top = (SEAT * hip[0], SEAT * hip[1])
     head, lower = HEAD
     tubes = [
@@ -62,7 +64,7 @@ def frame(hip: Point, low: float, thick: float) -> Solid:
 
 
 def ergometer(hip: Point, low: float, thick: float) -> list[Solid]:
-    """A flywheel on a frame that stands on the floor, with a handlebar."""
+    """Return a flywheel on a frame that stands on the floor, with a handlebar."""
     (x, y), radius = FLYWHEEL
     floor = FEET[0][1] + TUBE
     top, head = (0.74 * hip[0], 0.74 * hip[1]), (360.0, 470.0)
@@ -89,7 +91,7 @@ def ergometer(hip: Point, low: float, thick: float) -> list[Solid]:
 
 
 def _tubes(tubes: Sequence[tuple[Point, Point, float]], low: float, thick: float) -> cq.Workplane:
-    """Straight ones with round ends, as one plate."""
+    """Return straight tubes with round ends, as one plate."""
     shapes = [extruded(hull([(*a, half), (*b, half)]), thick, low) for a, b, half in tubes]
     whole = shapes[0]
     for shape in shapes[1:]:

@@ -1,4 +1,4 @@
-"""What ``parts()`` returns: the solids of each body, and what is to be known of bodies besides their solids."""
+"""Result of ``parts()``: the solids of each body, and facts about bodies beyond their solids."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Bodies(dict[str, list[Solid]]):
     def __init__(self, *args: Mapping[str, list[Solid]], **bodies: list[Solid]) -> None:
         super().__init__(*args, **bodies)
         self.along = False
-        """Whether heights of the solids are the places z of the model, so that what masses have along z counts."""
+        """True if heights of the solids are the places z of the model, so that what masses have along z counts."""
         self.stand: Callable[[Mapping[str, list[Solid]]], list[Solid]] | None = None
         """Makes the solids of ground with a stand, once all solids are there; None where ground has what it needs."""
         self.mount: tuple[str, tuple[float, float, float]] | None = None
@@ -46,21 +46,23 @@ class Bodies(dict[str, list[Solid]]):
         self._rods: dict[str, tuple[Place, Place]] = {}
 
     def may_touch(self, first: str, second: str) -> None:
-        """Solids of these two bodies touch by design: the clearance stage does not compare them with each other.
+        """Let solids of these two bodies touch: the clearance stage does not compare them.
 
         Raises UserError where both are one.
         """
         self._touching.add(pair_of(first, second))
 
     def pieces_may_touch(self, first: str, second: str) -> None:
-        """Two solids of different bodies, by their names, touch by design; all else of their bodies is compared.
+        """Let two solids of different bodies, by their names, touch; others are still compared.
 
         Raises UserError where both are one.
         """
         self._pieces_touching.add(pair_of(first, second, "pieces_may_touch", "solid"))
 
     def dress(self, body: str, *solids: Solid) -> None:
-        """Add solids (mm, the frame of ``body``) that show what the machine works on, ground or a body that moves.
+        """Add solids (mm, the frame of ``body``) that show the workpiece or surroundings of the machine.
+
+        ``body`` is ground or a body that moves.
 
         They are made, proven clear and filmed as all others, but are none of its mass: a load, a cup on a table. Raises
         UserError for a body that has no solids yet, whose main piece they would be.
@@ -70,11 +72,13 @@ class Bodies(dict[str, list[Solid]]):
         self[body] = [*self[body], *(replace(solid, dressing=True) for solid in solids)]
 
     def leave_out(self, body: str) -> None:
-        """``body`` of mechanism.py has no solids; where mechanism.py gives it no mass, that is estimated."""
+        """Leave ``body`` of mechanism.py without solids; its mass is estimated unless given there."""
         self._left_out.add(body)
 
     def join_places(self, rod: str, first: Place, second: Place) -> None:
-        """``rod`` is no body of mechanism.py: its solids join two places (body, x, y in mm in its frame).
+        """Let the solids of ``rod``, no body of mechanism.py, join two places.
+
+        Each place is (body, x, y), in mm in its frame.
 
         They are drawn with their origin on the first place and the x axis towards the second. Raises UserError where
         both are one.
@@ -84,7 +88,7 @@ class Bodies(dict[str, list[Solid]]):
         self._rods[rod] = first, second
 
     def at_scale(self, ratio: float) -> Bodies:
-        """A model of it all, ``ratio`` times as large."""
+        """Return a model of all bodies, ``ratio`` times as large."""
         made = self | {body: [at_scale(solid, ratio) for solid in solids] for body, solids in self.items()}
         made._rods = {
             rod: ((first, x * ratio, y * ratio), (second, u * ratio, v * ratio))
@@ -93,7 +97,7 @@ class Bodies(dict[str, list[Solid]]):
         return made
 
     def on_stand(self) -> Bodies:
-        """With a stand under all that is there now; the parts stage adds it to what ``parts()`` returns."""
+        """Return the bodies with a stand under all of them; the parts stage adds it to ``parts()``."""
         if self.stand is None:
             return self
         stood = self | {"ground": self.stand(self)}
@@ -102,7 +106,7 @@ class Bodies(dict[str, list[Solid]]):
 
     @property
     def rods(self) -> dict[str, tuple[Place, Place]]:
-        """By name: the two places that each joins."""
+        """Two places that each rod joins, by its name."""
         return dict(self._rods)
 
     @property
@@ -140,7 +144,10 @@ class Bodies(dict[str, list[Solid]]):
 
 
 def pair_of(first: str, second: str, wish: str = "may_touch", what: str = "body") -> tuple[str, str]:
-    """Two bodies, or two solids, in the order of the alphabet. Raises UserError where both are one."""
+    """Return two bodies, or two solids, in the order of the alphabet.
+
+    Raises UserError if both are one.
+    """
     if first == second:
         both = {"body": "bodies"}.get(what, f"{what}s")
         raise UserError(f"{wish}('{first}', '{second}'): a {what} may touch itself anyway; name two {both}")

@@ -1,4 +1,4 @@
-"""Small building steps that the shapes share: extrude an outline, turn a profile, cut bores, ease edges."""
+"""Building steps that shapes share: extrude an outline, turn a profile, cut bores, ease edges."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from shared.shapes.outline import circle
 
 
 def extruded(outline: cq.Wire, height: float, z: float = 0.0, holes: Sequence[cq.Wire] = ()) -> cq.Workplane:
-    """A prism on ``outline`` from z to z + height, without the ``holes``."""
+    """Return a prism on ``outline`` from z to z + height, without the ``holes``."""
     solid = cq.Solid.extrudeLinear(outline, list(holes), cq.Vector(0, 0, height))
     return cq.Workplane(obj=solid.translate(cq.Vector(0, 0, z)))
 
@@ -30,7 +30,7 @@ def turned(profile: Sequence[tuple[float, ...]]) -> cq.Workplane:
 
 
 def bore(diameter: float, z0: float, z1: float, chamfer: float = 0.0) -> cq.Workplane:
-    """The tool that cuts a hole from z0 to z1 on the axis, with a chamfer at both mouths."""
+    """Return the tool that cuts a hole from z0 to z1 on the axis, with a chamfer at both mouths."""
     r, c, over = diameter / 2, chamfer, 0.5
     if c == 0:
         return extruded(circle(0, 0, r), z1 - z0 + 2 * over, z0 - over)

@@ -24,7 +24,7 @@ and meshes it with ten times the triangles.
 
 
 def cam_disc(outline: np.ndarray, thickness: float, edge: float = 0.4) -> cq.Workplane:
-    """The disc within ``outline`` ((n, 2), mm, closed, either way round) from z = 0 up; no hole.
+    """Return the disc within ``outline`` ((n, 2), mm, closed, either way round) from z = 0 up; no hole.
 
     Its edges have a chamfer ``edge``, or half of that, where the CAD kernel can make one; ratchets and escape wheels
     are sharper than any chamfer and get none.
@@ -45,7 +45,7 @@ def cam_disc(outline: np.ndarray, thickness: float, edge: float = 0.4) -> cq.Wor
 
 
 def evenly(outline: np.ndarray, count: int) -> np.ndarray:
-    """(count, 2): points of a closed outline (n, 2) at even distances."""
+    """Return points (count, 2) of a closed outline (n, 2) at even distances."""
     closed = np.vstack([outline, outline[:1]])
     steps = np.hypot(*np.diff(closed, axis=0).T)
     arc = np.concatenate([[0.0], np.cumsum(steps)])
@@ -59,13 +59,16 @@ def _polygon(closed: np.ndarray) -> cq.Wire:
 
 
 def _area(points: np.ndarray) -> float:
-    """Twice the signed area: above 0 counter-clockwise."""
+    """Return twice the signed area: above 0 counter-clockwise."""
     x, y = points.T
     return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 def _tightest(points: np.ndarray) -> float:
-    """The least radius (mm) of the circles through three neighbours of a counter-clockwise outline where it bulges."""
+    """Return the least radius (mm) of circles through three neighbours where the outline bulges.
+
+    The outline is counter-clockwise.
+    """
     a, c = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
     u, v, w = points - a, c - points, c - a
     turn = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]

@@ -46,7 +46,7 @@ LETTERS: dict[str, list[Stroke]] = {
 def text(
     word: str, height: float, x: float, y: float, turn: float = 0.0, width: float = 0.0, spacing: float = 0.4
 ) -> list[cq.Face]:
-    """The strokes of ``word``, its middle at (x, y), turned by ``turn`` degrees.
+    """Return the strokes of ``word``, its middle at (x, y), turned by ``turn`` degrees.
 
     ``height`` of the letters and ``width`` of the cutter in mm (by default a sixth of the height).
     Raises ValueError for a letter that is not in :data:`LETTERS`.
@@ -67,7 +67,10 @@ def text(
 def rule(
     length: float, x: float, y: float, marks: tuple[float, float] = (2.0, 3.6), width: float = 0.5, step: float = 5.0
 ) -> list[cq.Face]:
-    """Strokes of a scale along +x from (x, y): a short one every ``step`` mm, every other one long, towards +y."""
+    """Return strokes of a scale along +x from (x, y), one every ``step`` mm.
+
+    Strokes point towards +y; every other one is long.
+    """
     faces = []
     for i in range(math.floor(length / step + 1e-9) + 1):
         reach = marks[1] if i % 2 == 0 else marks[0]
@@ -76,7 +79,10 @@ def rule(
 
 
 def dial(x: float, y: float, radius: float, step: float, marks: tuple[float, float] = (1.8, 3.6)) -> list[cq.Face]:
-    """Strokes round (x, y), outwards from ``radius``: one every ``step`` degrees, a long one every 30."""
+    """Return strokes outwards from ``radius`` round (x, y), one every ``step`` degrees.
+
+    One every 30 degrees is long.
+    """
     faces = []
     for i in range(round(360 / step)):
         angle = math.radians(i * step)
@@ -87,12 +93,12 @@ def dial(x: float, y: float, radius: float, step: float, marks: tuple[float, flo
 
 
 def groove(start: tuple[float, float], end: tuple[float, float], width: float) -> cq.Face:
-    """One straight stroke with round ends."""
+    """Return one straight stroke with round ends."""
     return cq.Face.makeFromWires(outline.hull([(*start, width / 2), (*end, width / 2)]))
 
 
 def engraved(shape: cq.Workplane, strokes: Sequence[cq.Face], z: float, depth: float = 0.4) -> cq.Workplane:
-    """Cut the strokes ``depth`` mm into the face at height ``z``. Blind: no through hole is added."""
+    """Cut the strokes ``depth`` mm into the face at height ``z``, without any through hole."""
     up = cq.Vector(0, 0, depth + 0.5)
     for group in _apart(strokes):
         tools = [cq.Solid.extrudeLinear(s.translate(cq.Vector(0, 0, z - depth)), up) for s in group]
@@ -101,7 +107,10 @@ def engraved(shape: cq.Workplane, strokes: Sequence[cq.Face], z: float, depth: f
 
 
 def _apart(strokes: Sequence[cq.Face]) -> list[list[cq.Face]]:
-    """Few groups of strokes that do not overlap: one cut with tools that overlap each other may tear the face."""
+    """Return few groups of strokes that do not overlap.
+
+    One cut with tools that overlap each other may tear the face.
+    """
     groups: list[list[tuple[cq.Face, cq.BoundBox]]] = []
     for stroke in strokes:
         box = stroke.BoundingBox()
@@ -119,10 +128,10 @@ def _overlap(a: cq.BoundBox, b: cq.BoundBox) -> bool:
 
 
 def _stroke(stroke: Stroke, height: float, shift: float, width: float) -> cq.Face:
-    def at(u: float, v: float) -> cq.Vector:
+    def place(u: float, v: float) -> cq.Vector:
         return cq.Vector(u * height + shift, v * height, 0)
 
-    points = [at(*entry[-2:]) for entry in stroke]
+    points = [place(*entry[-2:]) for entry in stroke]
     if len(stroke) == 2 and len(stroke[1]) == 2:
         return groove((points[0].x, points[0].y), (points[1].x, points[1].y), width)
     edges = []
@@ -130,7 +139,7 @@ def _stroke(stroke: Stroke, height: float, shift: float, width: float) -> cq.Fac
         if len(entry) == 2:
             edges.append(cq.Edge.makeLine(before, after))
         else:
-            edges.append(cq.Edge.makeThreePointArc(before, at(*entry[:2]), after))
+            edges.append(cq.Edge.makeThreePointArc(before, place(*entry[:2]), after))
     line = cq.Wire.assembleEdges(edges)
     outer = line.offset2D(width / 2, "arc")[0]
     return cq.Face.makeFromWires(outer, line.offset2D(-width / 2, "arc") if line.IsClosed() else [])

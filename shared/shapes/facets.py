@@ -1,4 +1,7 @@
-"""The triangles of a solid's mesh, out of the kernel at once: asked for one by one they take longer than the mesh."""
+"""Triangles of a solid's mesh, read from the kernel at once.
+
+One by one they take longer than the mesh.
+"""
 
 from __future__ import annotations
 
@@ -20,9 +23,11 @@ and asking for 1e-6 takes eighty times as long."""
 
 
 def facets(shape: Any, tolerance: float, angle: float, relative: bool = False) -> np.ndarray:
-    """The triangles of a ``cadquery.Shape``, (n, 3, 3) float32: their corners (mm), counter-clockwise seen from
-    outside, in an order of their own. They are ``tolerance`` from the surface at most (mm, or ``relative`` to the
-    length of each edge), with ``angle`` (rad) between neighbours. The shape carries no mesh along afterwards.
+    """Return the triangles of a ``cadquery.Shape``, (n, 3, 3) float32: their corners (mm).
+
+    Corners are counter-clockwise seen from outside, in an order of their own. Triangles are ``tolerance`` from the
+    surface at most (mm, or ``relative`` to the length of each edge), with ``angle`` (rad) between neighbours. The shape
+    carries no mesh along afterwards.
 
     Raises UserError where there is no room for the kernel's file.
     """
@@ -56,7 +61,7 @@ def enclosed(corners: np.ndarray) -> float:
 
 
 def ruled(solid: Any) -> Any:
-    """The solid with its extruded curves as B-spline surfaces, which are the same surfaces.
+    """Return the solid with its extruded curves as B-spline surfaces, which are the same surfaces.
 
     The kernel divides the height of an extruded spline as finely as the curve and makes a hundred times the triangles,
     whose corners stand out from the chords of the wall's edges; of a B-spline surface it knows the straight direction.
@@ -69,7 +74,10 @@ def ruled(solid: Any) -> Any:
 
 
 def volume_of(solid: Any) -> float:
-    """The volume (mm^3) of a ``cadquery.Shape``; the kernel's own is percents off along large extruded splines."""
+    """Return the volume (mm^3) of a ``cadquery.Shape``.
+
+    The kernel's own is percents off along large extruded splines.
+    """
     smooth = ruled(solid)
     return solid.Volume() if smooth is solid else smooth.Volume(SHARP)
 
@@ -84,8 +92,9 @@ def _with_three_corners(corners: np.ndarray) -> np.ndarray:
 
 
 def _ordered(corners: np.ndarray) -> np.ndarray:
-    """Triangles sorted, the lowest corner of each first, since the kernel gives the same ones each time, but those of a
-    face with many holes in another order.
+    """Return the triangles sorted, the lowest corner of each first.
+
+    The kernel gives the same ones each time, but those of a face with many holes in another order.
     """
     corners = corners + np.float32(0)  # -0 becomes 0
     lowest = np.where(_before(corners[:, 1], corners[:, 0]), 1, 0)
@@ -96,13 +105,16 @@ def _ordered(corners: np.ndarray) -> np.ndarray:
 
 
 def _before(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """(n,): whether points p (n, 3) come before q: by x, of equal ones by y, then by z."""
+    """Return True, (n,), where points p (n, 3) come before q: by x, then y, then z."""
     (px, py, pz), (qx, qy, qz) = p.T, q.T
     return (px < qx) | ((px == qx) & ((py < qy) | ((py == qy) & (pz < qz))))
 
 
 def cut_short(path: Path, content: bytes) -> str:
-    """Words for a file that the CAD kernel cut short; it reports no error when a disk is full."""
+    """Return an error for a file that the CAD kernel cut short.
+
+    The kernel reports no error when a disk is full.
+    """
     free = shutil.disk_usage(path.parent).free / 1e6
     return (
         f"the CAD kernel wrote {len(content)} bytes of {path.name} and no more; {free:.1f} MB are free at "

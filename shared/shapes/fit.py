@@ -1,4 +1,4 @@
-"""Fits: the clearances between parts, in one place, where they are widened for another machine or printer."""
+"""Fits: the clearances between parts, in one place for all machines and printers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Geneva: the slotted wheel with its locking arcs, and the locking disc of the crank, cut away where the wheel passes.
+"""Geneva: the slotted wheel with its locking arcs, and the locking disc of the crank.
 
 Source of the proportions: Bickford, Mechanisms for Intermittent Motion, 1972, ch. 9. The cut is a circle through the
 two ends of the disc's arc, as shallow as the points that the wheel sweeps allow.
@@ -24,7 +24,7 @@ EARLY = 3.0
 
 @dataclass(frozen=True)
 class Geneva:
-    """Sizes (mm): ``distance`` of the centres, ``radius`` of the pin's circle, width of a ``slot``, ``wall`` beside it.
+    """Sizes (mm): ``distance`` of centres, ``radius`` of the pin's circle, ``slot`` width, ``wall``.
 
     ``gap`` is between locking disc and wheel.
     """
@@ -52,7 +52,7 @@ class Geneva:
         return self.distance - self.radius - self.slot / 2 - 1.0
 
     def wheel(self, thickness: float) -> cq.Workplane:
-        """The wheel about the z axis from z = 0 up, a slot along x; no hole. Its edges are eased."""
+        """Return the wheel about the z axis from z = 0 up, a slot along x; no hole. Its edges are eased."""
         shape = extruded(outline.circle(0, 0, self.rim), thickness)
         slot = outline.hull([(self.bottom + self.slot / 2, 0, self.slot / 2), (2 * self.rim, 0, self.slot / 2)])
         for k in range(self.slots):
@@ -63,7 +63,10 @@ class Geneva:
         return shape.faces("|Z").edges().chamfer(0.05 * thickness)
 
     def locking_disc(self, thickness: float, hole: float) -> cq.Workplane:
-        """The locking disc about the z axis from z = 0 up, cut away towards x: one through hole of radius ``hole``."""
+        """Return the locking disc about the z axis from z = 0 up, cut away towards x.
+
+        It has one through hole of radius ``hole``.
+        """
         centre, radius = self.cut
         shape = extruded(outline.circle(0, 0, self.lock), thickness)
         shape = shape.cut(extruded(outline.circle(centre, 0, radius), thickness + 2.0, -1.0))
@@ -91,7 +94,7 @@ class Geneva:
         return centre - radius
 
     def _swept(self) -> np.ndarray:
-        """(k, 2): where points of the wheel's edge come in the frame of the crank while the pin turns the wheel."""
+        """Return points (k, 2) that the wheel's edge sweeps in the crank's frame while the pin turns it."""
         pitch, d, arc = 2 * math.pi / self.slots, self.distance, self.lock + self.gap
         edge = math.asin(self.slot / 2 / self.rim)
         angles = np.linspace(edge, pitch - edge, 241)

@@ -1,4 +1,4 @@
-"""How many holes go through a solid whose shape follows from a mechanism, counted on a coarse mesh."""
+"""Number of holes through a solid, counted on a coarse mesh, for shapes that follow from a mechanism."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SAME = 1e-7
 
 
 def through_holes(shape: cq.Workplane) -> int:
-    """Through holes n of one closed solid: V - E + F of its mesh is 2 - 2 n."""
+    """Return the through holes n of one closed solid: V - E + F of its mesh is 2 - 2 n."""
     solid = shape.solids().vals()[0]
     size = rough_size(shape.solids())
     corners = facets(solid, COARSE * size, ANGLE, relative=True).reshape(-1, 3).astype(float)

@@ -1,4 +1,4 @@
-"""Outlines of involute teeth (ISO 53: pressure angle 20 degrees): spur gears, ring gears, racks. Lengths in mm.
+"""Outlines of involute teeth (ISO 53: pressure angle 20 degrees): gears, ring gears, racks; mm.
 
 A flank is the involute of the base circle, given by points on it; tips and roots are chords. ``play`` is taken from the
 thickness of the teeth along the pitch circle, so two wheels in mesh have the sum of theirs.
@@ -23,22 +23,24 @@ FLANK = 6
 
 
 def involute(angle: float) -> float:
-    """inv(angle) = tan(angle) - angle."""
+    """Return inv(angle) = tan(angle) - angle."""
     return math.tan(angle) - angle
 
 
 def longest_tip(radius: float, mate: float) -> float:
-    """Largest tip radius of an external gear that meets the flanks of its ``mate`` above their base circle."""
+    """Return the largest tip radius of a gear that meets ``mate``'s flanks above their base circle."""
     return math.hypot(radius * math.cos(PRESSURE), (radius + mate) * math.sin(PRESSURE))
 
 
 def shortest_tip(ring: float, mate: float) -> float:
-    """Smallest tip radius of a ring gear that meets the flanks of the pinion ``mate`` above their base circle."""
+    """Return the smallest tip radius of a ring that meets ``mate``'s flanks above their base circle."""
     return math.hypot(ring * math.cos(PRESSURE), (ring - mate) * math.sin(PRESSURE))
 
 
 def foul_inside(pinion: float, tip: float, ring: float, ring_tip: float) -> bool:
-    """Whether tips of a pinion cross those of its ring gear beside the line of centres; pitch and tip radii.
+    """Return True if tips of a pinion cross those of its ring gear beside the line of centres.
+
+    Pitch and tip radii are given.
 
     Trochoid interference (KHK, Gear technical reference, Internal gears):
 
@@ -58,14 +60,19 @@ def foul_inside(pinion: float, tip: float, ring: float, ring_tip: float) -> bool
 
 
 def longest_rack_tip(pinion: float) -> float:
-    """Greatest height of a rack's teeth above the pitch line that meet the pinion's flanks above its base circle."""
+    """Return the greatest height of a rack's teeth that meet the pinion's flanks above its base circle.
+
+    It is above the pitch line.
+    """
     return pinion * math.sin(PRESSURE) ** 2
 
 
 def rack_outline(
     teeth: int, module: float, tip: float, root: float, back: float, play: float, first: float = 0.0
 ) -> np.ndarray:
-    """(4 teeth + 4, 2): the outline of a rack, counter-clockwise; its pitch line is the x axis, its teeth point to +y.
+    """Return the outline of a rack, (4 teeth + 4, 2), counter-clockwise.
+
+    Its pitch line is the x axis, its teeth point to +y.
 
     ``tip`` and ``root`` are heights, the root's below zero; ``back`` is what the bar has below the root. The first
     tooth is at x = ``first``; the bar begins and ends in the middle of a space.
@@ -82,7 +89,7 @@ def rack_outline(
 
 
 def toothed(teeth: int, module: float, tip: float, root: float, play: float, phase: float = 0.0) -> np.ndarray:
-    """(n, 2): the outline of a wheel, counter-clockwise; a tooth points to the angle ``phase`` (rad).
+    """Return the outline of a wheel, (n, 2), counter-clockwise; a tooth points to ``phase`` (rad).
 
     ``tip`` and ``root`` are radii. The hole of a ring gear is such a wheel, too: its teeth are the ring's spaces, so
     ``play`` is negative, ``tip`` the ring's root and ``root`` the ring's tip.
@@ -108,5 +115,5 @@ def toothed(teeth: int, module: float, tip: float, root: float, play: float, pha
 
 
 def wire(points: np.ndarray) -> cq.Wire:
-    """A closed polygon."""
+    """Return a closed polygon."""
     return cq.Wire.makePolygon([cq.Vector(float(x), float(y), 0.0) for x, y in points], close=True)

@@ -1,4 +1,4 @@
-"""What the CAD kernel cannot do, and shapes that are tried one after the other until it can."""
+"""Failures of the CAD kernel, and shapes that are tried one after the other until one succeeds."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ VOLUME = 5e-3
 
 
 def is_of_kernel(error: BaseException) -> bool:
-    """Whether the CAD kernel raised this; it has hundreds of exceptions without a common base."""
+    """Return True if the CAD kernel raised this.
+
+    It has hundreds of exceptions without a common base.
+    """
     return type(error).__module__.split(".")[0] == "OCP"
 
 
@@ -35,7 +38,7 @@ def is_sound(shape: cq.Workplane) -> bool:
 
 
 def first_sound(ways: Sequence[Callable[[], cq.Workplane]]) -> cq.Workplane | None:
-    """The first shape that has room and that the CAD kernel can make; None if there is none."""
+    """Return the first shape that has room and that the CAD kernel builds; None if there is none."""
     for way in ways:
         try:
             shape = way()

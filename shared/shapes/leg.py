@@ -1,4 +1,6 @@
-"""A leg on a bicycle in side view: outlines of thigh, calf and foot, chainring and saddle (mm), the rider faces right.
+"""Leg on a bicycle in side view: outlines of thigh, calf, foot, chainring and saddle (mm).
+
+The rider faces right.
 
 The thigh lies along x from hip to knee with its front up; the shank along x from the pedal's axle to the knee with the
 calf up, the ankle stiff.
@@ -45,7 +47,10 @@ SADDLE = ((-98.0, 6.0, 34.0), (20.0, -8.0, 18.0), (118.0, 4.0, 10.0))
 
 
 def smooth(points: Sequence[Point], scale: float = 1.0) -> cq.Wire:
-    """A closed curve of tangent arcs through points: two between each and the next (biarcs), all directions met."""
+    """Return a closed curve of tangent arcs through points: two between each and the next (biarcs).
+
+    All directions are met.
+    """
     at = scale * np.array(points, dtype=float)
     ways = np.roll(at, -1, axis=0) - at
     lengths = np.linalg.norm(ways, axis=1)[:, None]
@@ -61,7 +66,7 @@ def smooth(points: Sequence[Point], scale: float = 1.0) -> cq.Wire:
 
 
 def _biarc(a: np.ndarray, u: np.ndarray, way: np.ndarray, b: np.ndarray, v: np.ndarray) -> list[cq.Edge]:
-    """From a, leaving along u, to b, arriving along v, with equal tangent lengths."""
+    """Return two arcs from a, leaving along u, to b, arriving along v, with equal tangent lengths."""
     bend, along = 2 * (1 - float(u @ v)), float(way @ (u + v))
     square = float(way @ way)
     reach = square / (2 * along) if bend < 1e-9 else (math.sqrt(along**2 + bend * square) - along) / bend
@@ -72,12 +77,12 @@ def _biarc(a: np.ndarray, u: np.ndarray, way: np.ndarray, b: np.ndarray, v: np.n
 
 
 def thigh(length: float) -> cq.Wire:
-    """From the hip at the origin to the knee at (length, 0)."""
+    """Return the outline from the hip at the origin to the knee at (length, 0)."""
     return smooth(THIGH, length / 400)
 
 
 def calf(length: float) -> cq.Wire:
-    """From the knee at (length, 0) to the ankle."""
+    """Return the outline from the knee at (length, 0) to the ankle."""
     scale = length / 440
     x, y = _turned(ANKLE, LEVEL)
     along = np.array([x - 440, y]) / math.hypot(x - 440, y)
@@ -87,7 +92,7 @@ def calf(length: float) -> cq.Wire:
 
 
 def foot(length: float) -> cq.Wire:
-    """On the pedal at the origin, of a shank of this length."""
+    """Return the outline of a foot on the pedal at the origin, of a shank of this length."""
     return smooth([_turned(point, LEVEL) for point in FOOT], length / 440)
 
 
@@ -97,7 +102,10 @@ def _turned(point: Point, angle: float) -> Point:
 
 
 def chainring(radius: float, teeth: int, arms: int, eye: float) -> tuple[cq.Wire, list[cq.Wire]]:
-    """A wheel with teeth about the origin, and the windows between its arms; ``eye``: radius of its hub."""
+    """Return a toothed wheel about the origin, and the windows between its arms.
+
+    ``eye`` is the radius of its hub.
+    """
     depth, pitch = 0.06 * radius, 2 * math.pi / teeth
     corners = [((k + part) * pitch, radius - depth * (1 - up)) for k in range(teeth) for part, up in TOOTH]
     rim = cq.Wire.makePolygon([cq.Vector(r * math.cos(a), r * math.sin(a), 0) for a, r in corners], close=True)
@@ -111,31 +119,31 @@ def chainring(radius: float, teeth: int, arms: int, eye: float) -> tuple[cq.Wire
 
 
 def _slot(middle: float, angle: float, radius: float, half: float) -> cq.Wire:
-    """A window along the arc of radius ``middle``, or a hole where it is no longer than wide."""
+    """Return a window along the arc of radius ``middle``, or a hole if it is no longer than wide."""
     if half - radius < 1.0:
         return circle(middle * math.cos(angle), middle * math.sin(angle), radius)
     turn = (half - radius) / middle
     low, high = middle - radius, middle + radius
 
-    def at(r: float, a: float) -> cq.Vector:
+    def polar(r: float, a: float) -> cq.Vector:
         return cq.Vector(r * math.cos(a), r * math.sin(a), 0)
 
     def end(a: float, outward: float) -> cq.Vector:
-        return at(middle, a) + cq.Vector(-math.sin(a), math.cos(a), 0) * (outward * radius)
+        return polar(middle, a) + cq.Vector(-math.sin(a), math.cos(a), 0) * (outward * radius)
 
     first, last = angle - turn, angle + turn
     return cq.Wire.assembleEdges(
         [
-            cq.Edge.makeThreePointArc(at(high, first), at(high, angle), at(high, last)),
-            cq.Edge.makeThreePointArc(at(high, last), end(last, 1.0), at(low, last)),
-            cq.Edge.makeThreePointArc(at(low, last), at(low, angle), at(low, first)),
-            cq.Edge.makeThreePointArc(at(low, first), end(first, -1.0), at(high, first)),
+            cq.Edge.makeThreePointArc(polar(high, first), polar(high, angle), polar(high, last)),
+            cq.Edge.makeThreePointArc(polar(high, last), end(last, 1.0), polar(low, last)),
+            cq.Edge.makeThreePointArc(polar(low, last), polar(low, angle), polar(low, first)),
+            cq.Edge.makeThreePointArc(polar(low, first), end(first, -1.0), polar(high, first)),
         ]
     )
 
 
 def seat(hip: Point, z: float = 0.05) -> list[Solid]:
-    """Seat tube and saddle, flat on a base plate, between the bracket at the origin and the hip."""
+    """Return seat tube and saddle, flat on a base plate, between the bracket at the origin and the hip."""
     x, y = hip
     far = math.hypot(x, y)
     near = min(0.12 * far, 80.0), max(far - 150.0, 0.5 * far)
@@ -151,16 +159,19 @@ class Shaped(Protocol):
     def join(
         self, body: str, outline: cq.Wire, at: Point = ..., holes: Sequence[cq.Wire] = ..., sharp: bool = ...
     ) -> None:
-        """Make an outline a part of a body's plate."""
+        """Join an outline to a body's plate."""
         ...
 
     def material(self, body: str, name: str) -> None:
-        """Make a body's plate of a material."""
+        """Set the material of a body's plate."""
         ...
 
 
 def dress(made: Shaped, thigh_length: float, shank_length: float, pen: Point) -> None:
-    """Give bodies "thigh", "shank" and "crank" their outlines; ``pen``: a place of the shank that carries a stylus."""
+    """Add the outlines of bodies "thigh", "shank" and "crank".
+
+    ``pen`` is a place of the shank that carries a stylus.
+    """
     made.join("thigh", thigh(thigh_length))
     made.join("shank", calf(shank_length), at=(shank_length, 0.0))
     made.join("shank", foot(shank_length))

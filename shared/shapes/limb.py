@@ -1,4 +1,4 @@
-"""Rounded limbs: solids along x through elliptical sections, with domed ends, and the balls of joints (mm)."""
+"""Rounded limbs: solids along x through elliptical sections, domed ends, and balls of joints (mm)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ BALL, LAST = 10, 82.0
 
 
 def limb(sections: Sequence[Section], start: float = 0.0, end: float = 0.0, power: float = 2.0) -> cq.Workplane:
-    """A solid through two or more sections in rising order of x; ``start`` and ``end``: how far its ends bulge.
+    """Return a solid through two or more sections in rising order of x.
+
+    ``start`` and ``end`` are the heights of its domed ends.
 
     An end of 0 is flat. Sections are ellipses; with a larger ``power`` they are squarer (Lame's curves). No through
     hole. Raises ValueError where sections do not follow each other.
@@ -37,19 +39,22 @@ def limb(sections: Sequence[Section], start: float = 0.0, end: float = 0.0, powe
 
 
 def joint_ball(radius: float) -> cq.Workplane:
-    """A ball about the origin of straight strips within ``radius``, its two small flats on the x axis."""
+    """Return a ball about the origin of straight strips within ``radius``, its small flats on the x axis."""
     angles = [math.radians(-LAST + 2 * LAST * k / BALL) for k in range(BALL + 1)]
     profile = [(radius * math.cos(a), radius * math.sin(a)) for a in angles]
     return turned([(0.0, profile[0][1]), *profile, (0.0, profile[-1][1])]).rotate((0, 0, 0), (0, 1, 0), 90)
 
 
 def socket(shape: cq.Workplane, x: float, radius: float, z: float = 0.0) -> cq.Workplane:
-    """The shape without a ball about (x, 0, z), in which the ball of another limb turns."""
+    """Return the shape without a ball about (x, 0, z), in which the ball of another limb turns."""
     return shape.cut(ball(radius).rotate((0, 0, 0), (0, 1, 0), 90).translate((x, 0.0, z)))
 
 
 def _between(sections: Sequence[Section]) -> list[Section]:
-    """Sections at even steps, by the monotone cubics of Fritsch and Carlson, which never swing beyond those given."""
+    """Return sections at even steps, by the monotone cubics of Fritsch and Carlson.
+
+    They never swing beyond the given sections.
+    """
     given = np.array(sections, dtype=float)
     x, rest = given[:, 0], given[:, 1:]
     wide = np.diff(x)[:, None]
@@ -76,7 +81,7 @@ def _between(sections: Sequence[Section]) -> list[Section]:
 
 
 def _dome(section: Section, bulge: float) -> list[Section]:
-    """Sections beyond an end, of a quarter of an ellipse, outwards."""
+    """Return sections beyond an end, of a quarter of an ellipse, outwards."""
     if bulge == 0:
         return []
     x, y, high, wide = section
@@ -85,7 +90,7 @@ def _dome(section: Section, bulge: float) -> list[Section]:
 
 
 def _ring(section: Section, power: float) -> cq.Wire:
-    """A section as a polygon with corners at even angles."""
+    """Return a section as a polygon with corners at even angles."""
     x, y, high, wide = section
     corners = []
     for k in range(AROUND):

@@ -15,7 +15,7 @@ from shared.shapes.solid import placed
 
 @dataclass(frozen=True)
 class Eye:
-    """One joint of a link (mm): outer radius, bore, and how far its boss stands out above and below the plate."""
+    """One joint of a link (mm): outer radius, bore, and the height of its boss above and below."""
 
     radius: float
     bore: float
@@ -26,7 +26,7 @@ class Eye:
 
     @property
     def boss_radius(self) -> float:
-        """The radius that the boss gets (mm)."""
+        """Radius of the boss (mm)."""
         return self.boss or self.radius - 2.0
 
 
@@ -42,7 +42,9 @@ def link(
     rim: float = 2.5,
     inner: Sequence[tuple[float, float, Eye]] = (),
 ) -> cq.Workplane:
-    """A bar from (0, 0) to (length, 0), between z = 0 and z = thickness: two through holes, and one an ``inner`` eye.
+    """Return a bar from (0, 0) to (length, 0), between z = 0 and z = thickness.
+
+    It has two through holes, and one an ``inner`` eye.
 
     The web tapers between ``widths`` and is milled out by ``pocket`` mm on both faces, which leaves a rim and an I
     section. ``inner`` are further eyes (x, y, eye) on it. Raises ValueError if ends, web or pocket do not fit.
@@ -66,7 +68,9 @@ def plate_link(
     edge: float = 0.8,
     inner: Sequence[tuple[float, float, Eye]] = (),
 ) -> cq.Workplane:
-    """A plate that carries two or more joints (counter-clockwise x, y, eye), z = 0 to thickness.
+    """Return a plate from z = 0 to thickness that carries two or more joints.
+
+    Joints are counter-clockwise x, y, eye.
 
     Its sides curve inwards with radius ``waist``. ``rims`` cuts a window: rims[i] is its distance from the line that
     joins joints i and i + 1. ``inner`` are joints within the plate or on a side of it. Through holes: one a joint, and
@@ -81,7 +85,7 @@ def plate_link(
 
 
 def _with_discs(shape: cq.Workplane, eyes: Sequence[tuple[float, float, Eye]], thickness: float) -> cq.Workplane:
-    """The shape joined with a disc for each eye."""
+    """Return the shape joined with a disc for each eye."""
     for x, y, eye in eyes:
         shape = shape.union(extruded(outline.circle(x, y, eye.radius), thickness))
     return shape
@@ -90,7 +94,7 @@ def _with_discs(shape: cq.Workplane, eyes: Sequence[tuple[float, float, Eye]], t
 def with_eyes(
     shape: cq.Workplane, joints: Sequence[tuple[float, float, Eye]], thickness: float, edge: float, chamfer: float = 0.4
 ) -> cq.Workplane:
-    """The shape with the boss and the bore of each eye."""
+    """Return the shape with the boss and the bore of each eye."""
     for x, y, eye in joints:
         root = min(1.0, eye.radius - edge - eye.boss_radius - 0.2)  # ends on the flat, short of the rounded edge
         shape = with_boss(shape, x, y, thickness, eye.boss_radius, eye.above, root)
@@ -101,7 +105,7 @@ def with_eyes(
 
 
 def _pocket_outline(length: float, start: Eye, end: Eye, widths: tuple[float, float], rim: float) -> cq.Wire:
-    """A tapered slot that keeps ``rim`` of the web at its sides and of the eyes at its ends."""
+    """Return a tapered slot that keeps ``rim`` of the web at its sides and of the eyes at its ends."""
 
     def half_width(x: float) -> float:
         return (widths[0] + (widths[1] - widths[0]) * x / length) / 2 - rim

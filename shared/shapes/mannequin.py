@@ -1,4 +1,4 @@
-"""A jointed mannequin, seen from its side: limbs with balls that turn in sockets, a torso, a head (mm).
+"""Jointed mannequin in side view: limbs with balls in sockets, a torso, a head (mm).
 
 Each function gives the solids of a limb in its own frame: the origin in the proximal joint, x towards the distal one.
 The front of thigh and shank is where y is positive; the front of the torso where y is negative. Sizes across are those
@@ -44,7 +44,7 @@ FOOT: tuple[Section, ...] = (
 
 
 def thigh(length: float, scale: float) -> list[Solid]:
-    """One thigh with the ball of its hip, its socket round the knee."""
+    """Return one thigh with the ball of its hip, its socket round the knee."""
     sections = [(40, 2, 56, 54), (90, 1, 60, 62), (140, 0, 58, 63), (250, 4, 54, 58)]
     ends = [(96, 8, 42, 48), (30, 10, 30, 40)]
     shaft = socket(limb(_scaled(sections, scale) + _from_end(ends, length, scale)), length, (KNEE + ROOM) * scale)
@@ -52,7 +52,7 @@ def thigh(length: float, scale: float) -> list[Solid]:
 
 
 def shank(length: float, scale: float) -> list[Solid]:
-    """One shank with the ball of its knee, its socket round the ankle."""
+    """Return one shank with the ball of its knee, its socket round the ankle."""
     sections = [(24, 9, 26, 33), (72, 4, 36, 42), (150, -10, 49, 49), (250, -5, 41, 42)]
     ends = [(88, 0, 29, 31), (14, 0, 25, 28)]
     shaft = socket(limb(_scaled(sections, scale) + _from_end(ends, length, scale)), length, (ANKLE + ROOM) * scale)
@@ -60,7 +60,7 @@ def shank(length: float, scale: float) -> list[Solid]:
 
 
 def foot(scale: float, height: float) -> list[Solid]:
-    """One foot with the ball of its ankle, which is ``height`` above the sole."""
+    """Return one foot with the ball of its ankle, which is ``height`` above the sole."""
     low = height / 69.0
     sections = [(x * scale, y * low, high * low, wide * scale) for x, y, high, wide in FOOT]
     shape = limb(sections, 17 * scale, 44 * scale, power=3.0)
@@ -68,7 +68,10 @@ def foot(scale: float, height: float) -> list[Solid]:
 
 
 def torso(length: float, scale: float, nod: float = 0.0) -> list[Solid]:
-    """Trunk, neck and head, with sockets round both hips; head and neck nod by so many degrees, chin to chest."""
+    """Return trunk, neck and head, with sockets round both hips.
+
+    Head and neck nod by so many degrees, chin to chest.
+    """
     along = length / 513.0
     body = limb(
         [(x * along, y * scale, high * scale, wide * scale) for x, y, high, wide in TORSO], 34 * scale, 22 * scale
@@ -87,7 +90,9 @@ def torso(length: float, scale: float, nod: float = 0.0) -> list[Solid]:
 def arm(
     upper: float, lower: float, scale: float, shoulder: Point, angles: tuple[float, float], bar: float
 ) -> list[Solid]:
-    """One arm from a shoulder at a place of the torso's frame, its parts at these angles (degrees) in it.
+    """Return one arm from a shoulder at a place of the torso's frame.
+
+    Its parts are at these angles (degrees) in it.
 
     ``bar``: diameter of the hole through its fist.
     """
@@ -105,7 +110,7 @@ def arm(
 
 
 def both_sides(solids: list[Solid], middle: float, away: float) -> list[Solid]:
-    """Each solid on the far and on the near side of the body, whose middle is at the height ``middle``."""
+    """Return each solid on the far and the near side of the body, whose middle is at ``middle``."""
     return [
         replace(solid, name=f"{solid.name}_{side}", shape=placed(solid.shape, z=middle + sign * away))
         for side, sign in (("far", -1.0), ("near", 1.0))
@@ -122,7 +127,7 @@ def _scaled(sections: Sequence[Section], scale: float) -> list[Section]:
 
 
 def _fist(radius: float, hole: float) -> cq.Workplane:
-    """A barrel round a bar along z."""
+    """Return a barrel round a bar along z."""
     half, edge = 0.95 * radius, 0.82 * radius
     return turned([(hole, -half), (edge, -half), (radius, 0, edge, half), (hole, half)])
 
@@ -132,7 +137,7 @@ def _shifted(sections: Sequence[Section], by: float) -> list[Section]:
 
 
 def _from_end(sections: Sequence[Section], length: float, scale: float) -> list[Section]:
-    """Sections whose x is counted back from the end of a limb."""
+    """Return sections whose x is counted back from the end of a limb."""
     return [(length - x, y, high, wide) for x, y, high, wide in _scaled(sections, scale)]
 
 

@@ -1,4 +1,4 @@
-"""Keeps what a builder made of the same numbers, since screws, washers and bushings occur many times."""
+"""Cache of built solids, since screws, washers and bushings of the same numbers occur many times."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import cadquery as cq
 
 
 def built_once[**P](builder: Callable[P, cq.Workplane]) -> Callable[P, cq.Workplane]:
-    """Build the solid of ``builder`` once for the same arguments; each call returns a Workplane of its own."""
+    """Return a builder that builds once for the same arguments; each call gives its own Workplane."""
 
     @cache
     def solid(*args: P.args, **kwargs: P.kwargs) -> cq.Shape:
         return builder(*args, **kwargs).val()  # pyright: ignore[reportReturnType]  (a builder's value is a shape)
 
     @wraps(builder)
-    def made(*args: P.args, **kwargs: P.kwargs) -> cq.Workplane:
+    def build_once(*args: P.args, **kwargs: P.kwargs) -> cq.Workplane:
         return cq.Workplane(obj=solid(*args, **kwargs))
 
-    return made
+    return build_once

@@ -17,12 +17,12 @@ Circle = tuple[float, float, float]
 
 
 def circle(x: float, y: float, radius: float) -> cq.Wire:
-    """A full circle."""
+    """Return a full circle."""
     return cq.Wire.makeCircle(radius, cq.Vector(x, y, 0), cq.Vector(0, 0, 1))
 
 
 def rounded_rectangle(x0: float, y0: float, x1: float, y1: float, radius: float) -> cq.Wire:
-    """A rectangle with rounded corners. Raises ValueError if they do not fit."""
+    """Return a rectangle with rounded corners. Raises ValueError if they do not fit."""
     if 2 * radius >= min(x1 - x0, y1 - y0):
         raise ValueError(f"corner radius {radius:g} mm is too large for a plate of {x1 - x0:g} x {y1 - y0:g} mm")
     r = radius
@@ -30,7 +30,9 @@ def rounded_rectangle(x0: float, y0: float, x1: float, y1: float, radius: float)
 
 
 def bar(length: float, radii: Point, widths: Point, fillet: float) -> cq.Wire:
-    """Two round ends at (0, 0) and (length, 0), joined by a web that tapers from widths[0] to widths[1].
+    """Return two round ends at (0, 0) and (length, 0), joined by a tapering web.
+
+    It tapers from widths[0] to widths[1].
 
     ``widths`` hold on the axes of the ends; the web runs into them with radius ``fillet``.
     Raises ValueError if the ends are not wider than the web or the web has no room.
@@ -77,7 +79,7 @@ def bar(length: float, radii: Point, widths: Point, fillet: float) -> cq.Wire:
 
 
 def hull(circles: Sequence[Circle], waist: float = math.inf) -> cq.Wire:
-    """The outline round two or more circles, in counter-clockwise order.
+    """Return the outline round two or more circles, in counter-clockwise order.
 
     With ``waist`` infinite the sides are straight; else they curve inwards with that radius.
     """
@@ -99,7 +101,10 @@ def hull(circles: Sequence[Circle], waist: float = math.inf) -> cq.Wire:
 
 
 def hull_holds(circles: Sequence[Circle], inner: Circle, tolerance: float = 1e-6) -> bool:
-    """Whether the straight-sided hull round ``circles``, of which none holds another, holds another circle."""
+    """Return True if the straight-sided hull round ``circles`` holds another circle.
+
+    No circle of them holds another.
+    """
     x, y, radius = inner
     if any(math.hypot(x - u, y - v) + radius <= r + tolerance for u, v, r in circles):
         return True
@@ -117,7 +122,9 @@ def hull_holds(circles: Sequence[Circle], inner: Circle, tolerance: float = 1e-6
 
 
 def window(points: Sequence[Point], rims: Sequence[float], corner: float) -> cq.Wire:
-    """A convex polygon (counter-clockwise) shrunk by rims[i] at its side from point i to i + 1, with round corners.
+    """Return a convex polygon shrunk by rims[i] at its side from point i to i + 1.
+
+    It is counter-clockwise, and its corners are round.
 
     Raises ValueError if nothing is left of it.
     """
@@ -128,7 +135,10 @@ def window(points: Sequence[Point], rims: Sequence[float], corner: float) -> cq.
 
 
 def inset_corners(points: Sequence[Point], insets: Sequence[float]) -> np.ndarray | None:
-    """(n, 2): corners of a convex polygon (counter-clockwise) with its sides moved inwards; None if nothing is left."""
+    """Return corners (n, 2) of a convex polygon with its sides moved inwards; None if nothing is left.
+
+    The polygon is counter-clockwise.
+    """
     count = len(points)
     lines = []
     for i, inset in enumerate(insets):
@@ -147,7 +157,10 @@ def inset_corners(points: Sequence[Point], insets: Sequence[float]) -> np.ndarra
 
 
 def _side(a: Circle, b: Circle, waist: float) -> tuple[np.ndarray, np.ndarray | None, np.ndarray]:
-    """Where the side from circle a to b leaves a, its middle if curved, and where it meets b; outside is right."""
+    """Return the end of the side from circle a to b, its middle if curved, and its other end.
+
+    Outside is right.
+    """
     p, q, ra, rb = np.array(a[:2]), np.array(b[:2]), a[2], b[2]
     distance = float(np.linalg.norm(q - p))
     along = (q - p) / distance

@@ -27,7 +27,7 @@ class Head:
 
 @dataclass(frozen=True)
 class Groove:
-    """A groove for a circlip (mm): from z to z + width above the pin's lower end, ``depth`` into the radius."""
+    """Groove for a circlip (mm): z to z + width above the pin's lower end, ``depth`` into the radius."""
 
     z: float
     width: float
@@ -38,7 +38,7 @@ class Groove:
 def pin(
     diameter: float, length: float, head: Head | None = None, groove: Groove | None = None, chamfer: float = 0.6
 ) -> cq.Workplane:
-    """A pin on the z axis from z = 0 to z = length, its head on top of that. No through hole."""
+    """Return a pin on the z axis from z = 0 to z = length, its head on top. No through hole."""
     r, c = diameter / 2, chamfer
     profile: list[tuple[float, ...]] = [(0, 0), (r - c, 0), (r, c)]
     if groove:
@@ -60,7 +60,9 @@ def pin(
 
 @built_once
 def washer(inner: float, outer: float, thickness: float, chamfer: float = 0.15) -> cq.Workplane:
-    """A flat washer (diameters in mm) from z = 0: one through hole. A thin wall gets a smaller chamfer.
+    """Return a flat washer (diameters in mm) from z = 0 up, with one through hole.
+
+    A thin wall gets a smaller chamfer.
 
     Raises ValueError where the hole leaves no wall.
     """
@@ -70,14 +72,20 @@ def washer(inner: float, outer: float, thickness: float, chamfer: float = 0.15) 
 
 
 def _largest_chamfer(inner: float, outer: float) -> float:
-    """Return the largest chamfer (mm) of both edges of a wall between two radii; raises ValueError without a wall."""
+    """Return the largest chamfer (mm) of both edges of a wall between two radii.
+
+    Raises ValueError without a wall.
+    """
     if outer <= inner:
         raise ValueError(f"a hole of {2 * inner:.4g} mm leaves no wall of a ring of {2 * outer:.4g} mm")
     return THINNED * (outer - inner)
 
 
 def grooved(ring: cq.Workplane, count: int, reach: float, width: float, depth: float) -> cq.Workplane:
-    """A ring about z with ``count`` straight grooves in its upper face from the middle out to ``reach`` (mm)."""
+    """Return a ring about z with ``count`` straight grooves in its upper face.
+
+    They go from the middle out to ``reach`` (mm).
+    """
     box = ring.val().BoundingBox()
     for k in range(count):
         tool = cq.Workplane().box(reach, width, 2 * depth).translate((reach / 2, 0, box.zmax))
@@ -87,7 +95,9 @@ def grooved(ring: cq.Workplane, count: int, reach: float, width: float, depth: f
 
 @built_once
 def bushing(inner: float, outer: float, flange: float, flange_thickness: float, length: float) -> cq.Workplane:
-    """A flanged bushing (diameters in mm): flange from z = 0 up, barrel down to z = -length. One through hole.
+    """Return a flanged bushing (diameters in mm) with one through hole.
+
+    Its flange goes from z = 0 up, its barrel down to z = -length.
 
     A thin wall gets smaller chamfers. Raises ValueError where the hole leaves no wall.
     """
@@ -112,7 +122,7 @@ def bushing(inner: float, outer: float, flange: float, flange_thickness: float, 
 
 @built_once
 def circlip(inner: float, thickness: float, band: float = 0.0) -> cq.Workplane:
-    """An external circlip round a groove of diameter ``inner`` (mm), z = 0 up, its gap at +x.
+    """Return an external circlip round a groove of diameter ``inner`` (mm), z = 0 up, its gap at +x.
 
     The band is widest opposite the gap and ends in two ears with a hole each: two through holes.
     """
@@ -132,7 +142,10 @@ def circlip(inner: float, thickness: float, band: float = 0.0) -> cq.Workplane:
 
 
 def stylus(diameter: float, length: float, height: float, ball: float) -> cq.Workplane:
-    """A tracer: a shank from z = -length to 0, a collar and a cone up to a ball tip that ends at z = height."""
+    """Return a tracer: a shank from z = -length to 0, a collar, and a cone up to a ball tip.
+
+    The tip ends at z = height.
+    """
     r, collar, c = diameter / 2, diameter * 0.85, 0.3
     centre = height - ball
     meet = (ball * math.cos(0.4), centre - ball * math.sin(0.4))
@@ -155,6 +168,9 @@ def stylus(diameter: float, length: float, height: float, ball: float) -> cq.Wor
 
 
 def _centre_mark(top: float, radius: float) -> list[tuple[float, float]]:
-    """The cone that a centre drill leaves in a turned face; its floor is flat, since a mesh may tear at an apex."""
+    """Return the cone that a centre drill leaves in a turned face.
+
+    Its floor is flat, since a mesh may tear at an apex.
+    """
     depth = 0.2 * radius
     return [(0.3 * radius, top), (0.06 * radius, top - depth), (0, top - depth)]

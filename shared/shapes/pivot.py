@@ -1,4 +1,4 @@
-"""The hardware of a revolute joint, so that every mechanism's joints look and fit alike (mm).
+"""Hardware of a revolute joint, so that every mechanism's joints look and fit alike (mm).
 
 A link turns on the pin in two flanged bushings, one pressed in from each face. Above and below it run washers that
 belong to the pin's body; a circlip or the pin's head keeps them on.
@@ -15,8 +15,9 @@ from shared.shapes.solid import Solid, placed
 
 @dataclass(frozen=True)
 class Pivot:
-    """Sizes of one joint's hardware: diameters and thicknesses in mm. Washer and circlip are those of a pin of 8 mm
-    after DIN 988 and DIN 471.
+    """Sizes of one joint's hardware: diameters and thicknesses in mm.
+
+    Washer and circlip are those of a pin of 8 mm after DIN 988 and DIN 471.
     """
 
     pin: float = 8.0
@@ -30,7 +31,7 @@ class Pivot:
     groove_width: float = 0.9
     fit: Fit = Fit()
     washer_buy: str = ""
-    """What to buy for a washer and for a circlip; empty if these sizes are no standard's."""
+    """Names of a washer and of a circlip in shops; empty if no standard has these sizes."""
     clip_buy: str = ""
 
     @property
@@ -45,7 +46,7 @@ class Pivot:
 
     @property
     def flange_room(self) -> float:
-        """From a link's face to the far side of a bushing's flange."""
+        """Height from a link's face to the far side of a bushing's flange."""
         return self.fit.seat + self.flange_thickness
 
     @property
@@ -55,15 +56,18 @@ class Pivot:
 
     @property
     def retainer_room(self) -> float:
-        """From the running flange to the far side of the circlip."""
+        """Height from the running flange to the far side of the circlip."""
         return self.fit.axial + self.washer_thickness + self.fit.seat + self.clip_thickness
 
     def bored(self, play: float = 0.0) -> float:
-        """Bore of a bushing in which the pin's axis may be ``play`` away from the middle."""
+        """Return the bore of a bushing in which the pin's axis may be ``play`` away from the middle."""
         return self.pin + self.fit.running + 2 * play
 
     def bushings(self, joint: str, x: float, y: float, z: float, thickness: float, play: float = 0.0) -> list[Solid]:
-        """The two bushings of a link between z and z + thickness, its eye flush there; see :meth:`bored`."""
+        """Return the two bushings of a link between z and z + thickness, its eye flush there.
+
+        See :meth:`bored`.
+        """
         fit, length = self.fit, thickness / 2 - 0.1
         inner = self.bored(play)
         shape = bushing(inner, self.bushing, self.flange, self.flange_thickness, length)
@@ -75,15 +79,15 @@ class Pivot:
         ]
 
     def washer_at(self, name: str, x: float, y: float, z: float, material: str = "steel") -> Solid:
-        """A washer from z up, on the pin at (x, y)."""
+        """Return a washer from z up, on the pin at (x, y)."""
         shape = washer(self.pin + self.fit.running, self.washer, self.washer_thickness)
         return Solid(name, placed(shape, x, y, z), material, 1, buy=self.washer_buy)
 
     def groove(self, z: float) -> Groove:
-        """The groove of a circlip that sits from z up (measured from the pin's lower end)."""
+        """Return the groove of a circlip that sits from z up (measured from the pin's lower end)."""
         return Groove(z - (self.groove_width - self.clip_thickness) / 2, self.groove_width, self.groove_depth)
 
     def clip_at(self, name: str, x: float, y: float, z: float, turn: float = 0.0) -> Solid:
-        """A circlip from z up, its gap at ``turn`` degrees."""
+        """Return a circlip from z up, its gap at ``turn`` degrees."""
         shape = circlip(self.pin - 2 * self.groove_depth + 2 * self.fit.seat, self.clip_thickness)
         return Solid(name, placed(shape, x, y, z, turn), "steel", 2, buy=self.clip_buy)

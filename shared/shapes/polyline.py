@@ -1,4 +1,4 @@
-"""Polylines in the plane: how far places are from one, and one of fewer places."""
+"""Polylines in the plane: distances of places from one, and one of fewer places."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def distances(places: np.ndarray, path: np.ndarray) -> np.ndarray:
-    """(T,) from places (T, 2) to the nearest place of a path (n, 2)."""
+    """Return distances (T,) from places (T, 2) to the nearest place of a path (n, 2)."""
     start, way = path[:-1], np.diff(path, axis=0)
     square = np.maximum((way**2).sum(axis=1), 1e-300)
     part = np.clip(((places[:, None] - start) * way).sum(axis=2) / square, 0.0, 1.0)
@@ -14,7 +14,10 @@ def distances(places: np.ndarray, path: np.ndarray) -> np.ndarray:
 
 
 def simplified(path: np.ndarray, tolerance: float) -> np.ndarray:
-    """Those places of a path (n, 2) whose polygon strays from it by ``tolerance`` at most (Ramer, Douglas, Peucker)."""
+    """Return places of a path (n, 2) whose polygon strays from it by ``tolerance`` at most.
+
+    The method is that of Ramer, Douglas and Peucker.
+    """
     kept, waiting = {0, len(path) - 1}, [(0, len(path) - 1)]
     while waiting:
         first, last = waiting.pop()

@@ -1,4 +1,4 @@
-"""A box around a shape, in no time: of curved faces it is the box of their control points, so somewhat too large."""
+"""Box around a shape, found quickly: of curved faces from control points, so somewhat too large."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def rough_box(shape: cq.Workplane) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest and highest corner (3,) (mm).
+    """Return the lowest and highest corner (3,) (mm).
 
     CadQuery's own box is a tight one, which takes a quarter of a second where faces are the outcome of many cuts.
     """
@@ -25,6 +25,6 @@ def rough_box(shape: cq.Workplane) -> tuple[np.ndarray, np.ndarray]:
 
 
 def rough_size(shape: cq.Workplane) -> float:
-    """Diagonal of the :func:`rough_box` (mm)."""
+    """Return the diagonal of the :func:`rough_box` (mm)."""
     low, high = rough_box(shape)
     return float(np.linalg.norm(high - low))

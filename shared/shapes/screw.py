@@ -15,13 +15,13 @@ SOCKET |= {10: 8.0, 12: 10.0, 16: 14.0, 20: 17.0, 24: 19.0}
 
 
 def head_diameter(nominal: float) -> float:
-    """Diameter of the head (mm)."""
+    """Return the diameter of the head (mm)."""
     return {1.6: 3.0, 2: 3.8, 2.5: 4.5, 3: 5.5}.get(nominal, 1.5 * nominal + (1.0 if nominal < 12 else 0.0))
 
 
 @built_once
 def socket_screw(nominal: float, length: float) -> cq.Workplane:
-    """A screw whose shank goes down to z = -length; head from z = 0 to z = nominal. No through hole.
+    """Return a screw from z = -length, its head from z = 0 to z = nominal. No through hole.
 
     Raises ValueError for a size that is not in :data:`SOCKET`.
     """

@@ -1,4 +1,4 @@
-"""A solid of a mechanism: its shape, what it is made of, and how many holes go through it."""
+"""Solid of a mechanism: its shape, its material, and how many holes go through it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import cadquery as cq
 
 @dataclass(frozen=True)
 class Hold:
-    """An end of what stretches, such as a spring, or a pulley of a belt: where the film draws it (mm)."""
+    """End of a spring, or pulley of a belt: the place where the film draws it (mm)."""
 
     force: str
     """Its name in mechanism.py."""
@@ -21,7 +21,7 @@ class Hold:
 
 @dataclass(frozen=True)
 class Roll:
-    """A roller: it turns about (x, y) of its body's frame (mm), as it rolls in a joint."""
+    """Roller about (x, y) of its body's frame (mm) that rolls in a joint."""
 
     joint: str
     """Its name in mechanism.py."""
@@ -60,8 +60,9 @@ class Solid:
 
 
 def at_scale(solid: Solid, ratio: float) -> Solid:
-    """The piece of a model, ``ratio`` times as large. What one buys for the machine does not fit the model, unless the
-    piece is ``fitted``.
+    """Return the piece of a model, ``ratio`` times as large.
+
+    Bought pieces of the machine do not fit the model, unless the piece is ``fitted``.
     """
     shape = solid.shape.newObject([own.scale(ratio) for own in solid.shape.solids().vals()])
     holds = tuple(replace(hold, z=hold.z * ratio, radius=hold.radius * ratio) for hold in solid.holds)
@@ -75,5 +76,5 @@ def at_scale(solid: Solid, ratio: float) -> Solid:
 
 
 def placed(shape: cq.Workplane, x: float = 0.0, y: float = 0.0, z: float = 0.0, turn: float = 0.0) -> cq.Workplane:
-    """``shape`` turned about its axis by ``turn`` degrees and moved to (x, y, z) in mm."""
+    """Return ``shape`` turned about its axis by ``turn`` degrees and moved to (x, y, z) in mm."""
     return shape.rotate((0, 0, 0), (0, 0, 1), turn).translate((x, y, z))

@@ -1,4 +1,4 @@
-"""Stands of machines whose plane is upright: a foot that lies, a column on it, and seats of screws (mm).
+"""Stands of machines whose plane is upright: a lying foot, a column on it, and screw seats (mm).
 
 Axes are those of the machine as it stands: x right, y up, z towards the viewer.
 """
@@ -24,7 +24,7 @@ ROOM = 0.5
 
 @dataclass(frozen=True)
 class Bolt:
-    """A socket head cap screw: its head from z = 0 to z = ``diameter``, its shank down to -``length``."""
+    """Socket head cap screw: head from z = 0 to z = ``diameter``, shank down to -``length``."""
 
     shape: cq.Workplane
     diameter: float
@@ -49,7 +49,7 @@ class Bolt:
         return 1.1 * self.diameter
 
     def at_scale(self, ratio: float) -> Bolt:
-        """The same screw where lengths are counted ``ratio`` times as large."""
+        """Return the same screw if lengths are counted ``ratio`` times as large."""
         if ratio == 1.0:
             return self
         shape = self.shape.newObject([self.shape.val().scale(ratio)])
@@ -59,7 +59,10 @@ class Bolt:
 
 
 def bolt(wish: float, longest: float) -> Bolt:
-    """The standard screw next to a diameter ``wish`` that is at most so long; one to be made where none is near."""
+    """Return the standard screw next to a diameter ``wish`` and at most so long.
+
+    Without one near, a screw of that diameter is to be made.
+    """
     nominal = min(SOCKET, key=lambda size: abs(size - wish))
     length = screw_length(nominal, longest)
     if length is not None and length > 0.7 * longest and abs(nominal - wish) < ODD * wish:
@@ -69,14 +72,15 @@ def bolt(wish: float, longest: float) -> Bolt:
 
 
 def foot(x: Span, y: Span, z: Span, corner: float, edge: float) -> cq.Workplane:
-    """A slab that lies, round at its corners, its upper edge chamfered by ``edge``. No through hole."""
+    """Return a lying slab, round at its corners, its upper edge chamfered by ``edge``. No through hole."""
     lying = extruded(outline.rounded_rectangle(x[0], -z[1], x[1], -z[0], corner), y[1] - y[0], y[0])
     return eased(eased(lying, edge, ">Z", chamfer=True), edge / 3, "<Z", chamfer=True).rotate((0, 0, 0), (1, 0, 0), -90)
 
 
 def column(middle: float, y: Span, z: Span, widths: Span, corners: Span, edge: float) -> cq.Workplane:
-    """A post in front of or behind a plate, ``widths`` wide at its lower and at its upper end, with round ``corners``
-    there and chamfered edges. No through hole.
+    """Return a post in front of or behind a plate, with chamfered edges and no through hole.
+
+    It is ``widths`` wide at its lower and at its upper end, with round ``corners`` there.
     """
     (foot, head), (low, high) = (width / 2 - corner for width, corner in zip(widths, corners, strict=True)), corners
     below, above = y[0] + low, y[1] - high
@@ -92,7 +96,10 @@ def column(middle: float, y: Span, z: Span, widths: Span, corners: Span, edge: f
 def drilled(
     shape: cq.Workplane, places: Sequence[tuple[float, float, float]], way: str, radius: float, depth: float
 ) -> cq.Workplane:
-    """With blind holes that begin at ``places`` on a face and go ``depth`` into it, along "y" or "z" upwards."""
+    """Return the shape with blind holes from ``places`` on a face, ``depth`` deep.
+
+    They go along "y" or "z" upwards.
+    """
     direction = cq.Vector(0, 1, 0) if way == "y" else cq.Vector(0, 0, 1)
     for place in places:
         over = cq.Vector(*place) - direction
@@ -103,14 +110,16 @@ def drilled(
 def seated(
     shape: cq.Workplane, places: Sequence[tuple[float, float, float]], way: str, through: float, screw: Bolt
 ) -> cq.Workplane:
-    """With counterbored holes for screws that come from below or behind: ``places`` on the lower or rear face, along
-    "y" or "z", ``through`` so much matter. One through hole for each.
+    """Return the shape with counterbored holes for screws that come from below or behind.
+
+    ``places`` are on the lower or rear face, holes go along "y" or "z" through ``through`` of matter. Each is one
+    through hole.
     """
     shape = drilled(shape, places, way, screw.bore, through + 1.0)
     return drilled(shape, places, way, screw.seat, screw.sunk)
 
 
 def screwed(screw: Bolt, place: tuple[float, float, float], way: str) -> cq.Workplane:
-    """A screw whose head rests at ``place``, its shank along "y" or "z" upwards."""
+    """Return a screw whose head rests at ``place``, its shank along "y" or "z" upwards."""
     turn = 90.0 if way == "y" else 180.0
     return screw.shape.rotate((0, 0, 0), (1, 0, 0), turn).translate(place)

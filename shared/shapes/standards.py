@@ -1,4 +1,4 @@
-"""Hardware that one can buy, by its standard: sizes in mm, and what to ask for in a shop.
+"""Hardware from a shop, by its standard: sizes in mm, and the words to order it.
 
 Only sizes that the standard lists are here; what has none is to be made.
 """
@@ -18,7 +18,7 @@ class ShimRing:
 
     @property
     def name(self) -> str:
-        """What to buy."""
+        """Words to order it."""
         return f"shim ring {self.inner:g}x{self.outer:g}x{self.thickness:g} DIN 988"
 
 
@@ -35,7 +35,7 @@ class Circlip:
 
     @property
     def name(self) -> str:
-        """What to buy."""
+        """Words to order it."""
         return f"circlip {self.shaft:g}x{self.thickness:g} DIN 471"
 
 
@@ -83,21 +83,21 @@ LENGTHS += (140, 150, 160, 180, 200)
 
 
 def shim_ring(shaft: float, thickness: float) -> ShimRing | None:
-    """The ring for a shaft that is nearest in thickness; None if there is none."""
+    """Return the ring for a shaft that is nearest in thickness; None if there is none."""
     outer = SHIM_OUTER.get(shaft)
     nearest = min(SHIM_THICKNESS, key=lambda t: abs(t - thickness))
     return ShimRing(shaft, outer, nearest) if outer else None
 
 
 def screw_length(nominal: float, longest: float) -> float | None:
-    """The standard length of a socket head cap screw next below ``longest``; None if there is none."""
+    """Return the standard length of a cap screw next below ``longest``; None if there is none."""
     if nominal not in SHORTEST:
         return None
     return max((n for n in LENGTHS if SHORTEST[nominal] <= n <= min(LONGEST[nominal], longest + 1e-9)), default=None)
 
 
 def screw_name(nominal: float, length: float) -> str:
-    """What to buy; empty if the standard does not list this screw."""
+    """Return the words to order this screw; empty if the standard does not list it."""
     if screw_length(nominal, length) != length:
         return ""
     return f"M{nominal:g}x{length:g} socket head cap screw ISO 4762"

@@ -1,4 +1,4 @@
-"""Ball studs: what the eyes of springs and dampers are put on."""
+"""Ball studs, which carry the eyes of springs and dampers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,9 @@ class Collar:
 def ball_stud(
     shank: float, start: float, end: float, balls: Sequence[float], ball: float, collars: Sequence[Collar] = ()
 ) -> cq.Workplane:
-    """A stud on the z axis from ``start`` to ``end`` (mm) with balls of radius ``ball`` at heights along it.
+    """Return a stud on the z axis from ``start`` to ``end`` (mm) with balls along it.
+
+    Balls have the radius ``ball``.
 
     ``shank`` is its diameter. A ball at an end of the shank ends the stud, with a small flat. No through hole. Raises
     ValueError if balls and collars overlap.
@@ -62,6 +64,9 @@ def ball_stud(
 
 
 def ball(radius: float) -> cq.Workplane:
-    """A ball about the origin (mm), with small flats at its poles, since a mesh may tear at an apex."""
+    """Return a ball about the origin (mm).
+
+    Its poles have small flats, since a mesh may tear at an apex.
+    """
     flat, rise = FLAT * radius, radius * math.sqrt(1 - FLAT**2)
     return turned([(0.0, -rise), (flat, -rise), (radius, 0.0, flat, rise), (0.0, rise)])

@@ -1,4 +1,4 @@
-"""What machines work on (mm): blocks, crates, sheets of paper, and cups and bottles that stand in the plane.
+"""Workpieces of machines (mm): blocks, crates, sheets of paper, and standing cups and bottles.
 
 In the plane x points right and y up; z is the height over the base, towards the viewer.
 """
@@ -17,18 +17,21 @@ type Box = tuple[float, float, float, float]
 
 
 def prism(corners: Sequence[Point], low: float, high: float, edge: float = 0.0) -> cq.Workplane:
-    """A plate with these corners between two heights, the edges of its upper face chamfered by ``edge``."""
+    """Return a plate with these corners between two heights, its upper edges chamfered by ``edge``."""
     outline = cq.Wire.makePolygon([cq.Vector(x, y, 0.0) for x, y in corners], close=True)
     return eased(extruded(outline, high - low, low), edge, ">Z", chamfer=True)
 
 
 def block(box: Box, low: float, high: float, edge: float = 1.0) -> cq.Workplane:
-    """A block, the edges of its upper face chamfered."""
+    """Return a block, the edges of its upper face chamfered."""
     return eased(_box(box, low, high), edge, chamfer=True, faces=">Z")
 
 
 def crate(box: Box, low: float, high: float, boards: int = 4) -> cq.Workplane:
-    """A crate of level boards between two posts: grooves part them, and a frame stands out at either end."""
+    """Return a crate of level boards between two posts.
+
+    Grooves part them, and a frame stands out at either end.
+    """
     x0, y0, x1, y1 = box
     tall, wide, deep = (y1 - y0) / boards, 0.14 * (x1 - x0), 0.06 * (high - low)
     shape = _box(box, low, high - deep)
@@ -42,20 +45,21 @@ def crate(box: Box, low: float, high: float, boards: int = 4) -> cq.Workplane:
 
 
 def sheet(box: Box, low: float, thick: float = 0.6, corner: float = 1.0) -> cq.Workplane:
-    """A sheet of paper that lies at a height."""
+    """Return a sheet of paper that lies at a height."""
     return extruded(rounded_rectangle(*box, corner), thick, low)
 
 
 def standing(profile: Sequence[tuple[float, ...]], x: float, y: float, z: float, scale: float = 1.0) -> cq.Workplane:
-    """A closed profile (radius, height), as of :func:`turned`, turned about an axis that points up in the plane from
-    (x, y) at height z over the base.
+    """Return a closed profile turned about an axis that points up in the plane.
+
+    The profile (radius, height) is that of :func:`turned`; the axis begins at (x, y) at height z over the base.
     """
     upright = turned([tuple(scale * value for value in entry) for entry in profile])
     return upright.rotate((0, 0, 0), (1, 0, 0), -90.0).translate((x, y, z))
 
 
 def pen(low: float, high: float, radius: float) -> cq.Workplane:
-    """A pen about the z axis that writes at a height ``low`` and is held at ``high``."""
+    """Return a pen about the z axis that writes at a height ``low`` and is held at ``high``."""
     nib = min(4.0 * radius, 0.5 * (high - low))
     return turned([(0, low), (0.25 * radius, low), (radius, low + nib), (radius, high), (0, high)])
 
@@ -66,7 +70,7 @@ CUP = (
 )  # fmt: skip
 """Profile of a cup of radius 1: it is open at its upper end."""
 TEA = ((0.0, 0.265), (0.495, 0.265), (0.745, 0.72, 0.84, 1.1), (0.0, 1.1))
-"""What is in it."""
+"""Profile of the tea in the cup."""
 
 
 def _box(box: Box, low: float, high: float) -> cq.Workplane:

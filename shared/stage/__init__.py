@@ -1,1 +1,1 @@
-"""How a stage runs: paths, files, console, errors, and whether there is anything to do."""
+"""Running of a stage: paths, files, console, errors, and whether there is anything to do."""

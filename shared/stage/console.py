@@ -1,4 +1,4 @@
-"""Prints what a stage says: in colour and with a progress bar on a terminal, as plain lines everywhere else."""
+"""Messages of a stage: in colour and with a progress bar on a terminal, else as plain lines."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ RED, YELLOW, CYAN = "31", "33", "36"
 
 
 class Progress(Protocol):
-    """What :func:`progress` yields."""
+    """Progress that :func:`progress` yields."""
 
     def advance(self, n: int = 1, note: str = "") -> None:
         """Count ``n`` more units as done; ``note`` is a word on the newest one."""
@@ -79,7 +79,7 @@ def progress(label: str, total: int, unit: str = "frame") -> Iterator[Progress]:
 
 
 class Shown:
-    """What takes long, shown in a line now and then with what is left; nothing is said of what ends sooner."""
+    """Slow work, shown in a line now and then with the time left; quick work prints nothing."""
 
     def __init__(self, stage: str, name: str, total: int, unit: str) -> None:
         self.stage, self.name, self.total, self.unit = stage, name, total, unit
@@ -102,7 +102,7 @@ class Shown:
 
 
 def duration(seconds: float) -> str:
-    """A time for people: ``0.4 s``, ``12 s``, ``3 min 20 s``, ``2 h 05 min``."""
+    """Return a time in words: ``0.4 s``, ``12 s``, ``3 min 20 s``, ``2 h 05 min``."""
     if seconds < 9.95:
         return f"{seconds:.1f} s"
     whole = round(seconds)
@@ -115,8 +115,10 @@ def duration(seconds: float) -> str:
 
 
 def run_cli(main: Callable[[], int | None]) -> NoReturn:
-    """Run ``main`` and exit: 0 or its return value, 1 on a UserError (one sentence), 75 if another process has the
-    files, 128 + number on a signal.
+    """Run ``main`` and exit with its code.
+
+    The code is 0 or its return value, 1 on a UserError (one sentence), 75 if another process has the files, 128 +
+    number on a signal.
 
     A disk that is full or read-only, a folder or file that is not what it should be, and a library of the system that
     is missing are a sentence as well.
@@ -159,7 +161,7 @@ def run_cli(main: Callable[[], int | None]) -> NoReturn:
 
 
 def _missing_package(error: ImportError) -> str:
-    """Return a sentence on a package that is not installed; an empty one if the error is another."""
+    """Return a sentence on a package that is not installed; empty for another error."""
     package = (error.name or "").partition(".")[0]
     if not package or find_spec(package) is not None:
         return ""
@@ -173,7 +175,7 @@ def _missing_package(error: ImportError) -> str:
 
 
 def _reason(stop: BaseException) -> str:
-    """Return why a signal came, as far as this process knows."""
+    """Return the reason of a signal, as far as this process knows."""
     if lineage.ended:
         return ", because the command that started this stage has ended"
     if isinstance(stop, Stopped) and stop.code == 128 + signal.SIGHUP:
@@ -182,7 +184,7 @@ def _reason(stop: BaseException) -> str:
 
 
 class _Pace:
-    """Counts units and words the pace: ``8.3 s a frame, 6 min 38 s left``."""
+    """Pace of a progress: counted units in words, ``8.3 s a frame, 6 min 38 s left``."""
 
     def __init__(self, total: int, unit: str) -> None:
         self.total = total
@@ -199,7 +201,7 @@ class _Pace:
 
 
 class _PlainProgress(_Pace):
-    """A line now and then, fit for a log; the last unit always gets one."""
+    """Line now and then, fit for a log; the last unit always gets one."""
 
     def __init__(self, label: str, total: int, unit: str) -> None:
         super().__init__(total, unit)
@@ -216,7 +218,7 @@ class _PlainProgress(_Pace):
 
 
 class _TerminalProgress(_Pace):
-    """Hands count and pace to a bar."""
+    """Progress bar with count and pace."""
 
     def __init__(self, total: int, unit: str, show: Callable[[int, str], None]) -> None:
         super().__init__(total, unit)
@@ -232,7 +234,7 @@ def _is_terminal(stream: IO[str]) -> bool:
 
 
 def _line(stage: str, text: str, colour: str, stream: IO[str]) -> None:
-    """One line; without rich, whose loading would double the start of a stage that has nothing to do."""
+    """Print one line; without rich, whose loading would double the start of an idle stage."""
     if _is_terminal(stream) and not os.environ.get("NO_COLOR"):
         stage = f"\x1b[1;{colour}m{stage}\x1b[0m"
     print(f"{stage}: {text}", file=stream, flush=True)

@@ -1,4 +1,4 @@
-"""The exceptions that a stage reports as a sentence instead of a traceback."""
+"""Exceptions that a stage reports as a sentence instead of a traceback."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ BUSY = 75
 
 
 class UserError(Exception):
-    """Something the user can cause and cure; the message says what, where and how."""
+    """Error that the user can cause and cure; the message says what, where and how."""
 
     code = 1
     """Exit code of a process that ends by it."""
 
 
 class Busy(UserError):
-    """Another process has what this one needs; the same command works when that one has ended."""
+    """Error for files that another process uses; the same command works when that one has ended."""
 
     code = BUSY

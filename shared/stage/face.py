@@ -1,4 +1,4 @@
-"""The commands that messages name, in the words of the program through which they were given: ``mbsd`` or make."""
+"""Commands in messages, as the user typed them: ``mbsd`` or make."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ PROGRAM = "mbsd"
 
 
 def to_run(command: str, name: str = "") -> str:
-    """``make poster-four-bar`` or ``mbsd poster four-bar``; ``name`` may be empty."""
+    """Return ``make poster-four-bar`` or ``mbsd poster four-bar``; ``name`` may be empty."""
     shown = name.replace("_", "-")
     if _is_program():
         return " ".join(("mbsd", command, *filter(None, [shown])))
@@ -18,14 +18,17 @@ def to_run(command: str, name: str = "") -> str:
 
 
 def said(**words: str) -> str:
-    """``PRESET=final ASPECT=9:16`` or ``--preset final --aspect 9:16``; an empty value is that of a flag."""
+    """Return ``PRESET=final ASPECT=9:16`` or ``--preset final --aspect 9:16``.
+
+    An empty value is that of a flag.
+    """
     if _is_program():
         return " ".join(f"--{key} {value}".rstrip() for key, value in words.items())
     return " ".join(f"{key.upper()}={value or 1}" for key, value in words.items())
 
 
 def is_of_make() -> bool:
-    """Whether the Makefile is what the command was given through."""
+    """Return True if the command was given to the Makefile."""
     return os.environ.get(VARIABLE) == "make"
 
 

@@ -1,4 +1,4 @@
-"""Files are written whole: a temporary file beside the target, then a rename."""
+"""Files written whole: a temporary file beside the target, then a rename."""
 
 from __future__ import annotations
 
@@ -26,7 +26,9 @@ OF_THE_DISK = (*FULL, *FORBIDDEN, *IN_THE_WAY, errno.EIO, errno.ENODEV, errno.ES
 
 @contextmanager
 def whole_file(path: Path, put: Callable[[Path, Path], object] = os.replace) -> Iterator[Path]:
-    """Yield a temporary path with the target's suffix; on success it replaces ``path``, else it is removed.
+    """Yield a temporary path with the target's suffix; it replaces ``path`` on success.
+
+    Else it is removed.
 
     ``put`` brings the temporary file to its place; what it leaves under the temporary name is removed.
 
@@ -55,7 +57,7 @@ def whole_file(path: Path, put: Callable[[Path, Path], object] = os.replace) -> 
 
 
 def refusal(path: Path | str, error: OSError, doing: str = "write") -> str:
-    """What to tell a user when a file could not be written, or be used at all: the file, the reason, the remedy."""
+    """Return an error for an unusable file: the file, the reason, the remedy."""
     reason = error.strerror or str(error)
     if error.errno in FULL:
         remedy = f"free some disk space{_free(Path(path))} or set MBSD_OUT to another folder"
@@ -69,7 +71,7 @@ def refusal(path: Path | str, error: OSError, doing: str = "write") -> str:
 
 
 def _free(path: Path) -> str:
-    """How much room the disk has, in brackets; nothing if it cannot be asked."""
+    """Return the free space of the disk, in brackets; empty if it is unknown."""
     try:
         return f" ({shutil.disk_usage(path.parent).free / 1e6:.1f} MB are free)"
     except OSError:
@@ -77,7 +79,7 @@ def _free(path: Path) -> str:
 
 
 def _locked_file(path: Path) -> tuple[int, Path]:
-    """A new temporary file beside ``path`` and its handle, which holds a lock for as long as it is open."""
+    """Return a new temporary file beside ``path`` and its handle, which holds a lock while open."""
     while True:
         temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
         try:
@@ -85,7 +87,7 @@ def _locked_file(path: Path) -> tuple[int, Path]:
         except FileExistsError:
             continue
         with suppress(OSError):  # a disk without locks: what a kill leaves there stays
-            locks.take(handle)
+            locks.try_lock(handle)
         if os.fstat(handle).st_nlink:
             return handle, temporary
         os.close(handle)  # another process took it for a leftover before it was locked
@@ -105,7 +107,7 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 def file_hash(path: Path) -> str:
-    """SHA-256 of a file's bytes, as hex."""
+    """Return the SHA-256 of a file's bytes, as hex."""
     return recalled(("file", path), lambda: _file_hash(path))
 
 
@@ -115,7 +117,7 @@ def _file_hash(path: Path) -> str:
 
 
 def sources_hash(*folders_or_files: Path, leave_out: Collection[Path] = ()) -> str:
-    """SHA-256 over the Python sources below the given folders (or the files themselves), by name and content.
+    """Return a SHA-256 over the Python sources below folders (or of files), by name and content.
 
     Sources below the folders in ``leave_out`` do not count.
     """

@@ -21,14 +21,14 @@ from shared.stage.files import write_bytes
 
 
 class _Header(msgspec.Struct):
-    """What is looked at first, so that another version is not blamed on its fields."""
+    """Header that is read first, so that another version is not blamed on its fields."""
 
     schema: Any = None
     schema_version: Any = None
 
 
 def encode(document: msgspec.Struct) -> bytes:
-    """Canonical bytes: fields in declaration order, shortest exact floats, one trailing newline."""
+    """Return canonical bytes: fields in declaration order, shortest exact floats, one newline at the end."""
     return msgspec.json.format(msgspec.json.encode(document), indent=1) + b"\n"
 
 
@@ -55,7 +55,7 @@ def read[T: msgspec.Struct](path: Path, kind: type[T]) -> T:
 
 
 def decode[T: msgspec.Struct](content: bytes, kind: type[T], path: Path | str) -> T:
-    """Decode and check bytes that came from ``path``; raises UserError naming the file, the field and the remedy."""
+    """Decode and check bytes from ``path``; raises UserError naming the file, the field and the remedy."""
     try:
         content.decode()  # msgspec looks at the bytes of a text only where it is asked for
         header = msgspec.json.decode(content, type=_Header)
@@ -83,7 +83,10 @@ def refuse_non_finite(document: Any, path: Path | str) -> None:
 
 
 def _refuse_doubled(content: bytes, path: Path | str) -> None:
-    """Raise UserError naming the first field that an object has twice; a decoder would take the last in silence."""
+    """Raise UserError naming the first field that an object has twice.
+
+    A decoder would take the last in silence.
+    """
 
     def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         fields = dict(pairs)
@@ -107,7 +110,10 @@ def _refuse_other_version(header: _Header, kind: type[msgspec.Struct], path: Pat
 
 
 def _reason(content: bytes, kind: type[msgspec.Struct], error: msgspec.DecodeError) -> str:
-    """Why the typed decoder refused ``content``, with the field it means; slow, but a refusal is rare."""
+    """Return why the typed decoder rejected ``content``, with the field.
+
+    It is slow, but rarely needed.
+    """
     try:
         raw = json.loads(content)  # takes NaN and Infinity, so that they can be named
     except (ValueError, RecursionError):
@@ -123,7 +129,7 @@ def _reason(content: bytes, kind: type[msgspec.Struct], error: msgspec.DecodeErr
 
 
 def _complaints(raw: Any, kind: Any, field: str) -> Iterator[str]:
-    """Follow dictionaries and structs down to the entries that do not convert.
+    """Yield complaints on entries that do not convert, down to those of dictionaries and structs.
 
     msgspec hides the key of a dictionary behind ``[...]``, so each entry is converted on its own.
     """
@@ -144,7 +150,7 @@ def _complaints(raw: Any, kind: Any, field: str) -> Iterator[str]:
 
 
 def _literals(kind: Any) -> list[str]:
-    """The words that a field may hold, or each entry of it."""
+    """Return the words that a field, or each entry of it, may hold."""
     inner = typing.get_args(kind)
     if typing.get_origin(kind) is typing.Literal:
         return list(map(str, inner))
@@ -152,7 +158,10 @@ def _literals(kind: Any) -> list[str]:
 
 
 def _placed(message: str, field: str) -> str:
-    """msgspec writes ``- at `$.x[3]` `` below the thing it converted; say the whole field without the dollar."""
+    """Return the message with the whole field, without the dollar.
+
+    msgspec writes ``- at `$.x[3]` `` below the thing it converted.
+    """
     reason, _, inner = message.partition(" - at `$")
     whole = (field + inner.rstrip("`")).lstrip(".")
     return f"{reason} at {whole}" if whole else reason

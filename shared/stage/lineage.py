@@ -1,4 +1,4 @@
-"""A stage that make has started ends with make, however make ends.
+"""Link of a stage to make: a stage that make has started ends with make, however make ends.
 
 GNU make passes SIGTERM on to the commands it started, but no other signal, and a SIGKILL or a shell in between breaks
 the chain. Without a word from make its stages would go on rendering for hours.
@@ -22,7 +22,7 @@ FATAL = (signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGTERM)
 
 
 def end_with_make() -> None:
-    """Send this process SIGTERM as soon as the make that it belongs to has ended or got a signal to end.
+    """Send this process SIGTERM as soon as its make has ended or got a signal to end.
 
     Does nothing if no make of this project is above, or if this process is itself the outermost one: like any program
     it then outlives the shell that started it with ``nohup`` or ``&``.
@@ -42,7 +42,9 @@ def _watch(make: int, parent: int) -> None:
 
 
 def is_ending(make: int) -> bool:
-    """Whether make only waits for its commands after a fatal signal: it blocks that signal and handles it no more.
+    """Return True if make only waits for its commands after a fatal signal.
+
+    It blocks that signal and handles it no more.
 
     Only Linux shows it; elsewhere this is False, and the stage goes on until make has ended. A process that is about to
     start another one blocks all signals for a moment (posix_spawn and vfork do), and is not ending.

@@ -1,4 +1,4 @@
-"""Files that belong to one process. The system gives a lock back when its owner ends, however it ends.
+"""Locks on files that belong to one process. The system releases a lock when its owner ends.
 
 A lock therefore tells what the number of a process cannot: whether the owner still runs, also in a container, after a
 restart of the machine, or on another computer that shares the disk.
@@ -11,7 +11,7 @@ import os
 from pathlib import Path
 
 
-def take(handle: int) -> bool:
+def try_lock(handle: int) -> bool:
     """Lock an open file for this process, without waiting; False if another process holds it.
 
     Raises OSError where the disk knows no locks.
@@ -24,13 +24,13 @@ def take(handle: int) -> bool:
 
 
 def is_abandoned(path: Path) -> bool:
-    """Whether the process that locked this file has ended; False where that is unknown."""
+    """Return True if the process that locked this file has ended; False if that is unknown."""
     try:
         handle = os.open(path, os.O_RDWR | os.O_NOFOLLOW)
     except OSError:
         return False
     try:
-        return take(handle)
+        return try_lock(handle)
     except OSError:
         return False
     finally:

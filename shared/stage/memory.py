@@ -1,4 +1,4 @@
-"""What was hashed or looked up, remembered for a look at many stages that writes nothing."""
+"""Cache of hashes and lookups, for a look at many stages that writes nothing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _known: ContextVar[dict[Hashable, str] | None] = ContextVar("known", default=Non
 
 @contextmanager
 def remembered() -> Iterator[None]:
-    """In this block every file is hashed once, and every version is looked up once."""
+    """Hash every file once and look up every version once in this block."""
     token = _known.set({})
     try:
         yield
@@ -20,7 +20,7 @@ def remembered() -> Iterator[None]:
 
 
 def recalled(asked: Hashable, find: Callable[[], str]) -> str:
-    """What ``find`` gives; in a block of :func:`remembered` it is called once for the same ``asked``."""
+    """Return the result of ``find``; in a block of :func:`remembered` it runs once for ``asked``."""
     known = _known.get()
     if known is None:
         return find()

@@ -1,4 +1,4 @@
-"""Where things are: the one place that knows the folder layout."""
+"""Folder layout: the one place that knows where things are."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ WORKSHOP = "MBSD_WORKSHOP"
 
 
 def in_workshop() -> bool:
-    """Whether machines are those of a user's own folder."""
+    """Return True if mechanisms are those of a user's own folder."""
     return bool(os.environ.get(WORKSHOP))
 
 
@@ -35,7 +35,7 @@ def _machines() -> Path:
 
 
 def work_in(folder: Path) -> None:
-    """From now on machines are those of a user's folder, in this process and in those that it starts.
+    """Use the mechanisms of a user's folder, in this process and in those that it starts.
 
     Before what loads the author's code is imported, which keeps the folder.
     """
@@ -66,12 +66,15 @@ NAME_RULE = "write lower-case letters, digits and underscores (or hyphens), a le
 
 
 def out_root() -> Path:
-    """The folder of all results: ``$MBSD_OUT`` if set, else ``out`` in the clone or in the user's folder."""
+    """Return the folder of all results.
+
+    It is ``$MBSD_OUT`` if set, else ``out`` in the clone or in the user's folder.
+    """
     return Path(os.environ.get("MBSD_OUT") or (MECHANISMS if in_workshop() else ROOT) / "out")
 
 
 def cache_roots() -> list[Path]:
-    """Return the folders of what is kept for the next time, that to write to first.
+    """Return the folders of caches, the one to write to first.
 
     ``.cache`` in the clone, or the user's cache folder; both where the clone is another user's, which is then read.
     """
@@ -82,7 +85,7 @@ def cache_roots() -> list[Path]:
 
 
 def _is_writable(folder: Path) -> bool:
-    """Return True if this user may write into a folder, or make it."""
+    """Return True if this user may write into a folder, or create it."""
     try:
         folder.mkdir(exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()
@@ -92,7 +95,9 @@ def _is_writable(folder: Path) -> bool:
 
 
 def refuse_links(path: Path) -> None:
-    """Raise UserError naming the link if ``path`` or a folder above it, inside :func:`out_root`, is a symbolic link.
+    """Raise UserError if ``path`` or a folder above it, inside :func:`out_root`, is a symbolic link.
+
+    The message names the link.
 
     Stages overwrite and delete what is no longer theirs in these folders, so they must not lead to files of others.
     :func:`out_root` itself and what is above it may be links: that is how results go to another disk.
@@ -115,12 +120,12 @@ def _refuse_links(path: Path) -> str:
 
 
 def canonical_name(name: str) -> str:
-    """``four-bar`` and ``four_bar`` are one mechanism; folders use underscores."""
+    """Return the name with underscores: ``four-bar`` and ``four_bar`` are one mechanism."""
     return name.strip().strip("/").replace("-", "_")
 
 
 def mechanism_name(name: str) -> str:
-    """The canonical name, of a variant with its mechanism's before a hyphen: ``slider_crank-no_gravity``.
+    """Return the canonical name: ``slider_crank-no_gravity`` for a variant.
 
     Raises UserError if it is none, so that no path or command is made of it, and if it may mean two variants.
     """
@@ -146,17 +151,23 @@ def mechanism_name(name: str) -> str:
 
 
 def owner_of(name: str) -> str:
-    """The mechanism of a name: ``slider_crank`` of ``slider_crank-no_gravity``. Raises UserError if it is none."""
+    """Return the mechanism of a name: ``slider_crank`` of ``slider_crank-no_gravity``.
+
+    Raises UserError if it is none.
+    """
     return mechanism_name(name).partition("-")[0]
 
 
 def variant_of(name: str) -> str | None:
-    """The variant of a name: ``no_gravity`` of ``slider_crank-no_gravity``; None of a mechanism itself."""
+    """Return the variant of a name: ``no_gravity`` of ``slider_crank-no_gravity``; None if it has none."""
     return mechanism_name(name).partition("-")[2] or None
 
 
 def variants_in(file: Path) -> list[str]:
-    """The names in ``VARIANTS = {...}`` of a mechanism.py, read without running it; none where it does not parse."""
+    """Return the names in ``VARIANTS = {...}`` of a mechanism.py, read without running it.
+
+    There are none if it does not parse.
+    """
     try:
         tree = ast.parse(file.read_bytes())
     except (OSError, SyntaxError, ValueError):
@@ -171,7 +182,7 @@ def variants_in(file: Path) -> list[str]:
 
 
 def compared(name: str) -> list[str]:
-    """A mechanism's variants, for pages beside each other; raises UserError for one without."""
+    """Return a mechanism's variants, for comparing pages; raises UserError for one without."""
     owner = owner_of(name)
     variants = variants_in(mechanism_file(owner))
     if not variants:
@@ -183,14 +194,15 @@ def compared(name: str) -> list[str]:
 
 
 def mechanism_names() -> list[str]:
-    """Every mechanism: a folder with a fit name that holds a ``mechanism.py``; in a user's own folder also a file with
-    a function ``build``, and that folder itself.
+    """Return every mechanism: a folder with a fit name that holds a ``mechanism.py``.
+
+    In a user's own folder also a file with a function ``build``, and that folder itself.
     """
     return [name for name in _names() if NAME.fullmatch(name) and name not in RESERVED]
 
 
 def all_mechanisms() -> list[str]:
-    """Return :func:`mechanism_names`. Raises UserError saying where none are and how to make one."""
+    """Return :func:`mechanism_names`. Raises UserError saying where none are and how to add one."""
     names, unfit = mechanism_names(), unfit_names()
     if not names:
         where = MECHANISMS if in_workshop() else "mechanisms/"
@@ -200,7 +212,7 @@ def all_mechanisms() -> list[str]:
 
 
 def unfit_names() -> dict[str, str]:
-    """Names of folders and files that hold a mechanism but cannot be the name of one, and why."""
+    """Return names that hold a mechanism but cannot be the name of one, with the reason."""
     return {name: RESERVED.get(name, NAME_RULE) for name in _names() if not NAME.fullmatch(name) or name in RESERVED}
 
 
@@ -222,7 +234,7 @@ def name_of_folder(folder: Path) -> str:
 
 
 def defines(file: Path, name: str) -> bool:
-    """Whether a Python file defines this name at its top level, by its text: it need not parse."""
+    """Return True if a Python file defines this name at its top level; it need not parse."""
     try:
         text = file.read_text("utf-8", errors="replace")
     except OSError:
@@ -231,7 +243,7 @@ def defines(file: Path, name: str) -> bool:
 
 
 def _source(owner: str) -> Path | None:
-    """The file that defines this mechanism's model, if there is one."""
+    """Return the file that defines this mechanism's model, None if there is none."""
     if owner in RESERVED:
         return None
     file = MECHANISMS / owner / "mechanism.py"
@@ -246,19 +258,21 @@ def _source(owner: str) -> Path | None:
 
 
 def _is_twofold(source: Path) -> bool:
-    """Whether a file beside the folder of a mechanism has its name and defines one, too."""
+    """Return True if a file beside the folder of a mechanism has its name and defines one, too."""
     single = MECHANISMS / f"{source.parent.name}.py"
     return in_workshop() and source.parent != MECHANISMS and single.is_file() and defines(single, "build")
 
 
 def is_single_file(name: str) -> bool:
-    """Whether all that a mechanism says stands in one file, ``excavator.py``."""
+    """Return True if a mechanism is a single file, ``excavator.py``."""
     source = _source(owner_of(name))
     return source is not None and source.name != "mechanism.py"
 
 
 def mechanism_file(name: str, file: str = "mechanism") -> Path:
-    """The file of a mechanism or variant that holds its ``mechanism``, ``parts`` or ``shot``; it need not be there.
+    """Return the file that holds ``mechanism``, ``parts`` or ``shot`` of a mechanism or variant.
+
+    It need not exist.
 
     Raises UserError as :func:`mechanism_folder`.
     """
@@ -267,7 +281,10 @@ def mechanism_file(name: str, file: str = "mechanism") -> Path:
 
 
 def shown_file(name: str, file: str = "mechanism") -> str:
-    """The same as users know it: ``mechanisms/four_bar/parts.py``, ``excavator.py``; of any name, also of none."""
+    """Return the file as users know it: ``mechanisms/four_bar/parts.py``, ``excavator.py``.
+
+    The name may be unknown or none.
+    """
     owner = name.partition("-")[0]
     if not in_workshop():
         return f"mechanisms/{owner}/{file}.py"
@@ -283,7 +300,10 @@ def _variants_of(owner: str) -> list[str]:
 
 
 def mechanism_folder(name: str) -> Path:
-    """The folder of a mechanism or of a variant's; raises UserError with the known names if there is none."""
+    """Return the folder of a mechanism, also for its variant.
+
+    Raises UserError with the known names if there is none.
+    """
     source = _source(owner_of(name))
     if source is not None and source.name == "mechanism.py" and _is_twofold(source):
         owner = owner_of(name)
@@ -301,13 +321,16 @@ def mechanism_folder(name: str) -> Path:
 
 
 def known_name(name: str) -> str:
-    """The canonical name of a mechanism or variant that is there; raises UserError as :func:`mechanism_folder`."""
+    """Return the canonical name of an existing mechanism or variant.
+
+    Raises UserError as :func:`mechanism_folder`.
+    """
     mechanism_folder(name)
     return mechanism_name(name)
 
 
 def _refuse_unknown_variant(name: str, known: Iterable[str]) -> None:
-    """Raise UserError where ``name`` begins with a mechanism that has variants, none of which it is."""
+    """Raise UserError if ``name`` begins with a mechanism but is none of its variants."""
     for owner in sorted(known, key=len, reverse=True):
         variants = _variants_of(owner)
         if name.startswith(f"{owner}_") and variants:
@@ -319,8 +342,9 @@ def _refuse_unknown_variant(name: str, known: Iterable[str]) -> None:
 
 
 class Out:
-    """The result files of one mechanism or variant under :func:`out_root`; those of its model at a scale in a folder
-    below. Raises UserError if ``name`` is no name.
+    """Result files of one mechanism or variant under :func:`out_root`.
+
+    Results of its model at a scale are in a folder below. Raises UserError if ``name`` is no name.
     """
 
     def __init__(self, name: str, scale: Scale | None = None) -> None:
@@ -354,13 +378,13 @@ class Out:
             refuse_links(folder)
 
     def frames(self, preset: str) -> Path:
-        """The frames of one preset, named by what they show."""
+        """Return the folder of the frames of one preset, named by what they show."""
         return self.all_frames / preset
 
     def animation(self, view: str, suffix: str) -> Path:
-        """The moving skeleton; ``view`` names what is shown, empty for all of it side by side."""
+        """Return the moving skeleton; ``view`` names its part, empty for all of it side by side."""
         return self.folder / f"animation{'-' * bool(view)}{view}{suffix}"
 
     def film(self, preset: str) -> Path:
-        """The finished film of one preset."""
+        """Return the finished film of one preset."""
         return out_root() / "films" / f"{self.name}-{preset}.mp4"

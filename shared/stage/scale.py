@@ -1,4 +1,4 @@
-"""The scale of a model that is printed: 1:20, 2:1."""
+"""Scale of a printed model: 1:20, 2:1."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ _FORM = re.compile(rf"\s*({_NUMBER})\s*(?:[:/]\s*({_NUMBER}))?\s*")
 
 @dataclass(frozen=True)
 class Scale:
-    """A length of the model to the same length of the machine, in lowest terms."""
+    """Length of the model to the same length of the machine, in lowest terms."""
 
     model: int
     machine: int
 
     @property
     def ratio(self) -> float:
-        """0.05 for 1:20."""
+        """Ratio as a number: 0.05 for 1:20."""
         return self.model / self.machine
 
     @property
     def slug(self) -> str:
-        """For names of files and folders: ``scale_1_20``."""
+        """Name for files and folders: ``scale_1_20``."""
         return f"scale_{self.model}_{self.machine}"
 
     def __str__(self) -> str:
@@ -36,7 +36,10 @@ class Scale:
 
 
 def scale_of(text: str) -> Scale | None:
-    """A scale from words like 1:20, 1/20, 0.05 or 2:1; None from none. Raises UserError for words that are no scale."""
+    """Return a scale from words like 1:20, 1/20, 0.05 or 2:1; None from none.
+
+    Raises UserError for other words.
+    """
     if not text.strip():
         return None
     match = _FORM.fullmatch(text)

@@ -1,4 +1,4 @@
-"""SIGTERM and SIGHUP end a stage as Ctrl-C does: through its finally blocks, so that nothing is left behind."""
+"""Signals: SIGTERM and SIGHUP end a stage as Ctrl-C does, through its finally blocks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ AGAIN = 0.05
 
 
 class Stopped(SystemExit):
-    """Raised by a signal that ends the program, with the exit code shells expect (128 + number)."""
+    """Exit on a signal, with the code that shells expect (128 + number)."""
 
     def __init__(self, number: int) -> None:
         super().__init__(128 + number)
@@ -26,7 +26,9 @@ class Stopped(SystemExit):
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """Inside this block the first of either signal raises :class:`Stopped`; later ones do not disturb the cleaning up.
+    """Raise :class:`Stopped` at the first of either signal in this block.
+
+    Later ones do not disturb the cleaning up.
 
     make and the shell may both pass the same signal on, so a second one means nothing. Where C calls Python back (numba
     does while it compiles), an exception is printed and lost; then the signal comes again a little later, and so does
@@ -58,7 +60,7 @@ def terminable() -> Iterator[None]:
 
 
 def end_with_parent(number: signal.Signals) -> None:
-    """Have this process get a signal when the thread that started it ends, however that ends (Linux alone)."""
+    """Send this process a signal when the thread that started it ends, however that ends (Linux alone)."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, number)
 
@@ -66,7 +68,7 @@ def end_with_parent(number: signal.Signals) -> None:
 def _coming_again(
     leave: Callable[[int, FrameType | None], None], otherwise: Callable[[Any], object]
 ) -> Callable[[Any], None]:
-    """A hook for exceptions that cannot be raised, which sends the signal of a lost one again."""
+    """Return a hook for exceptions that cannot be raised, which sends a lost signal again."""
 
     def lost(unraisable: Any) -> None:
         error = unraisable.exc_value

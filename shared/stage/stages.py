@@ -1,4 +1,4 @@
-"""Decides by content, never by timestamps, what has to be made again.
+"""Freshness of results, decided by content and never by timestamps.
 
 A stage has a key, a hash of everything it reads. When it is done, a stamp ``out/<mechanism>/.stamps/<stage>.json``
 keeps that key with size and SHA-256 of every output. The stage is fresh while the key is the same and every output
@@ -54,7 +54,7 @@ class Key(str):
 
 
 class Stage:
-    """One stage of one mechanism: is its result there, whole and made from this key?
+    """Stage of one mechanism, which knows whether its result exists, whole and from this key.
 
     Raises UserError if a folder it writes into is a link.
     """
@@ -72,7 +72,7 @@ class Stage:
             refuse_links(path.parent)
 
     def is_fresh(self) -> bool:
-        """Whether the stamp has this key and every output is there with its recorded size and SHA-256."""
+        """Return True if the stamp has this key and every output its recorded size and SHA-256."""
         stamp = self._read()
         if stamp is None or stamp.key != self.key or stamp.results != self.results:
             return False
@@ -81,7 +81,7 @@ class Stage:
             self._is_whole(name, recorded) for name, recorded in stamp.outputs.items()
         )
 
-    def done(self, **notes: Any) -> None:
+    def record(self, **notes: Any) -> None:
         """Record that the outputs now stand for this key. Raises UserError if an output is missing."""
         for path in self.outputs:
             if not path.is_file():
@@ -93,7 +93,7 @@ class Stage:
         jsonfile.write(self.stamp, stamp)
 
     def notes(self) -> dict[str, Any]:
-        """The notes of the last :meth:`done`; empty if the stage never ended."""
+        """Return the notes of the last :meth:`record`; empty if the stage never ended."""
         stamp = self._read()
         return stamp.notes if stamp else {}
 
@@ -108,7 +108,7 @@ class Stage:
 
 
 def outdated_by(out: Out, path: Path) -> list[str]:
-    """Return the names of the results that have changed since the file ``path`` of ``out`` was made of them.
+    """Return the names of results that have changed since the file ``path`` of ``out`` was made.
 
     Its own name, if it is not as its stage left it or no stage has recorded it. Empty where it is up to date; a result
     that it was made of is asked in turn. That motion, parts and shot follow from the author's files as they are is for
@@ -128,18 +128,21 @@ def outdated_by(out: Out, path: Path) -> list[str]:
 
 
 def is_recorded(out: Out, path: Path) -> bool:
-    """Return True if a stage has recorded what it made a file of; not so of files that were brought from elsewhere."""
+    """Return True if a stage has recorded the inputs of a file; False for files from elsewhere."""
     return _stamp_of(out, path) is not None
 
 
 def results_of(out: Out, path: Path) -> set[Path]:
-    """Return the results of other stages that a file was made of, at first hand; none of a file without a record."""
+    """Return the results of other stages from which a file was made directly.
+
+    There are none for a file without a record.
+    """
     stamp = _stamp_of(out, path)
     return {Path(os.path.normpath(out.folder / name)) for name in stamp.results} if stamp else set()
 
 
 def _stamp_of(out: Out, path: Path) -> StageStamp | None:
-    """The stamp of the stage that made a file; None where none has recorded it."""
+    """Return the stamp of the stage that made a file; None if none has recorded it."""
     name = _name_in(out, path)
     word = msgspec.json.encode(name)
     for file in sorted(out.stamps.glob("*.json")):
@@ -172,7 +175,7 @@ def _is_whole(path: Path, recorded: OutputStamp) -> bool:
 
 
 def key_of(*values: Any) -> Key:
-    """SHA-256 over values: a Path counts by its file's content, everything else by its repr.
+    """Return a SHA-256 over values: a Path counts by its file's content, all else by its repr.
 
     The key knows the results among the files, also those of a key among the values.
     """
@@ -192,14 +195,17 @@ def key_of(*values: Any) -> Key:
 
 
 def versions(*packages: str) -> dict[str, str]:
-    """Installed versions by package name, without importing the packages; part of a key, and of the provenance."""
+    """Return installed versions by package name, without importing the packages.
+
+    They are part of a key, and of the provenance.
+    """
     return {
         package: recalled(("version", package), lambda name=package: metadata.version(name)) for package in packages
     }
 
 
 def contract_sources(*more: str) -> list[Path]:
-    """Files that say what data.json and parts.json hold, and ``more`` of ``shared/contract`` by name: for keys."""
+    """Return files that define data.json and parts.json, and ``more`` of ``shared/contract``: for keys."""
     names = ("__init__", "base", "loads", "motion", "mount", "parts", *more)
     others = [ROOT / "mbsd" / "base" / "quantity.py"] if "quantity" in more else []
     files = [ROOT / "shared" / "contract" / f"{name}.py" for name in names]

@@ -1,4 +1,4 @@
-"""Suggests the known name that an unknown one was probably meant to be."""
+"""Suggestions for an unknown name: the known name that was probably meant."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ ALIKE = 0.6
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """``; did you mean 'crank'?`` to put behind an error, or nothing if no known name is alike; case is ignored."""
+    """Return ``; did you mean 'crank'?`` for the end of an error; empty if no known name is alike.
+
+    Case is ignored.
+    """
     by_lower = {other.lower(): other for other in known}
     matches = get_close_matches(name.lower(), by_lower, n=1, cutoff=ALIKE)
     return f"; did you mean '{by_lower[matches[0]]}'?" if matches else ""

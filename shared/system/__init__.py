@@ -1,1 +1,1 @@
-"""What the project needs of the system: libraries and programs, and the packages that bring them."""
+"""Needs of the project: libraries and programs of the system, and the packages that bring them."""

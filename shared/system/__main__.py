@@ -1,4 +1,4 @@
-"""``python -m shared.system``: reports what is missing; libraries alone, or with ``--for-tests`` programs as well."""
+"""``python -m shared.system``: report missing libraries, and programs with ``--for-tests``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ from shared.system.missing import missing_libraries, missing_programs, packages,
 
 
 def main() -> int:
-    """Print one line on stderr and return 1 if something is missing; ``--packages``: names of packages on stdout."""
+    """Print one line on stderr and return 1 if something is missing.
+
+    With ``--packages`` print names of packages on stdout.
+    """
     libraries = missing_libraries()
     programs = missing_programs() if "--for-tests" in sys.argv else []
     if not libraries and not programs:

@@ -1,4 +1,4 @@
-"""A home folder that cannot be written to, or that nobody knows: what libraries keep there goes elsewhere."""
+"""Home folder that is unknown or not writable: libraries keep their files elsewhere."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ KEPT = {"XDG_CACHE_HOME": "cache", "MPLCONFIGDIR": "matplotlib"}
 
 
 def without_home(spare: Path) -> None:
-    """Where the user's home takes no files, have this process and those that it starts keep theirs below ``spare``.
+    """Keep the files of libraries below ``spare`` if the home folder takes none.
+
+    This holds for this process and those that it starts.
 
     Otherwise matplotlib warns and looks through all fonts in each process; where there is no home at all (a user whom
     the system knows by number alone, as in a container), libraries fail while they are imported.

@@ -1,4 +1,4 @@
-"""What of the table is missing on this machine, and the command that installs it.
+"""Entries of the table that are missing on this machine, and the command that installs them.
 
 The standard library of any Python 3 suffices: `make install` asks before there is an environment.
 """
@@ -18,7 +18,10 @@ SBIN = "/usr/sbin:/usr/local/sbin:/sbin"
 
 
 def program(name: str) -> str | None:
-    """The path of a program, None where it is missing; one that is not in the table is looked for in PATH."""
+    """Return the path of a program, None if it is missing.
+
+    One that is not in the table is looked for in PATH.
+    """
     known = PROGRAMS.get(name)
     if known and os.environ.get(known.variable or "-"):
         return os.environ[known.variable]
@@ -31,30 +34,36 @@ def program(name: str) -> str | None:
 
 
 def missing_programs(names: Iterable[str] | None = None) -> list[str]:
-    """Those of the programs that are missing; without names: of those that the tests need."""
+    """Return the missing ones of these programs; without names those that the tests need."""
     wanted = [name for name in PROGRAMS if PROGRAMS[name].for_tests] if names is None else names
     return [name for name in wanted if program(name) is None]
 
 
 def missing_libraries() -> list[str]:
-    """Names of the libraries that cannot be loaded; always empty on a Mac, which needs none of them."""
+    """Return names of libraries that cannot be loaded; always empty on a Mac, which needs none."""
     return [name for name in LIBRARIES if not _loads(name)] if sys.platform == "linux" else []
 
 
 def packages(names: Iterable[str]) -> list[str]:
-    """The packages of libraries and programs on this system, each once; those outside the table have none."""
+    """Return the packages of libraries and programs on this system, each once.
+
+    Names outside the table have none.
+    """
     return list(dict.fromkeys(package for package in map(_package, names) if package))
 
 
 def remedy(names: Iterable[str]) -> str:
-    """The command that installs them: ``sudo apt-get install -y libgl1``; empty where no package is known."""
+    """Return the command that installs them: ``sudo apt-get install -y libgl1``.
+
+    It is empty if no package is known.
+    """
     wanted = packages(names)
     command = "brew install" if sys.platform == "darwin" else "sudo apt-get install -y"
     return f"{command} {' '.join(wanted)}" if wanted else ""
 
 
 def sentence(libraries: Iterable[str] = (), programs: Iterable[str] = ()) -> str:
-    """One line that names what is missing and the command that installs it."""
+    """Return one line that names what is missing and the command that installs it."""
     kinds = {"system libraries": list(libraries), "programs": list(programs)}
     what = " and ".join(f"{kind} {', '.join(names)}" for kind, names in kinds.items() if names)
     command = remedy(name for names in kinds.values() for name in names)

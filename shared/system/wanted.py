@@ -21,7 +21,7 @@ LIBRARIES = {
 
 @dataclass(frozen=True)
 class Program:
-    """A program: the names under which it is looked for, and the packages that bring it."""
+    """Program with the names under which it is looked for, and the packages that bring it."""
 
     debian: str
     homebrew: str = ""
@@ -31,7 +31,7 @@ class Program:
     variable: str = ""
     """Environment variable with a path that takes precedence."""
     for_tests: bool = True
-    """Whether `make test` needs it."""
+    """True if `make test` needs it."""
 
 
 PROGRAMS = {

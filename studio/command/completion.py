@@ -1,4 +1,4 @@
-"""Scripts for shells: they complete commands, options and the names of machines, which they ask for."""
+"""Scripts for shells that complete commands, options and the names of mechanisms."""
 
 from __future__ import annotations
 
@@ -42,7 +42,10 @@ complete -c mbsd -f
 
 
 def script(shell: str) -> str:
-    """The script of bash, zsh or fish. ``eval "$(mbsd completion bash)"`` in a file such as ~/.bashrc takes it in."""
+    """Return the script for bash, zsh or fish.
+
+    ``eval "$(mbsd completion bash)"`` in a file such as ~/.bashrc loads it.
+    """
     if shell == "fish":
         return FISH.format(lines="\n".join(_fish()))
     options = "\n".join(f'        {name}) words="{" ".join(_options(name))}" ;;' for name in COMMANDS)
@@ -52,7 +55,7 @@ def script(shell: str) -> str:
 
 
 def _choices() -> str:
-    """Words behind an option that knows them."""
+    """Return the lines that complete the words of options with a fixed choice."""
     return "\n".join(
         f'        --{option.name}) COMPREPLY=($(compgen -W "{" ".join(option.choices)}" -- "$word")); return ;;'
         for option in OPTIONS.values()
@@ -77,7 +80,7 @@ def _fish() -> list[str]:
 
 
 def _fish_value(name: str) -> str:
-    """What follows an option: one of some words, any word, or nothing."""
+    """Return what may follow an option in fish: one of some words, any word, or nothing."""
     option = OPTIONS[name]
     if option.choices:
         return f" -xa '{' '.join(option.choices)}'"

@@ -1,4 +1,4 @@
-"""What each command does with its stages: most run them in turn, some for several machines."""
+"""Commands carried out by their stages: most run them in turn, some for several mechanisms."""
 
 from __future__ import annotations
 
@@ -17,23 +17,24 @@ from studio.command.table import Command
 
 
 def do(command: Command, operand: str, said: Mapping[str, str], run: Run) -> int:
-    """Do a command; its exit code."""
+    """Run a command and return its exit code."""
     if any(stage.solids for stage in command.stages) and not run.planned and not _has_libraries():
         return 1
     return OTHERS.get(command.name, in_turn)(command, operand, said, run)
 
 
 def in_turn(command: Command, operand: str, said: Mapping[str, str], run: Run) -> int:
-    """Its stages one after the other; the last takes the place of this process."""
+    """Run the stages one after the other; the last replaces this process."""
     checked = command.of in ("machine", "")
     *before, last = (stage.words(operand, said, checked) for stage in command.stages)
     return run.all_of(before) or run.last(last)
 
 
 def at_scale(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
-    """Parts, plates and proof of a model: it moves as the machine does, whose parts are made first where that motion
-    follows from their masses. Without a scale the stages are those of the machine. Raises UserError for a scale that
-    is none, before anything is made.
+    """Build parts, plates and clearance proof of a scaled model.
+
+    The model moves as the mechanism does, whose parts are built first where the motion follows from their masses.
+    Without a scale the stages are those of the mechanism. Raises UserError for a wrong scale before anything is built.
     """
     if scale_of(said.get("scale", "")) is None:
         return in_turn(command, name, said, run)
@@ -46,7 +47,10 @@ def at_scale(command: Command, name: str, said: Mapping[str, str], run: Run) -> 
 
 
 def gallery(command: Command, _: str, said: Mapping[str, str], run: Run) -> int:
-    """A poster of every machine and the page of them; one that fails is left out, and makes the exit code 1."""
+    """Render a poster of every mechanism and the page of them.
+
+    A mechanism that fails is left out and makes the exit code 1.
+    """
     bad = 0
     for name in all_mechanisms():
         chain = (*stages.MOTION, stages.CLEARANCE, stages.SHOT, stages.POSTER)
@@ -58,7 +62,7 @@ def gallery(command: Command, _: str, said: Mapping[str, str], run: Run) -> int:
 
 
 def compare(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
-    """Every variant solved, then all on the same pages."""
+    """Solve every variant, then draw all of them on the same pages."""
     names = run.output_of(Stage("mechanisms", "variants").words(name, said))
     if names is None:
         return 1
@@ -70,7 +74,7 @@ def compare(command: Command, name: str, said: Mapping[str, str], run: Run) -> i
 
 
 def film(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
-    """The film; of two variants beside each other after what both need."""
+    """Render the film; a comparison of two variants first prepares both."""
     if said.get("story") != "compare":
         return in_turn(command, name, said, run)
     names = run.output_of(Stage("mechanisms", "variants").words(name, said)) or []
@@ -84,7 +88,7 @@ def film(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
 
 
 def export(command: Command, name: str, said: Mapping[str, str], run: Run) -> int:
-    """The mechanism in a file of another program; a scene needs what pictures need."""
+    """Export the mechanism to a file of another program; a scene needs what pictures need."""
     if said.get("format") in SCENES:
         return do(replace(command, name="export a scene", stages=(*stages.SCENERY, stages.USD)), name, said, run)
     return in_turn(command, name, said, run)

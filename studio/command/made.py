@@ -1,4 +1,4 @@
-"""What a command has done, as JSON for other programs."""
+"""Summary of a command as JSON for other programs."""
 
 from __future__ import annotations
 
@@ -14,8 +14,10 @@ from studio.command.table import Command
 
 
 def summary(command: Command, machine: str, run: Run, code: int) -> str:
-    """One line: whether it is done, its stages with their seconds, the files that are there now, and which of them are
-    older than the results that they were made of.
+    """Return one line of JSON on a command that has ended.
+
+    It has the exit code, the stages with their seconds, the files that exist now, and those of them that are older than
+    the results that they were made of.
     """
     out = Out(machine)
     paths = sorted(path for path in out.folder.rglob("*") if _counts(path, out))

@@ -1,4 +1,4 @@
-"""Reads the command line of ``mbsd`` and does what it asks."""
+"""The command line of ``mbsd``: it is read here, and its command is run."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ OPERANDS = {
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose errors suggest the command that was probably meant instead of listing all."""
+    """Parser whose errors suggest the command that was probably meant instead of listing all."""
 
     def error(self, message: str) -> NoReturn:
         """Print the error and exit with 2."""
@@ -57,7 +57,7 @@ class Parser(argparse.ArgumentParser):
 
 
 class Once(argparse.Action):
-    """Joins the values of an option that is given several times, or refuses it where it takes one."""
+    """Action that joins the values of a repeated option, or rejects the repetition."""
 
     def __call__(
         self,
@@ -76,7 +76,7 @@ class Once(argparse.Action):
 
 
 def parser(make: bool = False) -> argparse.ArgumentParser:
-    """Return the whole command line; with ``make`` the defaults are the variables that the Makefile exports."""
+    """Return the command line; with ``make`` the defaults are the variables that the Makefile exports."""
     top = Parser(
         "mbsd", description="Planar mechanisms: from one short file to physics, parts and film.", epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -118,7 +118,7 @@ def _add(commands: argparse._SubParsersAction[Parser], command: Command, make: b
 
 
 def main(arguments: Sequence[str] | None = None, make: bool = False) -> int:
-    """Do one command; its exit code. Raises UserError."""
+    """Run one command and return its exit code. Raises UserError."""
     whole = parser(make)
     asked, unknown = whole.parse_known_args(arguments)
     if unknown:
@@ -161,7 +161,10 @@ def _unknown_word(command: str, word: str) -> str:
 
 
 def _said(command: Command, asked: argparse.Namespace, place: Place, make: bool) -> dict[str, str]:
-    """The value of each option: as given, else as mbsd.toml says, else as usual. Raises UserError for an unfit one."""
+    """Return the value of each option: as given, else from mbsd.toml, else the default.
+
+    Raises UserError for an invalid value.
+    """
     said: dict[str, str] = {}
     for name in command.options:
         option = OPTIONS[name]
@@ -194,5 +197,5 @@ def _operand(command: Command, asked: argparse.Namespace, place: Place) -> str:
 
 
 def run() -> int:
-    """Entry of the process."""
+    """Run the program and exit with its code."""
     return main(sys.argv[1:], is_of_make())

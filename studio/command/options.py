@@ -1,4 +1,4 @@
-"""What a user may say beside a command: each word once, with its name on the command line, under make and in mbsd.toml.
+"""Options of commands: each once, with its name on the command line, for make and in mbsd.toml.
 
 Under make the Makefile exports the words as variables of the environment, ``PRESET=final``; a name is the same in
 capitals. In mbsd.toml ``preset = "final"`` says once what is meant wherever nothing else is given.
@@ -19,7 +19,7 @@ SCENES = ("usd", "usdz")
 
 @dataclass(frozen=True)
 class Option:
-    """One word, which the stages check."""
+    """One option, whose value the stages check."""
 
     name: str
     help: str
@@ -27,17 +27,17 @@ class Option:
     default: str = ""
     choices: tuple[str, ...] = ()
     kept: bool = False
-    """Whether mbsd.toml may say it."""
+    """True if mbsd.toml may give it."""
     flag: bool = False
-    """Whether it is said without a value."""
+    """True if it is given without a value."""
     valued: bool = False
-    """Whether a stage takes this flag as ``=1``."""
+    """True if a stage takes this flag as ``=1``."""
     joint: str = ""
-    """What joins several values, each given by the option once more; empty if it takes one."""
+    """Text between several values, each from another use of the option; empty if it takes one."""
 
     @property
     def variable(self) -> str:
-        """Its name under make."""
+        """Name of the option as a variable of make."""
         return self.name.replace("-", "_").upper()
 
 
@@ -88,7 +88,7 @@ OPTIONS: dict[str, Option] = {
 
 
 def given(option: Option, words: Mapping[str, str]) -> list[str]:
-    """The words of a stage's command line that say this option; none where nothing is said."""
+    """Return the words of a stage's command line that give this option; none without a value."""
     value = words.get(option.name, "")
     if not value:
         return []

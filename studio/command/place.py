@@ -1,4 +1,4 @@
-"""Where a command works: the clone, or the user's own folder that is nearest."""
+"""Place in which a command works: the clone, or the nearest folder of the user's own."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from studio.command.settings import FILE, Settings, read
 
 @dataclass(frozen=True)
 class Place:
-    """A folder of machines with its settings; ``machines`` is None in the clone, whose own machines are meant."""
+    """Folder of mechanisms with its settings; ``machines`` is None in the clone, which has its own."""
 
     machines: Path | None
     settings: Settings
@@ -22,7 +22,7 @@ class Place:
     """The machine's folder in which the command was given, if it was given in one."""
 
     def environment(self) -> dict[str, str]:
-        """What it adds to the environment of the stages."""
+        """Return what the place adds to the environment of the stages."""
         words: dict[str, str] = {}
         if self.machines is not None:
             words["MBSD_WORKSHOP"] = str(self.machines)
@@ -36,8 +36,10 @@ class Place:
 
 
 def place_of(folder: Path) -> Place:
-    """The place of a command that is given in ``folder``: the clone where it lies there or make is at work, else the
-    nearest folder above with a mbsd.toml, else the folder itself. Raises UserError for a mbsd.toml that is unfit.
+    """Return the place of a command that is given in ``folder``.
+
+    It is the clone if ``folder`` lies there or make is at work, else the nearest folder above with a mbsd.toml, else
+    ``folder`` itself. Raises UserError for an invalid mbsd.toml.
     """
     folder = Path(os.path.abspath(os.path.expanduser(folder)))
     _refuse_none(folder)

@@ -1,4 +1,4 @@
-"""The lines of ``--plan``: each stage as the command that runs it alone, and what it makes, in words."""
+"""Lines of ``--plan``: each stage as the command that runs it alone, and what it writes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MADE = {
     "shot": "the description of the film, checked: out/<name>/shot.json",
     "usd": "the scene as OpenUSD: out/<name>/export/",
 }
-"""What a stage or command makes."""
+"""Result of a stage or command, in words."""
 CONDITIONS = {
     "--if-needed=motion": "only if mechanism.py leaves a mass to them",
     "--if-needed=model": "of full size, only if the motion needs their masses",
@@ -39,7 +39,7 @@ CONDITIONS = {
 
 
 def plan_line(words: Sequence[str]) -> str:
-    """Return one line on a stage: its command as a user types it, and what it makes, in which file, and when.
+    """Return one line on a stage: its command as a user types it, and its result, with file and condition.
 
     ``words`` is the command line of the stage, ``python -m ROOM NAME ...``.
     """
@@ -57,13 +57,13 @@ def plan_line(words: Sequence[str]) -> str:
 
 
 def _typed(word: str) -> str:
-    """``--over 'a=1; b=2'`` for ``--over=a=1; b=2``."""
+    """Return an option as a user types it: ``--over 'a=1; b=2'`` for ``--over=a=1; b=2``."""
     option, has_value, value = word.partition("=")
     return f"{option} {shlex.quote(value)}" if has_value else option
 
 
 def _named(text: str, name: str, words: Sequence[str]) -> str:
-    """Return words on what is made with the names of this mechanism, preset, scale and folder of results."""
+    """Return the text with the names of this mechanism, preset, scale and folder of results."""
     said = dict(word.removeprefix("--").split("=", 1) for word in words if word.startswith("--") and "=" in word)
     scale = scale_of(said.get("scale", ""))
     preset = preset_named(said["preset"], said.get("aspect", "")).name if "preset" in said else "<preset>"

@@ -1,4 +1,4 @@
-"""Runs a command's stages one after the other, each a process of its own; the first that fails ends it."""
+"""Stages of a command, run one after the other as processes; the first that fails ends it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Outcome:
 
 @dataclass
 class Run:
-    """The stages of a command; with ``quiet`` their words go to stderr, with ``planned`` they are only listed."""
+    """Stages of a command; ``quiet`` sends their output to stderr, ``planned`` only lists them."""
 
     environment: Mapping[str, str]
     quiet: bool = False
@@ -37,7 +37,7 @@ class Run:
     done: list[Outcome] = field(default_factory=list)
 
     def all_of(self, commands: Iterable[Sequence[str]]) -> int:
-        """Run them; the exit code of the first that fails, else 0."""
+        """Run the stages; return the exit code of the first that fails, else 0."""
         for words in commands:
             code = self.one(words)
             if code != 0:
@@ -45,7 +45,10 @@ class Run:
         return 0
 
     def one(self, words: Sequence[str]) -> int:
-        """Run one stage to its end; its exit code. A stop is passed on, and ends the command when the stage has."""
+        """Run one stage to its end and return its exit code.
+
+        A stop is passed on, and ends the command when the stage has ended.
+        """
         if self.planned:
             print(plan_line(words), flush=True)
             return 0
@@ -65,7 +68,7 @@ class Run:
         return code
 
     def output_of(self, words: Sequence[str]) -> list[str] | None:
-        """The lines that a stage prints; None where it fails, which it has reported."""
+        """Return the lines that a stage prints; None if it fails, which it has reported."""
         done = subprocess.run(list(words), cwd=ROOT, env=self._environment(), stdout=subprocess.PIPE, text=True)
         return done.stdout.splitlines() if done.returncode == 0 else None
 

@@ -1,4 +1,4 @@
-"""``mbsd.toml``: what a user's folder says once for all its machines."""
+"""``mbsd.toml``: settings of a user's folder for all its mechanisms."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LARGEST = 16_384
 
 
 class Settings(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, rename="kebab"):
-    """The file's words; each is what the option of the same name takes where none is given."""
+    """Values of the file; each is the default of the option of the same name."""
 
     preset: str = ""
     aspect: str = ""
@@ -38,13 +38,13 @@ class Settings(msgspec.Struct, forbid_unknown_fields=True, kw_only=True, rename=
     """Folder of its certificates, from the file's own folder."""
 
     def word(self, option: str) -> str:
-        """What is said for an option; empty where nothing is."""
+        """Return the value of an option; empty if the file has none."""
         value = getattr(self, option.replace("-", "_"), None)
         return "" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def read(folder: Path) -> Settings:
-    """The settings of a folder; those of an empty file where there is none. Raises UserError for one that is unfit."""
+    """Return the settings of a folder, empty ones without a file. Raises UserError for an invalid file."""
     file = folder / FILE
     try:
         with file.open("rb") as stream:

@@ -1,4 +1,4 @@
-"""The stages of a machine as processes: which program each is, and what it takes."""
+"""Stages of a mechanism as processes: the program of each, and the options that it takes."""
 
 from __future__ import annotations
 
@@ -23,12 +23,15 @@ class Stage:
     also: tuple[str, ...] = ()
     """Words that are always said."""
     starts_stages: bool = False
-    """Whether it starts stages itself, by the interpreter that it is given."""
+    """True if it starts stages itself, by the interpreter that it is given."""
     solids: bool = False
-    """Whether it loads what parts and pictures need of the system."""
+    """True if it loads the system libraries of parts and pictures."""
 
     def words(self, operand: str, said: Mapping[str, str], checked: bool = True) -> list[str]:
-        """Its command line; ``operand`` is empty where it takes none, and behind ``--`` where it is not ``checked``."""
+        """Return the command line.
+
+        ``operand`` is empty for a stage that takes none, and follows ``--`` unless it is ``checked``.
+        """
         python = os.environ.get(PYTHON) or sys.executable
         words = [python, "-m", self.room, *filter(None, (self.name, operand if checked else "")), *self.also]
         for option in self.options:
@@ -49,7 +52,7 @@ SHOT = Stage("mechanisms", "shot")
 PRINT = Stage("mechanisms", "print", ("bed", "gap"), solids=True)
 PARTS_FOR_MODEL = Stage("mechanisms", "parts", also=("--if-needed=model",))
 PARTS_FOR_PROOF = Stage("mechanisms", "parts", also=("--if-needed=proof",))
-"""Those of the machine, where a model at a scale or its proof needs their masses."""
+"""Parts of full size, if a scaled model or its proof needs their masses."""
 MODEL = Stage("mechanisms", "parts", ("scale", "anyway"), solids=True)
 MODEL_CLEARANCE = Stage("mechanisms", "clearance", ("scale",), solids=True)
 MODEL_PRINT = Stage("mechanisms", "print", (*PRINT.options, "scale"), solids=True)

@@ -1,4 +1,4 @@
-"""Every command: what it is of, what it takes, and the stages that do it."""
+"""Table of all commands: what each acts on, the options that it takes, and its stages."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Command:
 
     @property
     def make_target(self) -> str:
-        """``run-<name>``, ``status``; empty where make has none."""
+        """Target of make: ``run-<name>``, ``status``; empty if make has none."""
         target = self.target or self.name
         return "" if target == "-" else f"{target}-<name>" if self.of == "machine" else target
 

@@ -1,1 +1,1 @@
-"""Films come home: `python -m studio.fetch user@machine` brings them with rsync, what has changed alone."""
+"""Fetching of films: ``python -m studio.fetch user@machine`` copies changed films with rsync."""

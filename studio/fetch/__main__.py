@@ -9,7 +9,7 @@ from studio.fetch import fetch
 
 
 def main() -> None:
-    """Read the command line and bring the films."""
+    """Read the command line and fetch the films."""
     parser = argparse.ArgumentParser(
         prog="python -m studio.fetch", description="Brings the films of another machine home, by rsync and ssh."
     )

@@ -1,4 +1,4 @@
-"""Brings the films of another machine and their subtitles into out/films/, what has changed alone.
+"""Films of another machine and their subtitles, copied into out/films/ if they have changed.
 
 Films arrive in out/.fetch/ and get their names in out/films/ when all are whole. What was brought in part stays there,
 also after a kill or a power cut, and the next run brings the rest alone.
@@ -30,7 +30,7 @@ WAIT = 10.0
 
 
 def run(host: str, folder: str = "") -> list[str]:
-    """Bring the films; returns the names of those that came.
+    """Fetch the films and return the names of those that came.
 
     Raises UserError if ``host`` or ``folder`` is no name, rsync or ssh is missing, the machine cannot be reached or has
     no films, or the connection breaks; what came until then is kept.
@@ -67,7 +67,10 @@ def run(host: str, folder: str = "") -> list[str]:
 
 
 def source_of(host: str, folder: str) -> str:
-    """Where the films are, as rsync takes it; raises UserError for what is no name of a machine or folder."""
+    """Return the place of the films as rsync takes it.
+
+    Raises UserError for a wrong name of a machine or folder.
+    """
     if not HOST.fullmatch(host):
         raise UserError(f"fetch: HOST={host!r} is not user@machine; make fetch HOST=anna@server FOLDER={FOLDER}")
     folder = folder.removeprefix("~/").rstrip("/") or FOLDER
@@ -81,13 +84,16 @@ def source_of(host: str, folder: str) -> str:
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[int]:
-    """Hold the folder, which is made if need be, for one fetch, an rsync that outlived it included; yields its lock."""
+    """Hold the folder for one fetch, including an rsync that outlives it; yield its lock.
+
+    The folder is created if it is missing.
+    """
     end = time.monotonic() + WAIT
     handle = -1
     try:
         while True:
             handle = _lock_of(folder)
-            if locks.take(handle) and os.fstat(handle).st_nlink:
+            if locks.try_lock(handle) and os.fstat(handle).st_nlink:
                 yield handle
                 return
             os.close(handle)
@@ -111,7 +117,7 @@ def _lock_of(folder: Path) -> int:
 
 
 def _moved(arriving: Path, films: Path) -> list[str]:
-    """Give the films their names; each is there whole, old or new, at any moment."""
+    """Rename the films that have arrived; each is whole, old or new, at any moment."""
     names = sorted(path.name for path in _files(arriving))
     for name in names:
         os.replace(arriving / name, films / name)
@@ -128,7 +134,7 @@ def _files(folder: Path) -> list[Path]:
 
 
 def _reason(result: Transfer, host: str, source: str, kept: int) -> str:
-    """What rsync's exit code and words mean, and what to do."""
+    """Return what rsync's exit code and output mean, and what to do."""
     said = "\n".join(result.said)
     last = next((line for line in result.said if not line.startswith("rsync error")), f"rsync ended with {result.code}")
     if "command not found" in said or result.code in (126, 127):

@@ -1,4 +1,4 @@
-"""One run of rsync: its arguments, what it says, and that it ends with us."""
+"""One run of rsync: its arguments, its output, and its end with this process."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from shared.system import missing
 SSH = "ssh -o ConnectTimeout=20 -o ServerAliveInterval=20 -o ServerAliveCountMax=6"
 """A machine that is gone is given up after two minutes. $RSYNC_RSH, if set, takes its place."""
 KINDS = ("*.mp4", "*.srt")
-"""What is brought."""
+"""Patterns of the files that are fetched."""
 FILE = re.compile(r"^file (\d+) (\d+) (.*)$")
 
 
 @dataclass
 class Transfer:
-    """What came of it."""
+    """Outcome of a run of rsync."""
 
     code: int
     """rsync's exit code; 0 is success."""
@@ -39,8 +39,9 @@ class Transfer:
 
 
 def transfer(source: str, target: Path, beside: Path, lock: int, report: Callable[[str, int], None]) -> Transfer:
-    """Bring the films of ``source`` and their subtitles into ``target``, those left out that ``beside`` has with the
-    same bytes.
+    """Copy the films of ``source`` and their subtitles into ``target``.
+
+    Films that ``beside`` has with the same bytes are left out.
 
     A file that is in ``target`` in part gets the rest alone. ``report`` is called with the name and the size of each
     file that is done. rsync keeps the open file ``lock``, so that a lock on it is held until it has ended itself.
@@ -97,17 +98,17 @@ def _listened(process: subprocess.Popen[str], report: Callable[[str, int], None]
 
 
 def remote_shell() -> str:
-    """How rsync gets to the other machine."""
+    """Return the command by which rsync reaches the other machine."""
     return os.environ.get("RSYNC_RSH") or SSH
 
 
 def shell_program() -> str:
-    """The program of that."""
+    """Return the path of the program of the remote shell."""
     return shlex.split(remote_shell())[0]
 
 
 def program(name: str) -> str:
-    """The program's path; raises UserError with the command that installs it."""
+    """Return the program's path; raises UserError with the command that installs it."""
     path = missing.program(name)
     if path is None:
         command = missing.remedy([name])

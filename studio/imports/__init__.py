@@ -1,1 +1,1 @@
-"""Mechanisms of other programs, read into a mechanism.py that people can read."""
+"""Imports: mechanisms of other programs, turned into a mechanism.py that people can read."""

@@ -1,4 +1,4 @@
-"""``python -m studio.imports FILE [--as NAME]``: a mechanism of another program becomes one of this folder."""
+"""``python -m studio.imports FILE [--as NAME]``: import a mechanism of another program."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ from studio.imports.writing import mechanism_py
 
 
 def main() -> int:
-    """Read the file, try the mechanism, write it, look at it; 1 where it is there but looks odd, or moves otherwise."""
+    """Read the file, try the mechanism, write it and check it.
+
+    Returns 1 if the mechanism is written but looks odd or moves otherwise.
+    """
     parser = argparse.ArgumentParser("studio.imports", description=f"Known are: {', '.join(FORMATS)}.")
     parser.add_argument("--as", dest="name", default="", help="its name here; that of the file if not given")
     parser.add_argument(
@@ -49,7 +52,7 @@ def main() -> int:
 
 
 def named(source: str) -> str:
-    """A name of a mechanism after a file's, or ``imported`` where that gives none."""
+    """Return a name of a mechanism after a file's name, or ``imported`` if that gives none."""
     stem = "" if "://" in source else Path(source).name.partition(".")[0]
     name = re.sub(r"[^a-z0-9]+", "_", stem.lower()).strip("_")
     name = name if not name[:1].isdigit() else f"linkage_{name}"
@@ -57,7 +60,7 @@ def named(source: str) -> str:
 
 
 def contents(sketch: Sketch) -> str:
-    """``3 links, 4 joints and 1 motor``."""
+    """Return the contents of a sketch in words: ``3 links, 4 joints and 1 motor``."""
     counts = (
         (len(sketch.links), "link"),
         (len(sketch.joints), "joint"),

@@ -1,4 +1,4 @@
-"""Assemblies of Ondsel and FreeCAD (.asmt) whose motion lies in one plane; a spatial one is refused by its joint.
+"""Assemblies of Ondsel and FreeCAD (.asmt) that move in one plane; a spatial joint is an error.
 
 The plane is that of the pins. A marker stands in a reference point, that in a part, that in the assembly; joints and
 motors act along the markers' z axes.
@@ -36,7 +36,10 @@ def is_asmt(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """Return the mechanism of such a file. Raises UserError, with joint or line, where it is spatial or damaged."""
+    """Return the mechanism of such a file.
+
+    Raises UserError, with joint or line, if it is spatial or damaged.
+    """
     body = text.partition("\nTimeSeries")[0]
     check_length(body)
     assembly = parsed(body).named("Assembly")
@@ -107,7 +110,10 @@ class _Reader:
                 self.markers[name] = _Marker(part, where, turned @ marker.matrix())
 
     def _plane(self) -> np.ndarray:
-        """Rows: x, y and normal of the plane of the motion. Raises UserError where joints share none."""
+        """Return rows x, y and normal of the plane of motion.
+
+        Raises UserError if the joints share no plane.
+        """
         turning = [joint for joint in self.joints if joint.word in ("RevoluteJoint", "GearJoint", "RackPinionJoint")]
         axes = [(joint, self._ends(joint)[0].axes[:, 2]) for joint in turning]
         if not axes:
@@ -163,7 +169,7 @@ class _Reader:
         self.sketch.links[name] = link
 
     def _part_angle(self, axes: np.ndarray) -> float:
-        """The angle of that of its axes which lies in the plane best."""
+        """Return the angle of the axis that lies best in the plane."""
         across = [abs(axes[:, k] @ self.plane[2]) for k in range(3)]
         return self._angle(axes[:, int(np.argmin(across))])
 
@@ -236,7 +242,7 @@ class _Reader:
             self.sketch.motors.append(Motor(name, first, second, 0.0, start, law.from_zero(sense * sign)))
 
     def _own(self, marker: _Marker) -> float:
-        """The angle of a marker's x axis in the axes of its part."""
+        """Return the angle of a marker's x axis in the axes of its part."""
         x = self._angle(marker.axes[:, 0])
         if marker.part == GROUND:
             return x
@@ -244,5 +250,5 @@ class _Reader:
 
 
 def _taken(kind: str) -> int:
-    """Freedoms that a joint of the file takes in the plane."""
+    """Return the degrees of freedom that a joint of the file removes in the plane."""
     return 0 if kind in IDLE else 1 if kind == "GearJoint" else ROWS.get(kind, 2)

@@ -1,4 +1,4 @@
-"""The text of an .asmt file, by its tabs: entries with their values and what is below them."""
+"""Text of an .asmt file, read by its tabs: entries with their values and the entries below."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from studio.imports.limits import check_depth
 
 @dataclass
 class Entry:
-    """One word with what is indented below it; numbers and texts are entries without anything below."""
+    """One word with the lines indented below it; numbers and texts are entries with nothing below."""
 
     word: str
     line: int
@@ -25,31 +25,31 @@ class Entry:
         return (entry for entry in self.below if entry.word == word)
 
     def named(self, word: str) -> Entry | None:
-        """The first of them, if there is one."""
+        """Return the first entry below of this name, None if there is none."""
         return next(self.all_named(word), None)
 
     def text(self, word: str) -> str:
-        """The one line below an entry; raises UserError where it is missing."""
+        """Return the one line below an entry; raises UserError if it is missing."""
         entry = self.named(word)
         if entry is None or not entry.below:
             raise UserError(f"line {self.line}: {self.word} has no {word}")
         return entry.below[0].word.strip()
 
     def number(self, word: str, usual: float | None = None) -> float:
-        """The same as a number; ``usual`` where it is missing."""
+        """Return the number below an entry; ``usual`` if it is missing."""
         if usual is not None and self.named(word) is None:
             return usual
         return _numbers(self.text(word), self.line)[0]
 
     def vector(self, word: str) -> np.ndarray:
-        """Three numbers in a line, zero where they are missing."""
+        """Return three numbers of a line, zeros if they are missing."""
         entry = self.named(word)
         if entry is None or not entry.below:
             return np.zeros(3)
         return np.array(_numbers(entry.below[0].word, entry.line, 3))
 
     def matrix(self) -> np.ndarray:
-        """The rotation matrix; that of no turn where it is missing."""
+        """Return the rotation matrix; the identity if it is missing."""
         entry = self.named("RotationMatrix")
         if entry is None:
             return np.eye(3)
@@ -59,7 +59,7 @@ class Entry:
 
 
 def parsed(text: str) -> Entry:
-    """The whole file. Raises UserError for one that is not indented by tabs."""
+    """Return the whole file. Raises UserError if it is not indented by tabs."""
     root = Entry("", 0)
     path = [root]
     for number, line in enumerate(text.splitlines(), 1):

@@ -79,7 +79,10 @@ def is_dxf(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """Return the mechanism of such a file. Raises UserError where it cannot be read, or has no pins or links."""
+    """Return the mechanism of such a file.
+
+    Raises UserError if it cannot be read or has no pins or links.
+    """
     drawn = _drawn(text)
     check_count(drawn.circles, "circles")
     if sum(len(line.corners) for line in drawn.lines) > MOST_CORNERS:
@@ -99,7 +102,7 @@ def read(text: str, name: str) -> Sketch:
 
 
 def _drawn(text: str) -> _Drawing:
-    """Return what is drawn in the model space (m). Raises UserError where ezdxf cannot read it."""
+    """Return the entities of the model space (m). Raises UserError if ezdxf cannot read it."""
     from ezdxf.filemanagement import read as parsed
 
     check_length(text)

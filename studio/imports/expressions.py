@@ -1,4 +1,7 @@
-"""Functions of time as other programs write them, ``2.0d*pi*time``, as those of Python: nothing else is understood."""
+"""Functions of time of other programs, ``2.0d*pi*time``, translated into Python.
+
+Nothing else is accepted.
+"""
 
 from __future__ import annotations
 
@@ -17,14 +20,14 @@ LONGEST = 1000
 
 @dataclass(frozen=True)
 class Law:
-    """A function of t; ``rate`` where it is a straight line."""
+    """Function of t, with its ``rate`` if it is a straight line."""
 
     text: str
     at_zero: float
     rate: float | None
 
     def from_zero(self, sign: float) -> str:
-        """Return it less its value at t = 0, and with the other sign where ``sign`` is negative."""
+        """Return it less its value at t = 0, with the other sign if ``sign`` is negative."""
         tree = ast.parse(self.text, mode="eval").body
         if self.at_zero:
             tree = ast.BinOp(tree, ast.Sub(), ast.Constant(self.at_zero))
@@ -32,7 +35,7 @@ class Law:
 
 
 def as_law(text: str, where: str) -> Law:
-    """Return the law that an expression gives. Raises UserError, with ``where``, for one that is not understood.
+    """Return the law that an expression gives. Raises UserError, with ``where``, if it is not understood.
 
     It is a straight line where its terms are: sums of numbers and of multiples of time. Samples could not tell, as
     sin(10 pi t) is zero at each tenth of a second.
@@ -53,7 +56,7 @@ def as_law(text: str, where: str) -> Law:
 
 
 def _line(node: ast.expr) -> tuple[float, float] | None:
-    """Return a, b where an expression that :func:`_value` understands is a + b t by its form; None where it is not."""
+    """Return a, b if an expression has the form a + b t; None if it has not."""
     match node:
         case ast.Name(id="t"):
             return 0.0, 1.0

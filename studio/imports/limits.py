@@ -1,4 +1,4 @@
-"""Limits of what is read from a file of someone else: bytes, characters, depth, number of things, size of numbers.
+"""Limits for files of other people: bytes, characters, depth, number of things, size of numbers.
 
 A file beyond them is no mechanism that a person drew. Each check raises UserError with the limit and what is there.
 """
@@ -26,7 +26,7 @@ LARGEST_NUMBER = 1e9
 
 
 def read_bytes(file: Path) -> bytes:
-    """Return the content of a file; no more than the limit is ever read, whatever its size is said to be."""
+    """Return the content of a file, of which no more than the limit is ever read."""
     try:
         with file.open("rb") as opened:
             content = opened.read(LARGEST_FILE + 1)
@@ -50,13 +50,16 @@ def check_count(things: Sized, words: str) -> None:
 
 
 def check_depth(depth: int, where: str) -> None:
-    """Raise UserError for what is nested too deep; ``where`` says in which line or element."""
+    """Raise UserError for a text nested too deep; ``where`` names the line or element."""
     if depth > DEEPEST:
         raise UserError(f"{where}: it is nested deeper than {DEEPEST} levels")
 
 
 def parsed_json(text: str) -> dict[str, Any]:
-    """Return the object that a JSON text holds. Raises UserError where it is none, too deep, or has NaN or infinity."""
+    """Return the object of a JSON text.
+
+    Raises UserError if it is none, is too deep, or has NaN or infinity.
+    """
     check_length(text)
     try:
         data = json.loads(text, parse_float=_number, parse_int=_whole_number, parse_constant=_number)

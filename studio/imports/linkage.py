@@ -1,4 +1,4 @@
-"""Files of Linkage (.linkage2): XML with connectors and links, which is read leniently, for some files are none.
+"""Files of Linkage (.linkage2): XML with connectors and links, read leniently: some are malformed.
 
 A unit is 1/96 inch times the drawing's scale. A positive rpm turns clockwise; an actuator extends and retracts at
 constant speed, once in 60/cpm s (David Rector's Linkage, linkageDoc.cpp and Simulator.cpp of 2018).
@@ -36,7 +36,7 @@ def is_linkage(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """Return the mechanism of such a file. Raises UserError for one without links."""
+    """Return the mechanism of such a file. Raises UserError if it has no links."""
     parsed = _Parsed(text)
     if not parsed.connectors or not parsed.links:
         raise UserError("the file has no links, so there is no mechanism to import")
@@ -44,7 +44,7 @@ def read(text: str, name: str) -> Sketch:
 
 
 class _Parsed:
-    """Elements by id; what is not well-formed is passed over.
+    """Elements by id; malformed text is passed over.
 
     Each tag is looked for no further than the next "<", so that the time grows with the length of the text alone.
     """
@@ -67,7 +67,7 @@ class _Parsed:
                 self._open.pop()
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
-        """An element opens; inside another it is a reference."""
+        """Open an element; inside another one it is a reference."""
         check_depth(len(self._open), f"element {tag}")
         kept: dict[str, Any] = attributes | {"tag": tag, "inside": []}
         if tag == "program":
@@ -87,14 +87,14 @@ class _Parsed:
         self._open.append(kept)
 
     def _close(self, tag: str) -> None:
-        """Close what is open up to this tag, if it is."""
+        """Close all open elements up to this tag, if it is open."""
         if any(element["tag"] == tag for element in self._open):
             while self._open.pop()["tag"] != tag:
                 pass
 
 
 def _without_comments(text: str) -> str:
-    """A text without comments; one that does not end goes on to the end."""
+    """Return a text without comments; a comment without an end reaches to the end."""
     parts = []
     while text:
         before, _, rest = text.partition("<!--")
@@ -128,7 +128,7 @@ class _Reader:
         return _float(element.get("x")) * self.unit, _float(element.get("y")) * self.unit
 
     def _members(self) -> dict[str, list[str]]:
-        """Connectors of each link that counts, those fastened to it as well."""
+        """Return the connectors of each link that counts, with those of links fastened to it."""
         members = {}
         for key, element in self.parsed.links.items():
             if not _counts(element):
@@ -145,7 +145,7 @@ class _Reader:
         return members
 
     def _body(self, key: str) -> str:
-        """The link's name, or the ground where all its connectors are anchors or where it is fastened to one."""
+        """Return the link's name, or the ground if it is fastened or all its connectors are anchors."""
         element, refs = self.parsed.links[key], self.members[key]
         anchored = [ref for ref in refs if _is(self.connectors[ref], "anchor")]
         turned = any(_is(self.connectors[ref], "input") for ref in anchored)
@@ -175,7 +175,7 @@ class _Reader:
                     self.sketch.link(other)
 
     def _carriers(self, connector: str) -> list[str]:
-        """Bodies on a connector, the ground among them where it is an anchor; an actuator is no body."""
+        """Return the bodies on a connector, with the ground at an anchor; an actuator is no body."""
         bodies = [
             self.bodies[key]
             for key, refs in self.members.items()
@@ -237,7 +237,7 @@ class _Reader:
             self.sketch.joints.append(Slide(label, guide, riders[0], self.place(key), angle, turns=True))
 
     def _guide(self, first: str, second: str) -> str | None:
-        """The body that carries both ends of a way."""
+        """Return the body that carries both ends of a way."""
         common = [body for body in self._carriers(first) if body in self._carriers(second)]
         return (GROUND if GROUND in common else common[0]) if common else None
 
@@ -290,7 +290,7 @@ class _Reader:
 
 
 def _counts(element: dict[str, Any]) -> bool:
-    """True if it is of the mechanism: no drawing, no measurement."""
+    """Return True if it belongs to the mechanism: no drawing, no measurement."""
     layer = int(_float(element.get("layer"), 16.0)) or 16
     return layer != DRAWING and not _is(element, "measurementelement")
 
@@ -308,7 +308,7 @@ def _float(text: Any, usual: float = 0.0) -> float:
 
 
 def _labels(elements: dict[str, dict[str, Any]], letter: str) -> dict[str, str]:
-    """Names: the author's where they are given and differ, else a letter and the number; no two are the same."""
+    """Return unique names: the author's if given, else a letter and the number."""
     given = [element.get("name", "").strip() for element in elements.values()]
     titles = Titles()
     return {

@@ -1,4 +1,6 @@
-"""Planar mechanisms of mbsd-core as JSON (``mechanism_to_json``, schema 1): bodies, pins, slides, motors, gravity; SI.
+"""Planar mechanisms of mbsd-core as JSON (``mechanism_to_json``, schema 1), in SI units.
+
+Read are bodies, pins, slides, motors and gravity.
 
 Such a file holds no pose. One that closes all joints is looked for as that program does by itself: by Newton's method
 from all bodies at the origin, else from random poses.
@@ -33,7 +35,10 @@ def is_mbsd_core(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """Return the mechanism of such a file. Raises UserError where it is damaged, spatial, or closes in no pose."""
+    """Return the mechanism of such a file.
+
+    Raises UserError if it is damaged, spatial, or closes in no pose.
+    """
     data = parsed_json(text)
     _refuse_others(data)
     return _read(data, name)
@@ -105,27 +110,29 @@ def _read(data: dict[str, Any], name: str) -> Sketch:
 
 
 def _body(number: Any, words: list[str]) -> int:
-    """The number of a body. Raises UserError where there is none."""
+    """Return the number of a body. Raises UserError if there is none."""
     if not isinstance(number, int) or not 0 <= number < len(words):
         raise UserError(f"there is no body {number}; they are numbered 0 to {len(words) - 1}")
     return number
 
 
 def _closed(count: int, pins: Any, slides: Any, turned: list[tuple[int, float]]) -> np.ndarray:
-    """(count, 3) poses in which everything closes. Raises UserError where none comes out."""
+    """Return (count, 3) poses in which everything closes. Raises UserError if none is found."""
     size = max([1e-9, *(abs(float(c)) for joint in (*pins, *slides) for key in joint if key.startswith("point")
                         for c in joint[key])])  # fmt: skip
 
     def gaps(q: np.ndarray) -> np.ndarray:
-        """Residuals (rows, k) of the coordinates (3 n, k)."""
+        """Return residuals (rows, k) of the coordinates (3 n, k)."""
         poses = np.concatenate([np.zeros((1, 3, q.shape[1])), q.reshape(-1, 3, q.shape[1])])
         out: list[Any] = []
         for pin in pins:
-            out += list(_at(poses[pin["body_i"]], pin["point_i"]) - _at(poses[pin["body_j"]], pin["point_j"]))
+            out += list(
+                _in_world(poses[pin["body_i"]], pin["point_i"]) - _in_world(poses[pin["body_j"]], pin["point_j"])
+            )
         for slide in slides:
             i, j = poses[slide["rail_body"]], poses[slide["slider_body"]]
-            apart = _at(i, slide["point_rail"]) - _at(j, slide["point_slider"])
-            across = _at(np.array([0.0 * i[2], 0.0 * i[2], i[2]]), [-slide["axis"][1], slide["axis"][0]])
+            apart = _in_world(i, slide["point_rail"]) - _in_world(j, slide["point_slider"])
+            across = _in_world(np.array([0.0 * i[2], 0.0 * i[2], i[2]]), [-slide["axis"][1], slide["axis"][0]])
             out += [size * (i[2] - j[2]), (across * apart).sum(axis=0)]
         out += [size * (poses[body][2] - phase) for body, phase in turned]
         return np.array(out).reshape(-1, q.shape[1])
@@ -144,7 +151,10 @@ def _closed(count: int, pins: Any, slides: Any, turned: list[tuple[int, float]])
 
 
 def _newton(gaps: Any, q: np.ndarray, size: float) -> np.ndarray | None:
-    """A closed pose near q (3 n,) by steps of least length; derivatives by complex steps."""
+    """Return a closed pose near q (3 n,), by steps of least length; None without one.
+
+    Derivatives are taken by complex steps.
+    """
     for _ in range(PASSES):
         here = gaps(q[:, None])[:, 0]
         if np.abs(here).max(initial=0.0) < CLOSED * size:
@@ -157,6 +167,6 @@ def _newton(gaps: Any, q: np.ndarray, size: float) -> np.ndarray | None:
     return None
 
 
-def _at(pose: np.ndarray, point: Any) -> np.ndarray:
+def _in_world(pose: np.ndarray, point: Any) -> np.ndarray:
     c, s = np.cos(pose[2]), np.sin(pose[2])
     return np.array([pose[0] + c * point[0] - s * point[1], pose[1] + s * point[0] + c * point[1]])

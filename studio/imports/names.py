@@ -1,4 +1,4 @@
-"""Names of Python and of a mechanism for what files name in any form, each given once."""
+"""Names of Python and of a mechanism for names of files in any form, each given once."""
 
 from __future__ import annotations
 
@@ -16,14 +16,20 @@ RESERVED = frozenset(
 
 
 class Names:
-    """Lower-case names of Python. Words of different kinds never share one, nor do two words of one kind."""
+    """Lower-case names of Python.
+
+    Words of different kinds never share one, nor do two words of one kind.
+    """
 
     def __init__(self) -> None:
         self._taken = set(RESERVED)
         self._given: dict[tuple[str, str], str] = {}
 
     def name_for(self, word: str, kind: str) -> str:
-        """Return the name that stands for ``word``, always the same; ``kind`` is put before one that Python has."""
+        """Return the name that stands for ``word``, always the same.
+
+        ``kind`` precedes one that Python has.
+        """
         if (kind, word) not in self._given:
             name = re.sub(r"[^0-9a-z]+", "_", word.lower()).strip("_")[:LONGEST].strip("_") or kind
             if name[0].isdigit() or name in RESERVED:
@@ -33,7 +39,7 @@ class Names:
 
 
 class Titles:
-    """Names of joints, motors or points, as their author wrote them but printable, each given once."""
+    """Names of joints, motors or points as their author wrote them, printable and unique."""
 
     def __init__(self) -> None:
         self._taken: set[str] = set()
@@ -44,7 +50,7 @@ class Titles:
 
 
 def printable(words: str) -> str:
-    """Return the words with single spaces for whatever is not printed: control characters, surrogates, line ends."""
+    """Return the words with spaces for control characters, surrogates and line ends."""
     return " ".join("".join(letter if letter.isprintable() else " " for letter in words).split())
 
 

@@ -1,4 +1,6 @@
-"""The records in an address of PMKS+: settings, joints, links and forces of its query, as its own decoder reads them.
+"""Records in an address of PMKS+: settings, joints, links and forces of its query.
+
+They are read as its own decoder reads them.
 
 ``[switches].[decimals,].[whole numbers,].[choices].joints..links..forces...selected[.marks]check[*digest]``. Digits are
 0-9A-Za-z_-, a leading 0 is a minus, decimals are thousandths. Flags are one digit, lowest bit first.
@@ -38,7 +40,7 @@ JOINT_NUMBERS, LINK_NUMBERS = ("x", "y", "angle", "speed", "mass"), ("mass", "in
 
 @dataclass
 class JointRecord:
-    """A joint, in units of the address; a slider has the direction of its slot, or the link that carries it."""
+    """Joint in units of the address; a slider has its slot's direction or the link that carries it."""
 
     id: str
     name: str
@@ -60,7 +62,7 @@ class JointRecord:
 
     @property
     def place(self) -> Place:
-        """Where it is."""
+        """Place of the joint."""
         return self.x, self.y
 
 
@@ -85,7 +87,7 @@ class LinkRecord:
 
 @dataclass
 class ForceRecord:
-    """A force on a link, from one place towards another, or the other way; a local one turns with its link."""
+    """Force on a link, from one place towards another or back; a local one turns with its link."""
 
     id: str
     link: str
@@ -100,7 +102,7 @@ class ForceRecord:
 
 @dataclass
 class Records:
-    """All of an address."""
+    """All records of an address."""
 
     joints: dict[str, JointRecord] = field(default_factory=dict)
     links: dict[str, LinkRecord] = field(default_factory=dict)
@@ -117,7 +119,7 @@ class Records:
 
 
 def query_of(text: str) -> str:
-    """Return the query of an address, or the text itself. Raises UserError for an address that is none."""
+    """Return the query of an address, or the text itself. Raises UserError for a wrong address."""
     try:
         query = urlparse(text.strip()).query
     except ValueError as error:
@@ -126,7 +128,10 @@ def query_of(text: str) -> str:
 
 
 def records_of(query: str) -> Records:
-    """Return what a query says. Raises UserError where its checks fail, or a record cannot be read."""
+    """Return the records of a query.
+
+    Raises UserError if its checks fail or a record cannot be read.
+    """
     check_length(query)
     if query.startswith("pmks2:"):
         raise UserError(
@@ -168,7 +173,10 @@ def records_of(query: str) -> Records:
 
 
 def _checked(query: str) -> str:
-    """The query without its checks. Raises UserError where they tell that it was changed or cut off."""
+    """Return the query without its checks.
+
+    Raises UserError if they show that it was changed or cut off.
+    """
     body, mark, digest = query.rpartition("*")
     if mark and re.fullmatch(r"[0-9A-Za-z]{6}", digest):
         if _digest(body) != digest:
@@ -180,7 +188,7 @@ def _checked(query: str) -> str:
 
 
 def stamped(query: str) -> str:
-    """Return a query with its last characters as its checks, so that changing it leaves it an address."""
+    """Return a query whose last characters are its checks, so a change leaves it an address."""
     body = query.rpartition("*")[0] or query
     checked = body[:-1] + CHECKS[max(len(body) - 1, 0) % len(CHECKS)]
     return f"{checked}*{_digest(checked)}" if "*" in query else checked
@@ -198,7 +206,10 @@ def _digest(text: str) -> str:
 
 
 def _until_empty(sections: list[str]) -> tuple[list[str], list[str]]:
-    """The sections before the first empty one, and those after it. Raises UserError where none is empty."""
+    """Return the sections before the first empty one, and those after it.
+
+    Raises UserError if none is empty.
+    """
     if "" not in sections:
         raise UserError("a list of its records does not end; copy all of it, in quotes")
     end = sections.index("")
@@ -264,7 +275,7 @@ def _force(text: str) -> ForceRecord:
 
 
 def _take_in(read: Records, mark: str) -> None:
-    """A correction of a number, or gears; other marks say how things are shown and edited."""
+    """Read a correction of a number, or gears; other marks concern display and editing."""
     if mark.startswith("G1~"):
         read.gears = True
     name, number, value = (*mark[2:].split("~"), "", "")[:3]
@@ -279,7 +290,7 @@ def _take_in(read: Records, mark: str) -> None:
 
 
 def _check_references(read: Records) -> None:
-    """Raise UserError for a link of joints, or a slot in a link, that are not there."""
+    """Raise UserError for a link of missing joints, or a slot in a missing link."""
     for link in read.links.values():
         if not link.joints:
             raise UserError(f"link {link.id} has no joints")
@@ -298,7 +309,7 @@ def _check_references(read: Records) -> None:
 
 
 def _whole(text: str, signed: bool = True) -> int:
-    """A whole number; a leading 0 is a minus."""
+    """Return a whole number; a leading 0 is a minus."""
     digits, sign = (text[1:], -1) if signed and text[:1] == "0" else (text, 1)
     if not text or len(digits) > MOST_DIGITS or any(digit not in DIGITS for digit in digits):
         raise UserError(f"{text[:40]!r} is no number")

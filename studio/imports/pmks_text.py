@@ -1,4 +1,4 @@
-"""Files of PMKS: its text (``link,link,R,x,y,angle,flags``) and its .pmks, which is the same as JSON.
+"""Files of PMKS: its text (``link,link,R,x,y,angle,flags``) and .pmks, which is the same as JSON.
 
 Coordinates have no unit; a number is taken for a millimetre. The first joint that is marked as input turns at 10 rad/s
 where the file says nothing. R is a pin, P a slider along its angle (degrees), RP a pin in a slot, G gears.
@@ -43,7 +43,7 @@ def is_pmks(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """Return the mechanism of such a file. Raises UserError for lines that are none."""
+    """Return the mechanism of such a file. Raises UserError for a line that is no joint."""
     sketch = Sketch(name, "PMKS", unit="a millimetre")
     check_length(text)
     if text.lstrip().startswith("{"):
@@ -67,7 +67,7 @@ def read(text: str, name: str) -> Sketch:
 
 
 def _add(sketch: Sketch, label: str, joint: _Joint, links: list[str]) -> None:
-    """Add a joint: of one link it is a point that is followed, of more than two the rest are pinned to the second."""
+    """Add a joint: with one link a traced point; links beyond two are pinned to the second."""
     if len(links) == 1:
         if links[0] != GROUND:
             sketch.traces[label] = (links[0], joint.place)
@@ -95,7 +95,7 @@ def _drive(sketch: Sketch, label: str, joint: _Joint, links: list[str], speed: f
 
 
 def _joint_of(line: str) -> _Joint | None:
-    """The joint of a line ``link,link,R,x,y,angle,flags``; None where it is none."""
+    """Return the joint of a line ``link,link,R,x,y,angle,flags``; None if it is none."""
     cells = [cell.strip() for cell in line.split(",")]
     for k, (cell, following) in enumerate(pairwise(cells)):
         numbers = _leading_numbers(" ".join([following, *cells[k + 2 : k + 4]])) if cell.upper() in TAKEN else []
@@ -106,7 +106,7 @@ def _joint_of(line: str) -> _Joint | None:
 
 
 def _leading_numbers(text: str) -> list[float]:
-    """Up to three numbers at the beginning of a text."""
+    """Return up to three numbers at the beginning of a text."""
     numbers: list[float] = []
     for word in text.split()[:3]:
         try:

@@ -33,7 +33,7 @@ USUAL_RATE = 5.0
 
 
 def is_pmks_url(text: str) -> bool:
-    """True if a text is such an address, if only the beginning of one, or its query alone."""
+    """Return True if a text is such an address, its beginning, or its query alone."""
     first = text.strip()
     if "\n" in first:
         return False
@@ -47,7 +47,7 @@ def is_pmks_url(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """Return the mechanism of such an address. Raises UserError where it cannot be read."""
+    """Return the mechanism of such an address. Raises UserError if it cannot be read."""
     return _Reader(records_of(query_of(text)), name).sketch
 
 
@@ -83,7 +83,7 @@ class _Reader:
         self._name_left_out()
 
     def _weld(self, root: LinkRecord) -> None:
-        """All parts of a welded link are its body, those of its parts as well."""
+        """Make all parts of a welded link, and their parts, one body."""
         parts = list(root.parts)
         while parts:
             part = parts.pop()
@@ -92,7 +92,7 @@ class _Reader:
                 parts += self.records.links[part].parts
 
     def _folded(self) -> tuple[dict[str, JointRecord], dict[str, LinkRecord]]:
-        """Joints where a slot and its pin are one, by the pin's id, and the blocks that made them so."""
+        """Return joints with slot and pin as one, by the pin's id, and the blocks that joined them."""
         joints, blocks = dict(self.records.joints), {}
         for block in self.records.links.values():
             given = [joints[joint] for joint in block.joints if joint in joints]
@@ -111,12 +111,12 @@ class _Reader:
         return joints, blocks
 
     def _is_frame(self, link: LinkRecord) -> bool:
-        """True if it is pinned to the ground at two places."""
+        """Return True if it is pinned to the ground at two places."""
         pins = (self.joints[joint] for joint in link.joints if joint in self.joints)
         return len({pin.place for pin in pins if pin.is_grounded and not pin.is_slider}) > 1
 
     def _carriers(self, joint: str, roots: list[LinkRecord]) -> list[str]:
-        """Links on a joint in the order of the address, the ground first where a pin is on it."""
+        """Return the links on a joint in the address's order, the ground first if it is pinned there."""
         given = self.joints[joint]
         ground = [GROUND] if given.is_grounded and not given.is_slider else []
         return list(dict.fromkeys([*ground, *(self.bodies[link.id] for link in roots if joint in link.joints)]))
@@ -141,13 +141,13 @@ class _Reader:
         return sum(x for x, _ in places) / len(places), sum(y for _, y in places) / len(places)
 
     def _guide(self, joint: JointRecord) -> str | None:
-        """The body that has the slot; None where the address names none."""
+        """Return the body that has the slot; None if the address names none."""
         if joint.carrier:
             return self.bodies.get(joint.carrier)
         return GROUND if joint.is_grounded else None
 
     def _slot(self, joint: JointRecord) -> tuple[float, Place]:
-        """Direction of a slot, and a place in it."""
+        """Return the direction of a slot, and a place in it."""
         if not joint.carrier:
             return joint.angle, self._place(joint.id)
         (x0, y0), (x1, y1) = (self.records.joints[end].place for end in joint.slot)
@@ -156,7 +156,7 @@ class _Reader:
         return math.atan2(y1 - y0, x1 - x0), (x0 * self.length, y0 * self.length)
 
     def _slide(self, joint: JointRecord) -> None:
-        """A slot and what rides in it; a block that has a mass is a body between them."""
+        """Add a slot and its slider; a block that has a mass is a body between them."""
         label, guide, place = self.labels[joint.id], self._guide(joint), self._place(joint.id)
         riders = [rider for rider in self.on[joint.id] if rider != guide]
         if guide is None or not riders:
@@ -190,7 +190,7 @@ class _Reader:
             self.sketch.traces[label] = (moving[0], place)
 
     def _drives(self) -> None:
-        """Motors and pushes: of the joints that are inputs, the first of each machine."""
+        """Add motors and pushes: for the first input joint of each machine."""
         machines = _Groups(self.sketch)
         driven: dict[str, str] = {}
         for joint in self.joints.values():
@@ -209,7 +209,7 @@ class _Reader:
             self._drive(joint, *bodies)
 
     def _driven(self, joint: JointRecord) -> tuple[str, str] | str:
-        """The two bodies that an input moves against each other, or why it moves none."""
+        """Return the two bodies that an input moves against each other, or why it moves none."""
         bodies = self.on[joint.id]
         if joint.is_slider:
             guide = self._guide(joint)
@@ -237,7 +237,7 @@ class _Reader:
         self.sketch.motors.append(Motor(f"motor {label}", first, second, rpm * math.tau / 60.0))
 
     def _loads(self) -> None:
-        """Forces on links that move."""
+        """Add forces on links that move."""
         for force in self.records.forces:
             body = self.bodies.get(force.link, GROUND)
             (x0, y0), (x1, y1) = force.start, force.end
@@ -251,7 +251,7 @@ class _Reader:
             self.sketch.loads.append(Load(force.name or force.id, body, place, newtons, angle, force.is_local))
 
     def _freedom(self, roots: list[LinkRecord]) -> int:
-        """3 for each moving link and block, less what the records of joints take."""
+        """Return 3 for each moving link and block, less what the joints remove."""
         moving = {self.bodies[link.id] for link in roots} - {GROUND}
         freedom = 3 * len(moving)
         for joint in self.joints.values():
@@ -277,7 +277,7 @@ class _Reader:
 
 
 class _Groups:
-    """Machines of a sketch: links that are connected by joints, not by the ground alone."""
+    """Groups of links that are connected by joints, not by the ground alone."""
 
     def __init__(self, sketch: Sketch) -> None:
         self._above: dict[str, str] = {}
@@ -287,7 +287,7 @@ class _Groups:
                 self._above[first] = second
 
     def group_of(self, link: str) -> str:
-        """Return the link that stands for the machine of one."""
+        """Return the link that stands for the group of a link."""
         while link in self._above:
             link = self._above[link]
         return link

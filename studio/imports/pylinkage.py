@@ -1,4 +1,4 @@
-"""Mechanisms of pylinkage as JSON (``mechanism_to_json``): joints with places, links with the joints on them.
+"""Mechanisms of pylinkage as JSON (``mechanism_to_json``): joints with places, links with joints.
 
 Coordinates have no unit there; a number is taken for a metre. A driver turns by ``angular_velocity`` in radians at each
 step (``DriverLink.step``; tau / 360 if not given), and its films show 24 steps a second (``fps=24`` of its visualizer),
@@ -26,7 +26,7 @@ def is_pylinkage(text: str) -> bool:
 
 
 def read(text: str, name: str) -> Sketch:
-    """Return the mechanism of such a file. Raises UserError where it cannot be read."""
+    """Return the mechanism of such a file. Raises UserError if it cannot be read."""
     data = parsed_json(text)
     sketch = Sketch(str(data.get("name") or name), "pylinkage", unit="a metre")
     for key in ("joints", "links"):
@@ -60,7 +60,7 @@ def read(text: str, name: str) -> Sketch:
 
 
 def _bodies(data: dict[str, Any]) -> list[str]:
-    """Names of all links in their order; the ground's is that of the frame."""
+    """Return the names of all links in their order; the ground's is that of the frame."""
     ground = data.get("ground", "ground")
     names: list[str] = []
     for k, link in enumerate(data["links"], 1):
@@ -75,7 +75,7 @@ def _bodies(data: dict[str, Any]) -> list[str]:
 
 
 def _carriers(data: dict[str, Any], joints: dict[str, Any], bodies: list[str]) -> dict[str, list[str]]:
-    """Links on each joint, the ground first where it is a fixed one."""
+    """Return the links on each joint, the ground first if the joint is fixed."""
     on = {key: [GROUND] if joint.get("type") == "ground" else [] for key, joint in joints.items()}
     for link, body in zip(data["links"], bodies, strict=True):
         for joint in link["joints"]:
@@ -86,7 +86,7 @@ def _carriers(data: dict[str, Any], joints: dict[str, Any], bodies: list[str]) -
 
 
 def _trace(sketch: Sketch, key: str, joint: dict[str, Any], places: dict[str, Place], on: dict[str, list[str]]) -> None:
-    """Follow a point of a link; a tracker that is on none rides with the link of its two references."""
+    """Follow a point of a link; a free tracker rides with the link of its two references."""
     first, second = str(joint.get("ref_joint1_id", "")), str(joint.get("ref_joint2_id", ""))
     links = on[key] or [link for link in on.get(first, []) if link in on.get(second, [])]
     if not links:
@@ -96,7 +96,7 @@ def _trace(sketch: Sketch, key: str, joint: dict[str, Any], places: dict[str, Pl
 
 
 def _slide(sketch: Sketch, key: str, joint: dict[str, Any], place: Place, links: list[str]) -> int:
-    """Add a joint that slides along a line of the frame with all its links, and return the freedoms it takes."""
+    """Add a joint that slides on the frame with all its links; return the freedoms it removes."""
     axis = joint.get("axis") or (1.0, 0.0)
     angle = math.atan2(float(axis[1]), float(axis[0]))
     line = joint.get("line_point") or place

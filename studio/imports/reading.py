@@ -1,4 +1,4 @@
-"""The mechanism in a file of another program, which is known by its content.
+"""The mechanism in a file of another program, which is recognised by its content.
 
 All files come in by one way: :func:`read` gets a limited number of bytes, asks which format they are, and turns what a
 damaged file brings about in its importer into a UserError. Importers raise UserError themselves where they know more.
@@ -43,7 +43,10 @@ def read(source: str) -> Sketch:
 
 
 def read_text(text: str, name: str) -> Sketch:
-    """Return the mechanism of the content of a file, ``name`` in messages. Raises UserError as :func:`read` does."""
+    """Return the mechanism of the content of a file, called ``name`` in messages.
+
+    Raises UserError as :func:`read` does.
+    """
     name = printable(name)
     for program, (is_one, reader) in FORMATS.items():
         if not is_one(text):

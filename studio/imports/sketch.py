@@ -1,4 +1,4 @@
-"""A mechanism in the plane as a file of another program describes it: links with points, joints between them, motors.
+"""Planar mechanism as a file of another program describes it: links, points, joints, motors.
 
 Lengths are metres, angles radians, both in the world's axes at the start.
 """
@@ -19,7 +19,7 @@ GROUND = ""
 
 @dataclass
 class Link:
-    """A rigid link as it stands at the start; a mass is given with its centre and the inertia about it (kg m^2)."""
+    """Rigid link as it stands at the start; a mass has its centre and inertia about it (kg m^2)."""
 
     name: str
     points: dict[str, Place] = field(default_factory=dict)
@@ -35,7 +35,7 @@ class Link:
 
 @dataclass
 class Pin:
-    """Two links turn about a place."""
+    """Joint in which two links turn about a place."""
 
     name: str
     first: str
@@ -45,7 +45,10 @@ class Pin:
 
 @dataclass
 class Slide:
-    """``second`` moves along a direction of ``first``; ``turns``: as a pin in a slot, else without turning."""
+    """Joint in which ``second`` slides along a direction of ``first``.
+
+    With ``turns`` it is a pin in a slot, else it does not turn.
+    """
 
     name: str
     first: str
@@ -59,7 +62,7 @@ class Slide:
 
 @dataclass
 class Weld:
-    """Two links are one."""
+    """Rigid connection of two links."""
 
     name: str
     first: str
@@ -82,7 +85,9 @@ class Gears:
 
 @dataclass
 class Motor:
-    """Turns ``second`` against ``first``: at ``rate`` (rad/s) from ``start``, the angle between their x axes (rad).
+    """Motor that turns ``second`` against ``first`` at ``rate`` (rad/s).
+
+    ``start`` is the angle between their x axes at the start (rad).
 
     ``law``: an expression of time in Python in place of a constant rate, from which ``start`` is left out.
     """
@@ -97,7 +102,7 @@ class Motor:
 
 @dataclass
 class Push:
-    """Moves a place of ``second`` along a direction of ``first``, from where it stands, at ``rate`` (m/s)."""
+    """Drive that moves a place of ``second`` along a direction of ``first`` at ``rate`` (m/s)."""
 
     name: str
     first: str
@@ -111,7 +116,7 @@ class Push:
 
 @dataclass
 class Ram:
-    """An actuator: the distance of two places moves to and fro by ``stroke`` (m), ``cycles`` times a second."""
+    """Actuator: the distance of two places varies by ``stroke`` (m), ``cycles`` times a second."""
 
     name: str
     first: str
@@ -127,7 +132,7 @@ ROWS = {Pin: 2, Weld: 3, Gears: 1}
 
 @dataclass
 class Load:
-    """A constant force (N) on a place of a link, along an angle of the world; ``turns``: with the link from there."""
+    """Constant force (N) on a place of a link at an angle of the world; it ``turns`` with the link."""
 
     name: str
     link: str
@@ -139,7 +144,7 @@ class Load:
 
 @dataclass
 class Sketch:
-    """A whole mechanism, and what of the file could not be said."""
+    """Whole mechanism, and what of the file could not be translated."""
 
     name: str
     program: str
@@ -161,13 +166,13 @@ class Sketch:
     left_out: list[str] = field(default_factory=list)
 
     def link(self, name: str) -> Link:
-        """Return the link of this name, which is added where it is not there. Raises UserError for an empty name."""
+        """Return the link of this name, added if it is missing. Raises UserError for an empty name."""
         if not name:
             raise UserError("a link has no name")
         return self.links.setdefault(name, Link(name))
 
     def pin_all(self, name: str, links: list[str], place: Place) -> None:
-        """Pin several links at one place: each with the first of them, the ground where it is one."""
+        """Pin several links at one place: each to the first of them, or to the ground if it is one."""
         order = sorted(dict.fromkeys(links), key=lambda link: link != GROUND)
         for k, other in enumerate(order[1:]):
             self.joints.append(Pin(name if k == 0 else f"{name}_{k + 1}", order[0], other, place))
@@ -176,12 +181,14 @@ class Sketch:
                 self.link(link).points.setdefault(name, place)
 
     def counted_freedom(self) -> int:
-        """Return 3 for each link less what the joints take."""
+        """Return 3 for each link less what the joints remove."""
         taken = [ROWS.get(type(joint), 0) or (1 if getattr(joint, "turns", False) else 2) for joint in self.joints]
         return 3 * len(self.links) - sum(taken)
 
     def check(self) -> None:
-        """Raise UserError for what is no mechanism: no link, too many, numbers that are none, joints of no link.
+        """Raise UserError for an invalid mechanism.
+
+        It has no link, too many, invalid numbers, or joints of no link.
 
         Raises it also where the degrees of freedom differ from those of the file, and nothing was left out: then the
         file was misread, and what would be written moves otherwise than its author's.
@@ -214,7 +221,7 @@ class Sketch:
 
 
 def _check_numbers(thing: object) -> None:
-    """Raise UserError for a number that is none, or is too large."""
+    """Raise UserError for a number that is not finite or is too large."""
     for given in fields(thing):  # pyright: ignore[reportArgumentType]
         for number in _numbers_in(getattr(thing, given.name)):
             if not math.isfinite(number) or abs(number) > LARGEST_NUMBER:

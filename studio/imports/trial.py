@@ -1,4 +1,6 @@
-"""A written mechanism.py before it is saved: loaded and built in memory, and compared with the file that it comes from.
+"""Trial of a written mechanism.py: loaded and built in memory, and compared with its source.
+
+It takes place before the file is saved.
 
 So no file that cannot be loaded is ever in a user's folder, where it would be in the way of the next import.
 """
@@ -14,7 +16,9 @@ from studio.imports.sketch import Sketch
 
 
 def try_out(text: str, name: str) -> Mechanism:
-    """Return the mechanism that a mechanism.py builds. Raises UserError where it cannot be saved, loaded or built.
+    """Return the mechanism that a mechanism.py builds.
+
+    Raises UserError if it cannot be saved, loaded or built.
 
     A reason that is no MechanismError is a fault of the importer, and the message says so.
     """
@@ -33,7 +37,7 @@ def try_out(text: str, name: str) -> Mechanism:
 
 
 def difference(sketch: Sketch, m: Mechanism) -> str:
-    """Return how the degrees of freedom of a mechanism differ from those of the file; "" where they do not.
+    """Return how the degrees of freedom differ from those of the file; "" if they do not.
 
     Joints that repeat each other leave more than a count of joints tells, so that more is no difference.
     """

@@ -1,4 +1,4 @@
-"""A sketch as the text of a mechanism.py: numbers in Params, links, joints, motors, traced points."""
+"""Text of a mechanism.py from a sketch: numbers in Params, links, joints, motors, traced points."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from studio.imports.sketch import GROUND, Gears, Link, Load, Motor, Pin, Place, 
 NEAR = 1e-9
 """Places closer than this part of the mechanism's size are one."""
 ROUNDING = 1e-13
-"""What is less than this part of the numbers that a place is computed from is zero."""
+"""Fraction of the numbers behind a place, below which a result counts as zero."""
 
 
 def mechanism_py(sketch: Sketch, name: str) -> str:
-    """The whole file; ``name`` is the mechanism's, which the file's own folder has."""
+    """Return the whole file; ``name`` is the mechanism's, which the file's own folder has."""
     return _Writer(sketch, name).text()
 
 
 class _Frame:
-    """A link's own axes: from its first point along its second one, or along the angle that the file gives."""
+    """Axes of a link: from its first point along its second one, or at the angle of the file."""
 
     def __init__(self, link: Link) -> None:
         places = list(dict.fromkeys(link.points.values()))
@@ -34,11 +34,11 @@ class _Frame:
 
     @property
     def length(self) -> float:
-        """Between the two points; 0 where there is one."""
+        """Distance of the two points; 0 with one."""
         return math.dist(self.origin, self.end) if self.end is not None else 0.0
 
     def local(self, place: Place) -> Place:
-        """A place of the world in these axes."""
+        """Return a place of the world in these axes."""
         x, y = place[0] - self.origin[0], place[1] - self.origin[1]
         c, s = math.cos(self.angle), math.sin(self.angle)
         across, up = c * x + s * y, c * y - s * x
@@ -180,7 +180,7 @@ class _Writer:
         return f"m.drive_relative_angle({self._title(motor)}, {links}, {law})"
 
     def _constant(self, motor: Motor | Push, start: float) -> str:
-        """A constant rate as a parameter, from ``start``."""
+        """Return a constant rate as a parameter, from ``start``."""
         alone = len(self.sketch.motors) + len(self.sketch.pushes) == 1
         speed = self._param("speed" if alone else f"speed_{motor.name}", _number(motor.rate), "number")
         return f"constant_rate({speed}{f', {_number(start)}' if abs(start) > 1e-12 else ''})"
@@ -198,11 +198,14 @@ class _Writer:
         return f"m.force({self._title(load)}, {marker}, {_number(load.force)}, {angle}{frame})"
 
     def _title(self, thing: Pin | Slide | Weld | Gears | Motor | Push | Ram | Load) -> str:
-        """A new name of a joint or motor, between quotes."""
+        """Return a new name of a joint or motor, between quotes."""
         return _quoted(self.titles.title_for(thing.name))
 
     def _ram(self, ram: Ram) -> str:
-        """From its shortest, or where it counts backwards from its longest, to the other and back."""
+        """Return the law of a ram that moves from its shortest to its longest and back.
+
+        One that counts backwards begins at its longest.
+        """
         first, second = (
             self._marker(link, place) for link, place in zip((ram.first, ram.second), ram.places, strict=True)
         )
@@ -216,7 +219,7 @@ class _Writer:
         return 0.0 if link == GROUND else self.frames[link].angle
 
     def _starts(self) -> list[str]:
-        """Poses of the file as starts: exact up to rounding, so the branch is the one that was drawn."""
+        """Return the poses of the file as starts: exact up to rounding, so they keep the drawn branch."""
         lines = []
         for link in self.sketch.links.values():
             frame = self.frames[link.name]
@@ -248,10 +251,10 @@ def _title(name: str) -> str:
 
 
 def _quoted(name: str) -> str:
-    """A printable name between quotes, as ruff writes them."""
+    """Return a printable name between quotes, as ruff writes them."""
     return json.dumps(name, ensure_ascii=False)
 
 
 def _plain(words: str) -> str:
-    """Without what would end a docstring or a line."""
+    """Return the words without characters that would end a docstring or a line."""
     return printable(words.replace("\\", "/").replace('"', "'"))[:300]

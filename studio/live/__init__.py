@@ -1,1 +1,1 @@
-"""The server of the live page: it watches a mechanism's files, solves on saving and pushes what has changed."""
+"""Server of the live page: it watches a mechanism's files, solves after saving and pushes changes."""

@@ -1,4 +1,4 @@
-"""``python -m studio.live NAME``: a page of one mechanism that follows the editor, served on this machine alone."""
+"""``python -m studio.live NAME``: serve a page that follows the editor, on this machine alone."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def main() -> int:
 
 
 def bound(port: int) -> socket.socket:
-    """A socket of loopback; raises UserError where the port is taken or is none."""
+    """Return a socket of loopback; raises UserError if the port is taken or invalid."""
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:

@@ -1,4 +1,7 @@
-"""A fit of the lengths to a drawn path, in a child of its own: the sliders go on, and it can be ended at once."""
+"""Fit of the lengths to a drawn path, in a child of its own.
+
+The sliders go on meanwhile, and the fit can be ended at once.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ Tell = Callable[[dict[str, Any]], None]
 
 
 class Fit:
-    """At most one at a time; a newer one ends it."""
+    """One fit at most; a newer one ends it."""
 
     def __init__(
         self,
@@ -25,18 +28,21 @@ class Fit:
         fitted: Callable[[dict[str, float]], None],
         best: Callable[[dict[str, float] | None], None],
     ) -> None:
-        """``best`` is called with the numbers of the best linkage so far, with None where a fit ends without any."""
+        """Prepare fits; ``best`` gets the numbers of the best linkage so far.
+
+        It gets None if a fit ends without any.
+        """
         self._name, self._nursery, self._tell, self._found, self._best = name, nursery, tell, fitted, best
         self._shown = False
         self._child: Child | None = None
 
     @property
     def running(self) -> bool:
-        """Whether one is under way."""
+        """True if a fit is under way."""
         return self._child is not None
 
     def begin(self, wish: Wanted, values: dict[str, float]) -> None:
-        """Fit from these numbers; it may take as long as it does."""
+        """Begin a fit from these numbers; it has no time limit."""
         self.end()
         self._shown = False
         self._child = self._nursery.child(self._name, self._heard, limit=0)
@@ -44,13 +50,13 @@ class Fit:
         self._tell({"kind": "progress", "done": 0.0, "error": None})
 
     def cancel(self) -> None:
-        """End it, and say that none runs, also to a page that waits for one that has ended already."""
+        """End the fit and report that none runs, also if it has ended already."""
         self.end()
         self._tell({"kind": "fitted", "cancelled": True})
         self._as_before()
 
     def end(self) -> None:
-        """End it, if there is one."""
+        """End the fit, if there is one."""
         if self._child is not None:
             self._child.kill()
             self._child = None

@@ -1,4 +1,4 @@
-"""A message as bytes: the length of its header (uint32, little endian), the header as JSON, and what follows it.
+"""Message as bytes: its header's length (uint32, little endian), the header as JSON, the payload.
 
 Server and browser, and server and child, send the same frames, so a motion that a child has solved is passed on as it
 is. page/connection.js reads them.
@@ -15,7 +15,7 @@ LARGEST = 1 << 30
 
 
 def framed(header: dict[str, Any], payload: bytes = b"") -> bytes:
-    """The bytes of a message. Numbers that are not finite become null."""
+    """Return the bytes of a message. Numbers that are not finite become null."""
     try:
         text = json.dumps(header, ensure_ascii=False, allow_nan=False)
     except ValueError:
@@ -25,7 +25,7 @@ def framed(header: dict[str, Any], payload: bytes = b"") -> bytes:
 
 
 def unframed(frame: bytes) -> tuple[dict[str, Any], bytes]:
-    """Header and payload. Raises ValueError for what is no frame."""
+    """Return header and payload. Raises ValueError for an invalid frame."""
     if len(frame) < 4:
         raise ValueError("a frame has four bytes at least")
     (size,) = struct.unpack_from("<I", frame)

@@ -1,4 +1,4 @@
-"""Who may speak to the server: pages of its own address that know its token, and nobody else.
+"""Access to the server: only pages of its own address that know its token may speak to it.
 
 The server listens on loopback alone, but every page that a browser shows can send requests there. So a request needs
 the token in its path, a Host that is this machine's (a foreign name that was pointed at 127.0.0.1 is refused), and
@@ -23,7 +23,7 @@ HEADERS = {
 
 
 class Gate:
-    """ASGI middleware: what may not come in gets 403 and no reason, and a websocket is closed before it opens."""
+    """ASGI middleware that answers 403 without a reason, and closes websockets before they open."""
 
     def __init__(self, app: Any, token: str, port: int) -> None:
         self.app, self.token = app, token
@@ -31,7 +31,7 @@ class Gate:
         self.origins = {f"http://{host}" for host in self.hosts}
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
-        """Pass on what may come in."""
+        """Pass on a request if it is allowed."""
         if scope["type"] not in ("http", "websocket"):
             await self.app(scope, receive, send)
             return
@@ -48,7 +48,7 @@ class Gate:
         await self.app(scope, receive, with_headers)
 
     def allows(self, scope: Any) -> bool:
-        """Whether a request may come in."""
+        """Return True if a request is allowed."""
         given: dict[str, list[str]] = {}
         for name, value in scope["headers"]:
             given.setdefault(name.decode("latin-1").lower(), []).append(value.decode("latin-1"))

@@ -1,4 +1,4 @@
-"""What waits for one page: in order, but of motions only the newest, so that a slow page sees the present."""
+"""Messages that wait for one page: in order, but only the newest motion, so a slow page stays current."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MOST, LARGEST = 256, 1 << 28
 
 
 class Mailbox:
-    """Messages from the server's loop to one page; ``anew`` gives those that make up for all that were dropped."""
+    """Messages from the server's loop to one page; ``anew`` gives those that replace dropped ones."""
 
     def __init__(self, anew: Callable[[], list[bytes]]) -> None:
         self._anew = anew
@@ -19,21 +19,21 @@ class Mailbox:
         self._bytes = 0
         self._some = asyncio.Event()
 
-    def put(self, frame: bytes, replaces: bool = False) -> None:
-        """Add a frame; one that ``replaces`` takes the place of an older one that did."""
+    def add(self, frame: bytes, replaces: bool = False) -> None:
+        """Add a frame; with ``replaces`` it takes the place of an older replaceable one."""
         if replaces:
             self._bytes -= sum(len(message) for message, replaced in self._waiting if replaced)
             self._waiting = deque(message for message in self._waiting if not message[1])
-        self._add(frame, replaces)
+        self._append(frame, replaces)
         if len(self._waiting) > MOST or self._bytes > LARGEST:
             self._waiting.clear()
             self._bytes = 0
             for message in self._anew():
-                self._add(message, False)
+                self._append(message, False)
         self._some.set()
 
     async def get(self) -> bytes:
-        """The next frame; waits for one."""
+        """Wait for the next frame and return it."""
         while not self._waiting:
             self._some.clear()
             await self._some.wait()
@@ -41,7 +41,7 @@ class Mailbox:
         self._bytes -= len(frame)
         return frame
 
-    def _add(self, frame: bytes, replaces: bool) -> None:
+    def _append(self, frame: bytes, replaces: bool) -> None:
         self._waiting.append((frame, replaces))
         self._bytes += len(frame)
 

@@ -1,4 +1,4 @@
-"""The numbers of ``Params`` as sliders: their names, values and ranges; and Params with other numbers.
+"""Numbers of ``Params`` as sliders: names, values and ranges; and Params with other numbers.
 
 A number of a tuple is called by its place: ``tracer[0]``. Its range is what the author gives,
 
@@ -31,7 +31,7 @@ PARTS = 1000
 
 @dataclasses.dataclass(frozen=True)
 class Number:
-    """A number of Params, and the range of its slider."""
+    """Number of Params, and the range of its slider."""
 
     name: str
     value: float
@@ -42,7 +42,7 @@ class Number:
 
 
 def numbers_of(p: Any) -> list[Number]:
-    """All numbers of a dataclass, in its order. Raises UserError for a range that is none."""
+    """Return all numbers of a dataclass, in its order. Raises UserError for an invalid range."""
     if not dataclasses.is_dataclass(p):
         return []
     numbers = []
@@ -62,7 +62,9 @@ def numbers_of(p: Any) -> list[Number]:
 
 
 def changed(p: Any, values: dict[str, float]) -> Any:
-    """``p`` with other numbers; raises UserError for a name that is none of its numbers, or a value that is not finite.
+    """Return ``p`` with other numbers.
+
+    Raises UserError for an unknown name or a value that is not finite.
 
     What Params itself refuses passes.
     """
@@ -80,12 +82,12 @@ def changed(p: Any, values: dict[str, float]) -> Any:
 
 
 def in_digits(values: Mapping[str, Any]) -> dict[str, float]:
-    """What a drag or a fit has found, in as many digits as people write: so it is shown, solved and written."""
+    """Return the values rounded to the digits that people write; so they are shown, solved and written."""
     return {name: float(f"{value:.{DIGITS}g}") for name, value in values.items() if isinstance(value, float)}
 
 
 def parsed(name: str) -> tuple[str, list[int]]:
-    """The field of a number, and its places in it. Raises UserError for what is no such name."""
+    """Return the field of a number, and its indices in it. Raises UserError for another name."""
     match = NAME.fullmatch(name)
     if match is None:
         raise UserError(f"{name!r} is not the name of a number of Params")

@@ -1,4 +1,7 @@
-"""The page's HTML: that of make view with the live part switched on; before a first motion, one that waits for it."""
+"""HTML of the page: the page of ``mbsd view`` with its live part.
+
+Before a first motion it is a page that waits.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +56,7 @@ speak();
 
 
 def page(session: Session) -> bytes:
-    """What a browser gets. Raises UserError where the page cannot be bundled."""
+    """Return the page that a browser gets. Raises UserError if it cannot be bundled."""
     title = session.name.replace("_", " ")
     if session.board.payload is None:
         state = "It cannot be solved yet. This page follows the file." if session.board.error else "It is being solved."

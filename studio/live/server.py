@@ -1,4 +1,4 @@
-"""The server of the live page: Starlette on loopback, a websocket for each page, one session for all of them."""
+"""Server of the live page: Starlette on loopback, a websocket for each page, one session for all."""
 
 from __future__ import annotations
 
@@ -32,24 +32,24 @@ WORDS = 32
 
 
 class Pages:
-    """The open pages: each gets all messages."""
+    """Open pages: each gets all messages."""
 
     def __init__(self) -> None:
         self._boxes: set[Mailbox] = set()
 
     def push(self, frame: bytes, replaces: bool = False) -> None:
-        """Send every page a frame; one that ``replaces`` makes an older such needless."""
+        """Send every page a frame; with ``replaces`` it makes older such frames needless."""
         for box in self._boxes:
-            box.put(frame, replaces)
+            box.add(frame, replaces)
 
     def open(self, greeting: Callable[[], list[bytes]]) -> Mailbox:
-        """The messages of a page that has just opened; ``greeting`` has all that there is."""
+        """Return the messages of a new page; ``greeting`` brings it up to date."""
         box = Mailbox(greeting)
         self._boxes.add(box)
         return box
 
     def close(self, box: Mailbox) -> None:
-        """It has gone."""
+        """Remove a page that has gone."""
         self._boxes.discard(box)
 
     def __len__(self) -> int:
@@ -57,7 +57,7 @@ class Pages:
 
 
 class Live:
-    """All of the server: ``app`` is what uvicorn serves."""
+    """Whole server: ``app`` is served by uvicorn."""
 
     def __init__(
         self, name: str, port: int, page: Callable[[Session], bytes], limit: float, parts: bool = True, token: str = ""
@@ -78,7 +78,7 @@ class Live:
 
     @property
     def address(self) -> str:
-        """What a browser opens."""
+        """Address that a browser opens."""
         return f"http://127.0.0.1:{self.port}/{self.token}/"
 
     @asynccontextmanager
@@ -97,7 +97,7 @@ class Live:
             await self.nursery.end()
 
     async def _watch(self, session: Session) -> None:
-        """Begin once the warm process is, and follow the files from then on; a page may open meanwhile.
+        """Begin when the warm process is ready, then follow the files; a page may open meanwhile.
 
         An error of ours is reported, and does not end it.
         """
@@ -126,29 +126,29 @@ class Live:
         await socket.accept()
         box = self.pages.open(session.greeting)
         for frame in session.greeting():
-            box.put(frame)
+            box.add(frame)
         sending = asyncio.create_task(_send_all(socket, box))
         try:
             while True:
                 message = await socket.receive()
                 if message["type"] == "websocket.disconnect":
                     break
-                self._take(session, message.get("text") or message.get("bytes") or b"", box)
+                self._carry_out(session, message.get("text") or message.get("bytes") or b"", box)
         except (WebSocketDisconnect, RuntimeError):
             pass
         finally:
             self.pages.close(box)
             sending.cancel()
 
-    def _take(self, session: Session, text: str | bytes, box: Mailbox) -> None:
-        """Do what a page asks for; what cannot be done is reported to that page, and an error of ours as well."""
+    def _carry_out(self, session: Session, text: str | bytes, box: Mailbox) -> None:
+        """Carry out a page's request; errors, also internal ones, are reported to that page."""
         try:
             session.ask(wish_of(text))
         except UserError as error:
-            box.put(framed({"kind": "refused", "text": str(error)}))
+            box.add(framed({"kind": "refused", "text": str(error)}))
         except Exception as error:
             traceback.print_exc()
-            box.put(framed({"kind": "refused", "text": f"the live page has failed at this: {error}"}))
+            box.add(framed({"kind": "refused", "text": f"the live page has failed at this: {error}"}))
 
 
 async def _send_all(socket: WebSocket, box: Mailbox) -> None:

@@ -1,4 +1,4 @@
-"""One mechanism as all open pages see it: its last good motion, its numbers, what is being solved.
+"""One mechanism as all open pages see it: its last good motion, its numbers, the current solve.
 
 A save begins a new child with the files as they are now; until it has solved them the child of the last good motion
 serves on, so a broken edit takes nothing away. Of many wishes of a slider the newest counts.
@@ -27,7 +27,7 @@ from studio.live.writing.writer import Writer, Written
 
 
 class Session:
-    """What the server keeps of a mechanism."""
+    """State of a mechanism in the server."""
 
     def __init__(self, name: str, nursery: Nursery, push: Push, parts: bool = True) -> None:
         self.name, self._nursery, self._wants_parts = name, nursery, parts
@@ -41,7 +41,7 @@ class Session:
         self._wished: dict[str, Any] | None = None
         self._parts_ready = self._solid_wanted = self._words_wanted = False
         self._wordless = False
-        """Whether the process of these files ended while it described its numbers: it is not asked again."""
+        """True if the process of these files ended while it described its numbers: it is not asked again."""
         self._opened: dict[str, float] = {}
         """Numbers with which the files are being solved."""
         self._began = 0.0
@@ -53,7 +53,7 @@ class Session:
     # -- files ----------------------------------------------------------------------------------------------------
 
     def changed(self, files: set[Path]) -> None:
-        """Some of the author's files have another content, or the server has just begun."""
+        """React to changed files of the author, or to the start of the server."""
         self._wordless = False
         if files and all(file.name == "parts.py" and file.parent == self.watch.folder for file in files):
             self._make_parts()
@@ -61,7 +61,7 @@ class Session:
         self.reload()
 
     def reload(self, parts_ready: bool = False) -> None:
-        """Load and solve the files as they are now; with parts that have just been made for them."""
+        """Load and solve the files as they are now; ``parts_ready`` if their parts are new."""
         if self.fit.running:
             self.fit.cancel()
         self.stages.end()
@@ -103,18 +103,21 @@ class Session:
                 self._heard(child, header, payload)
 
     def _without_changes(self, text: str) -> bool:
-        """Where the sliders' numbers do not fit the new file, it is solved once more as it stands."""
+        """Solve the file once more as it stands if the sliders' numbers do not fit it.
+
+        Returns False if there are no such numbers.
+        """
         if not self.history.now:
             return False
         self.board.line(f"the numbers of the sliders do not fit this file, so they were dropped: {text}")
-        self.history.put({})
+        self.history.add({})
         self.reload()
         return True
 
     # -- wishes of the page -----------------------------------------------------------------------------------------
 
     def ask(self, wish: Wish) -> None:
-        """A wish of a page. Raises UserError for what cannot be."""
+        """Carry out a page's request. Raises UserError if that is impossible."""
         match wish:
             case Set():
                 self._set(wish)
@@ -137,7 +140,7 @@ class Session:
         wishes.known(wish.values, self.board.numbers)
         values = self.history.now | wish.values
         if wish.final:
-            self.history.put(values)
+            self.history.add(values)
             self.board.tell_values()
         self._solve({**to_builtins(wish), "values": values})
 
@@ -148,7 +151,7 @@ class Session:
         self.board.tell_values()
 
     def _drop_drag(self) -> bool:
-        """Forget a drag that is being solved or waits; whether there was one that had ended."""
+        """Forget a drag that is being solved or waits; return True if one had ended."""
         busy = self._wished if self._good is not None and self._good.busy else None
         drags = [wish for wish in (busy, self._wish) if wish is not None and wish["do"] == "drag" and wish.get("final")]
         for drag in drags:
@@ -166,7 +169,7 @@ class Session:
         whole = {number["name"] for number in self.board.numbers if number["whole"]}
         before = {number["name"]: number["value"] for number in self.board.numbers}
 
-        def done(written: Written) -> None:
+        def report(written: Written) -> None:
             self.history.written(values, before)
             self.board.tell_values()
             self.board.line(written.text)
@@ -174,22 +177,22 @@ class Session:
         self.writer.begin(
             {name: round(value) if name in whole else value for name, value in values.items()},
             self.board.numbers,
-            done,
+            report,
             lambda text: self.board.tell({"kind": "refused", "text": text}),
         )
 
     def _best_so_far(self, values: dict[str, float] | None) -> None:
-        """Show a fit's best linkage so far, which is no step of the history; None: the fit ended without one."""
+        """Show a fit's best linkage so far, outside the history; None: the fit ended without one."""
         request = {"do": "set", "values": self.history.now if values is None else values, "final": values is None}
         self._solve(request)
 
     def _fitted(self, values: dict[str, float]) -> None:
-        self.history.put(values)
+        self.history.add(values)
         self.board.tell_values()
         self._solve({"do": "set", "values": values, "final": True})
 
     def _solve(self, request: dict[str, Any]) -> None:
-        """Let the good child solve this, after what it is doing; of several that wait the newest counts."""
+        """Give this request to the good child when it is free; of several the newest counts."""
         if self._good is None or self._good.ended:
             return
         if self._good.busy:
@@ -199,7 +202,7 @@ class Session:
         self._good.ask(next(self._count), request)
 
     def _heard(self, child: Child, header: dict[str, Any], payload: bytes) -> None:
-        """What the good child answers to wishes."""
+        """Handle a message of the good child."""
         if child is not self._good:
             return
         kind, asked = header.get("kind"), self._wished
@@ -216,7 +219,7 @@ class Session:
         elif kind == "motion":
             values = header.get("values") or (asked or {}).get("values") or {}
             if asked and asked["do"] == "drag" and asked.get("final"):
-                self.history.put(header["values"])
+                self.history.add(header["values"])
                 self.board.tell_values()
             self.board.motion(header, payload, values)
         elif (asked or {}).get("do") == "solid":
@@ -230,7 +233,7 @@ class Session:
             self._go_on()
 
     def _go_on(self) -> None:
-        """Let the good child do what waits."""
+        """Give the good child the request that waits."""
         if self._wish is not None:
             self._solve(self._wish)
         elif self._solid_wanted:
@@ -243,11 +246,11 @@ class Session:
     # -- the rest ---------------------------------------------------------------------------------------------------
 
     def greeting(self) -> list[bytes]:
-        """What a page gets that has just opened."""
+        """Return the messages that bring a newly opened page up to date."""
         return self.board.greeting(name=self.name, solving=self._new is not None, making=self.stages.running)
 
     async def end(self) -> None:
-        """End all that runs for it."""
+        """End everything that runs for it."""
         self.fit.end()
         self.writer.end()
         for child in (self._good, self._new):

@@ -1,4 +1,4 @@
-"""Which of the author's files have changed, by their content: a touch is no change."""
+"""Changes of the author's files, by their content: a touch is no change."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LARGEST = 1 << 26
 
 
 class Watch:
-    """Looks at a folder and at single files elsewhere."""
+    """Watch over a folder and over single files elsewhere."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -33,7 +33,7 @@ class Watch:
         self._changed(self._all())
 
     def follow(self, files: Iterable[Path], since: float = math.inf) -> None:
-        """From now on look at these files, too; Python files of the folder are always looked at.
+        """Add these files; Python files of the folder are always watched.
 
         They were read at ``since`` (s since the epoch) or later; one that was written after that counts as changed, for
         what was read may be what it was before.
@@ -48,7 +48,7 @@ class Watch:
         self._again.set()
 
     async def changes(self, ended: Callable[[], bool]) -> AsyncIterator[set[Path]]:
-        """Sets of files whose content has changed, until ``ended``."""
+        """Yield sets of files whose content has changed, until ``ended``."""
         while not ended():
             self._again.clear()
             stop = asyncio.Event()
@@ -98,7 +98,7 @@ class Watch:
 
 
 def state(file: Path) -> str:
-    """A hash of a file's content, or a word for what is no file."""
+    """Return a hash of a file's content, or a word if it is no file."""
     try:
         status = file.stat()
         if not os.path.isfile(file):
@@ -111,7 +111,7 @@ def state(file: Path) -> str:
 
 
 def _written(file: Path) -> float:
-    """When a file was written last (s since the epoch); long ago if it is not there."""
+    """Return when a file was written last (s since the epoch); long ago if it is missing."""
     try:
         return file.stat().st_mtime
     except OSError:

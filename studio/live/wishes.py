@@ -1,4 +1,4 @@
-"""What pages ask for, checked: nothing that comes from a browser is taken on trust."""
+"""Requests of pages, checked: nothing that comes from a browser is trusted."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ Numbers = Annotated[dict[Name, Finite], Meta(max_length=10_000)]
 
 
 class Thing(Struct, forbid_unknown_fields=True):
-    """A joint or traced point."""
+    """Joint or traced point."""
 
     kind: Literal["joint", "point"]
     name: Name
 
 
 class Set(Struct, tag="set", tag_field="do", forbid_unknown_fields=True):
-    """Numbers of sliders; ``final`` when one was let go, ``arrows`` whether arrows are shown."""
+    """Numbers of sliders; ``final`` after one was released, ``arrows`` if arrows are shown."""
 
     values: Numbers
     final: bool = False
@@ -38,7 +38,7 @@ class Set(Struct, tag="set", tag_field="do", forbid_unknown_fields=True):
 
 
 class Drag(Struct, tag="drag", tag_field="do", forbid_unknown_fields=True):
-    """A thing is dragged: where to (m) at what time (s)."""
+    """Drag of a thing to a place (m) at a time (s)."""
 
     thing: Thing
     time: Finite
@@ -48,21 +48,21 @@ class Drag(Struct, tag="drag", tag_field="do", forbid_unknown_fields=True):
 
 
 class Undo(Struct, tag="undo", tag_field="do", forbid_unknown_fields=True):
-    """One step back."""
+    """Step back."""
 
 
 class Redo(Struct, tag="redo", tag_field="do", forbid_unknown_fields=True):
-    """One step forward."""
+    """Step forward."""
 
 
 class Write(Struct, tag="write", tag_field="do", forbid_unknown_fields=True):
-    """Write these numbers, or all that differ, into mechanism.py."""
+    """Request to write these numbers, or all that differ, into mechanism.py."""
 
     names: Annotated[list[Name], Meta(max_length=10_000)] | None = None
 
 
 class Fit(Struct, tag="fit", tag_field="do", forbid_unknown_fields=True):
-    """Fit the lengths to a path (m), within bounds or within the ranges of their sliders."""
+    """Fit of the lengths to a path (m), within bounds or within the ranges of their sliders."""
 
     point: Name
     path: Annotated[list[tuple[Finite, Finite]], Meta(min_length=1, max_length=PLACES)]
@@ -77,7 +77,7 @@ class Fit(Struct, tag="fit", tag_field="do", forbid_unknown_fields=True):
 
 
 class Cancel(Struct, tag="cancel", tag_field="do", forbid_unknown_fields=True):
-    """End the fit."""
+    """Request to end the fit."""
 
 
 Wish = Set | Drag | Undo | Redo | Write | Fit | Cancel
@@ -86,7 +86,7 @@ _DECODER = Decoder(Wish)
 
 
 def wish_of(text: str | bytes) -> Wish:
-    """What a page asks for. Raises UserError, with what is wrong with it, for all else."""
+    """Return a page's request. Raises UserError, with the fault, for anything else."""
     try:
         return _DECODER.decode(text)
     except ValidationError as error:
@@ -100,7 +100,7 @@ def wish_of(text: str | bytes) -> Wish:
 
 
 def known(names: Iterable[str], numbers: list[dict[str, Any]]) -> None:
-    """Raise UserError where one of ``names`` is none of Params' numbers."""
+    """Raise UserError if one of ``names`` is no number of Params."""
     there = [number["name"] for number in numbers]
     for name in names:
         if name not in there:

@@ -1,1 +1,1 @@
-"""The night shift: every stage of every mechanism to its end, whatever happens on the way."""
+"""Night shift: every stage of every mechanism to its end, whatever happens on the way."""

@@ -1,4 +1,4 @@
-"""``python -m studio.night run|start|status|stop``: make all, make overnight, make status and make stop."""
+"""``python -m studio.night run|start|status|stop``: make all, make overnight, make status, make stop."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from studio.night.plan.options import Options, options
 
 
 def main() -> int | None:
-    """Read the command line and do it."""
+    """Read the command line and run its command."""
     parser = argparse.ArgumentParser(prog="python -m studio.night", description="Every film, whatever happens.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for command, text in (("run", "make everything, here"), ("start", "make everything, in the background")):

@@ -1,4 +1,4 @@
-"""Takes every mechanism through its steps: one render always going on, the others' steps beside it.
+"""Coordinator of the steps of every mechanism: one render always running, other steps beside it.
 
 What is to be made is decided by stamps and pictures alone, so after whatever end the same command goes on.
 """
@@ -59,7 +59,7 @@ class Coordinator:
         self._looked = time.monotonic()
 
     def go(self) -> bool:
-        """Do all there is to do; False where somebody asked it to stop. However it ends, no process remains."""
+        """Run all steps; False if somebody stopped it. However it ends, no process remains."""
         self.books.moved()
         try:
             while not self.board.is_over():
@@ -74,7 +74,7 @@ class Coordinator:
             self._end_all()
 
     def _start(self) -> None:
-        """Start what has a place: one render, and beside it as many steps as cores are free."""
+        """Start one render, and beside it as many steps as cores are free."""
         rendering = any(self.steps[process.step].renders for process in self.running)
         if not rendering:
             rendering = self._start_first(renders=True)
@@ -82,22 +82,22 @@ class Coordinator:
         while self._is_place_free(places) and self._start_first(renders=False):
             pass
 
-    def _beside(self) -> list[Process]:
+    def _others(self) -> list[Process]:
         return [process for process in self.running if not self.steps[process.step].renders]
 
     def _is_place_free(self, places: int) -> bool:
-        beside = self._beside()
+        beside = self._others()
         away = sum(process.step in AWAY for process in beside) if address() else 0
         return len(beside) - min(away, MOST_AWAY) < places
 
     def _start_first(self, renders: bool) -> bool:
-        """Start the most urgent step whose mechanism no other run has; False if there is none."""
+        """Start the most urgent step whose mechanism is free; False if there is none."""
         now = time.monotonic()
         for name, step in self.board.ready(renders):
             if self._elsewhere.get(name, now) > now:
                 continue
             try:
-                who = self.claims.take(name)
+                who = self.claims.claim(name)
             except UserError as error:
                 self.log.fail(f"{name}: {error}")
                 self.books.error(name, f"{step}: {error}")
@@ -127,7 +127,7 @@ class Coordinator:
         return False
 
     def _look(self) -> None:
-        """Pass on what was said, count pictures, collect what has ended and kill what hangs."""
+        """Pass on output, count pictures, collect ended steps and kill hanging ones."""
         now = time.monotonic()
         passed, self._looked = min(now - self._looked, LONGEST_TICK), now
         for process in list(self.running):
@@ -160,7 +160,7 @@ class Coordinator:
         self.claims.give_back(name)
         self.books.ended(name, step, time.monotonic() - process.started)
         if process.code() == 0 and not process.hung:
-            self.board.done(name, step)
+            self.board.finish(name, step)
         elif process.code() == BUSY:
             self._tries[name, step] -= 1
             self._elsewhere[name] = time.monotonic() + BUSY_ELSEWHERE
@@ -180,9 +180,9 @@ class Coordinator:
         self.books.moved()
 
     def _stop_after_frame(self) -> None:
-        """End the steps beside the render at once, the render when its next picture is there."""
+        """End the steps beside the render at once, the render after its next picture."""
         self.log.say("asked to stop; it ends after the frame in flight")
-        for process in self._beside():
+        for process in self._others():
             process.end()
         while self.running:
             time.sleep(TICK)
@@ -198,11 +198,11 @@ class Coordinator:
                     process.close()
                     self.claims.give_back(process.name)
                     good = process.code() == 0
-                    (self.board.done if good else self.board.wait)(process.name, process.step)
+                    (self.board.finish if good else self.board.wait)(process.name, process.step)
             self.books.write_if_due()
 
     def _end_all(self) -> None:
-        """End what still runs: after an error of ours, or a signal."""
+        """End all running steps after an internal error or a signal."""
         for process in self.running:
             process.end()
         for process in self.running:

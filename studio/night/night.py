@@ -1,4 +1,4 @@
-"""A whole run: what is fresh, the work, the table of all at the end, and an exit code that tells the truth."""
+"""Whole run: what is fresh, the work, the table of all at the end, and a truthful exit code."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STOPPED = 130
 
 
 def run(asked: Options) -> int:
-    """Make everything that ``asked`` names; 0 if all of it is there, 1 if something failed, 130 if it was stopped.
+    """Build all that ``asked`` names; 0 if all exists, 1 after a failure, 130 after a stop.
 
     Raises UserError where the folder of results cannot be used. A disk that is surely too small is reported; 1.
     """
@@ -55,7 +55,7 @@ def run(asked: Options) -> int:
 def _last_words(
     asked: Options, board: Board, failed: list[str], finished: bool, night: Run, log: Log, seconds: float
 ) -> int:
-    """The sentence under the table, and the exit code."""
+    """Print the sentence under the table and return the exit code."""
     done = sum(board.outcome(name) == "done" for name in asked.names)
     bad = [*failed, *("(an unfit name)" for _ in asked.unfit)]
     left = len(asked.names) - done - len(failed)
@@ -73,7 +73,7 @@ def _last_words(
 
 
 def _table(asked: Options, board: Board, at_work: Coordinator, log: Log) -> None:
-    """The table of all runs, by the process that draws it."""
+    """Print the table of all runs, by the process that draws it."""
     rows = "".join(
         f"{name} {at_work.books.seconds(name):.1f} {board.outcome(name).replace(' ', '-')}\n" for name in asked.names
     )

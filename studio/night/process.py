@@ -1,4 +1,4 @@
-"""One step as a process of its own: its words line by line, its silence, its end."""
+"""One step as a process of its own: its output line by line, its silence, its end."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ LINE = 4000
 
 
 class Process:
-    """A running step. What it started ends with it: its group here, Blender by its own watch on its parent."""
+    """Running step.
+
+    Processes that it started end with it: its group here, Blender by its own watch on its parent.
+    """
 
     def __init__(self, name: str, step: str, command: Sequence[str], beside: bool, environment: Mapping[str, str]):
         self.name, self.step = name, step
@@ -33,7 +36,7 @@ class Process:
         self.error = ""
         """The last line that begins with ``error:``."""
         self.hung = False
-        """Whether it was killed because it gave no sign of life."""
+        """True if it was killed because it gave no sign of life."""
         self._rest = b""
         self._popen = subprocess.Popen(
             list(command),
@@ -52,7 +55,7 @@ class Process:
                 os.setpriority(os.PRIO_PROCESS, self._popen.pid, BESIDE)
 
     def lines(self) -> list[str]:
-        """What it has said since the last call, in whole lines; after its end the rest as well."""
+        """Return its output since the last call, in whole lines; after its end the rest as well."""
         ended = self._popen.poll() is not None
         blocks = [self._rest]
         with suppress(BlockingIOError):
@@ -68,16 +71,16 @@ class Process:
         return [line for line in said if line]
 
     def live(self, seconds: float, sign: bool) -> None:
-        """Some seconds have passed, with a sign of life or without."""
+        """Record that some seconds have passed, with or without a sign of life."""
         self.signs += sign
         self.silence = 0.0 if sign else self.silence + seconds
 
     def code(self) -> int | None:
-        """Its exit code, the negative number of a signal that ended it; None while it runs."""
+        """Exit code, the negative number of a signal that ended it; None while it runs."""
         return self._popen.poll()
 
     def end(self, number: signal.Signals = signal.SIGTERM) -> None:
-        """Send the signal to it and to what it started in its group."""
+        """Send the signal to the process and its group."""
         if self._popen.poll() is None:
             with suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._popen.pid, number)

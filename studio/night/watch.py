@@ -1,4 +1,4 @@
-"""How long a step may give no sign of life, and whether one that ended badly is tried again.
+"""Watch over steps: how long one may be silent, and whether one that ended badly is tried again.
 
 Blender itself is watched by the stage that renders, which starts it again where it hangs, crashes or grows
 (render/blender/child.py). Here the stages are watched: one that hangs for other reasons is killed.
@@ -20,7 +20,7 @@ TRIES = 2
 
 
 def limit(renders: bool, each: float | None, pictures: int) -> float:
-    """Seconds of silence after which a step is killed.
+    """Return the seconds of silence after which a step is killed.
 
     ``renders``: pictures are its signs of life; it has made so many ``pictures``, and the forecast of one is ``each``
     (s). Before the first the drivers of a GPU may compile, which the stage itself has patience with.
@@ -32,7 +32,7 @@ def limit(renders: bool, each: float | None, pictures: int) -> float:
 
 
 def is_tried_again(process: Process, tries: int) -> bool:
-    """Whether a step that has failed is started once more: after a hang, a crash or a kill from outside.
+    """Return True if a failed step is started once more: after a hang, a crash or a kill from outside.
 
     An error that a stage reported in a sentence would come again.
     """
@@ -41,7 +41,7 @@ def is_tried_again(process: Process, tries: int) -> bool:
 
 
 def ending(process: Process) -> str:
-    """What went wrong, in a sentence's half: its own last error, else how it ended."""
+    """Return the fault in half a sentence: the step's last error, else how it ended."""
     code = process.code() or 0
     if process.hung:
         return "it gave no sign of life and was killed"

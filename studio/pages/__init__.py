@@ -1,1 +1,1 @@
-"""Every page and a picture of each: `make view-all`; it goes on after failures and from where it was stopped."""
+"""Every page and a picture of each: ``mbsd view-all`` goes on after failures and after a stop."""

@@ -1,4 +1,4 @@
-"""``python -m studio.pages [--only four_bar,pendulum]``; exit code 1 if a page or a picture could not be made."""
+"""``python -m studio.pages [--only four_bar,pendulum]``; exit code 1 if a page or a picture fails."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from studio.pages import making
 
 
 def main() -> int:
-    """Read the command line and make what is missing."""
+    """Read the command line and write missing pages and pictures."""
     parser = argparse.ArgumentParser(
         prog="python -m studio.pages", description="The page of every mechanism, and a picture of each by Chromium."
     )

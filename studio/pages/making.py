@@ -1,4 +1,4 @@
-"""Pages and their pictures one mechanism after the other: what is fresh is left, what fails is reported at the end."""
+"""Pages and their pictures, one mechanism after the other: fresh ones are kept, failures listed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from shared.stage.paths import ROOT, Out, out_root
 from shared.system import missing
 
 STEPS = (("mechanisms", "parts", "--or-none"), ("mechanisms", "solve"), ("mechanisms", "shot"), ("render", "view"))
-"""What make view-<name> runs."""
+"""Stages that ``mbsd view <name>`` runs."""
 SILENCE = 300.0
 """Seconds that all mechanisms may take to be asked whether they have anything to do."""
 WIDTH = 120
@@ -21,7 +21,7 @@ WIDTH = 120
 
 
 def run(names: Sequence[str]) -> int:
-    """Make what is missing of pages and pictures; 1 if anything could not be made. A call goes on from the last one."""
+    """Write missing pages and pictures; 1 if anything failed. A call goes on from the last one."""
     browser = pictures.chromium()
     version = pictures.version_of(browser) if browser else ""
     current = _current(names)
@@ -32,7 +32,7 @@ def run(names: Sequence[str]) -> int:
     if todo:
         with progress("pages", len(todo), "page") as shown:
             for name in todo:
-                error = _made(name, name in current, browser, version)
+                error = _write_page(name, name in current, browser, version)
                 if error:
                     failed[name] = error
                     warn("pages", f"{name}: {error}")
@@ -46,7 +46,7 @@ def run(names: Sequence[str]) -> int:
 
 
 def tell_fresh(names: Sequence[str]) -> int:
-    """Print the names whose page has nothing to do; mechanism.py of each is run for its parameters."""
+    """Print the names whose page is current; mechanism.py of each is run for its parameters."""
     from mechanisms.stages import shot as shot
     from mechanisms.stages.parts import stage as parts
     from mechanisms.stages.solve import stage as solve
@@ -64,7 +64,7 @@ def tell_fresh(names: Sequence[str]) -> int:
 
 
 def _current(names: Sequence[str]) -> set[str]:
-    """Asked in a process of its own, for mechanism.py may do anything there."""
+    """Return names whose page is current, from a process of its own, since mechanism.py runs there."""
     words = [sys.executable, "-m", "studio.pages", "--fresh", "--only", ",".join(names)]
     try:
         done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=SILENCE, check=False)
@@ -78,8 +78,8 @@ def _is_pictured(name: str, version: str) -> bool:
     return out.view.is_file() and pictures.stage_of(out, version).is_fresh()
 
 
-def _made(name: str, is_current: bool, browser: str | None, version: str) -> str:
-    """What went wrong, or nothing."""
+def _write_page(name: str, is_current: bool, browser: str | None, version: str) -> str:
+    """Write a page and its picture; return what went wrong, or ""."""
     if not is_current:
         for module, step, *more in STEPS:
             words = [sys.executable, "-m", module, step, name, *more]
@@ -94,7 +94,7 @@ def _made(name: str, is_current: bool, browser: str | None, version: str) -> str
         stage = pictures.stage_of(out, version)
         if not stage.is_fresh():
             pictures.take_picture(out, browser)
-            stage.done()
+            stage.record()
     except UserError as error:
         return f"picture: {error}"
     return ""

@@ -1,1 +1,1 @@
-"""The site: a wall of machines in motion, and a page for each with its film, its numbers to move and its files."""
+"""Site: a wall of mechanisms in motion, and a page of each with its film, sliders and files."""

@@ -1,4 +1,4 @@
-"""``python -m studio.site [--only four_bar,pendulum]``; exit code 1 if a machine is left out."""
+"""``python -m studio.site [--only four_bar,pendulum]``; exit code 1 if a mechanism is left out."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from studio.site import making
 
 
 def main() -> int:
-    """Read the command line and make the site."""
+    """Read the command line and build the site."""
     parser = argparse.ArgumentParser(
         prog="python -m studio.site", description="A wall of machines in motion and a page for each, for any web host."
     )

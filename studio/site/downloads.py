@@ -1,4 +1,4 @@
-"""The files of a machine that its page offers: copies, and folders as one ZIP with the same bytes each time."""
+"""Files of a mechanism that its page offers: copies, and folders as one reproducible ZIP."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ EPOCH = 1980, 1, 1, 0, 0, 0
 
 @dataclass(frozen=True)
 class Download:
-    """A file beside the page, and what it is in words."""
+    """File beside the page, and its description."""
 
     file: str
     words: str
@@ -26,7 +26,7 @@ class Download:
 
 
 def write_downloads(name: str, folder: Path, is_of_now: Callable[[Path], bool]) -> list[Download]:
-    """Put what there is of a machine as it is now into ``folder``; files of earlier times are removed."""
+    """Copy current files of a mechanism into ``folder``; outdated ones are removed."""
     out, written = Out(name), []
     for file, words, content in _offered(out, mechanism_file(name), is_of_now):
         if len(content) > LARGEST:

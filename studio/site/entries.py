@@ -1,4 +1,4 @@
-"""What the site says of a machine, read from its files."""
+"""Entries of the site: what it says of each mechanism, read from its files."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from studio.site.purposes import purposes
 
 @dataclass
 class Entry:
-    """One machine. ``picture`` and ``loop`` are files in its folder of the site."""
+    """Entry of one mechanism. ``picture`` and ``loop`` are files in its folder of the site."""
 
     name: str
     title: str
@@ -33,7 +33,7 @@ class Entry:
 
 
 def entry_of(name: str) -> Entry:
-    """A machine whose motion is there. Raises UserError for files that cannot be read."""
+    """Return the entry of a mechanism with a motion. Raises UserError for unreadable files."""
     out = Out(name)
     motion = read_motion(out.motion, name)
     parts = read_parts(out.parts, name) if out.parts.is_file() else None

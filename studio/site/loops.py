@@ -1,4 +1,4 @@
-"""The short silent film that plays on the wall: of the machine's film, else of its moving skeleton."""
+"""Short silent film on the wall: from the mechanism's film, else from its moving skeleton."""
 
 from __future__ import annotations
 
@@ -17,18 +17,20 @@ PATIENCE = 600.0
 
 
 def films_of(out: Out) -> list[Path]:
-    """Return the loops that are there, the finest preset first."""
+    """Return the existing loops, the finest preset first."""
     return [path for preset in reversed(list(PRESETS)) if (path := out.film(preset)).is_file()]
 
 
 def page_films(out: Out) -> list[Path]:
-    """Return the films for a machine's own page that are there, the best first: of each preset the story, the loop."""
+    """Return films for a mechanism's own page, the best first: of each preset the story, the loop."""
     films = (path for preset in reversed(list(PRESETS)) for path in (story_of(out, preset), out.film(preset)))
     return [path for path in films if path.is_file()]
 
 
 def write_loop(film: Path, target: Path) -> None:
-    """A film in the size of a tile, without sound, cut after SECONDS. The same film gives the same bytes.
+    """Write a film in the size of a tile, without sound, cut after SECONDS.
+
+    The same film gives the same bytes.
 
     Raises UserError.
     """
@@ -42,7 +44,10 @@ def write_loop(film: Path, target: Path) -> None:
 
 
 def write_still(film: Path, target: Path) -> None:
-    """A picture of a film after a third of a second, as a JPEG of a tile's size, twice as fine. Raises UserError."""
+    """Write a picture of a film after a third of a second, as a JPEG twice a tile's size.
+
+    Raises UserError.
+    """
     fitted = f"scale={2 * WIDTH}:{2 * HEIGHT}:force_original_aspect_ratio=increase,crop={2 * WIDTH}:{2 * HEIGHT}"
     _run(film, target, ("-ss", "0.3", "-frames:v", "1", "-vf", fitted, "-q:v", "4", "-f", "mjpeg"))
 

@@ -1,4 +1,4 @@
-"""The page of a machine as the site has it: that of ``make view`` with the designs that its sliders move through."""
+"""Page of a mechanism on the site: the page of ``mbsd view`` with designs for its sliders."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PATIENCE = 900.0
 
 
 def write_machine_page(name: str, target: Path) -> bool:
-    """Write the page unless it stands for the same inputs; whether it has sliders.
+    """Write the page unless it is current; return True if it has sliders.
 
     Raises UserError.
     """
@@ -35,7 +35,7 @@ def write_machine_page(name: str, target: Path) -> bool:
         more = _script(table) if table else ""
         page = document(payload["title"], encode(payload), bundle(), more, sketch=sketch(payload["skeleton"]))
         write_bytes(target, page)
-        stage.done()
+        stage.record()
     return bool(table)
 
 
@@ -44,7 +44,7 @@ def _script(table: bytes) -> str:
 
 
 def _designs(name: str) -> Path:
-    """The table of designs, made in a process of its own, for mechanism.py may do anything there.
+    """Return the table of designs, built in a process of its own, since mechanism.py runs there.
 
     Empty where no number can be moved; missing where the process failed, which is reported and tried again.
     """
@@ -65,5 +65,5 @@ def _designs(name: str) -> Path:
         warn("site", f"{name}: its page has no sliders: {said}")
         path.unlink(missing_ok=True)
     else:
-        stage.done()
+        stage.record()
     return path

@@ -1,4 +1,4 @@
-"""The site of all machines, made from their files: what has not changed is left, and a machine that fails is named.
+"""Site of all mechanisms, built from their files: unchanged pages stay, failures are named.
 
 All that is shown of a machine is of its files as they are now: its results of an older version are left out and named.
 """
@@ -36,7 +36,7 @@ TITLE = "Machines in motion"
 
 
 def run(names: Sequence[str], folder: Path | None = None) -> int:
-    """Make the site of these machines in ``folder``, out/site if not given; 1 if one of them is left out.
+    """Build the site of these mechanisms in ``folder``, by default out/site; 1 if one is left out.
 
     Raises UserError where there is none to show, or another process makes a site there.
     """
@@ -48,7 +48,7 @@ def run(names: Sequence[str], folder: Path | None = None) -> int:
 
 @contextmanager
 def _alone(folder: Path) -> Iterator[None]:
-    """Hold the folder for one process: the machines of another site would be removed as gone."""
+    """Hold the folder for one process: another site would remove these mechanisms as gone."""
     lock = folder.with_name(f".{folder.name}.lock")
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
@@ -57,7 +57,7 @@ def _alone(folder: Path) -> Iterator[None]:
         raise UserError(refusal(lock, error)) from error
     try:
         try:
-            own = locks.take(handle)
+            own = locks.try_lock(handle)
         except OSError as error:
             raise UserError(refusal(lock, error, "lock")) from error
         if not own:
@@ -74,7 +74,7 @@ def _run(names: Sequence[str], folder: Path) -> int:
     with progress("site", len(names), "machine") as shown:
         for name in names:
             try:
-                entries.append(_made(name, folder / name, freshness))
+                entries.append(_write_mechanism(name, folder / name, freshness))
             except (UserError, OSError) as error:
                 warn("site", f"{name} is left out: {error}")
             shown.advance(note=name)
@@ -88,7 +88,7 @@ def _run(names: Sequence[str], folder: Path) -> int:
 
 
 class _Shown:
-    """Selects what may be shown of a machine; what is of an older version is remembered, to be named."""
+    """Selection of a mechanism's current files; outdated ones are remembered, to be named."""
 
     def __init__(self, out: Out, freshness: Freshness) -> None:
         self._out, self._freshness = out, freshness
@@ -110,8 +110,8 @@ class _Shown:
             )
 
 
-def _made(name: str, folder: Path, freshness: Freshness) -> Entry:
-    """Everything of a machine but its own page, which names the others."""
+def _write_mechanism(name: str, folder: Path, freshness: Freshness) -> Entry:
+    """Write all files of a mechanism but its own page, which names the others; return its entry."""
     out = Out(name)
     if not (out.motion.is_file() and out.view.is_file()):
         raise UserError("it has no page")
@@ -137,7 +137,7 @@ def _made(name: str, folder: Path, freshness: Freshness) -> Entry:
 
 
 def _skeleton(out: Out) -> Path | None:
-    """The skeleton in motion, drawn unless it is there already; None where it cannot be drawn, which is reported."""
+    """Return the moving skeleton, drawn if it is missing; None after a reported failure."""
     words = [sys.executable, "-m", "mechanisms", "animate", out.name, "--view", "skeleton"]
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode:
@@ -148,7 +148,7 @@ def _skeleton(out: Out) -> Path | None:
 
 
 def _picture(poster: Path | None, film: Path | None, target: Path) -> str:
-    """The poster, else a picture of the film."""
+    """Write the poster, else a picture of the film; return its name."""
     if poster is not None:
         return _once(poster, target, lambda source, path: write_bytes(path, small_poster(source)))
     if film is None:
@@ -161,11 +161,11 @@ def _copied(source: Path, target: Path) -> None:
 
 
 def _once(source: Path, target: Path, write: Callable[[Path, Path], object]) -> str:
-    """Write ``target`` unless it was made from the source as it is; the name of the file."""
+    """Write ``target`` unless it was written from the same source; return the file's name."""
     stage = Stage(Out(target.parent.name), f"site-{target.stem}", key_of(source), [target])
     if not stage.is_fresh():
         write(source, target)
-        stage.done()
+        stage.record()
     return target.name
 
 
@@ -186,7 +186,7 @@ def _write(path: Path, content: bytes) -> None:
 
 
 def _remove_others(folder: Path, names: set[str]) -> None:
-    """Folders of machines that are gone; only such as the site has made."""
+    """Remove folders of mechanisms that are gone, if the site has written them."""
     for other in folder.iterdir():
         if other.is_dir() and other.name not in names and (other / "machine.html").is_file():
             shutil.rmtree(other)

@@ -1,4 +1,4 @@
-"""The HTML of the site: the wall, and the page of a machine. No script is needed to read them."""
+"""HTML of the site: the wall, and the page of a mechanism. They can be read without scripts."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ KILO = 1000
 
 
 def _prose(said: str) -> str:
-    """Words of a docstring as HTML; what stands in backticks is code."""
+    """Return words of a docstring as HTML, with text in backticks as code."""
     return re.sub(r"`+([^`]+)`+", r"<code>\1</code>", escape(said))
 
 
 def wall(title: str, entries: Sequence[Entry], filters: Sequence[str]) -> str:
-    """index.html: a tile for each machine, with search and filters."""
+    """Return index.html: a tile for each mechanism, with search and filters."""
     tiles = "\n".join(_tile(entry, k) for k, entry in enumerate(entries))
     buttons = "\n".join(
         f'<button type="button" aria-pressed="false" data-purpose="{escape(purpose)}">{escape(purpose)}</button>'
@@ -63,7 +63,7 @@ def wall(title: str, entries: Sequence[Entry], filters: Sequence[str]) -> str:
 
 
 def machine(entry: Entry, others: Sequence[Entry]) -> str:
-    """index.html of a machine's folder: its film, itself with sliders, its numbers, files and neighbours."""
+    """Return index.html of a mechanism: its film, sliders, numbers, files and neighbours."""
     facts = "\n".join(f"<li>{escape(fact)}</li>" for fact in entry.facts)
     files = "\n".join(
         f'<li><a href="files/{escape(each.file)}" download>{escape(each.words)} '

@@ -1,4 +1,4 @@
-"""What a machine does, as filters of the wall: found in its docstring and in the kinds of its data.json."""
+"""Purposes of a mechanism as filters of the wall, from its docstring and the kinds of data.json."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ COMMON = 2
 
 
 def purposes(name: str, said: str, motion: Motion) -> list[str]:
-    """The filters that a machine answers to, in the order of the lists above."""
+    """Return the filters that match a mechanism, in the order of the lists above."""
     text = f"{name.replace('_', ' ')}. {said}"
     out = [purpose for purpose, pattern in WORDS.items() if re.search(pattern, text, re.IGNORECASE)]
     if ENGINE.search(text):
@@ -45,7 +45,7 @@ def purposes(name: str, said: str, motion: Motion) -> list[str]:
 
 
 def filters(purposes_of: dict[str, list[str]]) -> list[str]:
-    """Purposes that at least COMMON machines have, the most common ones first."""
+    """Return purposes that at least COMMON mechanisms have, the most common ones first."""
     counts: dict[str, int] = {}
     for each in purposes_of.values():
         for purpose in each:
@@ -54,7 +54,10 @@ def filters(purposes_of: dict[str, list[str]]) -> list[str]:
 
 
 def neighbours(name: str, purposes_of: dict[str, list[str]], most: int = 4) -> list[str]:
-    """Machines that share most with this one; of equals those with fewer purposes of their own, then by name."""
+    """Return the mechanisms that share most with this one.
+
+    Of equals those with fewer purposes of their own come first, then by name.
+    """
     ours = set(purposes_of[name])
 
     def likeness(other: str) -> float:

@@ -1,1 +1,1 @@
-"""Same inputs, same outputs: files of a mechanism made again in fresh processes, beside those that are there."""
+"""Verification: same inputs give same outputs; files are built again in fresh processes and compared."""

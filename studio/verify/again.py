@@ -1,4 +1,4 @@
-"""``python -m studio.verify.again NAME PRESET FRAMES SHOW``: frames rendered in a process of their own.
+"""``python -m studio.verify.again NAME PRESET FRAMES SHOW``: render frames in a process of their own.
 
 PRESET is its fields, ``preview,1280,720,8,0,128``. Motion, solids and shot are those of $MBSD_OUT, which gets the
 pictures.
@@ -18,7 +18,7 @@ from shared.stage.paths import Out
 
 
 def preset_words(preset: Preset) -> str:
-    """A preset as a word of the command line."""
+    """Return a preset as a word of the command line."""
     return ",".join(str(int(field) if isinstance(field, bool) else field) for field in astuple(preset))
 
 

@@ -1,4 +1,4 @@
-"""Files compared byte by byte, and where they differ first."""
+"""Files compared byte by byte, with their first difference."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LONGEST = 60
 
 
 def compared(what: str, old: Path, new: Path) -> Finding:
-    """The file that is there beside the one made again."""
+    """Return the comparison of the existing file with the one built again."""
     if not new.is_file():
         return Finding(what, "differs", "it was not made again")
     if not old.is_file():
@@ -50,7 +50,7 @@ def _inputs(document: Any) -> Any:
 
 
 def _first_field(ours: Any, other: Any, path: str) -> tuple[str, str, str] | None:
-    """Path and values of the first field that differs."""
+    """Return path and values of the first field that differs."""
     if isinstance(ours, dict) and isinstance(other, dict):
         for name in dict.fromkeys([*ours, *other]):
             difference = _first_field(ours.get(name, _NONE), other.get(name, _NONE), f"{path}.{name}" if path else name)

@@ -1,4 +1,4 @@
-"""The film: its pictures encoded again, its sound made again, and both films side by side."""
+"""Film: its pictures encoded again, its sound computed again, and both films compared."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PATIENCE = 3600.0
 def compared(
     film: Path, scratch: Path, store: FrameStore, index: FrameIndex, preset: Preset, sound: Path | None = None
 ) -> Finding:
-    """Every frame of the film, decoded, beside those of the film that the same pictures give now.
+    """Compare every decoded frame of the film with one encoded from the same pictures.
 
     ``sound`` is its sound made again, of a film that has some.
     """
@@ -57,7 +57,7 @@ def _pictures(store: FrameStore, index: FrameIndex) -> Iterator[bytes]:
 
 
 def decoded(film: Path) -> list[str]:
-    """SHA-256 of each decoded frame of a film, in order. Raises UserError if it does not decode."""
+    """Return the SHA-256 of each decoded frame of a film. Raises UserError if it does not decode."""
     command = [encode.ffmpeg(), "-v", "error", "-xerror", "-i", str(film)]
     command += ["-map", "0:v:0", "-f", "framehash", "-hash", "sha256", "-"]
     done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=PATIENCE)

@@ -1,4 +1,4 @@
-"""What a comparison found: the same, different, made from other inputs, or not there."""
+"""Finding of a comparison: the same, different, made from other inputs, or missing."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Verdict = Literal["same", "differs", "outdated", "missing"]
 
 @dataclass(frozen=True)
 class Finding:
-    """One file, frame or film. ``outdated``: its inputs have changed since it was made, so nothing follows."""
+    """One file, frame or film. ``outdated``: its inputs have changed since, so nothing follows."""
 
     what: str
     verdict: Verdict

@@ -1,4 +1,4 @@
-"""Pixels of chosen frames beside those rendered again."""
+"""Pixels of chosen frames, compared with the same frames rendered again."""
 
 from __future__ import annotations
 
@@ -16,12 +16,15 @@ CHOSEN = 3
 
 
 def index_of(store: FrameStore) -> FrameIndex | None:
-    """Which picture each frame of the film shows; None if the film was never rendered here."""
+    """Return the index of frames to pictures; None if the film was never rendered here."""
     return jsonfile.read(store.index, FrameIndex) if store.index.is_file() else None
 
 
 def chosen(words: str, count: int, mechanism: str) -> list[int]:
-    """Numbers of frames in ``0,30,60``, or three of them; raises UserError for what is no frame of the film."""
+    """Return the frame numbers of ``0,30,60``, or three of them.
+
+    Raises UserError for a frame outside of the film.
+    """
     if not words.strip():
         return sorted({k * count // CHOSEN for k in range(CHOSEN)})
     frames = []
@@ -33,7 +36,10 @@ def chosen(words: str, count: int, mechanism: str) -> list[int]:
 
 
 def compared(frame: int, name: str, store: FrameStore, again: FrameStore) -> Finding:
-    """The picture of a frame beside the one rendered again; ``name`` is its file's in the film's index."""
+    """Compare the picture of a frame with the one rendered again.
+
+    ``name`` is its file's in the film's index.
+    """
     what = f"frame {frame}"
     old = store.read(name)
     if old is None:
@@ -45,7 +51,7 @@ def compared(frame: int, name: str, store: FrameStore, again: FrameStore) -> Fin
 
 
 def pixels(what: str, old: bytes, new: bytes) -> Finding:
-    """Two PNGs, decoded."""
+    """Compare two PNGs by their pixels."""
     ours, other = _decoded(old), _decoded(new)
     if ours.shape != other.shape:
         return Finding(what, "differs", f"{_size(ours)} pixels, made again {_size(other)}")
@@ -66,7 +72,7 @@ def _size(picture: np.ndarray) -> str:
 
 
 def _decoded(content: bytes) -> np.ndarray:
-    """Rows x columns x 3, 0..255."""
+    """Return the pixels, rows x columns x 3, 0..255."""
     from PIL import Image
 
     with Image.open(io.BytesIO(content)) as picture:

@@ -17,7 +17,9 @@ Again = Callable[..., None]
 
 
 def of_print(out: Out, scratch: Path, again: Again) -> list[Finding]:
-    """One finding of plates, outlines and lists, of the first file that differs; none where nothing was laid out.
+    """Return one finding of plates, outlines and lists, of the first file that differs.
+
+    There is none if nothing was laid out.
 
     ``scratch`` is the mechanism's folder there, which has its parts.
     """
@@ -40,12 +42,12 @@ def of_print(out: Out, scratch: Path, again: Again) -> list[Finding]:
 
 
 def of_exports(out: Out, scratch: Path, again: Again) -> list[Finding]:
-    """A finding of each file for another program that is there. ``scratch`` as in :func:`of_print`."""
+    """Return a finding of each exported file. ``scratch`` is as in :func:`of_print`."""
     return [_of_export(out, form, file, is_fresh, scratch, again) for form, file, is_fresh in _exported(out)]
 
 
 def _exported(out: Out) -> Iterator[tuple[str, Path, Callable[[str, str], bool]]]:
-    """Formats of files that are there, and who knows whether they are of the mechanism as it is."""
+    """Yield the formats of exported files, each with a check that it is of the current mechanism."""
     from mechanisms.stages.export import stage as export
     from render import usd
 

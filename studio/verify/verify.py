@@ -1,4 +1,4 @@
-"""Everything of one mechanism made again in scratch, compared, and reported.
+"""Verification of one mechanism: everything rebuilt in scratch, compared and reported.
 
 What the author's files give (solids, motion, shot), plates, outlines and files for other programs are made by the same
 stages, frames and film by the same code, all in fresh processes; nothing that is there is touched.
@@ -29,7 +29,9 @@ from studio.verify.finding import Finding
 
 
 def run(name: str, preset: Preset, frames: str = "", show: str = "") -> int:
-    """Compare, say each finding, and return 1 if anything differs. Raises UserError if there is nothing to compare.
+    """Compare, print each finding, and return 1 if anything differs.
+
+    Raises UserError if there is nothing to compare.
 
     ``frames``: numbers such as ``0,30``; three frames of the film if empty.
     """
@@ -93,7 +95,7 @@ def _of_pictures(
 
 
 def _of_parts(out: Out, again: Path) -> Finding:
-    """parts.json and all STL and STEP files: one finding, of the first that differs."""
+    """Compare parts.json and all STL and STEP files; return one finding, of the first difference."""
     described = files.compared("parts.json", out.parts, again / "parts" / "parts.json")
     if described.verdict != "same":
         return Finding(f"solids ({described.what})", described.verdict, described.detail)
@@ -108,7 +110,7 @@ def _of_parts(out: Out, again: Path) -> Finding:
 
 
 def _stage(root: Path, module: str, *arguments: str) -> None:
-    """A stage in a process of its own with its results below ``root``; raises UserError if it fails."""
+    """Run a stage as a process with its results below ``root``; raises UserError if it fails."""
     command = [sys.executable, "-m", module, *arguments]
     done = subprocess.run(command, cwd=ROOT, env=os.environ | {"MBSD_OUT": str(root)})
     if done.returncode:
@@ -120,7 +122,7 @@ def _complain(_: str, text: str) -> None:
 
 
 def _sum(name: str, findings: list[Finding]) -> int:
-    """The last line, and the exit code."""
+    """Print the last line and return the exit code."""
     counts = Counter(finding.verdict for finding in findings)
     words = [f"{counts['same']} the same"]
     if counts["missing"]:

@@ -168,7 +168,9 @@ def _with_y_up(up: tuple[float, float, float]) -> np.ndarray:
 
 
 def test_the_shot_names_what_there_is(out: Out) -> None:
-    refuse_unknown(read_shot(out.shot), Names.of(contract.read_motion(out.motion), contract.read_parts(out.parts)))
+    refuse_unknown(
+        read_shot(out.shot), Names.from_motion(contract.read_motion(out.motion), contract.read_parts(out.parts))
+    )
 
 
 def test_a_second_run_has_nothing_to_do(made: tuple[str, Path], warm: Warm) -> None:

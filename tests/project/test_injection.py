@@ -249,5 +249,5 @@ def test_the_folder_of_all_results_may_be_a_link(tmp_path: Path, monkeypatch: py
     monkeypatch.setattr(paths, "out_root", lambda: tmp_path / "out")
     out = Out("four_bar")
     write_bytes(out.motion, b"motion")
-    Stage(out, "solve", "key", [out.motion]).done()
+    Stage(out, "solve", "key", [out.motion]).record()
     assert (disk / "four_bar" / "data.json").read_bytes() == b"motion"

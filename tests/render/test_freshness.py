@@ -25,7 +25,7 @@ def out(out_root) -> Out:
     """A machine whose parts were proven not to touch."""
     out = film_fixture.write()
     write_clearance(out.clearance, CLEARANCE)
-    Stage(out, "clearance", key_of(out.motion, out.parts), [out.clearance]).done()
+    Stage(out, "clearance", key_of(out.motion, out.parts), [out.clearance]).record()
     return out
 
 
@@ -45,7 +45,7 @@ def test_a_clearance_of_the_motion_before_is_no_proof(out: Out, capsys: pytest.C
         "the clearance is of an older data.json, so it is left out; make clearance-four-bar" in capsys.readouterr().out
     )
     assert clearance_files(out) == []
-    Stage(out, "clearance", key_of(out.motion, out.parts), [out.clearance]).done()
+    Stage(out, "clearance", key_of(out.motion, out.parts), [out.clearance]).record()
     report.run("four_bar")
     assert "It was not checked" not in out.report.read_text(), "it is written again once the proof is there"
 
@@ -56,7 +56,7 @@ def test_why_a_file_is_of_an_older_version(out: Out, monkeypatch: pytest.MonkeyP
     assert asked.why_older(out, out.glb) == "it is not there"
     out.glb.write_bytes(b"glb")
     assert asked.why_older(out, out.glb) == "no stage has recorded what it was made of"
-    Stage(out, "glb", key_of(out.motion, out.parts, out.shot), [out.glb]).done()
+    Stage(out, "glb", key_of(out.motion, out.parts, out.shot), [out.glb]).record()
     assert asked.why_older(out, out.glb) == ""
     out.shot.write_bytes(out.shot.read_bytes() + b"\n")
     out.parts.write_bytes(out.parts.read_bytes() + b"\n")

@@ -126,7 +126,7 @@ def test_the_page_shows_who_has_a_poster(
     with pytest.raises(UserError, match="no mechanism has a poster"):
         gallery.run(folder)
     assert "its poster is of an older version: no stage has recorded what it was made of" in capsys.readouterr().err
-    Stage(out, "poster", key_of(out.motion), [out.poster]).done()
+    Stage(out, "poster", key_of(out.motion), [out.poster]).record()
     with pytest.raises(UserError, match="no mechanism has a poster"):
         gallery.run(folder)
     assert "the machine has changed since it was solved" in capsys.readouterr().err, "it was not solved at all"

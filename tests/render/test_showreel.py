@@ -83,7 +83,7 @@ def test_films_of_older_versions_are_left_out(
         out, path = Out(name), film(out_root, name, 5)
         out.folder.mkdir()
         out.motion.write_text("as it was filmed")
-        Stage(out, "film-tiny", key_of(out.motion), [path]).done()
+        Stage(out, "film-tiny", key_of(out.motion), [path]).record()
     Out("pendulum").motion.write_text("solved again")
     showreel.run(TINY)
     said = capsys.readouterr()

@@ -1,4 +1,4 @@
-"""What every shape must be: one valid solid, watertight, right in volume and in its number of through holes."""
+"""Checks of every shape: one valid watertight solid with the right volume and through holes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mechanisms.stages.parts_files import read_mesh, stl_bytes
 
 
 def checked(shape: cq.Workplane, through_holes: int) -> tuple[Any, Any]:
-    """The solid and its mesh, after the checks of the parts stage."""
+    """Return the solid and its mesh, after the checks of the parts stage."""
     solid = only_solid(shape, "shape")
     mesh = read_mesh(stl_bytes(solid))
     check_mesh(mesh, solid.Volume(), through_holes, "shape")

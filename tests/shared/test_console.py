@@ -76,7 +76,7 @@ def test_durations_read_well(seconds: float, words: str) -> None:
 
 
 def in_a_terminal(code: str) -> str:
-    """What ``code`` shows on a terminal of its own."""
+    """Return the output of ``code`` on a terminal of its own."""
     master, slave = pty.openpty()
     environment = {**os.environ, "TERM": "xterm-256color", "COLUMNS": "100", "PYTHONPATH": str(ROOT)}
     process = subprocess.Popen([sys.executable, "-c", code], stdout=slave, stderr=slave, env=environment)

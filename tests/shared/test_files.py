@@ -25,7 +25,7 @@ def target(tmp_path: Path) -> Path:
 
 
 def only(target: Path) -> bool:
-    """Whether the folder holds the target and no rest of a temporary file."""
+    """Return True if the folder holds the target and no rest of a temporary file."""
     return list(target.parent.iterdir()) == [target]
 
 

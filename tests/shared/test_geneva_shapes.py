@@ -21,7 +21,7 @@ def _mesh(shape) -> manifold3d.Manifold:
 
 
 def _wheel_angle(shape: Geneva, crank: float) -> float:
-    """Of the slot that the pin is in, or of the wheel at rest before or after it; the crank's pin is at ``crank``."""
+    """Return the angle of the slot that holds the pin, or of the wheel at rest before or after it."""
     half = math.pi / 2 - math.pi / shape.slots
     inside = min(max(crank, -half), half)
     x, y = shape.radius * math.cos(inside) - shape.distance, shape.radius * math.sin(inside)

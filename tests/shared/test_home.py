@@ -15,7 +15,7 @@ from shared.stage import jsonfile, paths
 from shared.stage.paths import ROOT
 
 PR_CAPBSET_DROP, CAP_DAC_OVERRIDE = 24, 1
-"""Of Linux's <sys/prctl.h> and <linux/capability.h>."""
+"""Constants of Linux's <sys/prctl.h> and <linux/capability.h>."""
 STUDY = """
 import runpy, sys
 from pathlib import Path
@@ -52,7 +52,7 @@ def _as_a_user() -> None:
 
 
 def said(*command: str, **environment: str) -> str:
-    """What a command says, without a home that can be written to; it must end well and warn of nothing."""
+    """Return the output of a command without a writable home; it must end well without warnings."""
     taken = ("HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "MPLCONFIGDIR", "NUMBA_CACHE_DIR")
     kept = {name: value for name, value in os.environ.items() if name not in taken}
     done = subprocess.run(
@@ -66,7 +66,7 @@ def said(*command: str, **environment: str) -> str:
 
 @pytest.fixture
 def home(tmp_path: Path) -> Path:
-    """One that nothing can be written to."""
+    """Return a home to which nothing can be written."""
     folder = tmp_path / "home"
     folder.mkdir(mode=0o500)
     return folder
@@ -102,7 +102,7 @@ print(bundle.bundle().script)
 
 
 def _clone(folder: Path) -> Path:
-    """A clone of somebody else who has made a page there."""
+    """Return a clone of another user who has built a page there."""
     kept = folder / ".cache" / "page" / f"{bundle.sources_key()[:24]}.json"
     jsonfile.write(kept, bundle.Bundle(script="kept in the clone", style="", licences=""))
     (folder / "Makefile").touch()

@@ -1,4 +1,4 @@
-"""How a machine stands: what follows from its gravity, and what a file cannot say."""
+"""Mount of a mechanism: the one that follows from gravity, and ones that files may not have."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scales of models: what one may write, and where their files are."""
+"""Scales of models: valid words, and the places of their files."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ def test_an_unknown_field_is_refused(tmp_path: Path):
 def test_names_the_mechanism_lacks_are_refused_with_those_it_has(out_root: Path, shot: Shot, words: list[str]):
     out = film_fixture.write()
     with pytest.raises(UserError) as refusal:
-        refuse_unknown(shot, Names.of(read_motion(out.motion), read_parts(out.parts)))
+        refuse_unknown(shot, Names.from_motion(read_motion(out.motion), read_parts(out.parts)))
     for word in ["four_bar", *words]:
         assert word in str(refusal.value)
 
@@ -100,7 +100,7 @@ def test_the_stage_knows_the_names_that_pictures_know(out_root: Path):
     )  # fmt: skip
     told = {"push": push, "gas": msgspec.structs.replace(push, effort=None)}
     write_motion(out.motion, msgspec.structs.replace(motion, forces=told))
-    names = Names.of(read_motion(out.motion), read_parts(out.parts))
+    names = Names.from_motion(read_motion(out.motion), read_parts(out.parts))
     assert names.efforts == ("motor", "push")
     assert shot_stage._names(out) == names
     refuse_unknown(Shot(title=Title(number="motor")), names)

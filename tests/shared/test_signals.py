@@ -48,7 +48,7 @@ def seen(colour: str, eye: np.ndarray) -> np.ndarray:
 
 
 def contrast(ink: str, paper: str) -> float:
-    """After WCAG 2."""
+    """Return the contrast after WCAG 2."""
     high, low = sorted((float(np.array([0.2126, 0.7152, 0.0722]) @ linear(c)) for c in (ink, paper)), reverse=True)
     return (high + 0.05) / (low + 0.05)
 

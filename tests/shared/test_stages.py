@@ -20,12 +20,12 @@ def out(out_root: Path) -> Out:
 
 
 def made(out: Out, key: str = "k") -> Stage:
-    """A finished stage with two outputs, one of them outside the mechanism's folder."""
+    """Return a finished stage with two outputs, one outside the mechanism's folder."""
     stage = Stage(out, "film", key, [out.motion, out.film("draft")])
     for path in stage.outputs:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(b"content")
-    stage.done(frames=3)
+    stage.record(frames=3)
     return stage
 
 
@@ -70,7 +70,7 @@ def test_a_damaged_stamp_means_again(out: Out, content: bytes) -> None:
     stage.stamp.write_bytes(content)
     assert not stage.is_fresh()
     assert stage.notes() == {}
-    stage.done()
+    stage.record()
     assert stage.is_fresh()
 
 
@@ -103,14 +103,14 @@ def test_notes_are_kept(out: Out) -> None:
 
 def test_done_without_the_output_is_an_error_that_names_it(out: Out) -> None:
     with pytest.raises(UserError, match=r"four_bar: stage solve ended without writing .*data\.json"):
-        Stage(out, "solve", "k", [out.motion]).done()
+        Stage(out, "solve", "k", [out.motion]).record()
     assert not out.stamps.exists()
 
 
 def test_the_stamp_holds_no_path_and_no_time_of_this_machine(out: Out, tmp_path: Path) -> None:
     stage = made(out)
     first = stage.stamp.read_bytes()
-    stage.done(frames=3)
+    stage.record(frames=3)
     assert stage.stamp.read_bytes() == first
     assert str(tmp_path).encode() not in first
     assert b"../films/four_bar-draft.mp4" in first
@@ -134,14 +134,14 @@ def test_versions_names_what_is_installed() -> None:
 
 
 def _chain(out: Out) -> None:
-    """A motion, a clearance made of it, and a report made of both."""
+    """Record a motion, a clearance made of it, and a report made of both."""
     out.folder.mkdir(parents=True, exist_ok=True)
     out.motion.write_text("motion")
-    Stage(out, "solve", "k", [out.motion]).done()
+    Stage(out, "solve", "k", [out.motion]).record()
     out.clearance.write_text("clearance")
-    Stage(out, "clearance", key_of(out.motion), [out.clearance]).done()
+    Stage(out, "clearance", key_of(out.motion), [out.clearance]).record()
     out.report.write_text("report")
-    Stage(out, "report", key_of(key_of(out.motion, out.clearance), "words"), [out.report]).done()
+    Stage(out, "report", key_of(key_of(out.motion, out.clearance), "words"), [out.report]).record()
 
 
 def test_a_result_is_up_to_date_until_what_it_was_made_of_changes(out: Out) -> None:
@@ -156,13 +156,13 @@ def test_a_result_is_up_to_date_until_what_it_was_made_of_changes(out: Out) -> N
 def test_a_result_is_as_old_as_the_oldest_result_that_it_was_made_of(out: Out) -> None:
     _chain(out)
     out.motion.write_text("another motion")
-    Stage(out, "solve", "l", [out.motion]).done()
-    Stage(out, "report", key_of(out.motion, out.clearance), [out.report]).done()
+    Stage(out, "solve", "l", [out.motion]).record()
+    Stage(out, "report", key_of(out.motion, out.clearance), [out.report]).record()
     assert outdated_by(out, out.report) == ["data.json"], "of the clearance, which is of the motion before"
-    Stage(out, "clearance", key_of(out.motion), [out.clearance]).done()
+    Stage(out, "clearance", key_of(out.motion), [out.clearance]).record()
     assert outdated_by(out, out.report) == []
     out.motion.write_text("edited")
-    Stage(out, "report", key_of(out.motion), [out.report]).done()
+    Stage(out, "report", key_of(out.motion), [out.report]).record()
     assert outdated_by(out, out.report) == ["data.json"], "which is not as it was solved"
 
 
@@ -184,7 +184,7 @@ def test_a_file_that_no_stage_recorded_is_not_up_to_date(out: Out) -> None:
 
 
 def test_a_stamp_that_does_not_say_what_it_was_made_of_is_written_again(out: Out) -> None:
-    """Those of earlier versions."""
+    """Stamps of earlier versions do not."""
     _chain(out)
     key = key_of(key_of(out.motion, out.clearance), "words")
     assert Stage(out, "report", key, [out.report]).is_fresh()

@@ -1,4 +1,4 @@
-"""What the system lacks is named with the package that brings it; the table has what the packages really load."""
+"""Missing libraries are named with their package; the table has all that packages really load."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LINUX = pytest.mark.skipif(sys.platform != "linux", reason="a Mac needs no libra
 
 
 def lacks(patch: pytest.MonkeyPatch, *names: str, platform: str = "linux") -> None:
-    """A machine without these libraries and programs."""
+    """Pretend that this machine lacks these libraries and programs."""
     patch.setattr(missing.sys, "platform", platform)
     patch.setattr(missing, "_loads", lambda name: name not in names)
     patch.setattr(missing.shutil, "which", lambda name, path=None: None if name in names else f"/bin/{name}")

@@ -1,4 +1,4 @@
-"""Films come home through a real sshd on loopback: what changed alone, and the rest of what was brought in part."""
+"""Films fetched through a real sshd on loopback: only changed ones, and the rest of partial ones."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def other(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
 
 @pytest.fixture
 def project(tmp_path: Path, other: Machine, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The project on the other machine, with films; $RSYNC_RSH leads there."""
+    """Return the project on the other machine, with films; $RSYNC_RSH leads there."""
     monkeypatch.setenv("RSYNC_RSH", other.shell())
     films = tmp_path / "there" / "out" / "films"
     films.mkdir(parents=True)

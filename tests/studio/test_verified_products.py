@@ -24,7 +24,7 @@ def press(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> Press:
 
 
 def _again(out: Out, scratch: Path, monkeypatch: pytest.MonkeyPatch) -> products.Again:
-    """Runs stages with their results in scratch, where the parts are."""
+    """Return a runner of stages with their results in scratch, where the parts are."""
     shutil.copytree(out.parts_folder, scratch / out.name / "parts")
 
     def again(_: str, stage: str, name: str, *options: str) -> None:

@@ -1,4 +1,4 @@
-"""Same inputs, same outputs: made again and compared; whatever differs is found and told."""
+"""Same inputs, same outputs: files are built again and compared, and differences are reported."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SHORT = Shot(turns=2, seconds_per_turn=0.2, trails=(), labels=())
 
 @pytest.fixture
 def filmed(out_root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Out:
-    """A small film, and stages of the author's side that make its files again by copying them."""
+    """Return a small film, with stages that rebuild its files by copying them."""
     out = film_fixture.write(SHORT)
     kept = tmp_path / "kept"
     shutil.copytree(out.folder, kept)
@@ -85,7 +85,7 @@ def test_a_film_is_the_same_and_each_difference_is_told(filmed: Out, capsys: pyt
 
 
 def _damage(out: Out) -> None:
-    """A byte of a solid, a number of the motion, a pixel of frame 1 under a name that fits it again."""
+    """Damage a byte of a solid, a number of the motion and a pixel of frame 1."""
     solid = out.parts_folder / "coupler-coupler.stl"
     content = bytearray(solid.read_bytes())
     content[99] ^= 1

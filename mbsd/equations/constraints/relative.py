@@ -1,4 +1,4 @@
-"""All constraints F(x, y, a) = f(t) of the relative pose of two markers: gears, rolling, curves, cams, user functions.
+"""Constraints F(x, y, a) = f(t) of two markers' relative pose: gears, rolling, curves, cams, users'.
 
 d     = p_j - p_i;   u = unit axis of marker i;   n = u_perp
 x     = u . d,   y = n . d,   a = theta_j - theta_i + offset

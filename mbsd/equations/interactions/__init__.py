@@ -1,1 +1,1 @@
-"""Forces between two markers as functions of how these stand and move against each other, one file each."""
+"""Forces between two markers as functions of their relative pose and motion, one file each."""

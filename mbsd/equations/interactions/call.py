@@ -1,4 +1,4 @@
-"""How kernels reach the evaluation of interactions (apply.py): by an address, each array by its first number alone."""
+"""Call of the evaluation of interactions (apply.py): by an address, each array by its first number."""
 
 from __future__ import annotations
 

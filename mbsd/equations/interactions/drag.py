@@ -9,7 +9,10 @@ from mbsd.equations.interactions.law import FX, FY, LAW, OMEGA, OWN, TORQUE, VX,
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers: coefficient, that of turning, wind x and y, constant gust; the law of time is added to the gust."""
+    """Fill the force; numbers: coefficient, coefficient of turning, wind x and y, constant gust.
+
+    The law of time is added to the gust.
+    """
     gust = numbers[OWN + 4] + state[LAW]
     x = state[VX] - gust * numbers[OWN + 2]
     y = state[VY] - gust * numbers[OWN + 3]

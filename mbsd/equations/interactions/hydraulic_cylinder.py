@@ -28,7 +28,10 @@ def orifice(drop, transition):
 
 @internal
 def bulk(pressure, flow, compressibility, air, least):
-    """Bulk modulus (Pa) of oil with air at an absolute pressure (Pa), where ``flow`` (m^3/s) compresses it."""
+    """Return the bulk modulus (Pa) of oil with air at an absolute pressure (Pa).
+
+    It is compressed by ``flow`` (m^3/s).
+    """
     p = max(pressure, least if flow > 0.0 or air == 0.0 else 0.0)
     return (p + air) * p / (p * p * compressibility + air)
 

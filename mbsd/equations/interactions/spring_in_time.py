@@ -1,4 +1,4 @@
-"""A part of a spring whose stiffness, damping or free length is a law of time; forces/spring.py says which."""
+"""Part of a spring whose stiffness, damping or free length is a law of time (forces/spring.py)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from mbsd.equations.interactions.way import measure
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers: which of the three the law is, the free value or the stiffness, and 1 for a torsion spring."""
+    """Fill the force; numbers: index of the law, free value or stiffness, and 1 for a torsion spring.
+
+    The index names the one of the three that the law is.
+    """
     turning = numbers[OWN + 2] > 0.0
     x, rate, ux, uy = measure(turning, state)
     if numbers[OWN] == STIFFNESS:

@@ -69,7 +69,7 @@ def note_end(switch):
 
 @inlined
 def note_begin(switch):
-    """The last evaluation was where the run begins or goes on: sides are known, what touches approaches as it does.
+    """Record that the run begins or goes on here: sides are known, contacts keep their approach.
 
     What is before its switch has the rate that it has now, whatever it was before an impact.
     """

@@ -1,4 +1,4 @@
-"""The distance of two markers, or their relative angle, with its rate and the direction in which it grows."""
+"""Distance or relative angle of two markers, with its rate and the direction in which it grows."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from mbsd.equations.interactions.law import OMEGA, VX, VY, A, X, Y
 
 @internal
 def measure(turning, state):
-    """Value, rate and unit vector in the axes of marker i; the vector is zero for an angle and at zero distance."""
+    """Return value, rate and unit vector in marker i's axes.
+
+    The vector is zero for an angle and at zero distance.
+    """
     if turning:
         return state[A], state[OMEGA], 0.0, 0.0
     length = math.sqrt(state[X] * state[X] + state[Y] * state[Y])

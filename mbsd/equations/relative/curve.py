@@ -1,4 +1,4 @@
-"""Curve constraint: the point of marker j keeps a signed distance D from a curve on body i (0: it lies on the curve).
+"""Curve constraint: marker j keeps a signed distance D from a curve on body i (0: on the curve).
 
 u     foot of (x, y) on the curve;  t unit tangent, n = t_perp to its left, kappa = dt/ds . n
 d     = n . ((x, y) - c(u))

@@ -179,7 +179,10 @@ def _nearest_foot(numbers, relative, x, y, u, count):
 
 @internal
 def _nearest_continuation(numbers, x, y, least):
-    """Parameter of the end beyond which a straight line passes closest, and how close, squared, if below ``least``."""
+    """Return the end beyond which a straight line passes closest, and the squared distance.
+
+    The end is a parameter; only distances below ``least`` count.
+    """
     end = TABLE + WIDTH * int(numbers[COUNT])
     u = numbers[TABLE]
     for side in range(2):

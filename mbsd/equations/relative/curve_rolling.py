@@ -1,4 +1,4 @@
-"""No slip between a disc of radius r about marker j and a curve on body i, the disc on the curve's left.
+"""Rolling without slip of a disc of radius r about marker j on the left of a curve on body i.
 
 s     arc length of the foot of (x, y);  beta angle of the tangent t there;  n = t_perp;  kappa = d beta / ds
 d     = n . ((x, y) - c),   w = 1 - kappa d,   ds = t / w . d(x, y)

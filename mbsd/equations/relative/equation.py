@@ -1,4 +1,4 @@
-"""One-row equations between two bodies as functions at machine addresses, compiled only when a model uses them.
+"""One-row equations between two bodies, called by address and compiled when a model uses them.
 
     void f(const double *numbers, const double *relative, double *out)
 

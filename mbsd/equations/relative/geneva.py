@@ -1,4 +1,4 @@
-"""Geneva constraint: a pin on the crank i turns the slotted wheel j while it is in a slot; else the wheel is locked.
+"""Geneva constraint: a pin on crank i turns the slotted wheel j while in a slot; else it is locked.
 
 In the axes of marker i (centre of the crank, x axis through the pin at radius r) the wheel's centre lies at (x, y):
 
@@ -21,7 +21,10 @@ from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA
 
 @equation
 def residual(numbers, relative, out):
-    """F (rad); own numbers n, r, and the x beyond which the pin is in its slot: r, or what holds it in or out."""
+    """Fill F (rad); numbers: n, r, and the x beyond which the pin is in its slot.
+
+    That x is r, or another number that holds it in or out.
+    """
     pitch = 2.0 * math.pi / numbers[OWN]
     radius = numbers[OWN + 1]
     x = relative[X]

@@ -18,7 +18,10 @@ from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers: count of pieces, then of each its begin (rad) and six coefficients, lowest first."""
+    """Fill F (m); numbers: count of pieces, then each one's begin (rad) and six coefficients.
+
+    Coefficients go from the lowest power up.
+    """
     a = relative[A]
     sine = math.sin(a)
     cosine = math.cos(a)

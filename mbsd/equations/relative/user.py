@@ -1,4 +1,4 @@
-"""A constraint F(x, y, a) = 0 that the user wrote; mbsd/arrays/user_constraint.py gives its derivatives."""
+"""Constraint F(x, y, a) = 0 of the user; mbsd/arrays/user_constraint.py gives its derivatives."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from mbsd.equations.system import ZERO
 
 @equation
 def residual(numbers, relative, out):
-    """F; own numbers: the address of a function of length and relative pose that fills ``out``; the length (m)."""
+    """Fill F; numbers: the address of a function of length and relative pose, and the length (m).
+
+    The function fills ``out``.
+    """
     call(int(numbers[OWN]), numbers[OWN + 1], relative, out)  # pyright: ignore[reportCallIssue]
     out[F] -= numbers[PHASE] + relative[ZERO]

@@ -1,1 +1,1 @@
-"""Change points, where two assemblies meet: how a driven motion passes them, and the poses beside them."""
+"""Change points, where two assemblies meet: passages of a driven motion, and poses beside them."""

@@ -1,4 +1,4 @@
-"""Change points of a driven motion: poses at which two assemblies meet, passed on the smooth continuation.
+"""Change points of a driven motion, where two assemblies meet, passed on the smooth continuation.
 
 There J is singular although the motion is smooth. Near such a pose, at a distance p of it, rounding e costs positions
 e / p, velocities e / p^2 and accelerations e / p^3. So the pose is passed on a straight way of the drivers,
@@ -101,7 +101,9 @@ class Solver:
     factors: Factors
 
     def walk(self, way: Way, pose: np.ndarray, p: np.ndarray) -> tuple[np.ndarray, ...] | None:
-        """q, dq/dp, d2q/dp2 (P, 3 nb) and determinants (P, d) at p (P,), which rises or falls, from a pose near p[0].
+        """Return q, dq/dp, d2q/dp2 (P, 3 nb) and determinants (P, d) at p (P,), from a pose near p[0].
+
+        p rises or falls.
 
         None where Newton-Raphson does not get on.
         """
@@ -174,7 +176,7 @@ class Assembly:
 def way_from(
     packed: Packed, drives: np.ndarray, drive: np.ndarray, time: float, v: np.ndarray, solver: Solver, pose: np.ndarray
 ) -> Way | None:
-    """The way on which a change point near a pose (3 nb,) is passed, with p = 0 there; None where nothing moves.
+    """Return the way past a change point near a pose (3 nb,), p = 0 there; None if nothing moves.
 
     ``drives`` (T, motions + 1, 3) of the whole motion, ``drive`` (motions + 1, 3) and ``v`` (3 nb,) those of the pose.
     """
@@ -194,7 +196,10 @@ def way_from(
 
 
 def find_ahead(solver: Solver, way: Way, pose: np.ndarray) -> float | None:
-    """The p at which a determinant vanishes if it goes on as it goes at a pose (3 nb,) with p = 0; None if far away."""
+    """Return the p at which a determinant vanishes if it goes on as at ``pose``; None if far away.
+
+    The pose (3 nb,) has p = 0.
+    """
     step = 0.2 * IN_SIGHT
     for sign in (-1.0, 1.0):
         rows = solver.walk(way, pose, sign * np.array([0.0, 0.1 * step]))
@@ -211,7 +216,7 @@ def find_ahead(solver: Solver, way: Way, pose: np.ndarray) -> float | None:
 
 
 def assembly_around(solver: Solver, way: Way, pose: np.ndarray, p: float) -> Assembly | None:
-    """The smooth motion around p = 0 through a pose (3 nb,) at p; None where Newton-Raphson does not find one."""
+    """Return the smooth motion around p = 0 through a pose (3 nb,) at p; None if Newton-Raphson fails."""
     if abs(p) < NEAREST:
         return None
     side = -1.0 if p <= 0.0 else 1.0
@@ -256,7 +261,7 @@ def _around(solver: Solver, way: Way, pose: np.ndarray, p: float, side: float, r
 
 
 def _ladder(first: float, last: float, more: np.ndarray) -> np.ndarray:
-    """Rising distances from ``first`` to ``last``, ``more`` among them, at most ``LADDER`` times the one before."""
+    """Return rising distances from ``first`` to ``last``, with ``more``; ratios are at most ``LADDER``."""
     steps = max(1, int(np.ceil(np.log(last / first) / np.log(LADDER))))
     inner = np.geomspace(first, last, steps + 1)
     inner[-1] = last
@@ -267,7 +272,7 @@ def _ladder(first: float, last: float, more: np.ndarray) -> np.ndarray:
 
 
 def other_assembly(solver: Solver, way: Way, smooth: Assembly) -> Assembly | None:
-    """The motion on the assembly that meets the ``smooth`` one where p = 0; None where there is no single one."""
+    """Return the motion on the assembly that meets ``smooth`` at p = 0; None unless there is just one."""
     p = 2.0 * GAP
     pose = smooth.at(np.array([p]))[0, 0]
     scale = np.concatenate([np.ones(3), solver.packed.column_scale()])

@@ -1,4 +1,4 @@
-"""Passages of a march along a driven motion past change points: which poses they give, and where it goes on.
+"""Passages of a march past change points: the poses that they give, and where the march goes on.
 
 The march comes to a pose where steps, however short, do not tell two assemblies apart. If they meet there
 (assemblies.py), the steps nearby are left out, and it goes on beyond, on the smooth continuation or, where asked
@@ -109,7 +109,7 @@ class Passages:
         """Times between which none was found (s)."""
 
     def pass_ahead(self, row: int, q: np.ndarray, v: np.ndarray) -> Passage | None:
-        """The passage past a change point that the motion reaches after step ``row``; None where there is none.
+        """Return the passage past a change point that the motion reaches after step ``row``, or None.
 
         ``q``, ``v`` (T, 3 nb), known up to ``row``. Steps in its gap are left out of ``steps``, and those from which
         the march goes on are put there.
@@ -138,7 +138,7 @@ class Passages:
                     self.passages.append(self._in_time(row, *meeting))
 
     def fill(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The arrays (T, 3 nb) of all steps with those left out; poses near change points are those of the passages.
+        """Return the arrays (T, 3 nb) of all steps, with poses of passages near change points.
 
         Raises ModelError where the motion was to switch at a time at which it passes no change point.
         """
@@ -215,14 +215,17 @@ class Passages:
                 )
 
     def _leave_gap(self, passage: Passage) -> np.ndarray:
-        """Take steps within the gap of a passage out, and put those beyond it; returns times asked for in the gap."""
+        """Remove steps in the gap of a passage and add those beyond it; return requested times in the gap."""
         beyond = np.zeros(0)
         if np.isfinite(passage.end):
             beyond = passage.time + (passage.end - passage.time) * np.array([1.0, *BEYOND])
         return self.steps.leave_out(passage.start, passage.end, beyond)
 
     def _looks(self, way: Way, start: float) -> np.ndarray:
-        """Times from ``start`` to the end (s) at which a motion near a change point is looked at, dense at first."""
+        """Return times from ``start`` to the end (s) for a look at a motion near a change point.
+
+        They are dense at first.
+        """
         end = float(self.steps.times[-1])
         _, rate, second = way.at(np.array([start]))[0]
         step = FINEST * GAP / max(abs(rate), np.sqrt(GAP * abs(second)), GAP / max(end - start, 1e-300))
@@ -238,7 +241,7 @@ def _meeting_time(way: Way, time: float) -> float:
 
 
 def _crossing_time(way: Way, looks: np.ndarray) -> float:
-    """The time at which p is 0 or, where it never is, nearest to it; beyond ``looks`` (T,) if it leads there (s)."""
+    """Return the time at which p is 0, or nearest to it; beyond ``looks`` (T,) if it leads there (s)."""
     ends = float(looks[0]), float(looks[-1])
     for _ in range(8):
         p = way.at(looks)[:, 0]

@@ -1,4 +1,4 @@
-"""Poses beside a change point from which the efforts near it follow, and the determinant of J at these.
+"""Poses beside a change point for the efforts near it, and the determinant of J at these.
 
 mbsd/arrays/efforts_beside.py says how. There are poses on both sides of the change point, or on one side alone where
 the motion begins or ends there or switches to the other assembly.
@@ -21,7 +21,7 @@ VANISHES = 1e-6
 
 
 def sides_of(passage: Passage, times: np.ndarray) -> list[Side]:
-    """Poses beside a change point for the efforts at rising ``times`` (T,) (s) of a motion, and which these are."""
+    """Return poses beside a change point for efforts at rising ``times`` (T,) (s), with their indices."""
     rows = times[passage.covers(times)]
     rows = rows[np.abs(passage.way.at(rows)[:, 0]) < NEAR]
     if not len(rows):
@@ -58,7 +58,10 @@ def sides_beside(
 
 
 def determinant_of(passage: Passage, times: np.ndarray) -> np.ndarray:
-    """(T,) the product of the determinants that vanish at a change point, at ``times`` (s) on one side of it."""
+    """Return (T,) products of determinants that vanish at a change point, on one side of it.
+
+    ``times`` are in s.
+    """
     assembly = passage.after if passage.is_switched and times[0] > passage.time else passage.before
     weights = lagrange(assembly.nodes, np.append(passage.way.at(times)[:, 0], 0.0))
     values = weights @ assembly.determinant

@@ -1,1 +1,1 @@
-"""Closed-form kinematics of mechanisms that fall apart into driven bodies and Assur groups of one or two bodies."""
+"""Closed-form kinematics of mechanisms of driven bodies and Assur groups of one or two bodies."""

@@ -1,4 +1,4 @@
-"""Bodies of a block, how they are connected, and its equations as tables (mbsd/kinematics/groups/blocks.py).
+"""Bodies of a block, their connections and equations as tables (mbsd/kinematics/groups/blocks.py).
 
 Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 6 (block triangular form).
 """
@@ -47,7 +47,7 @@ class Hanging(NamedTuple):
 
 
 def fixed_bodies(packed: Packed, known: Collection[int], left: Sequence[int], pattern: np.ndarray) -> set[int] | None:
-    """The unknown bodies that the rows ``left`` fix first: of those that wait for none, the fewest; None for none.
+    """Return the fewest unknown bodies that rows ``left`` fix on their own; None if there are none.
 
     ``pattern`` (m, n): the entries of J that are not zero. There may be fewer rows than coordinates.
     """

@@ -1,4 +1,4 @@
-"""Parts that no closed form covers, as tables: bodies that depend on each other, solved together by Newton-Raphson.
+"""Blocks of bodies that no closed form covers, as tables, solved together by Newton-Raphson.
 
 Each body hangs from a known one or from an earlier one of its block, so that few unknowns are left: the angle of a pin,
 the way of a slide, or all three coordinates where there is neither. What else holds the bodies are the equations, all
@@ -76,7 +76,7 @@ class Blocks(NamedTuple):
 
 @cache
 def no_blocks() -> Blocks:
-    """Blocks of a plan of closed forms of one and two bodies alone; where there is none, nobody writes into scratch."""
+    """Return blocks of a plan of closed forms alone, in which nobody writes scratch."""
     return with_scratch([], [], [], [], [], [], np.zeros(0), [], [], [])
 
 

@@ -1,4 +1,4 @@
-"""Positions alone, over many designs: numbers change from one to the next, the plan and the drivers' angles stay.
+"""Positions alone, over many designs: numbers change, the plan and the drivers' angles stay.
 
 The formulas are those of all groups, without rates (carrying/cases.py). Directions are kept as cosine and sine, so
 nothing but a square root or two is left for a step; the angles of drivers are tabulated once for all designs. The sine

@@ -1,4 +1,4 @@
-"""The groups that are solved in closed form, as tables: driven bodies and Assur groups of one or two bodies.
+"""Groups solved in closed form, as tables: driven bodies and Assur groups of one or two bodies.
 
 A group has bodies A and B (or A alone), which stand on known bodies K1 and K2. What its numbers are stands in its file
 in kinds/; arms are from centres of mass, in body axes (m).

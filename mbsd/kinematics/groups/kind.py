@@ -1,4 +1,4 @@
-"""A kind of group, as its file in kinds/ describes it. Joints are named by letters: see LETTERS in plan.py."""
+"""Kind of a group, described by its file in kinds/. Joints have letters: see LETTERS in plan.py."""
 
 from __future__ import annotations
 
@@ -41,6 +41,9 @@ class GroupKind:
 
 
 def line(x: np.ndarray, y: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """(x, y) over its squared length, so that turning it along a vector of that length is two products; the square."""
+    """Return (x, y) over its squared length, and that square.
+
+    Turning it along a vector of that length then takes two products.
+    """
     square = x * x + y * y
     return (x / square, y / square), square

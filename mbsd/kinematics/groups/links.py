@@ -66,14 +66,14 @@ class Places:
         return [*self.arm(pin.there), *self.arm(pin.here)]
 
     def on_slide(self, slide: Link, arm: list[float]) -> list[float]:
-        """Where the point with ``arm`` of a sliding body is on the other body at slide 0, the axis there, the angle."""
+        """Return the place of a sliding body's ``arm`` on the other body at slide 0, the axis, the angle."""
         angle = own_angle(slide)
         axis = turned(self.axis(slide.here), angle) if slide.first else self.axis(slide.there)
         base = np.array(self.arm(slide.there)) + turned(np.array(arm) - self.arm(slide.here), angle)
         return [*base, *axis, angle]
 
     def hanging(self, link: Link) -> list[float]:
-        """Numbers of a body of a block (mbsd/kinematics/groups/blocks.py) that hangs by a pin, a slide or a weld."""
+        """Return numbers of a body of a block that hangs by a pin, slide or weld (groups/blocks.py)."""
         arm = self.arm(link.here)
         if link.kind == "P":
             return [float(x) for x in (*self.on_slide(link, arm), *arm)]

@@ -1,4 +1,4 @@
-"""Takes a mechanism apart where closed forms alone do not serve: groups as in plan.py, and blocks between them.
+"""Decomposition of a mechanism without a plan of closed forms alone: groups, and blocks between them.
 
 Where no group can be added, the smallest set of bodies that the equations left fix together is taken as a block: the
 irreducible blocks of J tell which bodies depend on which. So a gear train, a cam or a triad costs Newton-Raphson in its

@@ -1,4 +1,4 @@
-"""Takes a mechanism apart into groups, beginning at ground: each time the first group whose neighbours are known.
+"""Decomposition of a mechanism into groups from ground: always the first with known neighbours.
 
 A mechanism with anything that no group covers (a gear, a redundant joint, three bodies rigid only together) has no
 such plan; parts.py puts blocks between the groups.
@@ -131,7 +131,7 @@ class Recipe(NamedTuple):
 
 
 class Plan:
-    """The plan as it grows: ``known`` bodies have their place in ``taken`` groups, ``used`` joints hold them.
+    """Growing plan: ``known`` bodies have places in ``taken`` groups, ``used`` joints hold them.
 
     Only bodies near to which something has become known are looked at again.
     """
@@ -224,7 +224,7 @@ class Plan:
         return out
 
     def remade(self, packed: Packed) -> np.ndarray | None:
-        """(g, 14) numbers of these groups in a mechanism with other numbers; None where a group was not made of links.
+        """Return (g, 14) numbers of these groups for other numbers; None if a group is not of links.
 
         Signs of roots are those of the pose of this plan.
         """
@@ -245,7 +245,7 @@ class Plan:
         return out
 
     def _same_offsets(self, packed: Packed) -> bool:
-        """Return True if angles between bodies and lengths of rods are those of this plan, so that its links are."""
+        """Return True if angles between bodies and rod lengths are those of this plan, so links are too."""
         pairs = [(getattr(part.system, name) for part in (packed, self.packed))
                  for name in ("angle_offset", "distance_length")]  # fmt: skip
         return all(a.tobytes() == b.tobytes() for a, b in pairs)

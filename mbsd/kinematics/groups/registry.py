@@ -1,4 +1,4 @@
-"""All kinds of groups, in the order of their codes (groups.py): what the plan tries, what tables are made with.
+"""All kinds of groups, in the order of their codes (groups.py): for the plan and for tables.
 
 A new kind is its file in kinds/, its code, a line here, and one in solve_group.py.
 """

@@ -32,7 +32,7 @@ SOLVED_CLOSE = 4
 
 @internal
 def give(body, rate, b, q, v, a, turn):
-    """Pose and rates of body b from the closed forms to a row of the motion; the angle is filled elsewhere."""
+    """Copy pose and rates of body b from the closed forms to a row of the motion, without the angle."""
     at = 3 * b
     q[at] = body[b, X]
     q[at + 1] = body[b, Y]

@@ -1,4 +1,4 @@
-"""Gear trains, belts and locks whose angles are sums of each other: closed forms for wheels on fixed or moving arms.
+"""Gear trains, belts and locks with angles that are sums: closed forms for fixed or moving arms.
 
 A gear or belt between wheels whose centres one arm carries holds, for ever and all turns counted,
 
@@ -51,7 +51,7 @@ class Trains:
         """Factors of the angles, of each such row."""
 
     def solve(self, rows: Sequence[int], pinned: Sequence[int], follows: dict[int, int]) -> bool:
-        """Find the angles of ``pinned`` bodies from as many rows; ``follows``: bodies that turn with another one.
+        """Find the angles of ``pinned`` bodies from as many rows; ``follows``: bodies that turn with others.
 
         False where some row is no sum of angles, or the rows repeat each other.
         """

@@ -1,4 +1,4 @@
-"""Rigid contacts, stops and limits where nothing pushes back: sweeps, statics, linearisation, inverse dynamics.
+"""Rigid contacts, stops and limits in analyses without contact forces: sweeps, statics and others.
 
 Only a simulation knows the forces of contacts. Elsewhere a motion or pose that needs them is refused here, by name.
 """
@@ -32,7 +32,10 @@ class Gap:
 
 
 def gaps(m: Model, packed: Packed, q: np.ndarray, limits: bool) -> list[Gap]:
-    """Gaps of the contacts, and of the ``limits`` of joints, along poses q (T, 3 nb); one-way clutches are closed."""
+    """Return gaps of contacts and ``limits`` along poses q (T, 3 nb).
+
+    One-way clutches are closed.
+    """
     from mbsd.equations.assembly import tabulate
     from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
 
@@ -67,7 +70,7 @@ def refuse_passed_contacts(m: Model, packed: Packed, times: np.ndarray, q: np.nd
 
 
 def refuse_resting(m: Model, packed: Packed, start: np.ndarray, q: np.ndarray, said: str | None = None) -> None:
-    """Raise EquilibriumError for a pose q (3 nb,), found from ``start``, that is beyond a contact or limit.
+    """Raise EquilibriumError for a pose q (3 nb,), found from ``start``, beyond a contact or limit.
 
     ``said``: how the text begins where the pose does not balance.
     """
@@ -92,7 +95,10 @@ def refuse_closed(m: Model, packed: Packed, q: np.ndarray) -> None:
 
 
 def refuse_pushing(m: Model, motion: Solution) -> None:
-    """Raise ModelError for a motion during which a contact pushes: its forces would be put on the actuators."""
+    """Raise ModelError if a contact pushes during a motion.
+
+    Its forces would be put on the actuators.
+    """
     for name in motion.packed.contact_gaps():
         closed = motion.contact(name).closed
         if closed.any():

@@ -13,7 +13,7 @@ from mbsd.model.mechanism import Model
 
 
 def all_contacts(m: Model, packed: Packed, q: np.ndarray) -> list[Joint]:
-    """The contacts of a mechanism, and stops without rebound at the limits of its joints; q (3 nb,) at the start.
+    """Return the contacts, and stops without rebound at joint limits; q (3 nb,) at the start.
 
     Angles are counted from the whole turn that is nearest to the limits at the start.
     """

@@ -1,4 +1,4 @@
-"""Gears and belts whose centres nothing holds apart: they may run into each other, and no motion goes on from there.
+"""Gears and belts with free centres: where these run into each other no motion goes on.
 
 The constraint holds the direction of the line of centres. Centres that move towards each other along it meet, where
 the line has no direction; on the other side it points the other way, which the wheels do not allow. Such a motion goes
@@ -50,7 +50,7 @@ class FreeWheels:
                 raise self._met(joint, time, apart)
 
     def refuse_meeting(self, time: float, state: np.ndarray, h: float) -> None:
-        """Raise SimulationError where centres meet within h (s) of a state (2, 3 nb), at the speed that they have.
+        """Raise SimulationError if centres meet within h (s) of a state (2, 3 nb), at their speed.
 
         It serves methods whose equations of a step have no solution there.
         """

@@ -1,4 +1,4 @@
-"""Limits and stops: how far a joint may go. A driven motion that passes one is refused with the time and the number.
+"""Limits of joints; a driven motion that passes one is an error with the time and the number.
 
 In a simulation they are stops without rebound; ``m.stop`` makes stops with one.
 
@@ -60,7 +60,10 @@ def limits_of(packed: Packed) -> list[Limit]:
 
 
 def coordinate(packed: Packed, limit: Limit, q: np.ndarray) -> np.ndarray:
-    """(T,) of the joint along poses q (T, 3 nb). Angles start at the whole turn that is nearest to the limits."""
+    """Return (T,) coordinates of the joint along q (T, 3 nb).
+
+    Angles start at the whole turn that is nearest to the limits.
+    """
     body_i, body_j = packed.system.marker_body[[limit.marker_i, limit.marker_j]]
     if limit.angular:
         angle = q[:, 3 * body_j + 2] - q[:, 3 * body_i + 2] + limit.offset
@@ -74,7 +77,7 @@ def coordinate(packed: Packed, limit: Limit, q: np.ndarray) -> np.ndarray:
 
 
 def refuse_passed(packed: Packed, times: np.ndarray, q: np.ndarray, smooth: bool = False) -> None:
-    """Raise LimitError for the first limit that the motion q (T, 3 nb) passes; ``smooth``: at peaks in between too."""
+    """Raise LimitError for the first limit that q (T, 3 nb) passes; ``smooth``: also at peaks between."""
     first: tuple[float, Limit, np.ndarray, int] | None = None
     for limit in limits_of(packed):
         value = coordinate(packed, limit, q)
@@ -100,7 +103,10 @@ def refuse_passed(packed: Packed, times: np.ndarray, q: np.ndarray, smooth: bool
 
 
 def _with_peaks(value: np.ndarray) -> np.ndarray:
-    """(T,) with each peak, which lies between equal steps, as high as the parabola through it and its neighbours."""
+    """Return (T,) with each peak as high as the parabola through it and its neighbours.
+
+    Peaks lie between equal steps.
+    """
     out = value.copy()
     left, middle, right = value[:-2], value[1:-1], value[2:]
     bend = left - 2 * middle + right

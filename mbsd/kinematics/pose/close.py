@@ -1,4 +1,4 @@
-"""The assembled pose at the start: rough angles, a walk over the joints for places, then Gauss-Newton closes it.
+"""Assembled pose at the start: rough angles, a walk over joints for places, then Gauss-Newton.
 
 Steps are damped (least norm, limited length, halved until the residual falls), so the pose closes near where the
 author put it. Bodies without a rough angle are tried at several angles.
@@ -33,7 +33,7 @@ LONGEST_STEP = 0.5
 
 
 class _Nearest(NamedTuple):
-    """A pose as near to a closed one as attempts led; those that stay open are kept, too, as they take longest."""
+    """Nearest pose to a closed one in all attempts, with the open ones, as they take longest."""
 
     q: np.ndarray
     """(3 nb,)"""
@@ -46,7 +46,9 @@ _NEAREST: Kept[_Nearest] = Kept()
 
 
 def assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
-    """(3 nb,) closed pose at ``time``, centre-of-mass coordinates. Raises AssemblyError naming the open joint.
+    """Return the (3 nb,) closed pose at ``time``. Raises AssemblyError naming the open joint.
+
+    Coordinates are those of centres of mass.
 
     Forces that take the place of joints stand as these do.
     """
@@ -98,7 +100,10 @@ def close_with_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple
 
 
 def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = None) -> tuple[np.ndarray, float]:
-    """Gauss-Newton on the first ``rows`` rows (all by default) from q; returns the pose and its scaled residual."""
+    """Close the first ``rows`` rows (default: all) by Gauss-Newton from q; return pose and residual.
+
+    The residual is scaled.
+    """
     q = q.copy()
     rows = len(packed.ws.phi) if rows is None else rows
     row_scale, column_scale = packed.row_scale()[:rows], packed.column_scale()
@@ -130,7 +135,10 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
 
 
 def _least(jac: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """The shortest x with J x nearest to ``right``; singular values below 1e-9 of the largest count as zero."""
+    """Return the shortest x with J x nearest to ``right``.
+
+    Singular values below 1e-9 of the largest count as zero.
+    """
     if len(jac) >= MANY_ROWS:
         square = jac @ jac.T
         try:
@@ -144,7 +152,10 @@ def _least(jac: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def rough_pose(m: Model, packed: Packed, drive: np.ndarray, attempt: int) -> np.ndarray:
-    """(3 nb,) from ``start_near``, the drivers and a walk over the joints; attempts after the first vary angles."""
+    """Return a (3 nb,) pose from ``start_near``, drivers and a walk over joints.
+
+    Attempts after the first vary angles.
+    """
     return placed_pose(m, packed, _rough_angles(m, packed, drive, attempt))
 
 
@@ -199,7 +210,7 @@ def _rough_angles(m: Model, packed: Packed, drive: np.ndarray, attempt: int) -> 
 
 
 def _place_along(packed: Packed, q: np.ndarray, placed: set[int], constraint: str) -> None:
-    """Place bodies by joints of the given constraint to placed ones, always the first such joint of the table."""
+    """Place bodies by joints of a constraint to placed ones, always the first of the table."""
     system = packed.system
     table = getattr(system, constraint)
     pairs = [(int(system.marker_body[i]), int(system.marker_body[j])) for i, j, _row, _motion in table]

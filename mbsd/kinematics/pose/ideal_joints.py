@@ -1,4 +1,4 @@
-"""Forces that take the place of joints, as a pin with play does: at the start the joints hold, then the forces alone.
+"""Forces in place of joints, as a pin with play: joints hold at the start, then forces alone.
 
 What closes is a copy of the mechanism with these joints; what its closed pose decides about the others is taken over.
 """
@@ -53,7 +53,7 @@ def packed_like(joined: Model, packed: Packed) -> Packed:
 
 
 def take_from(packed: Packed, joined: Packed) -> None:
-    """Take over phases and turns of the joints of ``packed`` from a packing with more joints, whose start is closed."""
+    """Copy phases and turns to ``packed`` from a packing with more joints, whose start is closed."""
     own = {joint.name for joint in packed.joints}
     special, numbers = packed.system.special.copy(), packed.system.numbers.copy()
     common = [
@@ -68,7 +68,7 @@ def take_from(packed: Packed, joined: Packed) -> None:
 
 
 def closed_ideally(m: Model, packed: Packed, initial_of: Callable[[Model, Packed], Start]) -> tuple[Start, bool]:
-    """The start by ``initial_of`` of the mechanism with the joints that hold then, and whether there are any.
+    """Return the start by ``initial_of`` with the joints that hold then, and True if there are any.
 
     Raises AssemblyError where it does not close.
     """

@@ -1,4 +1,4 @@
-"""Consistent initial conditions: a closed pose and velocities that the joints allow, near what was given.
+"""Consistent initial conditions: a closed pose and allowed velocities near the given ones.
 
 Pose: what ``start_near`` gives is held exactly as far as the joints leave it free, first given first held; the rest
 moves until everything closes. A place of which they leave one direction is as near as it can be, see held_values.py.
@@ -65,7 +65,7 @@ def drive_at(packed: Packed, time: float) -> np.ndarray:
 
 
 def _driven(m: Model, packed: Packed, drive: np.ndarray, initial: Initial) -> Initial:
-    """Velocities of the mechanism alone where drivers move both sides of a play otherwise than the joint could."""
+    """Return velocities of the mechanism whose drivers move both sides of a play unlike the joint."""
     residual_and_jacobian(packed.system, initial.q, drive, packed.ws)
     nu = np.zeros(len(packed.ws.phi))
     nu[packed.driver_rows :] = drive[1:, 1]
@@ -97,7 +97,7 @@ def _consistent(m: Model, packed: Packed, time: float) -> Initial:
 
 
 def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """(3 nb,) closed pose that holds what start_near gives where the joints leave it, and a sentence where not.
+    """Return a (3 nb,) closed pose that holds start_near where joints allow, and sentences if not.
 
     drive (motions + 1, 3) at ``time`` (s). Raises AssemblyError.
     """
@@ -222,7 +222,7 @@ def _velocities(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> t
 def given_velocities(
     m: Model, packed: Packed, q: np.ndarray
 ) -> tuple[list[dict[int, float]], np.ndarray, list[tuple[str, str]]]:
-    """Return what start_moving gives: rows as {coordinate: factor}, values (k,), names and units, in the order given.
+    """Return rows {coordinate: factor}, values (k,), names and units of start_moving, in its order.
 
     The velocity is that of a body's frame, not of its centre of mass.
     """

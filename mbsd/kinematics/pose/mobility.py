@@ -1,4 +1,4 @@
-"""Mobility: degrees of freedom by count and by rank, redundant joints, undriven and doubly driven freedoms.
+"""Mobility: freedoms by count and by rank, redundant joints, undriven and doubly driven freedoms.
 
     nominal  3 (nb - 1) - rows of all joints          (Gruebler)
     dof      n - rank J of the joints
@@ -56,7 +56,7 @@ def rows_at(packed: Packed, q: np.ndarray) -> list[int]:
 
 
 def _key(packed: Packed, q: np.ndarray) -> tuple[object, ...] | None:
-    """Return all that J at q (3 nb,) and the words about it depend on; None where that is more than numbers."""
+    """Return all that J at q (3 nb,) and its words depend on; None if that is more than numbers."""
     numbers = packed.numbers()
     if numbers is None:
         return None
@@ -90,7 +90,10 @@ def _joint_mobility(packed: Packed, q: np.ndarray) -> Mobility:
 
 
 def _free_bodies(packed: Packed, jac: np.ndarray, q: np.ndarray) -> tuple[str, ...]:
-    """Bodies that can move at the pose of ``jac`` or at one near q (3 nb,): at a dead centre a slider rests."""
+    """Return bodies that can move at the pose of ``jac`` or near q (3 nb,).
+
+    At a dead centre a slider rests.
+    """
     moving = {*_moving(packed, jac)}
     if len(moving) + len(_fastened(packed)) < len(packed.body_names):
         for near in _nearby(packed, q):
@@ -121,7 +124,9 @@ def refuse_overdriven(m: Model, packed: Packed, time: float) -> None:
 
 
 def choose_rows(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> np.ndarray:
-    """(n,) independent rows that fix all coordinates, drivers included. ``joints``: mobility of the joints at q.
+    """Return (n,) independent rows that fix all coordinates, drivers included.
+
+    ``joints`` is the mobility of the joints at q.
 
     Raises MobilityError for a missing or superfluous driver, SingularPoseError where only this pose is at fault.
     """
@@ -154,7 +159,7 @@ def _chosen(packed: Packed, q: np.ndarray, time: float, joints: Mobility) -> lis
 
 
 def best_rows(packed: Packed, known: np.ndarray) -> np.ndarray | None:
-    """(n,) rows of the last evaluated J that are furthest from dependent; None if ``known`` (n,) are nearly as good.
+    """Return (n,) least dependent rows of the last J; None if ``known`` (n,) are nearly as good.
 
     Where joints repeat each other, rows that serve at one pose may be dependent at another.
     """
@@ -162,7 +167,9 @@ def best_rows(packed: Packed, known: np.ndarray) -> np.ndarray | None:
 
 
 def better_rows(jac: np.ndarray, known: Sequence[int] | np.ndarray, better: float = BETTER) -> np.ndarray | None:
-    """(r,) rows of a dimensionless jac (m, n) whose least singular value is ``better`` times that of ``known`` (r,).
+    """Return (r,) rows of jac (m, n), its least singular value ``better`` times that of ``known`` (r,).
+
+    jac is dimensionless.
 
     None if there are none. Source: pivoted QR.
     """

@@ -1,4 +1,4 @@
-"""Why links do not close: the joint that stays open, and the link that is longer than the others together."""
+"""Reason of links that do not close: the open joint, and a link longer than the others together."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mbsd.model.mechanism import Model
 
 
 def why_open(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray, time: float) -> str:
-    """The message for a pose q (3 nb,) that does not close: which joint, by how much, which link is too short."""
+    """Return the message for an open pose q (3 nb,): the joint, its gap, and the link too short."""
     residual_and_jacobian(packed.system, q, drive, packed.ws)
     phi = packed.ws.phi
     gaps = [float(np.abs(phi[a:b] * packed.row_scale()[a:b]).max()) for a, b in pairwise(packed.first_row)]

@@ -72,7 +72,7 @@ def take_phases(packed: Packed, q: np.ndarray, drive: np.ndarray) -> bool:
 
 
 def take_decided(packed: Packed, closed: Packed) -> None:
-    """Take over phases and turns from a packing whose start is closed; either may have more joints after the common."""
+    """Copy phases and turns from a closed packing; either may have more joints after the common ones."""
     arrays = {}
     for name in ("special", "numbers", "angle_offset"):
         array, decided = getattr(packed.system, name).copy(), getattr(closed.system, name)
@@ -84,7 +84,7 @@ def take_decided(packed: Packed, closed: Packed) -> None:
 
 
 def refuse_impossible(packed: Packed, q: np.ndarray) -> None:
-    """Raise AssemblyError for a joint that cannot be with its markers as they stand in the closed pose q (3 nb,)."""
+    """Raise AssemblyError for a joint that is impossible at the markers of the closed pose q (3 nb,)."""
     for joint, place in zip(packed.specials.joints, packed.specials.places, strict=True):
         if joint.kind.problem is None:
             continue
@@ -121,7 +121,10 @@ def _pins_of(packed: Packed, q: np.ndarray) -> _Pins:
 
 
 def _arm_of(packed: Packed, q: np.ndarray, pins: _Pins, i: int, j: int) -> int | None:
-    """The body with pins at the centres i and j: it carries the line of centres, ground too. None if there is none."""
+    """Return the body with pins at the centres i and j, also ground; None if there is none.
+
+    It carries the line of centres.
+    """
     sharing: list[set[int]] = []
     for marker in (i, j):
         near = np.hypot(*(pins.places - _place(packed, q, marker)).T) < SAME_PLACE * packed.size

@@ -133,7 +133,10 @@ def _inside(body: Body, frame: np.ndarray, x: float, y: float, angle: float) -> 
 
 
 def _known_frame(m: Model, name: str) -> np.ndarray:
-    """(3,) of a body's frame at the start. Raises ModelError where it is not known, AssemblyError if nothing closes."""
+    """Return (3,) of a body's frame at the start.
+
+    Raises ModelError if it is unknown, AssemblyError if nothing closes.
+    """
     from mbsd.arrays.packing import pack
 
     packed = pack(m)

@@ -36,7 +36,7 @@ def add_force(
 
 
 def origins(m: Model, name: str, first: Body | str, second: Body | str) -> tuple[Marker, Marker]:
-    """The frames of two bodies of this mechanism, which are given themselves or by name. Raises ModelError."""
+    """Return the frames of two bodies of this mechanism, given as bodies or names. Raises ModelError."""
     what = f"force '{name}'"
     return own_body(m, first, what).origin, own_body(m, second, what).origin
 

@@ -1,4 +1,4 @@
-"""Losses of an impact of a contact by penalty: damping by the speed of its approach, from a restitution.
+"""Impact losses of a contact by penalty: damping by its approach speed, from a restitution.
 
 c = A(e) / v_0 in N = k d^n (1 + c d'), with the A(e) of a damping model; see mbsd/model/forces/contact.py.
 """

@@ -1,1 +1,1 @@
-"""Cams: lift laws, the disc's outline for each kind of follower, pressure angle, curvature and undercut."""
+"""Cams: lift laws, the outline for each kind of follower, pressure angle, curvature and undercut."""

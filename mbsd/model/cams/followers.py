@@ -31,7 +31,9 @@ from mbsd.model.cams.profile import CamProfile, hermite
 
 
 def roller_cam(lift: Lift, base_radius: float, roller_radius: float, offset: float = 0.0) -> CamProfile:
-    """A cam for a translating roller; ``offset`` (m) of its line to the right of the cam's centre. Sizes in m.
+    """Return a cam for a translating roller whose line is ``offset`` (m) right of the cam's centre.
+
+    Sizes are in m.
 
     At cam angle 0 and lift 0 the roller's centre is at (offset, sqrt((base + roller)^2 - offset^2)).
     """
@@ -181,7 +183,10 @@ def _turned(theta: np.ndarray, vectors: np.ndarray) -> np.ndarray:
 
 
 def _rolled(follower: str, lift: Lift, sizes: dict[str, float], centre: Any, way: Any) -> CamProfile:
-    """From the roller's centre in the world, w (..., 2, 4) with its derivatives, and the way it moves (..., 2)."""
+    """Return the profile from the roller's centre w (..., 2, 4) in the world, with derivatives.
+
+    ``way`` (..., 2) is the direction in which the centre moves.
+    """
     from mbsd.model.plane_curves import curve_numbers
 
     breaks, ends = lift.pieces()
@@ -214,7 +219,10 @@ def _rolled(follower: str, lift: Lift, sizes: dict[str, float], centre: Any, way
 
 
 def _faced(follower: str, lift: Lift, sizes: dict[str, float], support: Any, pressure: Any) -> CamProfile:
-    """From the support function: (..., 4) direction phi, h and its two derivatives by phi, in the cam's frame."""
+    """Return the profile from the support function.
+
+    ``support`` (..., 4) has the direction phi, h and its two derivatives by phi, in the cam's frame.
+    """
     breaks, ends = lift.pieces()
     theta = np.stack([breaks[:-1], breaks[1:]], axis=1)
     values = support(theta, ends)

@@ -43,7 +43,7 @@ class Lift:
 
     @staticmethod
     def of(*segments: Sequence[Any], start: float = 0.0) -> Lift:
-        """Segments (width in rad, height at the end, rise), one after the other; of a dwell only the first two.
+        """Return segments (width in rad, height at the end, rise) in turn; a dwell has the first two alone.
 
         The widths add up to a turn and the last height is ``start``. Raises ModelError otherwise.
         """
@@ -71,7 +71,10 @@ class Lift:
 
     @staticmethod
     def table(angles: Sequence[float] | np.ndarray, heights: Sequence[float] | np.ndarray) -> Lift:
-        """A periodic quintic spline through heights at rising cam angles (rad), eight rows or more within one turn."""
+        """Return a periodic quintic spline through heights at rising cam angles (rad).
+
+        It takes eight rows or more within one turn.
+        """
         theta, s = number_array("lift: angles", angles), number_array("lift: heights", heights)
         if theta.ndim != 1 or theta.shape != s.shape or len(theta) < LEAST_ROWS:
             raise ModelError(
@@ -145,7 +148,10 @@ class Lift:
         return np.append(np.concatenate(breaks), edges[-1]), np.concatenate(ends)
 
     def _nodes(self, k: int, a: float, b: float) -> np.ndarray:
-        """Cam angles from a to b that cut segment k, or a table, into pieces; arcs that join within it are nodes."""
+        """Return cam angles from a to b that cut segment k, or a table, into pieces.
+
+        Arcs that join within it are nodes.
+        """
         if self.angles:
             arcs, count = np.append(self.angles, b), PIECES
         else:

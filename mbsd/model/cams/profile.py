@@ -21,7 +21,7 @@ STEEP = {"translating": math.radians(30), "oscillating": math.radians(45)}
 
 @dataclass(frozen=True, eq=False)
 class CamProfile:
-    """A disc cam for one follower, turning counter-clockwise; all arrays (N,) over one turn, in the cam's frame.
+    """Disc cam for one follower, turning counter-clockwise; (N,) arrays over one turn, in its frame.
 
     Made by roller_cam, flat_cam, oscillating_roller_cam and oscillating_flat_cam.
     """
@@ -93,7 +93,10 @@ class CamProfile:
 
 
 def hermite(h: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """(p, ..., 6) quintics over widths h (p,) from value and two derivatives (p, ..., 3) at both ends, lowest first."""
+    """Return (p, ..., 6) quintics over widths h (p,) from value and two derivatives at both ends.
+
+    Ends are (p, ..., 3); coefficients go from the lowest power up.
+    """
     h = h.reshape(-1, *[1] * (left.ndim - 2))
     f, df, ddf = np.moveaxis(left, -1, 0)
     rise = right[..., 0] - f - h * df - h**2 * ddf / 2

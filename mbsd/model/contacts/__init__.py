@@ -1,1 +1,1 @@
-"""Unilateral contacts: what pushes but does not pull, one file a kind, each made of constraints of relative pose."""
+"""Unilateral contacts, which push but never pull, one file a kind, built of relative-pose constraints."""

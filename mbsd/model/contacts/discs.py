@@ -46,7 +46,7 @@ def rigid_discs(
     friction: float = 0.0,
     static_friction: float | None = None,
 ) -> Joint:
-    """Discs of two radii (m) around two markers do not enter each other; ``inside``: j is inside the ring i."""
+    """Keep discs of two radii (m) around two markers apart; ``inside``: j is inside the ring i."""
     params = amounts_given(m, name, radius_i=radius_i, radius_j=radius_j) | {"inside": bool(inside)}
     params |= frictions_given(m, name, friction, static_friction)
     reach = radius_i - radius_j if inside else radius_i + radius_j

@@ -1,4 +1,4 @@
-"""Contact of a point, or a disc around it, with a straight line: ground, a wall, an incline, the face of a body.
+"""Contact of a point or disc with a straight line: ground, a wall, an incline, a body's face.
 
     g = y - r            constraint `linear`; y: of marker j across the x axis of marker i, free side positive
     s = x + r a          constraint `linear`; way along the line of the touching point of the disc
@@ -43,7 +43,7 @@ def rigid_contact(
     friction: float = 0.0,
     static_friction: float | None = None,
 ) -> Joint:
-    """A point, or a disc of ``radius`` (m) around it, stays on the positive side of the x axis of ``line``.
+    """Keep a point, or a disc of ``radius`` (m) around it, on the positive side of ``line``'s x axis.
 
     ``friction`` is Coulomb's coefficient; ``static_friction``, the same if not given, holds what sticks.
     """

@@ -1,4 +1,4 @@
-"""One-way clutch (freewheel, ratchet without play): body j turns against body i in one direction alone.
+"""One-way clutch (freewheel, ratchet without play): body j turns against body i one way only.
 
     g = side (a - a_locked)      constraint `turn`;   g' >= 0
 

@@ -1,4 +1,4 @@
-"""Stops: an end of the way of an angle or a coordinate between two markers, as at the ends of a slider's guide.
+"""Stops: ends of the travel of an angle or coordinate between two markers, as of a slider's guide.
 
     g = side (a - at)    constraint `turn`:   a, angle of marker j against marker i (rad, counted over whole turns)
     g = side (x - at)    constraint `linear`: x, of marker j along the x axis of marker i (m)

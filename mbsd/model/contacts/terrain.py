@@ -1,4 +1,4 @@
-"""Contact of a point, or a disc around it, with a terrain: a smooth curve through points, with matter on its right.
+"""Contact of a point or disc with a terrain: a smooth curve through points, solid on its right.
 
     g = n . (p_j - c(u)) - r        constraint `curve`; c(u): the curve's point nearest to p_j
     s = arc + r (a - beta)          constraint `curve_rolling`; arc length and tangent angle beta at c(u)

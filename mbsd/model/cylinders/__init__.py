@@ -1,1 +1,1 @@
-"""Cylinders of engines: the cycles of their gas over the angle of the crank, and where the crank puts their pistons."""
+"""Cylinders of engines: cycles of their gas over the crank angle, and positions of their pistons."""

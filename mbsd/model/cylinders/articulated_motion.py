@@ -1,4 +1,4 @@
-"""How far a crank lets down a piston whose rod hangs on the master rod of another, as in radial engines.
+"""Travel of a piston whose rod hangs on the master rod of another, as in radial engines.
 
     W = (s, e),  s = r cos b - sqrt(l^2 - (r sin b - e)^2)         the master's wrist pin;  P = r (cos b, sin b)
     K = P + k_1 d + k_2 d_perp,   d = (W - P) / l                  the knuckle pin on the master rod
@@ -24,7 +24,7 @@ HALVINGS = 60
 
 @dataclass(frozen=True)
 class ArticulatedMotion:
-    """A crank, a master rod, a rod on it and a piston; m and rad, ``sense`` -1 for a crank that turns clockwise."""
+    """Crank, master rod, a rod on it and a piston; m and rad, ``sense`` -1 for a clockwise crank."""
 
     throw: float
     master: float

@@ -36,7 +36,7 @@ BURNED = 37.0
 
 @dataclass(frozen=True)
 class Bore:
-    """A cylinder: area of its bore (m^2), clearance as a length of the bore (m), and how its crank moves the piston."""
+    """Cylinder: bore area (m^2), clearance as a length of the bore (m), and motion of its piston."""
 
     area: float
     clearance: float
@@ -139,7 +139,10 @@ def level(begin: float, pressure: float, exponent: float = 0.0) -> Phase:
 
 
 def opened(before: Phase, begin: float, to: float, width: float) -> tuple[Phase, ...]:
-    """A valve opens at ``begin``: from the pressure ``before`` to another (Pa), within a width (rad) or at once."""
+    """Return phases of a valve that opens at ``begin``, from ``before`` to another pressure (Pa).
+
+    It opens within a width (rad) or at once.
+    """
     after = level(begin + width, to)
     if width == 0.0:
         return (after,)
@@ -150,7 +153,9 @@ def opened(before: Phase, begin: float, to: float, width: float) -> tuple[Phase,
 def closed_phases(
     release: HeatRelease, bore: Bore, closes: float, pressure: float, compression: float, expansion: float, opens: float
 ) -> tuple[Phase, Phase]:
-    """Compression from where the valves close at a pressure (Pa), and expansion until ``opens``, while it burns.
+    """Return compression from the closing of the valves, and expansion until ``opens``, while it burns.
+
+    The valves close at a pressure (Pa).
 
     ``compression`` and ``expansion`` are polytropic exponents.
     """

@@ -1,4 +1,4 @@
-"""A cylinder of a model: how its crank moves its piston, from the numbers that were given or from the joints.
+"""Cylinder of a model: the motion of its piston, from given numbers or from the joints.
 
 V = A (x - x_t + c)             x: of the piston's marker along the cylinder's, x_t at the top dead centre
 c = stroke / (compression - 1)
@@ -44,7 +44,10 @@ class EngineCylinder:
 
 
 def cylinder_of(force: Force, joints: Sequence[Joint]) -> EngineCylinder:
-    """The cylinder of a force of the kind gas_cycle. Raises ModelError where neither numbers nor joints tell it."""
+    """Return the cylinder of a force of kind gas_cycle.
+
+    Raises ModelError if neither numbers nor joints decide it.
+    """
     p, what = force.params, f"force '{force.name}'"
     cycle: GasCycle = p["cycle"]
     sense = -1.0 if p["clockwise"] else 1.0
@@ -67,7 +70,9 @@ def cylinder_of(force: Force, joints: Sequence[Joint]) -> EngineCylinder:
 
 
 def _top_by_joints(force: Force, joints: Sequence[Joint], sense: float) -> float:
-    """Angle of the crank (rad) at which the piston is nearest to its head. Raises ModelError where joints do not tell.
+    """Return the crank angle (rad) at which the piston is nearest to its head.
+
+    Raises ModelError if joints do not decide it.
 
     The head may lie between the piston and the crank, as that of the second chamber of a steam engine does.
     """

@@ -1,4 +1,4 @@
-"""The four-stroke cycle: intake, compression, expansion with heat released after Wiebe, exhaust; two turns.
+"""Four-stroke cycle of two turns: intake, compression, expansion with heat after Wiebe, exhaust.
 
     p = p_intake (V_c / V)^n_c                                             valves closed, before it burns
     p = [p_s V_s^n_e + (n_e - 1) Q int V^(n_e - 1) dx_b] / V^n_e           until the exhaust opens; s: where it burns

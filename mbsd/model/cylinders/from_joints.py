@@ -1,4 +1,4 @@
-"""How the joints of a model let a crank move a piston: by a rod, by a rod on another's master rod, or by a slot.
+"""Piston motion from a model's joints: by a rod, by a rod on another's master rod, or by a slot.
 
 The crank turns on a pin of the cylinder's body and the piston slides on it; x counts from the head towards the crank.
 """
@@ -76,7 +76,7 @@ def motion_of_joints(force: Force, joints: Sequence[Joint], sense: float) -> Fou
 
 
 class _Line:
-    """The axes of a cylinder on its body, x towards the crank, and its piston, which does not turn against it."""
+    """Axes of a cylinder on its body, x towards the crank, and its piston, which does not turn on it."""
 
     def __init__(self, angle: float, bearing: Marker, on_frame: Marker, on_piston: Marker) -> None:
         self.angle, self.bearing, self.rail = angle, bearing, on_piston
@@ -103,7 +103,9 @@ def _hung(
     bearing: tuple[Marker, Marker],
     sense: float,
 ) -> tuple[ArticulatedMotion, float] | None:
-    """The motion by a rod on a master rod (``rods``, with their markers at wrist and knuckle), and the crank's angle.
+    """Return the motion by a rod on a master rod, and the crank's angle.
+
+    ``rods`` have their markers at wrist and knuckle.
 
     None where the other is no master rod. The master's head is on the side of the crank on which its rail's marker on
     the cylinder's body lies; of one on the axis, where its x axis points.
@@ -141,7 +143,7 @@ def _hung(
 
 
 def _between(joints: Sequence[Joint], kind: str, first: str, second: str) -> Iterator[tuple[Marker, Marker]]:
-    """Markers on the first and on the second body of all joints of a kind between them; slots are on the first."""
+    """Yield markers on both bodies of all joints of a kind between them; slots are on the first."""
     for joint in joints:
         if joint.kind.name == kind:
             if joint.bodies == (first, second):

@@ -60,7 +60,10 @@ class HeatRelease:
         return self.a * self.n / self.duration * since ** (self.n - 1) * np.exp(-self.a * since**self.n)
 
     def rate_slope(self, phi: np.ndarray) -> np.ndarray:
-        """Derivative of ``rate`` by angle (1/rad^2), after the start; 0 at the start where it is infinite there."""
+        """Return the derivative of ``rate`` by angle (1/rad^2) after the start.
+
+        At the start it is 0 if infinite there.
+        """
         u = np.maximum(0.0, (np.asarray(phi, float) - self.start) / self.duration)
         if self.n >= 2.0:
             rising = (self.n - 1.0) * u ** (self.n - 2.0)
@@ -95,7 +98,9 @@ def closed_pressure(
 
 
 def burned_integral(phi: np.ndarray, of: Callable[[np.ndarray], np.ndarray], release: HeatRelease) -> np.ndarray:
-    """(T,) integrals of a function of the angle over the burned fraction, from the start of burning to each phi.
+    """Return (T,) integrals of a function of the angle over the burned fraction, up to each phi.
+
+    They begin at the start of burning.
 
     0 before it.
     """

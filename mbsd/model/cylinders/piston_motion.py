@@ -86,7 +86,7 @@ class Moves(Protocol):
 
 
 def lowest(motion: Moves) -> float:
-    """Angle of the crank since the top dead centre at which the piston is farthest from it (rad), in 0 .. 2 pi."""
+    """Return the crank angle after top dead centre at which the piston is farthest (rad), 0 .. 2 pi."""
     grid = np.linspace(0.0, 2.0 * math.pi, LOOKS)
     k = int(motion.below(grid).argmax())
     low, high = float(grid[k - 1]), float(grid[k + 1])

@@ -45,7 +45,9 @@ class PressureTable(GasCycle):
 
 
 def pressure_table(angles: object, pressures: object, turns: int = 2, compression: float | None = None) -> GasCycle:
-    """Pressures (Pa, absolute) at rising angles (rad) from the top dead centre at which it fires, over one cycle.
+    """Return a cycle of absolute pressures (Pa) at rising angles (rad), over one cycle.
+
+    Angles count from the top dead centre at which it fires.
 
     ``turns`` of the crank in a cycle: 2 of a four-stroke engine, 1 of a two-stroke engine. The table may end where it
     begins, a cycle later. ``compression``: ratio of the largest to the least volume; without it volumes count from the

@@ -1,4 +1,4 @@
-"""The two-stroke cycle: compression, expansion with heat released after Wiebe, open ports about the bottom; one turn.
+"""Two-stroke cycle of one turn: compression, expansion with heat after Wiebe, open ports.
 
 p = p_scavenge (V_c / V)^n_c                                            ports closed, before it burns
 p = [p_s V_s^n_e + (n_e - 1) Q int V^(n_e - 1) dx_b] / V^n_e            until the ports open; s: start of burning
@@ -66,7 +66,9 @@ def two_stroke(
     ports_open: float = math.radians(110.0),
     passage: float = 0.0,
 ) -> GasCycle:
-    """A two-stroke cycle for :func:`gas_cycle`; angles (rad) from the top dead centre, which fires each time.
+    """Return a two-stroke cycle for :func:`gas_cycle`; angles (rad) count from the top dead centre.
+
+    It fires at each of them.
 
     ``compression``: ratio of the largest to the least volume, over the whole stroke. ``heat``: what the charge gives to
     the gas in all (J), or ``heat_density`` by the displaced volume (J/m^3); it burns from ``start`` over ``duration``

@@ -1,4 +1,4 @@
-"""Actuator between two points: a force that is constant or a law of time, as a cylinder or a linear motor gives it.
+"""Actuator between two points: a constant force or a law of time, as of a cylinder or linear motor.
 
     F = F(t)        along the line of the points, element LINE; or along the x axis of marker i, element AXIS
 
@@ -36,6 +36,9 @@ ACTUATOR = register(
 
 @ACTUATOR.adds
 def actuator(m: Model, name: str, i: Marker, j: Marker, force: Amount, along_axis: bool = False) -> Force:
-    """Force (N) between two points, a constant or a law of time: apart, or on j along the x axis of marker i."""
+    """Add a force (N) between two points, or on j along the x axis of marker i; positive pushes apart.
+
+    It is a constant or a law of time.
+    """
     params, laws = amount_given(m, name, "force", force)
     return add_force(m, ACTUATOR, name, i, j, {**params, "along_axis": bool(along_axis)}, laws)

@@ -1,4 +1,4 @@
-"""Bushing: springs and dampers along both axes of marker i, and a torsion spring, as of a rubber mount.
+"""Bushing: springs and dampers along both axes of marker i and a torsion spring, as a rubber mount.
 
     F_x = -k_x x - c_x x',   F_y = -k_y y - c_y y'        x, y: place of marker j in the frame of marker i
     T   = -k_t turn - c_t turn'                           turn = theta_j - theta_i - free_angle

@@ -1,4 +1,6 @@
-"""Revolute joint with clearance: a journal about marker j moves freely in a bearing about marker i until they touch.
+"""Revolute joint with clearance: a journal about marker j moves freely in a bearing until they touch.
+
+The bearing is about marker i.
 
     e = p_j - p_i,  n = e / |e|             eccentricity;  c = R_b - R_j: radial clearance
     depth  d = |e| - c                      d <= 0: free flight, no force
@@ -113,7 +115,7 @@ def clearance_joint(
     slip_speeds: Sequence[float] = (1e-4, 1e-3),
     start: Sequence[float] | None = (0.0, 0.0),
 ) -> Force:
-    """A pin with play: a journal in a bearing of ``radius`` (m), whose radius is smaller by ``clearance`` (m).
+    """Add a pin with play: a journal in a bearing of ``radius`` (m), smaller by ``clearance`` (m).
 
     Where they touch, the normal force is stiffness * depth^exponent * (1 + damping * rate of depth), never pulling.
     ``stiffness`` (N/m^exponent) is given, or follows by Hertz from the ``modulus`` (Pa) and ``poisson`` of the bearing

@@ -1,4 +1,4 @@
-"""Torque between two bodies by characteristic curves of their angle and of its rate, as of a motor or a soft stop.
+"""Torque between two bodies by curves of their angle and its rate, as of a motor or a soft stop.
 
     T = f(theta_j - theta_i) + g(omega_j - omega_i)        on body j, -T on body i; element TURN
 
@@ -52,7 +52,7 @@ def curve_of_angle(
     of_angle: Curve | None = None,
     of_rate: Curve | None = None,
 ) -> Force:
-    """Torque (N m) on ``second`` by characteristic curves of its angle against ``first`` (rad) and of the rate."""
+    """Add a torque (N m) on ``second`` by curves of its angle against ``first`` (rad) and of the rate."""
     laws = curves_given(m, name, of_angle=of_angle, of_rate=of_rate)
     return add_force(m, CURVE_OF_ANGLE, name, *origins(m, name, first, second), {}, laws)
 

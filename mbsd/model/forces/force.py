@@ -1,4 +1,4 @@
-"""Force at a point of a body, constant or a law of time, in a direction fixed in the world or in a body.
+"""Force at a point of a body, constant or a law of time, in a direction fixed in world or body.
 
     F = F(t) u        at marker j; u: x axis of marker i, on ground or on the body itself; element PUSH
 

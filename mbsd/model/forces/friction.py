@@ -1,4 +1,4 @@
-"""Friction of a joint from its actual reaction: Coulomb with Stribeck's rise at low speed, and viscous.
+"""Friction of a joint from its reaction: Coulomb with Stribeck's rise at low speed, and viscous.
 
     mu(s) = mu_k + (mu_s - mu_k) exp(-(s / s_S)^2)           s: sliding speed
     F     = -mu(s) tanh(s / s_0) (N + N_0) - c s             N_0: preload, as of a spring that presses

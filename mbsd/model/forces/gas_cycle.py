@@ -1,4 +1,4 @@
-"""Gas behind a piston over the cycle of an engine: its pressure follows from the volume and from the angle of a crank.
+"""Gas behind a piston over an engine's cycle: its pressure follows from volume and crank angle.
 
     F = A (p(phi, V) - p_out),   V = A (x - x_t + c),   phi = +-(theta_crank - theta_cylinder - fires_at)
                                                                                                         element AXIS

@@ -1,4 +1,4 @@
-"""Gas strut, as it carries tailgates and bonnets: a rod that is pushed into a cylinder of compressed nitrogen.
+"""Gas strut, as of tailgates and bonnets: a rod pushed into a cylinder of compressed nitrogen.
 
     s = L - l                                 how far the rod is pushed in;  l: distance of the points, L extended
     F = F_1 (g / (g - s))^n - c l' - F_R tanh(l' / v_0) + stops
@@ -89,8 +89,9 @@ def gas_strut(
     stop_stiffness: float = 1e6,
     stop_damping: float = 1.0,
 ) -> Force:
-    """Gas strut between two points: ``force`` (N) where it is extended to ``length`` (m), ``ratio`` times that where
-    it is pushed in by its ``stroke`` (m).
+    """Add a gas strut between two points, with ``force`` (N) at its full ``length`` (m).
+
+    Pushed in by its ``stroke`` (m) it has ``ratio`` times that force.
 
     ``exponent``: 1 for slow motion, up to 1.4 for fast. Damping (N s/m) while it gets shorter and while it gets longer;
     in the last ``end_way`` (m) of extending it rises to ``end_damping``. ``friction`` (N) is reached at some

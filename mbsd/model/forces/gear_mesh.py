@@ -151,7 +151,9 @@ def gear_mesh(
     least_approach: float = 1e-3,
     start: float | None = 0.0,
 ) -> Force:
-    """Two gears with play: as gear_pair, with teeth that yield and a ``backlash`` (m) on the pitch circles.
+    """Add two gears with play: elastic teeth and a ``backlash`` (m) on the pitch circles.
+
+    They are otherwise as of gear_pair.
 
     A flank that touches pushes along its line of action with stiffness * depth^exponent * (1 + damping * rate of
     depth), never pulling: ``stiffness`` in N/m^exponent, ``damping`` in s/m, or a ``restitution`` as for ``contact``.

@@ -1,4 +1,4 @@
-"""Attraction of two points by a power of their distance; with exponent -2 and a = -G m_i m_j that of masses.
+"""Attraction of two points by a power of their distance; of masses with -2 and a = -G m_i m_j.
 
     F = a l^n        l = |p_j - p_i|, element LINE; negative F pulls the points together
 
@@ -27,7 +27,10 @@ GRAVITATION = register(
 
 @GRAVITATION.adds
 def gravitation(m: Model, name: str, i: Marker, j: Marker, factor: float, exponent: float = -2.0) -> Force:
-    """Force factor * distance^exponent (N, apart positive) between two points; masses attract: -G m1 m2 and -2."""
+    """Add a force factor * distance^exponent (N) between two points; positive pushes them apart.
+
+    Masses attract each other with the factor -G m1 m2 and the exponent -2.
+    """
     params = {
         "factor": number_given(m, f"force '{name}': factor", factor),
         "exponent": number_given(m, f"force '{name}': exponent", exponent),

@@ -1,4 +1,4 @@
-"""Hydraulic cylinder between two points: two chambers of oil, a valve and a supply; its pressures are states.
+"""Hydraulic cylinder: two chambers of oil, a valve and a supply; its pressures are states.
 
     F = p_a A_a - p_b A_b - p_out (A_a - A_b) - F_R tanh(l' / v_0) + stops
     A_a = pi d^2 / 4,  A_b = pi (d^2 - d_r^2) / 4
@@ -196,8 +196,9 @@ def hydraulic_cylinder(
     stop_stiffness: float | None = None,
     stop_damping: float = 1.0,
 ) -> Force:
-    """Hydraulic cylinder between two points, which are ``retracted`` (m) apart with the rod fully in, and by ``stroke``
-    more with it fully out. Pressures are absolute (Pa), and results of the motion.
+    """Add a hydraulic cylinder between two points; pressures are absolute (Pa) and results of the motion.
+
+    The points are ``retracted`` (m) apart with the rod fully in, and by ``stroke`` more with it fully out.
 
     ``bore`` and ``rod``: diameters (m). ``valve``: its opening, a number or a law of time; 1 leads the pressure
     ``supply`` fully into the chamber of the whole piston and the other chamber to the ``tank``, -1 the other way

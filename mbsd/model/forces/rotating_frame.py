@@ -58,7 +58,7 @@ ROTATING_FRAME = register(
 
 @ROTATING_FRAME.adds
 def rotating_frame(m: Model, name: str, rate: Amount, centre: Sequence[float] = (0.0, 0.0)) -> Force:
-    """Ground turns about ``centre`` (m) at ``rate`` (rad/s, a constant or a law of time); all bodies feel it."""
+    """Turn ground about ``centre`` (m) at ``rate`` (rad/s, a constant or a law); all bodies feel it."""
     params, laws = amount_given(m, name, "rate", rate)
     params["centre"] = number_pair(f"{m.name}: force '{name}': centre", centre)
     middle = m.ground.at(*params["centre"])

@@ -1,4 +1,4 @@
-"""Shaft: what it yields in torsion between two bodies that turn about its axis, as a rotor and its flywheel.
+"""Shaft that yields in torsion between two bodies about its axis, as of a rotor and its flywheel.
 
     T = -k (theta_j - theta_i - free) - c (omega_j - omega_i)      on body j, -T on body i; element TURN
     k = G pi (D^4 - d^4) / (32 L)                                   D: diameter, d: bore, G: shear modulus
@@ -53,7 +53,7 @@ def shaft(
     damping: float = 0.0,
     free_angle: float = 0.0,
 ) -> Force:
-    """Shaft that twists between two bodies about its axis, by length and diameter (m) and ``shear_modulus`` (Pa).
+    """Add a shaft that twists between two bodies, by length, diameter (m) and ``shear_modulus`` (Pa).
 
     A ``bore`` (m) makes it hollow. ``damping`` in N m s/rad; no torque where second - first is ``free_angle`` (rad).
     The shear modulus is that of steel unless given.

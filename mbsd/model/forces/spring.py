@@ -21,7 +21,7 @@ from mbsd.model.mechanism import Model
 
 
 def constant_terms(force: Force, free: str) -> tuple[Term, Term]:
-    """Return the terms of a spring, linear or torsional, whose numbers are no laws; ``free`` names its free value."""
+    """Return the terms of a spring, linear or torsional, without laws; ``free`` names its free value."""
     p = force.params
     return Term(LINEAR, p.get("stiffness", 0.0), p.get(free, 0.0)), Term(DAMPING, p.get("damping", 0.0))
 

@@ -44,7 +44,7 @@ SPRING_LAW = register(
 
 @SPRING_LAW.adds
 def spring_law(m: Model, name: str, i: Marker, j: Marker, law: Callable[[float, float], float]) -> Force:
-    """Spring between the points of two markers by any function ``law(length, rate)`` (m, m/s) that gives N.
+    """Add a spring between two markers by any function ``law(length, rate)`` (m, m/s) that gives N.
 
     Positive pushes the points apart: ``lambda length, rate: -k * (length - free) - c * rate`` is a linear spring
     and damper. Python or compiled with numba.njit. What it gives counts as work, not as potential energy.

@@ -32,6 +32,6 @@ TORQUE = register(
 
 @TORQUE.adds
 def torque(m: Model, name: str, body: Body | str, torque: Amount, against: Body | str | None = None) -> Force:
-    """Torque (N m) on a body, a constant or a law of time; ``against`` (ground by default) takes the opposite."""
+    """Add a torque (N m) on a body, a constant or a law; ``against`` (default ground) takes the opposite."""
     params, laws = amount_given(m, name, "torque", torque)
     return add_force(m, TORQUE, name, *origins(m, name, m.ground if against is None else against, body), params, laws)

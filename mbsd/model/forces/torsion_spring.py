@@ -36,7 +36,9 @@ def torsion_spring(
     damping: Amount = 0.0,
     free_angle: Amount = 0.0,
 ) -> Force:
-    """Torsion spring (N m/rad) and damper (N m s/rad); no torque where second - first is ``free_angle`` (rad).
+    """Add a torsion spring (N m/rad) and damper (N m s/rad) between two bodies.
+
+    There is no torque where second - first is ``free_angle`` (rad).
 
     Each is a constant or a law of time.
     """

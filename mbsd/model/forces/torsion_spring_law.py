@@ -1,4 +1,4 @@
-"""Torsion spring by a law of the user: any function of the relative angle of two bodies and of its rate.
+"""Torsion spring by a law of the user: any function of two bodies' relative angle and its rate.
 
     T = law(theta_j - theta_i, omega_j - omega_i)        on body j, -T on body i; element TURN
 
@@ -43,7 +43,9 @@ TORSION_SPRING_LAW = register(
 def torsion_spring_law(
     m: Model, name: str, first: Body | str, second: Body | str, law: Callable[[float, float], float]
 ) -> Force:
-    """Torsion spring by any function ``law(angle, rate)`` (rad, rad/s) that gives the torque on ``second`` (N m).
+    """Add a torsion spring by any function ``law(angle, rate)``, which gives the torque on ``second``.
+
+    Units are rad, rad/s and N m.
 
     The angle is that of second against first: ``lambda angle, rate: -k * angle - c * rate`` is a linear one.
     """

@@ -1,4 +1,4 @@
-"""Tyre: a wheel on a road that carries like a spring and damper and pulls by the magic formula of its slip.
+"""Tyre: a wheel that carries as a spring and damper and pulls by the magic formula of its slip.
 
     depth    d = radius - height of the hub over the road;   N = k d + c d' where d > 0, never below 0
     slip     kappa = -(v + omega h) / sqrt(v^2 + v_0^2)      v: speed of the hub along the road, h: its height
@@ -64,7 +64,7 @@ def tyre(
     standstill: float = 0.1,
     profile: Curve | None = None,
 ) -> Force:
-    """Wheel of ``radius`` (m) about marker ``hub`` on a road: the x axis of a marker, or a profile y(x) there.
+    """Add a wheel of ``radius`` (m) about ``hub`` on a road: a marker's x axis, or a profile y(x) there.
 
     ``stiffness`` (N/m) and ``damping`` (N s/m) carry; ``grip`` D, ``slope`` B, ``shape`` C and ``curvature`` E of
     the magic formula pull by longitudinal slip, which is kept finite below ``standstill`` (m/s).

@@ -45,7 +45,7 @@ def user_force(
     breaks: Sequence[float] = (),
     shortest: float | None = None,
 ) -> Force:
-    """Forces on bodies by a function of the user, ``function(t, q, v)``, Python or compiled with numba.njit.
+    """Add forces on bodies by a user function ``function(t, q, v)``, Python or compiled with numba.njit.
 
     q and v hold x, y, theta and their rates of the bodies' frames, three numbers a body in the order given; the
     function returns fx, fy (N, at the frame's origin) and torque (N m) of each body in that order.

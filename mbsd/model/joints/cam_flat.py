@@ -1,4 +1,4 @@
-"""Cam and flat face: a straight face (the x axis of marker j) touches the cam's outline (marker i its frame).
+"""Cam and flat face: a face (the x axis of marker j) touches the cam's outline (frame: marker i).
 
     Phi = (p_j - p_i) . n - h(phi)        constraint `support`, 1 row, n the face's normal, h the cam's support function
 
@@ -35,7 +35,9 @@ CAM_FLAT = register(
 
 @CAM_FLAT.adds
 def cam_flat(m: Model, name: str, cam: Marker, face: Marker, profile: CamProfile | Mapping[str, Any]) -> Joint:
-    """A flat face (x axis of marker ``face``, its y axis away from the cam) on a cam with frame at marker ``cam``.
+    """Add a flat face on a cam with frame at marker ``cam``.
+
+    The face is the x axis of marker ``face``, whose y axis points away from the cam.
 
     ``profile``: from mbsd.cams.flat_cam or oscillating_flat_cam. Warns (ModelWarning) of an undercut.
     """

@@ -1,4 +1,4 @@
-"""Cam and roller: the roller's centre (marker j) stays on the pitch curve of the cam (marker i its frame).
+"""Cam and roller: the roller's centre (marker j) stays on the cam's pitch curve (frame: marker i).
 
     Phi = n . (p_j - c(u))        constraint `curve`, 1 row, c the pitch curve
 

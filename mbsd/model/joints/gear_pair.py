@@ -56,7 +56,9 @@ def gear_pair(
     teeth: Sequence[int] | None = None,
     module: float | None = None,
 ) -> Joint:
-    """Two gears with centres at i and j, by pitch radii (m), or by ``teeth`` (z_i, z_j) and ``module`` (m).
+    """Add two gears with centres at i and j, by pitch radii (m), or by ``teeth`` and ``module`` (m).
+
+    ``teeth`` are (z_i, z_j).
 
     ``internal``: i is the ring around j. They mesh as they stand at the start; ``phase`` gives angles of both
     bodies (rad) that belong together. At the start they must stand radius_i + radius_j apart, a ring and the gear

@@ -58,7 +58,9 @@ MOST_SLOTS = 1000
 
 @GENEVA.adds
 def geneva(m: Model, name: str, crank: Marker, wheel: Marker, slots: int, radius: float) -> Joint:
-    """A Geneva: the pin at ``radius`` (m) on the x axis of marker ``crank`` indexes a wheel with ``slots`` slots.
+    """Add a Geneva: the pin at ``radius`` (m) on the x axis of ``crank`` indexes a wheel with slots.
+
+    ``slots`` is their number.
 
     The x axis of marker ``wheel`` is a slot. The radius must be the distance of the centres times sin(pi / slots).
     """

@@ -1,4 +1,4 @@
-"""Pin in slot (point on line): the point of marker j moves along the x axis of marker i and turns freely.
+"""Pin in slot (point on line): marker j moves along the x axis of marker i and turns freely.
 
     Phi = n_i . (p_j - p_i)        constraint `slot`, 1 row
 

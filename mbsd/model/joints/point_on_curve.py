@@ -1,4 +1,4 @@
-"""Point on curve: the point of marker j lies on a smooth curve fixed to marker i, or beside it at a fixed distance.
+"""Point on curve: marker j lies on a smooth curve fixed to marker i, or at a fixed distance from it.
 
     Phi = n . (p_j - c(u)) - D        constraint `curve`, 1 row, c(u) the curve's point nearest to p_j
 

@@ -42,7 +42,7 @@ def rack_and_pinion(
     teeth: int | None = None,
     module: float | None = None,
 ) -> Joint:
-    """A pinion about marker ``pinion`` on the x axis of marker ``rack``, by its pitch radius (m), or by teeth.
+    """Add a pinion about ``pinion`` on the x axis of ``rack``, by its pitch radius (m), or by teeth.
 
     At the start its centre must stand as far above that axis, on the side of its y axis, as its radius, or
     module z / 2 by ``teeth`` and ``module`` (AssemblyError).

@@ -33,6 +33,6 @@ ROLLING_DISC = register(
 def rolling_disc(
     m: Model, name: str, line: Marker, disc: Marker, radius: float, phase: Sequence[float] | None = None
 ) -> Joint:
-    """A disc of the given radius (m) about marker ``disc`` rolls on the y side of marker ``line``'s x axis."""
+    """Add a disc of this radius (m) about ``disc`` that rolls on the y side of ``line``'s x axis."""
     radii = radii_given(m, name, radius=radius)
     return join(m, ROLLING_DISC, name, line, disc, None, **radii, phase=phase_given(m, name, phase))

@@ -1,4 +1,6 @@
-"""Rolling on a curve: a disc of radius r about marker j rolls without slip on a curve fixed to marker i, on its left.
+"""Rolling on a curve: a disc about marker j rolls without slip on the left of a curve.
+
+The disc has the radius r, and the curve is fixed to marker i.
 
     Phi_1 = n . (p_j - c(u)) - r            constraint `curve`, 1 row
     Phi_2 = s - r (beta - a) - c            constraint `curve_rolling`, 1 row
@@ -54,7 +56,9 @@ def rolling_on_curve(
     radius: float,
     closed: bool = False,
 ) -> Joint:
-    """A disc of the given radius (m) about marker ``disc`` rolls on the left of a curve through ``points`` (k, 2).
+    """Add a disc of this radius (m) about ``disc`` that rolls on the left of a curve through ``points``.
+
+    ``points`` is (k, 2).
 
     The points are in the axes of marker ``curve`` (m); beyond its ends an open curve goes on straight.
     """

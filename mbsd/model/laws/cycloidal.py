@@ -1,4 +1,6 @@
-"""Cycloidal:  f = start + rise (u - sin(2 pi u) / 2 pi),  u = (t - begin) / duration, dwelling before and after.
+"""Cycloidal law:  f = start + rise (u - sin(2 pi u) / 2 pi),  u = (t - begin) / duration.
+
+It dwells before and after.
 
 Source: Norton, Design of Machinery, ch. 8 (cam laws).
 """
@@ -62,6 +64,6 @@ class Cycloidal(Motion):
 
 
 def cycloidal(rise: float, duration: float, begin: float = 0.0, start: float = 0.0) -> Motion:
-    """From ``start`` to ``start + rise`` within ``duration`` seconds after ``begin``, at rest before and after."""
+    """Return a rise from ``start`` by ``rise`` within ``duration`` (s) after ``begin``, else at rest."""
     refuse_non_finite("cycloidal", rise=rise, duration=duration, begin=begin, start=start)
     return Cycloidal(float(rise), float(duration), float(begin), float(start))

@@ -1,4 +1,4 @@
-"""At least one example of every law; the test of all laws walks through them and refuses a law without one."""
+"""Examples of every law, at least one each; the test of all laws needs them."""
 
 from __future__ import annotations
 

@@ -121,7 +121,7 @@ class Function(WithFunctions, Motion):
 
 @dataclass(frozen=True, eq=False)
 class Fitted(Function):
-    """A function as pieces between ``first`` and ``last`` (s); ``breaks`` are where it or a derivative jumps."""
+    """Function as pieces between ``first`` and ``last`` (s); at ``breaks`` it or a derivative jumps."""
 
     law: Compiled = field(default=(0, np.zeros(1)))
     first: float = 0.0

@@ -53,7 +53,7 @@ class Motion:
         return self.over(first, last)
 
     def compiled(self, first: float, last: float) -> Compiled:
-        """The law as kernels evaluate it over ``first`` .. ``last`` (s): quintic pieces unless the law knows better.
+        """Return the law for kernels over ``first`` .. ``last`` (s): quintic pieces by default.
 
         Raises ModelError where f or f' jumps, and where f' and f'' are not the derivatives of f.
         """

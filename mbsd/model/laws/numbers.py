@@ -33,7 +33,10 @@ def hermite_pieces(x: np.ndarray, samples: np.ndarray, periodic: bool = False) -
 
 
 def hermite_coefficients(h: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """(p, 6) quintics over widths h (p,) from value and two derivatives (p, 3) at both ends, lowest power first."""
+    """Return (p, 6) quintics over widths h (p,) from value and two derivatives (p, 3) at both ends.
+
+    Coefficients go from the lowest power up.
+    """
     f, df, ddf = left.T
     rise = right[:, 0] - f - h * df - h**2 * ddf / 2
     return quintic_coefficients(h, left, rise, (right[:, 1] - df - h * ddf) * h, (right[:, 2] - ddf) * h**2)
@@ -42,7 +45,10 @@ def hermite_coefficients(h: np.ndarray, left: np.ndarray, right: np.ndarray) -> 
 def quintic_coefficients(
     h: np.ndarray, left: np.ndarray, rise: np.ndarray, slope: np.ndarray, bend: np.ndarray
 ) -> np.ndarray:
-    """(p, 6) from what the right ends have beyond the parabola at the left: f, h f' and h^2 f'', each (p,)."""
+    """Return (p, 6) coefficients from the right ends' differences from the parabola at the left.
+
+    The differences are those of f, h f' and h^2 f'', each (p,).
+    """
     c3, c4, c5 = 10 * rise - 4 * slope + bend / 2, -15 * rise + 7 * slope - bend, 6 * rise - 3 * slope + bend / 2
     f, df, ddf = left.T
     return np.column_stack([f, df, ddf / 2, c3 / h**3, c4 / h**4, c5 / h**5])
@@ -61,7 +67,7 @@ def spline_pieces(spline: Any, periodic: bool = False) -> Compiled:
 
 
 def evaluated(law: Compiled, x: np.ndarray) -> np.ndarray:
-    """(T, 3) value, first and second derivative of pieces or a polynomial at x (T,), to the bit as by kernels."""
+    """Return (T, 3) value and two derivatives of pieces or a polynomial at x (T,), bit for bit as kernels."""
     kind, numbers = law
     assert kind in (PIECES, POLYNOMIAL), "other laws evaluate themselves"
     beyond = np.zeros(len(x))

@@ -1,4 +1,4 @@
-"""The crank of a motion: the body on a pin of ground that turns round and round, by whose angle engineers count.
+"""Crank of a motion: the body on a pin of ground that turns round and round, the engineers' clock.
 
 A vector in the plane that swings harmonically: one part turns with the crank, one against it.
 
@@ -20,7 +20,7 @@ WHOLE = 1e-6
 
 
 def crank_of(sol: Any) -> str:
-    """Name of the crank: of bodies that turn one way by a turn at least, one that a driver turns, else the first added.
+    """Return the crank's name: of bodies that turn a whole turn one way, a driven one, else the first.
 
     ``sol`` is the Solution. Raises ModelError where none does.
     """

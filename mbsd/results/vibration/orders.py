@@ -1,4 +1,4 @@
-"""Harmonics of what repeats with the crank: amplitude and phase, and which part of a vector turns with the crank.
+"""Harmonics of a quantity that repeats with the crank: amplitude, phase, forward and backward parts.
 
     f(phi) = mean + sum_k amplitude_k cos(k phi + phase_k)                        a scalar, or a component of a vector
     fx + i fy = mean + sum_k [forward_k e^(i k phi) + backward_k e^(-i k phi)]    a vector
@@ -65,7 +65,9 @@ class Orders(Turning):
 
 
 def orders(crank: str, angle: np.ndarray, values: np.ndarray, turns: int | None = None) -> Orders:
-    """Harmonics of ``values`` (T,) or (T, 2) over the last cycle of a crank, whose ``angle`` (T,) goes one way (rad).
+    """Return harmonics of ``values`` (T,) or (T, 2) over the last cycle of a crank of ``angle`` (T,).
+
+    The angle (rad) goes one way.
 
     A cycle has ``turns`` whole turns; None takes the least number after which the quantity repeats, and one turn where
     it does not repeat, which ``gap`` tells. Raises ModelError for less than a cycle and an angle that goes back.
@@ -113,7 +115,10 @@ def _direction(crank: str, angle: np.ndarray, values: np.ndarray) -> float:
 
 
 def _gap(turned: np.ndarray, values: np.ndarray, turns: int) -> float:
-    """How far the last turn is from the one ``turns`` before, or its end where no more is known, of the largest."""
+    """Return the relative gap of the last turn to the one ``turns`` before, or of its end.
+
+    It is relative to the largest value; its end counts if no more is known.
+    """
     largest = float(np.abs(values).max())
     if largest == 0.0:
         return 0.0

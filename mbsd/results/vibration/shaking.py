@@ -25,7 +25,7 @@ from mbsd.results.views import Wrench
 
 @dataclass(frozen=True)
 class Shaking(Wrench):
-    """Force (N) and moment (N m, about ``x``, ``y``) of the inertia of all bodies on the frame, (T,) arrays."""
+    """Force (N) and moment (N m, about ``x``, ``y``) of all bodies' inertia on the frame, (T,) arrays."""
 
     mx: np.ndarray
     """(T,) couple about the x axis (N m), of bodies in different places z."""
@@ -47,7 +47,7 @@ class Shaking(Wrench):
 
 @dataclass(frozen=True)
 class Planes:
-    """Where moving bodies lie along the normal of the plane: (nb,) z (m), (nb, 2) products of inertia (kg m^2)."""
+    """Places of moving bodies along the normal: (nb,) z (m), (nb, 2) products of inertia (kg m^2)."""
 
     z: np.ndarray
     products: np.ndarray
@@ -90,7 +90,7 @@ class PointView(Suggesting):
 def shaking(
     packed: Packed, planes: Planes, q: np.ndarray, v: np.ndarray, a: np.ndarray, about: tuple[float, float, float]
 ) -> Shaking:
-    """From poses, velocities and accelerations (T, nb, 3) of centres of mass, about a place (x, y, z) on ground (m)."""
+    """Return shaking forces from (T, nb, 3) motions of centres of mass, about (x, y, z) on ground (m)."""
     mass, inertia = packed.system.mass[1:], packed.system.inertia[1:]
     push = -mass[:, None] * a[:, 1:, :2]
     arm = q[:, 1:, :2] - np.asarray(about[:2])
@@ -116,7 +116,7 @@ def _first_moments(
 
 
 def centre_of_mass(packed: Packed, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> PointView:
-    """Centre of mass of all moving bodies, from (T, nb, 3) of theirs. Raises ModelError where none has mass."""
+    """Return the centre of mass of all moving bodies, from (T, nb, 3). Raises ModelError without mass."""
     mass = packed.system.mass[1:]
     if not mass.sum() > 0:
         raise ModelError(f"{packed.name}: no body has mass, so there is no centre of mass; give masses to the bodies")

@@ -87,7 +87,7 @@ def run(name: str, scale: str = "") -> None:
             raise
         raise UserError(f"{error}; {what_shrinks(at)}") from error
     write_clearance(out.clearance, checked)
-    stage.done()
+    stage.record()
     say("clearance", _summary(checked, out.title) + _parted(parts, motion))
 
 

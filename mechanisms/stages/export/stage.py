@@ -49,7 +49,7 @@ def run(name: str, form: str, time: float = 0.0) -> None:
     inputs = loaded.joined(recorder.inputs())
     file = file_of(out, form)
     write_bytes(file, content)
-    Stage(out, f"export-{form}", _key(parts, inputs, form, time), [file]).done(inputs=inputs.names(), time=time)
+    Stage(out, f"export-{form}", _key(parts, inputs, form, time), [file]).record(inputs=inputs.names(), time=time)
     for words in left_out:
         warn("export", f"{name}: left out: {words}")
     say("export", f"{name}: {file}: {len(content) / 1000:.0f} kB")

@@ -187,7 +187,7 @@ def is_worth_it(error: UserError, seconds: float) -> bool:
 def remember(out: Out, error: UserError, key: str, reads: list[str], inputs: Inputs) -> None:
     """Remember that parts with this key were refused."""
     notes: dict[str, Any] = {"parameters": reads, "inputs": inputs.names(), "words": str(error)}
-    Stage(out, STAGE, key, []).done(**notes)
+    Stage(out, STAGE, key, []).record(**notes)
 
 
 def forget(out: Out) -> None:

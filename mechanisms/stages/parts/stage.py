@@ -85,7 +85,7 @@ def run(name: str, scale: str = "", anyway: bool = False) -> None:
     count = _write(out, made.files, made.document)
     outputs = [out.parts, *(out.parts_folder / file for file in made.files)]
     notes = {"parameters": made.reads, "inputs": made.inputs.names(), **({} if with_machine else {MACHINE: False})}
-    Stage(out, "parts", made.document.provenance.inputs, outputs).done(**notes)
+    Stage(out, "parts", made.document.provenance.inputs, outputs).record(**notes)
     _kept_pieces(out).clear()
     memory.forget(out)
     say("parts", _summary(out.title, made.document, count))

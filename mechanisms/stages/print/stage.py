@@ -70,7 +70,7 @@ def run(name: str, bed: str = "", gap: str = "", scale: str = "") -> None:
         if path.suffix in (".3mf", ".stl", ".dxf") and path.name not in files:
             path.unlink()
     stage.outputs = [out.print_folder / file for file in files]
-    stage.done(bed=bed or BED, gap=gap or GAP)
+    stage.record(bed=bed or BED, gap=gap or GAP)
     _tell_large(out.title, [part for part in made if part.bed], size, at.ratio if at else 1.0)
     if at is not None:
         _tell_thin(out.title, made)

@@ -63,7 +63,7 @@ def run(name: str, parts_are_outdated: bool = False) -> None:
     motion.provenance.inputs = key
     write_skeleton(out.skeleton, skeleton_of(solution, motion.provenance))
     contract.write_motion(out.motion, motion)
-    Stage(out, "solve", key, [out.motion, out.skeleton]).done(inputs=inputs.names())
+    Stage(out, "solve", key, [out.motion, out.skeleton]).record(inputs=inputs.names())
     console.say("solve", f"{name}: {_summary(solution)}")
 
 

@@ -53,5 +53,5 @@ def run(name: str, preset: Preset) -> None:
     buffer = io.BytesIO()
     page.save(buffer, format="PNG", optimize=True)
     write_bytes(target, buffer.getvalue())
-    stage.done()
+    stage.record()
     say(WORD, f"{out.name}: {target}")

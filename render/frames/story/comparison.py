@@ -175,7 +175,7 @@ def run(name: str, preset: Preset, sound: str = "") -> None:
         wav_of(film).unlink(missing_ok=True)
         write_bytes(film, silent.read_bytes())
     write_bytes(subtitles, srt(story.captions).encode())
-    stage.done()
+    stage.record()
     words = "with the sound of both" if heard else "silent"
     say("film", f"{outs[1].name}: {film}: {story.seconds:.1f} s, {story.fps} frames a second, {words}")
 
@@ -190,7 +190,7 @@ def _silent_film(outs: list[Out], preset: Preset, pair: Pair, film: Path) -> Pat
     if not stage.is_fresh():
         made = [rendered(out, part, telling) for out, telling in zip(outs, pair.tellings, strict=True)]
         encoded(_side_by_side(preset, made), pair.tellings[0].story, pair.drawing, preset, target)
-        stage.done()
+        stage.record()
     return target
 
 

@@ -49,7 +49,7 @@ def run(name: str, preset: Preset, show: str = "", loop: float = 0.0, sound: str
         wav_of(film).unlink(missing_ok=True)
         write_bytes(film, silent.read_bytes())
     write_bytes(subtitles, srt(story.captions).encode())
-    stage.done()
+    stage.record()
     say(
         "film",
         f"{out.name}: {film}: {story.seconds:.1f} s, {story.fps} frames a second, {_size(film)}, subtitles beside it",
@@ -67,7 +67,7 @@ def _silent_film(out: Out, preset: Preset, show: str, loop: float, telling: Tell
     stage = Stage(out, film.stem.replace(out.name, "pictures", 1), _key(out, preset, show, loop), [target])
     if not stage.is_fresh():
         encoded(rendered(out, preset, telling).pages(), telling.story, telling.drawing, preset, target)
-        stage.done()
+        stage.record()
     return target
 
 

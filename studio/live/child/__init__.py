@@ -1,1 +1,1 @@
-"""The process in which the author's code runs, forked from one that is warm; it may loop, crash or die."""
+"""Process that runs the author's code, forked from a warm one; it may loop, crash or die."""

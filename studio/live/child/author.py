@@ -1,4 +1,4 @@
-"""The author's mechanism in this process: loaded once, solved with any numbers of its Params."""
+"""The author's mechanism: loaded once, solved with any numbers of its Params."""
 
 from __future__ import annotations
 
@@ -26,14 +26,17 @@ from studio.live.numbers import changed
 
 @dataclass
 class Answer:
-    """A solved motion, and what the page should know beside it."""
+    """Solved motion with what the page shows beside it."""
 
     payload: bytes
     stop: Stop | None
 
 
 class Author:
-    """mechanism.py and shot.py of one mechanism or variant. Raises UserError where they cannot be loaded."""
+    """Files mechanism.py and shot.py of one mechanism or variant.
+
+    Raises UserError if they cannot be loaded.
+    """
 
     def __init__(self, name: str, tell_files: Callable[[list[Path]], None]) -> None:
         self.name = name
@@ -51,16 +54,16 @@ class Author:
         """Numbers of Params that move no driver, once they are known."""
 
     def changed(self, values: dict[str, float]) -> Any:
-        """Params with these numbers."""
+        """Return Params with these numbers."""
         with loading.author_code(self.name):
             return changed(self.params, values)
 
     def build(self, p: Any) -> Mechanism:
-        """The mechanism of these Params."""
+        """Return the mechanism of these Params."""
         return solving.build(self.name, self.module, p)
 
     def answer(self, values: dict[str, float], quick: bool = False, arrows: bool = True) -> Answer:
-        """Solve with these numbers; ``quick`` for a slider that moves on, if need be with ``arrows``.
+        """Solve with these numbers; ``quick`` for a slider in motion, with ``arrows`` if wanted.
 
         Raises UserError.
         """
@@ -76,7 +79,10 @@ class Author:
         return Answer(encode(shown, compress=False), stop)
 
     def payload(self, values: dict[str, float], quick: bool = False) -> dict[str, Any]:
-        """What a page shows of the motion with these numbers; raises UserError also where it does not reach its end."""
+        """Return the page's payload of the motion with these numbers.
+
+        Raises UserError, also if the motion does not reach its end.
+        """
         p = self.changed(values)
         m = self.build(p)
         sources, _ = give_masses(m, self._fitting(m))
@@ -84,7 +90,7 @@ class Author:
         return self._shown.payload(solution, self._fitting(m), sources, self._shot_of(m), quick)
 
     def solid(self) -> bytes | None:
-        """What the payload says of the parts of the motion solved last, as the file has it; None without parts."""
+        """Return the payload of the parts of the last motion as the file has it; None without parts."""
         m = self.build(self.params)
         parts = self._fitting(m)
         return None if parts is None else self._shown.solid(parts, self._shot_of(m), Out(self.name).parts_folder)
@@ -93,7 +99,7 @@ class Author:
         return solving.motion_of(self.name, self.module, m, p)
 
     def _parts(self) -> contract.Parts | None:
-        """Return the parts if there are any that can be read; they are rebuilt meanwhile."""
+        """Return the readable parts, if any; they are rebuilt meanwhile."""
         out = Out(self.name)
         try:
             return contract.read_parts(out.parts, out.name) if out.parts.is_file() else None
@@ -101,14 +107,14 @@ class Author:
             return None
 
     def _fitting(self, m: Mechanism) -> contract.Parts | None:
-        """The parts, where they have the bodies of ``m``; after an edit they may be of an older model."""
+        """Return the parts if they have the bodies of ``m``; after an edit they may be outdated."""
         if self.parts is None:
             return None
         solids = {*bodies_of(self.parts), *self.parts.without_solids} - {"ground"}
         return self.parts if solids == set(m.bodies) - {"ground"} else None
 
     def _shot(self) -> Shot | None:
-        """What shot.py says; an error in it is reported and leaves the motion as it is."""
+        """Return the shot of shot.py; an error in it is reported and leaves the motion as it is."""
         if not loading.has(self.name, "shot"):
             return None
         return said(lambda: self._checked(loading.load(self.name, "shot").shot))
@@ -120,12 +126,12 @@ class Author:
         return shot
 
     def _shot_of(self, m: Mechanism) -> Shot | None:
-        """The shot, if the points whose trails it shows are there."""
+        """Return the shot if the points whose trails it shows exist."""
         named = [trail.point for trail in self.shot.trails] if self.shot is not None and self.shot.trails else []
         return self.shot if all(point in m.traces for point in named) else None
 
     def _files(self, read: dict[str, str]) -> list[Path]:
-        """The author's own files that were loaded or read."""
+        """Return the author's own files that were loaded or read."""
         files = {path_of(name) for name in read}
         package = loading.package_of(self.name)
         for file in ("mechanism", "shot"):
@@ -135,7 +141,7 @@ class Author:
 
 
 def said(function: Callable[[], Any]) -> Any:
-    """What ``function`` returns; None where it raises a UserError, which is reported."""
+    """Return the result of ``function``; None after a UserError, which is reported."""
     try:
         return function()
     except UserError as error:

@@ -1,4 +1,4 @@
-"""The numbers that a mechanism.py would have if it held another source: what was changed in it may have no effect."""
+"""Numbers that a mechanism.py would have with another source: a change in it may have no effect."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from studio.live.numbers import numbers_of
 
 
 def numbers_with(name: str, source: bytes) -> list[dict[str, Any]]:
-    """Numbers of Params, with ``source`` in place of the file's. This process is of no other use after it.
+    """Return the numbers of Params with ``source`` in place of the file's.
+
+    This process is of no other use afterwards.
 
     Raises UserError where it cannot be loaded.
     """

@@ -1,4 +1,4 @@
-"""Which numbers of a model a number of Params decides, and what that says of its unit.
+"""Numbers of a model that a number of Params decides, and the unit that follows.
 
 Lengths are found by Euler's theorem: a place F of the model grows as the lengths x that decide it do, F = sum of
 x dF/dx over all numbers that change it, which no angle and no ratio among them obeys. A number that is itself a mass, a
@@ -35,7 +35,7 @@ RATES = {"drive_angle": "rad/s", "drive_relative_angle": "rad/s", "drive_distanc
 
 @dataclass(frozen=True)
 class Decided:
-    """What each number of Params decides."""
+    """Numbers of the model that each number of Params decides."""
 
     model: dict[str, Any]
     """Its values, by path."""
@@ -44,7 +44,7 @@ class Decided:
     lengths: frozenset[str]
 
     def unit(self, number: Number) -> str:
-        """The unit that the model tells; empty where it tells none."""
+        """Return the unit that the model implies; empty if it implies none."""
         if number.name in self.lengths:
             return "m"
         units = {self._own_unit(path, number.value, slope) for path, slope in self.slopes.get(number.name, {}).items()}
@@ -52,7 +52,7 @@ class Decided:
         return units.pop() if len(units) == 1 else ""
 
     def axis(self, number: Number, k: int) -> str:
-        """``x`` or ``y`` where a number moves places along that axis alone and is the first or second of a pair."""
+        """Return ``x`` or ``y`` if number k of a pair moves places along that axis alone, else ""."""
         keys = {path.rsplit("/", 1)[-1] for path in self.slopes.get(number.name, {})}
         return "xy"[k] if keys == {"xy"[k]} else ""
 
@@ -68,7 +68,7 @@ class Decided:
 
 
 def decided_by(author: Author, numbers: list[Number]) -> Decided:
-    """By differences."""
+    """Return the numbers of the model that each number of Params decides, by differences."""
 
     def model(values: dict[str, float]) -> dict[str, Any]:
         return dict(_values(author.build(author.changed(values))))
@@ -87,7 +87,7 @@ def decided_by(author: Author, numbers: list[Number]) -> Decided:
 
 
 def _lengths(model: dict[str, Any], slopes: dict[str, dict[str, float]], values: dict[str, float]) -> frozenset[str]:
-    """Numbers that decide some place together as lengths do, and nothing that no length decides."""
+    """Return the numbers that decide some place together, as lengths do, and nothing but lengths."""
     deciding: dict[str, dict[str, float]] = {}
     for name, paths in slopes.items():
         for path, slope in paths.items():
@@ -105,7 +105,7 @@ def _lengths(model: dict[str, Any], slopes: dict[str, dict[str, float]], values:
 
 
 def _is_other(path: str) -> bool:
-    """Whether no length decides it: masses, weight, laws, velocities, and what forces are made of."""
+    """Return True if no length decides it: masses, weight, laws, velocities, parameters of forces."""
     table, *_, key = path.split("/")
     return (
         key == "mass"
@@ -116,7 +116,7 @@ def _is_other(path: str) -> bool:
 
 
 def _values(m: Mechanism) -> Iterator[tuple[str, Any]]:
-    """Values of a model, by path."""
+    """Yield the values of a model with their paths."""
     yield from _flat("gravity", m.gravity)
     for name, body in m.bodies.items():
         if name != "ground":

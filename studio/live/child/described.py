@@ -1,4 +1,4 @@
-"""What people call the numbers of Params: ``tracer[0]`` is "tracer x", in m.
+"""Names that people give the numbers of Params: ``tracer[0]`` is "tracer x", in m.
 
 An author may say so, where one string serves all numbers of a tuple,
 
@@ -31,7 +31,7 @@ WORDS = {"metres": "m", "millimetres": "mm", "kilograms": "kg", "seconds": "s", 
 
 
 def described(author: Author) -> dict[str, dict[str, str]]:
-    """``label`` of each number of Params, and ``unit``, empty where nobody tells."""
+    """Return ``label`` and ``unit`` of each number of Params; a unit is empty if nothing gives it."""
     numbers = numbers_of(author.params)
     said, comments = _metadata(author.params), _comments(author)
     decided = decided_by(author, numbers)
@@ -78,7 +78,7 @@ def _metadata(params: Any) -> dict[str, Mapping[str, Any]]:
 
 
 def _comments(author: Author) -> dict[str, str]:
-    """What stands behind the fields of Params in their lines of mechanism.py."""
+    """Return the comments behind the fields of Params in mechanism.py."""
     try:
         source = mechanism_file(author.name).read_text("utf-8-sig")
         tree = ast.parse(source)
@@ -99,7 +99,7 @@ def _comments(author: Author) -> dict[str, str]:
 
 
 def _in_comment(comment: str, k: int, size: int) -> str:
-    """A unit in brackets, or one that is the comment's first word or stands behind its last comma."""
+    """Return the unit in a comment: in brackets, as its first word or behind its last comma."""
     bracketed = [unit for unit in re.findall(r"\(([^()]*)\)", comment) if UNIT.fullmatch(unit)]
     if bracketed:
         return bracketed[k] if len(bracketed) == size else bracketed[0] if len(bracketed) == 1 else ""
@@ -113,6 +113,6 @@ def _in_comment(comment: str, k: int, size: int) -> str:
 
 
 def _listed(comment: str, k: int, size: int) -> str:
-    """The names of a tuple's numbers where the comment is a list of them."""
+    """Return the name of a tuple's number k if the comment lists the names; else ""."""
     words = [word.strip() for word in comment.split(",")]
     return words[k] if len(words) == size > 1 and all(re.fullmatch(r"[\w-]+", word) for word in words) else ""

@@ -1,4 +1,4 @@
-"""Dragging a joint or a traced point: the least change of the lengths that brings it where it is dragged.
+"""Dragging a joint or traced point: the least change of lengths that brings it to the new place.
 
 Of all numbers x with P(x) = to, the one nearest to those x0 at which the drag began, in parts of their sizes s:
 
@@ -44,7 +44,7 @@ STEPS = 60
 def dragged(
     author: Author, values: dict[str, float], thing: dict[str, str], time: float, to: list[float]
 ) -> dict[str, float]:
-    """``values`` with those that bring a joint or point to the place ``to`` (m) at ``time`` (s), as near as may be.
+    """Return ``values`` that bring a joint or point nearest to ``to`` (m) at ``time`` (s).
 
     Raises UserError where it has no place that lengths decide.
     """
@@ -76,7 +76,7 @@ def dragged(
 def _at_start(
     author: Author, values: dict[str, float], thing: dict[str, str], time: float, to: list[float], base: Mechanism
 ) -> dict[str, float]:
-    """Where forces move the mechanism: numbers that put the thing there in the start pose."""
+    """Return numbers that put the thing at ``to`` in the start pose, if forces move the mechanism."""
     if time > 0:
         raise UserError(
             f"{author.name}: forces move it, so numbers decide where '{thing['name']}' is at its start alone, not at "
@@ -106,7 +106,7 @@ def _at_start(
 
 
 def _found(names: list[str], start: np.ndarray, x: np.ndarray) -> dict[str, float]:
-    """The numbers that have changed, in as many digits as are written."""
+    """Return the changed numbers, in as many digits as are written."""
     changed = np.flatnonzero(np.abs(x - start) > 1e-9 * np.abs(start))
     return in_digits({names[k]: float(x[k]) for k in changed})
 
@@ -127,7 +127,10 @@ def _start_place(author: Author, values: dict[str, float], thing: dict[str, str]
 
 
 def lengths(author: Author, values: dict[str, float]) -> tuple[list[str], np.ndarray]:
-    """Numbers of Params that move no driver, and their values now; one that the model does not take is none."""
+    """Return names and values (n,) of numbers of Params that move no driver.
+
+    Numbers that the model does not take are left out.
+    """
     p = author.changed(values)
     now = {number.name: number.value for number in numbers_of(p) if not number.whole}
     grid = np.linspace(0.0, 1.0, 5)
@@ -149,7 +152,7 @@ def lengths(author: Author, values: dict[str, float]) -> tuple[list[str], np.nda
 def _nearest(
     places: Places, extent: float, start: np.ndarray, size: np.ndarray, delta: np.ndarray, to: np.ndarray
 ) -> np.ndarray:
-    """The numbers (k,) that bring the thing to ``to``, nearest to ``start``."""
+    """Return the numbers (k,) nearest to ``start`` that bring the thing to ``to``."""
     least = np.where(start > 0, LEAST * size, -np.inf)
     most = np.where(start < 0, -LEAST * size, np.inf)
     x = best = start

@@ -1,4 +1,4 @@
-"""The lengths of Params that make a traced point follow a drawn path."""
+"""Fit of the lengths of Params so that a traced point follows a drawn path."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PERIOD = 0.1
 
 
 def fitted(author: Author, request: dict[str, Any], reply: Callable[..., None]) -> None:
-    """Fit, and reply with progress and what was found. Raises UserError.
+    """Fit, and send progress and result to ``reply``. Raises UserError.
 
     ``request``: point, path ([[x, y], ...] in m), closed, ordered, vary ({name: [low, high]}, or null for all lengths
     within the ranges of their sliders), starts, generations, seed, grashof, least_transmission (rad); values are where

@@ -1,4 +1,4 @@
-"""The child's loop: it reads requests from a pipe, and answers with frames (studio/live/frames.py).
+"""Loop of the child: it reads requests from a pipe and answers with frames (studio/live/frames.py).
 
     {"do": "open"}                                 -> motion, with numbers and files
     {"do": "set", "values": {...}}                 -> motion

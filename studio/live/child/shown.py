@@ -23,7 +23,7 @@ OF_PARTS = ("bodies", "arrows", "arcs", "trails", "clearance", "solid")
 
 
 class Shown:
-    """Makes payloads of one mechanism; ``quick`` ones keep size of symbols and extent of the last whole one."""
+    """Payloads of one mechanism; ``quick`` ones keep symbol size and extent of the last whole one."""
 
     def __init__(self) -> None:
         self._last: Moving | None = None
@@ -38,7 +38,10 @@ class Shown:
         quick: bool,
         arrows: bool = True,
     ) -> dict[str, Any]:
-        """The payload without its parts; raises UserError for a shot that names what is not there."""
+        """Return the payload without its parts.
+
+        Raises UserError for a shot that names something missing.
+        """
         skeleton = redrawn(solution, self._last) if quick and self._last is not None else None
         if skeleton is None:
             skeleton = moving(solution)
@@ -49,7 +52,7 @@ class Shown:
         return payload(motion, skeleton_data, shot, arrows or not quick)
 
     def solid(self, parts: Parts, shot: Shot | None, folder: Path) -> bytes:
-        """What the payload of the last motion says once its parts are there. Raises UserError."""
+        """Return the bytes of the last motion's payload that show its parts. Raises UserError."""
         from render.film.film import Film
         from render.view.solid import with_parts
 

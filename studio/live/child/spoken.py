@@ -1,4 +1,4 @@
-"""What the author's code prints goes to the terminal and, line by line, to the page."""
+"""Output of the author's code, sent to the terminal and, line by line, to the page."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ MOST = 200
 
 
 class Spoken(io.TextIOBase):
-    """A stream that passes on what is written, and tells each whole line; long ones are cut."""
+    """Stream that passes on all text and reports each whole line; long lines are cut."""
 
     def __init__(self, through: TextIO | None, tell: Callable[[str], None]) -> None:
         self._through, self._tell = through, tell
         self._lines, self._count = Lines(), 0
 
     def writable(self) -> bool:
-        """It is."""
+        """Return True."""
         return True
 
     def write(self, text: str, /) -> int:
-        """Pass it on, and tell the lines that it ends."""
+        """Pass the text on, and report the lines that it ends."""
         if self._through is not None:
             with suppress(OSError, ValueError):
                 self._through.write(text)
@@ -36,7 +36,7 @@ class Spoken(io.TextIOBase):
         return len(text)
 
     def end(self) -> None:
-        """Tell a last line without an end."""
+        """Report a last line without an end."""
         self._line(self._lines.rest())
 
     def _line(self, line: str) -> None:
@@ -51,7 +51,7 @@ class Spoken(io.TextIOBase):
 
 @contextmanager
 def to(tell: Callable[[str], None]) -> Iterator[None]:
-    """Within the block, tell what is printed."""
+    """Report printed lines to ``tell`` within the block."""
     out, err = Spoken(sys.stdout, tell), Spoken(sys.stderr, tell)
     with redirect_stdout(out), redirect_stderr(err):
         try:

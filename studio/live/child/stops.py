@@ -1,4 +1,4 @@
-"""Where a driven motion stops: the last moment at which the links close, with the motion up to there."""
+"""The stop of a driven motion: the last moment at which the links close, with the motion up to there."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ OPENS = (AssemblyError, BranchError, LimitError, SingularPoseError)
 
 @dataclass(frozen=True)
 class Stop:
-    """Where and why."""
+    """Place and reason of a stop."""
 
     time: float
     """s"""
     drivers: dict[str, float]
     """Their values there: rad, or m."""
     text: str
-    """What the solver says."""
+    """Message of the solver."""
 
 
 def until_it_stops(name: str, module: Any, m: Mechanism, solve: Callable[[], Solution]) -> tuple[Solution, Stop | None]:
-    """What ``solve`` returns, or where the links of a driven mechanism open on the way, the motion up to there.
+    """Return the solution of ``solve``, or the motion up to the moment when the links open.
 
     Raises UserError as ``solve`` does where there is no motion at all, or the author solves it himself.
     """

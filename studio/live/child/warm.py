@@ -1,4 +1,4 @@
-"""What the warm process loads before any author's code: solver with its kernels, stages, payload of the page.
+"""Code that the warm process loads before any author's: solver with kernels, stages, payload.
 
 Importing it does the work; children are forked from the process that has, and run ``serve``.
 """
@@ -45,7 +45,7 @@ def _free() -> Mechanism:
 
 
 def _warm() -> None:
-    """Load what the first sweep, simulation and fit would load."""
+    """Load everything that the first sweep, simulation and fit need."""
     driven = _driven()
     give_masses(driven, None)
     encode(Shown().payload(driven.sweep(), None, {}, None, False), compress=False)

@@ -1,1 +1,1 @@
-"""Processes with the author's code: how they begin, what they answer, and that all of them end with the server."""
+"""Processes with the author's code: how they begin and answer, and how all end with the server."""

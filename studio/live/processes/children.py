@@ -1,4 +1,4 @@
-"""Children of the server: processes with the author's code, forked from a warm one, each with a deadline.
+"""Children of the server: processes with the author's code, forked from a warm one, with deadlines.
 
 A child that loops is ended when its time is up, one that crashes is named by what ended it. The server waits for none
 of them: it asks without waiting, and a task hears the answers.
@@ -12,7 +12,7 @@ from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from typing import Any
 
-from studio.live.processes.pipe import asked, heard
+from studio.live.processes.pipe import heard, request_frame
 from studio.live.processes.trees import end_with_below
 from studio.live.processes.warm_process import Failed, Link, ending
 
@@ -26,7 +26,7 @@ PATIENCE = 3.0
 
 
 class Child:
-    """One process; it does one request after the other."""
+    """One process; it handles one request after the other."""
 
     def __init__(self, begin: Callable[[], Awaitable[Link]], heard: Heard, limit: float, most_bytes: int) -> None:
         self._begin, self._heard, self._limit, self._most_bytes = begin, heard, limit, most_bytes
@@ -42,16 +42,19 @@ class Child:
         """Done when the process and all that it has begun have ended."""
 
     def ask(self, number: int, request: dict[str, Any], payload: bytes = b"") -> None:
-        """Send one request; its answer, or what ended the child, is heard. Its time begins with the process."""
+        """Send one request; its answer, or the reason of the child's end, is reported.
+
+        Its time begins with the process.
+        """
         self.busy, self._waiting = True, number
-        frame = asked({"id": number, **request}, payload)
+        frame = request_frame({"id": number, **request}, payload)
         if self._link is None:
             self._asked.append(frame)
         else:
             self._send(self._link, frame)
 
     def kill(self) -> None:
-        """End it now; nothing more is heard of it."""
+        """End the process now; nothing more is reported of it."""
         self.ended = True
         self._killed.set()
         self._stop_clock()
@@ -82,7 +85,7 @@ class Child:
             await self._awaited(link)
 
     async def _until_it_ends(self, link: Link) -> str:
-        """Wait for its end, by ``kill`` or while nobody wanted it to; returns a sentence on it."""
+        """Wait for the end of the process, by ``kill`` or by itself; return a sentence on it."""
         hearing = asyncio.ensure_future(self._hear(link))
         words = asyncio.ensure_future(link.words.readline())
         killed = asyncio.ensure_future(self._killed.wait())
@@ -101,9 +104,9 @@ class Child:
 
     async def _hear(self, link: Link) -> None:
         while (message := await heard(link.reader)) is not None:
-            self._loop.call_soon(self._take, *message)
+            self._loop.call_soon(self._receive, *message)
 
-    def _take(self, header: dict[str, Any], payload: bytes) -> None:
+    def _receive(self, header: dict[str, Any], payload: bytes) -> None:
         if self.ended:
             return
         if header.get("kind") in ANSWERS:
@@ -127,7 +130,10 @@ class Child:
         )
 
     def _ending(self, words: bytes | None) -> str:
-        """A sentence on its end, from the keeper's last words; none if it runs on, empty if the keeper was killed."""
+        """Return a sentence on its end, from the keeper's last words.
+
+        It says so if the keeper was killed from outside.
+        """
         if words == b"":
             return (
                 "the process of mechanism.py was ended from outside, with the one that watches over it; save again, "
@@ -144,20 +150,20 @@ class Child:
         return f"mechanism.py ended the process it ran in ({how}); no file of a mechanism should do that"
 
     def _over(self, text: str) -> None:
-        """End it, if it has not been ended, and say why."""
+        """End the process, unless it has ended, and report the reason."""
         if self.ended:
             return
         self.kill()
         self._heard(self, {"kind": "error", "id": self._waiting, "text": text}, b"")
 
     def _let_go(self, link: Link) -> None:
-        """Have the keeper end all of it."""
+        """Ask the keeper to end the process and all below it."""
         with suppress(OSError, RuntimeError):
             if link.control.can_write_eof() and not link.control.is_closing():
                 link.control.write_eof()
 
     async def _awaited(self, link: Link) -> None:
-        """Wait for the keeper; one that does not end is ended with all that is below it."""
+        """Wait for the keeper; one that does not end is killed with all that is below it."""
         try:
             await asyncio.wait_for(link.words.read(), PATIENCE)
         except TimeoutError:

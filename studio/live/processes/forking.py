@@ -1,4 +1,4 @@
-"""The warm process: it has loaded what the author's code needs, and forks a process each time the server asks.
+"""Warm process: it has loaded what the author's code needs, and forks a process for each request.
 
 ``python -m studio.live.processes.forking MODULE DESCRIPTOR`` loads a module and serves a socket. Each message is its
 length (uint32, little endian) and JSON, {"name", "most_bytes"}, with two sockets: one for the module's
@@ -28,13 +28,13 @@ Serve = Callable[[Pipe, str], None]
 
 
 def request(header: dict[str, Any]) -> bytes:
-    """The bytes of a message to the warm process."""
+    """Return the bytes of a message to the warm process."""
     text = json.dumps(header).encode()
     return LENGTH.pack(len(text)) + text
 
 
 def main() -> None:
-    """Load, say so, and fork until the server is gone."""
+    """Load, report readiness, and fork until the server is gone."""
     module, descriptor = sys.argv[1:]
     serve: Serve = importlib.import_module(module).serve
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's

@@ -1,5 +1,6 @@
-"""A keeper: the parent of a process with the author's code. It ends that process, with all that descends from it, when
-asked to, when the server is gone however that ended, or when too much memory is taken.
+"""Keeper: the parent of a process with the author's code, which it ends with all its descendants.
+
+It does so when asked to, when the server is gone however that ended, or when too much memory is taken.
 
 The author's code can hold Python's lock for ever or begin processes of sessions of their own, so what ends them is not
 in their process. ``python -m studio.live.processes.keeper NICE COMMAND ...`` keeps a program; the end of its standard
@@ -28,7 +29,10 @@ PAGE = resource.getpagesize()
 
 
 def begin(work: Callable[[], int]) -> int:
-    """Fork a process that does ``work`` and exits with its code; returns its number. It dies with this one."""
+    """Fork a process that does ``work`` and exits with its code; return its number.
+
+    It dies with this one.
+    """
     adopt_orphans()
     keeper = os.getpid()
     child = os.fork()
@@ -80,7 +84,7 @@ def keep(child: int, server: int, most_bytes: int | None = None) -> tuple[int | 
 
 
 def resident(process: int) -> int:
-    """Bytes of a process that are in memory; 0 if it has ended."""
+    """Return the bytes of a process that are in memory; 0 if it has ended."""
     try:
         return int(Path(f"/proc/{process}/statm").read_text().split()[1]) * PAGE
     except (OSError, IndexError, ValueError):
@@ -103,7 +107,7 @@ def _pidfd(process: int) -> int | None:
 
 
 def main() -> NoReturn:
-    """Keep a program."""
+    """Run a program under this keeper."""
     nice, *command = sys.argv[1:]
     os.nice(int(nice))
 

@@ -1,4 +1,4 @@
-"""Text that comes in pieces, as lines of a bounded length: what is longer is cut, and the rest of it is passed over."""
+"""Text that comes in pieces, as lines of a bounded length: longer ones are cut, the rest is skipped."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ CUT = " ..."
 
 
 class Lines:
-    """Cuts text into lines; no piece of it is too long, and no more than one line is kept."""
+    """Cutter of text into lines; no piece is too long, and no more than one line is kept."""
 
     def __init__(self) -> None:
         self._begun, self._over = "", False
 
     def add(self, text: str) -> list[str]:
-        """The lines that ``text`` ends."""
+        """Add text and return the lines that it ends."""
         *whole, rest = text.split("\n")
         lines = []
         for piece in whole:
@@ -24,7 +24,7 @@ class Lines:
         return lines
 
     def rest(self) -> str:
-        """The line that has no end yet; a new one begins."""
+        """Return the line that has no end yet; a new one begins."""
         line = self._begun.rstrip("\r") + CUT * self._over
         self._begun, self._over = "", False
         return line

@@ -1,4 +1,4 @@
-"""Where processes with the author's code come from: a warm process, and another one when it has ended or stopped."""
+"""Source of processes with the author's code: a warm process, replaced when it has ended or stopped."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from studio.live.processes.trees import end_marked
 from studio.live.processes.warm_process import Failed, Link, WarmProcess
 
 WARM = "studio.live.child.warm"
-"""What the warm process loads; its ``serve`` runs in each process."""
+"""Module that the warm process loads; its ``serve`` runs in each process."""
 MEMORY_PART = 0.5
 """Fraction of the machine's memory that a child may take with all that it begins."""
 TRIES = 3
@@ -29,7 +29,7 @@ PATIENCE = 10.0
 
 
 class Nursery:
-    """Forks children from a process that has loaded solver and kernels."""
+    """Forks of a process that has loaded solver and kernels."""
 
     def __init__(self, limit: float, module: str | None = None) -> None:
         self.limit = limit
@@ -49,22 +49,22 @@ class Nursery:
 
     @property
     def warm_pid(self) -> int | None:
-        """The warm process, while there is one."""
+        """Number of the warm process, None if there is none."""
         return self._warm.pid if self._warm is not None else None
 
     async def warm(self) -> None:
-        """Have the warm process load what children need; returns when it has. Raises Failed."""
+        """Have the warm process load everything; returns when it has. Raises Failed."""
         await self._ready()
 
     def child(self, name: str, heard: Heard, limit: float | None = None) -> Child:
-        """A new child for this mechanism; ``heard`` gets what it says, in the server's loop."""
+        """Return a new child for this mechanism; ``heard`` gets its messages, in the server's loop."""
         child = Child(lambda: self._link(name), heard, self.limit if limit is None else limit, self.most_bytes)
         self._children.add(child.task)
         child.task.add_done_callback(self._children.discard)
         return child
 
     async def end(self) -> None:
-        """End the warm process, and all processes with the mark of this server; children have been killed before."""
+        """End the warm process and all processes with this server's mark; children are killed before."""
         self._ended = True
         if self._children:
             await asyncio.wait(self._children, timeout=PATIENCE)
@@ -89,7 +89,7 @@ class Nursery:
         )
 
     async def _ready(self) -> WarmProcess:
-        """The warm process; begun if there is none, by the first who needs it."""
+        """Return the warm process; the first caller starts it."""
         if self._starting is None and self._warm is not None and not self._warm.ended:
             return self._warm
         if self._starting is None:
@@ -98,7 +98,10 @@ class Nursery:
         return await asyncio.shield(self._starting)
 
     async def _start(self) -> WarmProcess:
-        """Begin one. What ends while it loads is begun again a few times, for that may have been a signal."""
+        """Start a warm process.
+
+        One that ends while it loads is started again a few times, for that may have been a signal.
+        """
         reason = ""
         for _ in range(TRIES):
             warm = WarmProcess(self._module, self.mark, self._gone)
@@ -127,7 +130,7 @@ class Nursery:
             task.exception()  # whoever waited has it; if nobody did, the next one tries anew
 
     def _gone(self, warm: WarmProcess, how: str) -> None:
-        """The warm process has ended: another one begins at once, and the pages are informed."""
+        """Start another warm process after one has ended, and inform the pages."""
         if self._ended or warm is not self._warm:
             return
         self.say(f"the process from which those of mechanism.py are forked {how}; another one takes its place")

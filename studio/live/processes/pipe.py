@@ -1,4 +1,7 @@
-"""Frames through a socket, each after its length (uint64, little endian). The child waits for them, the server not."""
+"""Frames through a socket, each after its length (uint64, little endian).
+
+The child waits for them, the server does not.
+"""
 
 from __future__ import annotations
 
@@ -14,26 +17,26 @@ LENGTH = struct.Struct("<Q")
 
 
 class Pipe:
-    """In a child: what the server sends and hears. In processes that it forks it is silent."""
+    """Pipe of a child to the server. In processes that the child forks it is silent."""
 
     def __init__(self, end: socket.socket) -> None:
         self._end, self._owner = end, os.getpid()
 
     def send(self, frame: bytes) -> None:
-        """Send a frame. Raises OSError where nobody hears it."""
+        """Send a frame. Raises OSError if nobody receives it."""
         if os.getpid() != self._owner:
             return
         self._end.sendall(LENGTH.pack(len(frame)))
         self._end.sendall(frame)
 
     def receive(self) -> bytes:
-        """The next frame; waits for it. Raises EOFError at the end, OSError."""
+        """Wait for the next frame and return it. Raises EOFError at the end, OSError."""
         if os.getpid() != self._owner:
             raise EOFError
         return self._exactly(LENGTH.unpack(self._exactly(LENGTH.size))[0])
 
     def close(self) -> None:
-        """End it."""
+        """Close the pipe."""
         self._end.close()
 
     def _exactly(self, count: int) -> bytes:
@@ -48,7 +51,10 @@ class Pipe:
 
 
 async def heard(reader: asyncio.StreamReader) -> tuple[dict[str, Any], bytes] | None:
-    """In the server: header and payload of the next frame of a child; None at the end, or where it is no frame."""
+    """Return header and payload of a child's next frame; None at the end or for an invalid one.
+
+    It is called in the server.
+    """
     try:
         (size,) = LENGTH.unpack(await reader.readexactly(LENGTH.size))
         return unframed(await reader.readexactly(size)) if size <= LARGEST else None
@@ -56,7 +62,7 @@ async def heard(reader: asyncio.StreamReader) -> tuple[dict[str, Any], bytes] | 
         return None
 
 
-def asked(header: dict[str, Any], payload: bytes = b"") -> bytes:
-    """In the server: the bytes that a child receives as one frame."""
+def request_frame(header: dict[str, Any], payload: bytes = b"") -> bytes:
+    """Return the bytes that a child receives as one frame. It is called in the server."""
     frame = framed(header, payload)
     return LENGTH.pack(len(frame)) + frame

@@ -1,4 +1,4 @@
-"""The parts of a mechanism, made beside the page: a newer edit ends the run and begins it anew."""
+"""Stages that build the parts beside the page: a newer edit ends the run and begins it anew."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PATIENCE = 3.0
 
 
 class Stages:
-    """Runs ``python -m mechanisms STAGE NAME`` one after the other, the newest wish alone."""
+    """Runs of ``python -m mechanisms STAGE NAME`` one after the other, only for the newest request."""
 
     def __init__(self, name: str, mark: str, tell: Told, done: Callable[[bool], None]) -> None:
         self.name, self._mark, self._tell, self._done = name, mark, tell, done
@@ -37,11 +37,11 @@ class Stages:
 
     @property
     def running(self) -> bool:
-        """Whether parts are being made."""
+        """True if parts are being built."""
         return self._task is not None and not self._task.done()
 
     def begin(self) -> None:
-        """Make the parts of the files as they are now; an older run is ended."""
+        """Build the parts of the files as they are now; an older run is ended."""
         self.end()
         self._task = asyncio.get_running_loop().create_task(self._run())
 
@@ -55,13 +55,13 @@ class Stages:
                 task.add_done_callback(self._ending.discard)
 
     async def ended(self) -> None:
-        """End the run, and wait until it has."""
+        """End the run, and wait for its end."""
         self.end()
         if self._ending:
             await asyncio.wait(self._ending)
 
     async def _run(self) -> None:
-        """Whatever happens, the page hears of an end."""
+        """Run the stages; whatever happens, the page hears of an end."""
         try:
             good = await self._stage("parts", "--or-none")
         except Exception as error:
@@ -90,7 +90,7 @@ class Stages:
 
 
 async def _said(process: Process) -> deque[str]:
-    """The last lines that it says, until its end; long ones are cut."""
+    """Return the last lines of a process after its end; long ones are cut."""
     assert process.stdout is not None
     said, lines, decoder = deque[str](maxlen=LAST), Lines(), codecs.getincrementaldecoder("utf-8")("replace")
     while chunk := await process.stdout.read(CHUNK):
@@ -102,7 +102,7 @@ async def _said(process: Process) -> deque[str]:
 
 
 async def _end(process: Process) -> None:
-    """Have its keeper end it; a keeper that was stopped is ended with all that is below it."""
+    """Ask the keeper to end it; a stopped keeper is ended with all that is below it."""
     if process.returncode is not None:
         return
     assert process.stdin is not None
@@ -116,7 +116,7 @@ async def _end(process: Process) -> None:
 
 
 async def _drained(process: Process) -> None:
-    """Wait for its end; what it still says is passed over."""
+    """Wait for the end of a process; its further output is dropped."""
     assert process.stdout is not None
     while await process.stdout.read(CHUNK):
         pass

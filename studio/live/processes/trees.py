@@ -1,4 +1,4 @@
-"""Trees of processes: what is below one, and how all of it ends, however it has been detached."""
+"""Trees of processes: the descendants of one, and how all of them end, however detached."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ STOPPED = (psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP)
 
 
 def adopt_orphans() -> None:
-    """From now on what is below this process stays below it when its parent ends (Linux alone)."""
+    """Keep all descendants below this process when their parents end (Linux alone)."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
 
 
 def below(process: int) -> list[int]:
-    """The processes that descend from ``process``, without itself; those that have ended but were not awaited too."""
+    """Return the descendants of ``process``, including those that have ended but were not awaited."""
     numbers = []
     for child in _children(process):
         numbers += [child, *below(child)]
@@ -39,7 +39,7 @@ def below(process: int) -> list[int]:
 
 
 def end_below(process: int) -> None:
-    """Kill all that descends from ``process``, also what begins meanwhile; returns when nothing is left."""
+    """Kill all descendants of ``process``, also new ones; returns when none is left."""
     for _ in range(ROUNDS):
         left = below(process)
         for each in left:
@@ -53,7 +53,7 @@ def end_below(process: int) -> None:
 
 
 def end_with_below(process: int) -> None:
-    """Kill ``process`` and all that descends from it, where it cannot do so itself."""
+    """Kill ``process`` and its descendants from outside."""
     with suppress(ProcessLookupError, PermissionError):
         os.kill(process, signal.SIGSTOP)  # so that it begins no other
     left = below(process)
@@ -63,7 +63,7 @@ def end_with_below(process: int) -> None:
 
 
 def end_marked(mark: str) -> None:
-    """Kill all processes of this user that have ``mark`` from their server: those whose keeper was killed."""
+    """Kill all processes of this user with the server's ``mark``: those whose keeper was killed."""
     for _ in range(MARKED):
         left = []
         for process in psutil.process_iter():
@@ -77,7 +77,7 @@ def end_marked(mark: str) -> None:
 
 
 def reaped() -> Iterator[tuple[int, int]]:
-    """Children of this process that have ended, with their exit codes; signals are negative."""
+    """Yield ended children of this process with exit codes; signals are negative."""
     while True:
         try:
             child, status = os.waitpid(-1, os.WNOHANG)
@@ -89,7 +89,7 @@ def reaped() -> Iterator[tuple[int, int]]:
 
 
 def is_stopped(process: int) -> bool:
-    """Whether a signal has stopped the process, so that it does nothing until another one lets it go on."""
+    """Return True if a signal has stopped the process, so that it waits for another one."""
     try:
         return psutil.Process(process).status() in STOPPED
     except psutil.Error:

@@ -1,4 +1,4 @@
-"""The warm process as the server sees it: nothing waits for it without a limit, and its end or a stop is reported."""
+"""Warm process as the server sees it: every wait has a limit, and its end or a stop is reported."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ BEGIN = 30.0
 
 
 class Failed(Exception):
-    """It cannot fork, and why."""
+    """Error of a warm process that cannot fork, with the reason."""
 
 
 @dataclass
 class Link:
-    """To a new process: what it says and hears, its keeper's words, and their numbers."""
+    """Link to a new process: its streams, its keeper's words, and their numbers."""
 
     reader: asyncio.StreamReader
     writer: asyncio.StreamWriter
@@ -40,7 +40,7 @@ class Link:
 
 
 class WarmProcess:
-    """One such process; ``gone`` is called once, with how it ended, unless it was closed."""
+    """One warm process; ``gone`` is called once, with how it ended, unless it was closed."""
 
     def __init__(self, module: str, mark: str, gone: Callable[[WarmProcess, str], None]) -> None:
         self._module, self._mark, self._gone = module, mark, gone
@@ -52,17 +52,17 @@ class WarmProcess:
 
     @property
     def ended(self) -> bool:
-        """Whether it forks no more."""
+        """True if it forks no more."""
         return self._over.is_set()
 
     async def ends_within(self, seconds: float) -> bool:
-        """Whether it has ended by then."""
+        """Return True if it has ended within these seconds."""
         with suppress(TimeoutError):
             await asyncio.wait_for(self._over.wait(), seconds)
         return self.ended
 
     async def start(self) -> None:
-        """Begin it; returns when it has loaded everything. Raises Failed."""
+        """Start it; returns when it has loaded everything. Raises Failed."""
         ours, theirs = socket.socketpair()
         self._channel = ours
         ours.setblocking(False)
@@ -88,11 +88,11 @@ class WarmProcess:
 
     @property
     def pid(self) -> int | None:
-        """Number of the process."""
+        """Number of the process; None before it has begun."""
         return self._process.pid if self._process is not None else None
 
     async def fork(self, name: str, most_bytes: int) -> Link:
-        """A new process for the mechanism ``name``. Raises Failed."""
+        """Fork a process for the mechanism ``name``. Raises Failed."""
         data, their_data = socket.socketpair()
         control, their_control = socket.socketpair()
         try:
@@ -131,7 +131,7 @@ class WarmProcess:
             raise OSError("it takes no message")
 
     async def _look(self, process: Process) -> None:
-        """Tell of its end; a stopped one is ended."""
+        """Report its end; a stopped process is ended."""
         waiting = asyncio.ensure_future(process.wait())
         looks = 0
         while not waiting.done():
@@ -156,7 +156,7 @@ class WarmProcess:
 
 
 def ending(code: int | None) -> str:
-    """How a process ended, in words."""
+    """Return in words how a process ended."""
     if code is None:
         return "its pipe was closed"
     if code < 0:

@@ -1,1 +1,1 @@
-"""Numbers of the page written back into mechanism.py: where they stand, whether that counts, and the file itself."""
+"""Numbers of the page written back into mechanism.py: their places, their effect, the file itself."""

@@ -1,4 +1,4 @@
-"""Numbers in the source of a mechanism.py: the literal of each is replaced, and nothing else of the file.
+"""Numbers in the source of a mechanism.py: only the literal of each is replaced.
 
 A default of Params is a number, or a tuple of numbers at whose place it stands; ``field(default=...)`` is one, too. A
 default that is computed (``2 * pi``) is replaced as a whole. Of a variant, the numbers are those of VARIANTS.
@@ -18,7 +18,7 @@ LINES = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)?")
 
 
 def replaced(source: bytes, file: str, values: dict[str, float | int], variant: str | None = None) -> bytes:
-    """The source with other numbers. Raises UserError; ``file`` is what errors call it."""
+    """Return the source with other numbers. Raises UserError; ``file`` is its name in errors."""
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError) as error:
@@ -43,12 +43,12 @@ def replaced(source: bytes, file: str, values: dict[str, float | int], variant: 
 
 
 def _line_starts(text: str) -> list[int]:
-    """Where each line begins, as Python counts lines."""
+    """Return the beginning of each line, as Python counts lines."""
     return [match.start() for match in LINES.finditer(text) if match[0]] or [0]
 
 
 def literal(tree: ast.Module, name: str, file: str, variant: str | None) -> ast.expr:
-    """Where a number stands in the file. Raises UserError where it has no place of its own."""
+    """Return the place of a number in the file. Raises UserError if it has none of its own."""
     field, places = parsed(name)
     node = _of_variant(tree, field, file, variant) if variant else _of_params(tree, field, file)
     for place in places:
@@ -76,7 +76,7 @@ def _of_params(tree: ast.Module, field: str, file: str) -> ast.expr:
 
 
 def _default(value: ast.expr | None) -> ast.expr | None:
-    """The default, of field(default=...), too."""
+    """Return the default, also of field(default=...)."""
     if isinstance(value, ast.Call) and isinstance(value.func, ast.Name | ast.Attribute):
         called = value.func.id if isinstance(value.func, ast.Name) else value.func.attr
         if called == "field":

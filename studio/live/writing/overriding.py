@@ -1,4 +1,4 @@
-"""Which later line of a mechanism.py decides a number, so that writing its literal would change nothing."""
+"""The later line of a mechanism.py that decides a number, so that its literal has no effect."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from studio.live.writing.literals import literal
 
 
 def written_line(source: bytes, name: str, file: str, variant: str | None) -> int:
-    """The line in which the literal of a number stands. Raises UserError where it has none."""
+    """Return the line of the literal of a number. Raises UserError if it has none."""
     return literal(ast.parse(source), name, file, variant).lineno
 
 
 def deciding_line(source: bytes, name: str, file: str, variant: str | None) -> int | None:
-    """The line after the literal of a number that most likely decides it; None where no line tells.
+    """Return the line after a number's literal that most likely decides it; None if none does.
 
     Looked for are, in this order, the field set again in the body of Params or in a method of it, Params or VARIANTS
     bound again, and what names the field in any other way.
@@ -25,7 +25,7 @@ def deciding_line(source: bytes, name: str, file: str, variant: str | None) -> i
     field, _ = parsed(name)
 
     def last(inside: Iterable[ast.AST], decides: Callable[[ast.AST], bool]) -> int:
-        """The last line after the literal in which a node decides it; 0 where there is none."""
+        """Return the last line after the literal in which a node decides it; 0 if there is none."""
         nodes = (node for tree in inside for node in ast.walk(tree))
         return max((_place(node)[0] for node in nodes if _is_after(node, place) and decides(node)), default=0)
 
@@ -57,7 +57,7 @@ def _place(node: ast.AST) -> tuple[int, int]:
 
 
 def _sets(node: ast.AST, name: str) -> bool:
-    """Whether a node gives a name, an attribute or a keyword of this name a value."""
+    """Return True if a node assigns a name, an attribute or a keyword of this name."""
     if isinstance(node, ast.Name | ast.Attribute):
         own = node.id if isinstance(node, ast.Name) else node.attr
         return own == name and not isinstance(node.ctx, ast.Load)

@@ -1,4 +1,4 @@
-"""A file of the author's takes another content only while it still has the one that was read: no save is lost."""
+"""Safe replacement of the author's file, only while it is unchanged: no save is lost."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ MOMENT = 0.05
 
 
 class Meanwhile(Exception):
-    """The file has another content than the one that was read."""
+    """Error for a file that has changed since it was read."""
 
 
 def content_of(path: Path) -> bytes:
-    """Content of a file of the author's. Raises UserError."""
+    """Return the content of a file of the author's. Raises UserError."""
     try:
         return path.read_bytes()
     except OSError as error:
@@ -33,7 +33,7 @@ def content_of(path: Path) -> bytes:
 
 
 def replace(path: Path, before: bytes, after: bytes) -> None:
-    """Give the file the content ``after``, whole, if it still has ``before``; mode and owner stay.
+    """Write ``after`` into the file, whole, if it still has ``before``; mode and owner stay.
 
     The new file and the old one change places in one step where the system can; then what was taken out is looked at,
     and put back if an editor had saved meanwhile. Raises Meanwhile, and UserError where the file cannot be written.
@@ -66,7 +66,7 @@ def replace(path: Path, before: bytes, after: bytes) -> None:
 
 
 def _put_back(temporary: Path, target: Path, after: bytes) -> None:
-    """Give an editor's save its place again, unless there is a newer one."""
+    """Restore an editor's save, unless there is a newer one."""
     if target.is_file() and target.read_bytes() == after:
         _exchanged(temporary, target)
 

@@ -1,4 +1,4 @@
-"""Writes numbers into mechanism.py, and says so only where they are then those of Params.
+"""Writer of numbers into mechanism.py, which checks that Params then has them.
 
 The file as it would be is loaded first, in a process of its own: where a later line, a method of Params or a decorator
 has the last word on a number, the literal would change and the mechanism would not.
@@ -31,7 +31,7 @@ SHOWN = 60
 
 @dataclass(frozen=True)
 class Written:
-    """What was written."""
+    """Outcome of a write."""
 
     values: dict[str, float | int]
     text: str
@@ -39,7 +39,7 @@ class Written:
 
 
 class Writer:
-    """Writes for one mechanism or variant; one wish at a time."""
+    """Writer for one mechanism or variant; one request at a time."""
 
     def __init__(self, name: str, nursery: Nursery) -> None:
         self._name, self._nursery = name, nursery
@@ -54,7 +54,10 @@ class Writer:
         done: Callable[[Written], None],
         refused: Callable[[str], None],
     ) -> None:
-        """Write ``values``; ``numbers`` are those of the file as it was solved. Raises UserError while it writes."""
+        """Write ``values``; ``numbers`` are those of the solved file.
+
+        Raises UserError during another write.
+        """
         if self._task is not None and not self._task.done():
             raise UserError("numbers are being written already; try again in a moment")
 
@@ -69,7 +72,7 @@ class Writer:
         self._task = asyncio.get_running_loop().create_task(work())
 
     def end(self) -> None:
-        """Write no more."""
+        """Stop writing."""
         if self._task is not None:
             self._task.cancel()
         if self._child is not None:
@@ -101,7 +104,7 @@ class Writer:
         )
 
     def _check(self, after: bytes, values: dict[str, Any], new: dict[str, float], variant: str | None) -> None:
-        """Raise UserError where a number would not be what is written."""
+        """Raise UserError if a number would differ from the written one."""
         for name, value in values.items():
             if name in new and _same(new[name], value):
                 continue
@@ -115,7 +118,7 @@ class Writer:
             )
 
     def _computed(self, before: bytes, values: dict[str, Any], variant: str | None) -> list[str]:
-        """Sentences on expressions that give way to a number."""
+        """Return sentences on expressions that a number replaces."""
         tree, computed = ast.parse(before), []
         for name in values:
             node = literal(tree, name, self._file, variant)
@@ -126,7 +129,7 @@ class Writer:
         return computed
 
     async def _numbers(self, source: bytes) -> dict[str, float]:
-        """Numbers of Params, if the file held ``source``. Raises UserError."""
+        """Return the numbers of Params if the file held ``source``. Raises UserError."""
         answer: asyncio.Future[dict[str, Any]] = asyncio.get_running_loop().create_future()
 
         def heard(_: Child, header: dict[str, Any], __: bytes) -> None:

@@ -1,1 +1,1 @@
-"""What a user says to a night from elsewhere: start it in the background, look at it, stop it."""
+"""Commands for a night from elsewhere: start it in the background, look at it, stop it."""

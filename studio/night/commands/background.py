@@ -1,4 +1,4 @@
-"""``make overnight``: a run that goes on when its terminal closes: in a tmux session, or by itself without tmux."""
+"""``mbsd overnight``: a run that outlives its terminal, in a tmux session or by itself."""
 
 from __future__ import annotations
 
@@ -32,7 +32,9 @@ OF_MAKE = (VARIABLE, "MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MAKEOVERRIDES", "MAKE_
 
 
 def start(asked: Options) -> int:
-    """Start the run, say how to attach and what it takes; on a terminal wait for its forecast, which Ctrl-C ends.
+    """Start the run, print how to attach and its cost.
+
+    On a terminal wait for its forecast, which Ctrl-C ends.
 
     Where a run is at work already it is named, and the new one joins it: it takes what the other has not. Raises
     UserError where the results cannot be written, the disk is surely too small, or the run does not begin.
@@ -71,7 +73,7 @@ def _command(asked: Options) -> list[str]:
 
 
 def _launch(command: list[str], environment: dict[str, str]) -> str:
-    """Start it in the background; how to attach to it, empty without tmux."""
+    """Start the run in the background; return how to attach to it, empty without tmux."""
     refuse_links(runs.folder())
     try:
         runs.folder().mkdir(parents=True, exist_ok=True)
@@ -108,13 +110,13 @@ def _launch(command: list[str], environment: dict[str, str]) -> str:
 
 
 def _tree() -> str:
-    """A word for this project and its results, unlike that of another copy: ``mbsd-1a2b3c``."""
+    """Return a word for this project and its results, unlike another copy's: ``mbsd-1a2b3c``."""
     mark = hashlib.sha256(f"{ROOT}\0{Path(os.path.abspath(out_root()))}".encode()).hexdigest()[:6]
     return f"{re.sub(r'[^A-Za-z0-9]+', '-', ROOT.name).strip('-') or 'tree'}-{mark}"
 
 
 def _free_session(tmux: str, socket: str) -> str:
-    """``night``, or with a number where sessions of other runs are there."""
+    """Return ``night``, or with a number if sessions of other runs exist."""
     listing = subprocess.run([tmux, "-L", socket, "list-sessions", "-F", "#S"], capture_output=True, text=True)
     taken = set(listing.stdout.split())
     names = ["night", *(f"night-{number}" for number in range(2, 2 + len(taken)))]
@@ -122,7 +124,7 @@ def _free_session(tmux: str, socket: str) -> str:
 
 
 def _begun(before: set[int]) -> Run:
-    """The run that has just begun. Raises UserError if none appears."""
+    """Return the run that has just begun. Raises UserError if none appears."""
     new: list[Run] = []
 
     def appeared() -> bool:
@@ -138,7 +140,7 @@ def _begun(before: set[int]) -> Run:
 
 
 def _tell_forecast(night: Run) -> None:
-    """Wait until the forecast stands, or the run is over, and say it."""
+    """Wait until the forecast is known or the run is over, and print it."""
     say("night", "a frame of every film is measured for the forecast; Ctrl-C ends the waiting, not the night")
     try:
         _wait(lambda: not night.is_alive() or bool((recorded := record.read(night)) and recorded.forecast))

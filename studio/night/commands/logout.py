@@ -1,4 +1,4 @@
-"""Whether the system ends what a user has left running when he logs out, and what he does about it.
+"""Logout: whether the system ends processes that a user has left running, and the remedy.
 
 systemd does so where KillUserProcesses is set in logind.conf: a run then has to be in a scope of the user's manager,
 and that manager has to linger.
@@ -21,7 +21,7 @@ QUESTION = (
 
 
 def ends_all() -> bool:
-    """Whether the system ends everything at the logout; False where it cannot be asked."""
+    """Return True if the system ends everything at the logout; False if that is unknown."""
     if shutil.which(QUESTION[0]) is None:
         return False
     try:
@@ -32,14 +32,14 @@ def ends_all() -> bool:
 
 
 def scope() -> list[str]:
-    """What stands before a command that is to outlive the session; nothing where everything does."""
+    """Return the words before a command that is to outlive the session; none if all commands do."""
     if not ends_all() or shutil.which("systemd-run") is None or not os.environ.get("XDG_RUNTIME_DIR"):
         return []
     return ["systemd-run", "--user", "--scope", "--quiet", "--collect"]
 
 
 def warn_if_it_ends_all(warn: Callable[[str, str], None]) -> None:
-    """Say what to do where the system would end the run at the logout."""
+    """Warn with a remedy if the system would end the run at the logout."""
     user = _user()
     if ends_all() and not (LINGERING / user).exists():
         warn("night", f"this system ends all programs of yours when you log out; run: loginctl enable-linger {user}")

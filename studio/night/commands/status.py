@@ -1,4 +1,4 @@
-"""``make status``: what every film is at, from files alone, while a run works and after its end, whatever ended it."""
+"""``mbsd status``: the state of every film, from files alone, during a run and after its end."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def tell() -> int:
 
 
 def words(run: Run, recorded: NightRecord, alive: bool) -> list[str]:
-    """The lines of one run."""
+    """Return the lines of one run."""
     lines = [f"{standing(recorded, alive)} (run {run.number}, {recorded.preset}, started {recorded.started})"]
     if recorded.forecast:
         lines.append(f"forecast: {recorded.forecast}")
@@ -47,7 +47,7 @@ def words(run: Run, recorded: NightRecord, alive: bool) -> list[str]:
 
 
 def standing(recorded: NightRecord, alive: bool) -> str:
-    """How the run stands, in a few words."""
+    """Return the state of the run in a few words."""
     if alive:
         return f"at work as process {recorded.process} on {recorded.host}"
     how = {
@@ -69,7 +69,10 @@ def older_films(recorded: NightRecord) -> set[str]:
 
 
 def row(name: str, film: FilmRecord, alive: bool, is_older: bool = False) -> tuple[str, ...]:
-    """Name, frames, seconds a frame, time left, and what it is at; ``is_older``: its film is of an older version."""
+    """Return name, frames, seconds a frame, time left and state of a film.
+
+    ``is_older``: its film is of an older version.
+    """
     running = [step for step, state in film.steps.items() if state == "running"]
     if film.elsewhere:
         at = film.elsewhere
@@ -89,7 +92,7 @@ def row(name: str, film: FilmRecord, alive: bool, is_older: bool = False) -> tup
 
 
 def table(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    """Rows under :data:`HEAD`, numbers to the right."""
+    """Return the rows under :data:`HEAD`, numbers to the right."""
     full = [HEAD, *rows]
     widths = [max(len(line[column]) for line in full) for column in range(len(HEAD))]
     lines = []

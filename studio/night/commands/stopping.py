@@ -1,4 +1,4 @@
-"""``make stop``: every run on this tree ends after the frame in flight, and is said to have ended when it has."""
+"""``mbsd stop``: end every run on this tree after the frame in flight, and report the end."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ WORD = 30.0
 
 
 def stop() -> int:
-    """Ask all runs to stop and wait for their end; 0 also where there was none. Raises UserError if it cannot ask."""
+    """Stop all runs and wait for their end; 0 also without any.
+
+    Raises UserError if it cannot ask.
+    """
     running = runs.alive()
     if not running:
         say("stop", "no night is at work here")
@@ -40,7 +43,7 @@ def stop() -> int:
 
 
 def _in_flight(run: Run) -> str:
-    """What it waits for: ``the frame in flight of four_bar (about 8.3 s)``."""
+    """Return the work it waits for: ``the frame in flight of four_bar (about 8.3 s)``."""
     recorded = record.read(run)
     if recorded is not None:
         for name, film in recorded.films.items():

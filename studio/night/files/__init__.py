@@ -1,1 +1,1 @@
-"""What runs keep in out/night: locks, records, the log."""
+"""Files that runs keep in out/night: locks, records, the log."""

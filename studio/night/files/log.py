@@ -1,4 +1,4 @@
-"""What a night says: on its terminal, and in plain lines with date and time in out/night/log.txt."""
+"""Messages of a night: on its terminal, and with date and time in out/night/log.txt."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LONGEST = 20e6
 
 
 class Log:
-    """Says lines. A terminal that has gone, or a full disk, stops no film."""
+    """Log of a night. A terminal that has gone, or a full disk, stops no film."""
 
     def __init__(self, number: int) -> None:
         self.mark = f" [{number}]" if number > 1 else ""
@@ -40,22 +40,22 @@ class Log:
             self._file = None
 
     def say(self, text: str) -> None:
-        """A line of the night itself."""
+        """Write a line of the night itself."""
         self._write(f"night: {text}")
         self._show(lambda: console.say("night", text))
 
     def warn(self, text: str) -> None:
-        """A line that the user should see in the morning."""
+        """Write a line that the user should see in the morning."""
         self._write(f"night: warning: {text}")
         self._show(lambda: console.warn("night", text))
 
     def fail(self, text: str) -> None:
-        """A line on stderr that tells of a failure."""
+        """Write a line on stderr that reports a failure."""
         self._write(f"error: {text}")
         self._show(lambda: console.fail(text))
 
     def relay(self, text: str, stream: IO[str] | None = None) -> None:
-        """A line that a step said."""
+        """Write a line of a step's output."""
         self._write(text)
         self._show(lambda: print(text, file=stream or sys.stdout, flush=True))
 

@@ -1,4 +1,4 @@
-"""The record of a run: what every film is at, written whole after each change. Nothing is decided by it."""
+"""Record of a run: the state of every film, rewritten after each change. Nothing depends on it."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class NightRecord(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
 
 
 def write(run: Run, record: NightRecord) -> bool:
-    """Write the record; False where the disk refuses it, which stops no film."""
+    """Write the record; False if the disk takes none, which stops no film."""
     try:
         jsonfile.write(run.record, record)
     except UserError:
@@ -63,7 +63,7 @@ def write(run: Run, record: NightRecord) -> bool:
 
 
 def read(run: Run) -> NightRecord | None:
-    """The record of a run; None where there is none or it cannot be read."""
+    """Return the record of a run; None if there is none or it cannot be read."""
     try:
         return jsonfile.read(run.record, NightRecord)
     except UserError:

@@ -1,4 +1,4 @@
-"""Nights on one tree: each has a number, a lock that ends with its process, a record and a wish to stop.
+"""Nights on one tree: each has a number, a lock that ends with its process, a record, a stop file.
 
 Several runs may be at work at once; a mechanism belongs to one of them while a step of it runs.
 """
@@ -22,22 +22,22 @@ MOST = 64
 
 
 def folder() -> Path:
-    """Where nights keep their log, records and locks."""
+    """Return the folder in which nights keep their log, records and locks."""
     return out_root() / "night"
 
 
 def locks_folder() -> Path:
-    """Where locks lie; their files stay, the locks on them end with their process."""
+    """Return the folder of locks; the files stay, the locks on them end with their process."""
     return folder() / "locks"
 
 
 def log_file() -> Path:
-    """What all nights said, a line each."""
+    """Return the log of all nights."""
     return folder() / "log.txt"
 
 
 class Run:
-    """The files of one run by its number, from 1."""
+    """Files of one run by its number, from 1."""
 
     def __init__(self, number: int) -> None:
         self.number = number
@@ -46,33 +46,35 @@ class Run:
         self.wish = folder() / f"run-{number}.stop"
 
     def is_alive(self) -> bool:
-        """Whether the process of this run is at work, which its lock tells."""
+        """Return True if the process of this run is at work, by its lock."""
         return self.lock.exists() and not locks.is_abandoned(self.lock)
 
     def ask_to_stop(self) -> None:
-        """Leave word that the run shall end after the frame in flight."""
+        """Ask the run to end after the frame in flight."""
         self.wish.touch()
 
     def is_asked_to_stop(self) -> bool:
-        """Whether somebody left that word."""
+        """Return True if somebody asked the run to end."""
         return self.wish.exists()
 
 
 def runs() -> list[Run]:
-    """The runs of which there is a record or a lock, by number."""
+    """Return the runs with a record or a lock, by number."""
     places = [*folder().glob("run-*.json"), *locks_folder().glob("run-*.lock")]
     numbers = {path.stem.removeprefix("run-") for path in places}
     return [Run(number) for number in sorted(int(word) for word in numbers if word.isdigit())]
 
 
 def alive() -> list[Run]:
-    """The runs whose process is at work."""
+    """Return the runs whose process is at work."""
     return [run for run in runs() if run.is_alive()]
 
 
 @contextmanager
 def taken() -> Iterator[Run]:
-    """Take the lowest number that no process has; records of runs that have ended go, their films are on the disk.
+    """Reserve the lowest free number for this run.
+
+    Records of runs that have ended are removed; their films are on the disk.
 
     Raises UserError where the folder cannot be written.
     """
@@ -83,7 +85,7 @@ def taken() -> Iterator[Run]:
         for number in range(1, MOST + 1):
             run = Run(number)
             handle = _opened(run.lock)
-            if _take(handle):
+            if _try_lock(handle):
                 break
             os.close(handle)
             handle = -1
@@ -106,14 +108,14 @@ def taken() -> Iterator[Run]:
 
 
 class Claims:
-    """The mechanisms at which this run is."""
+    """Mechanisms that this run works on."""
 
     def __init__(self) -> None:
         self._held: dict[str, tuple[int, int]] = {}
         """By mechanism, the handle of its lock and the number of its steps that run."""
 
-    def take(self, name: str) -> str:
-        """Begin a step of a mechanism; else who is at it: ``process 123 on machine``."""
+    def claim(self, name: str) -> str:
+        """Begin a step of a mechanism; else return who works on it: ``process 123 on machine``."""
         if name in self._held:
             handle, count = self._held[name]
             self._held[name] = (handle, count + 1)
@@ -123,7 +125,7 @@ class Claims:
             handle = _opened(path)
         except OSError as error:
             raise UserError(refusal(path, error)) from error
-        if not _take(handle):
+        if not _try_lock(handle):
             who = os.pread(handle, 200, 0).decode(errors="replace").strip()
             os.close(handle)
             return who or "another process"
@@ -132,7 +134,7 @@ class Claims:
         return ""
 
     def give_back(self, name: str) -> None:
-        """A step has ended; after the last one that runs the mechanism is free for others."""
+        """End a step; after the last one the mechanism is free for other runs."""
         handle, count = self._held[name]
         if count > 1:
             self._held[name] = (handle, count - 1)
@@ -145,9 +147,9 @@ def _opened(path: Path) -> int:
     return os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
 
 
-def _take(handle: int) -> bool:
+def _try_lock(handle: int) -> bool:
     try:
-        return locks.take(handle)
+        return locks.try_lock(handle)
     except OSError:
         return True  # a disk without locks: two runs do each other's work twice there, and no harm
 

@@ -1,1 +1,1 @@
-"""What is asked of a night, and which step may start next; without processes."""
+"""Plan of a night: its options, and the step that may start next; without processes."""

@@ -1,4 +1,4 @@
-"""Which steps are done, and which may start next: the rules of the order, without processes or files."""
+"""Board of all steps: which are done, and which may start next, without processes or files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ GOOD: tuple[State, ...] = ("fresh", "done")
 
 
 class Board:
-    """The states of all steps of all mechanisms."""
+    """States of all steps of all mechanisms."""
 
     def __init__(
         self, names: Sequence[str], fresh: Mapping[str, Collection[str]] | None = None, steps: Sequence[Step] = STEPS
@@ -31,43 +31,45 @@ class Board:
                 self._states[name, step.name] = "fresh" if good else "waiting"
 
     def state(self, name: str, step: str) -> State:
-        """How a step stands."""
+        """Return the state of a step."""
         return self._states[name, step]
 
-    def of(self, name: str) -> dict[str, State]:
-        """The steps of one mechanism in order."""
+    def steps_of(self, name: str) -> dict[str, State]:
+        """Return the steps of one mechanism in order."""
         return {step: self._states[name, step] for step in self.steps}
 
     def start(self, name: str, step: str) -> None:
-        """A step runs now."""
+        """Record that a step runs."""
         self._states[name, step] = "running"
 
     def wait(self, name: str, step: str) -> None:
-        """A step that ran has to run once more."""
+        """Record that a step that ran has to run once more."""
         self._states[name, step] = "waiting"
 
-    def done(self, name: str, step: str) -> None:
-        """A step has ended well."""
+    def finish(self, name: str, step: str) -> None:
+        """Record that a step has ended well."""
         self._states[name, step] = "done"
 
     def fail(self, name: str, step: str) -> None:
-        """A step has failed; what needs it is blocked, what runs already runs on."""
+        """Record that a step has failed; steps that need it are blocked, running ones go on."""
         self._states[name, step] = "failed"
         for other in followers(step, list(self.steps.values())):
             if self._states[name, other] == "waiting":
                 self._states[name, other] = "blocked"
 
     def is_over(self) -> bool:
-        """Whether nothing is left that could run or runs."""
+        """Return True if nothing runs or could run."""
         return all(state in OVER for state in self._states.values())
 
     def is_measured(self) -> bool:
-        """Whether the probe of every film that this run can make now is over."""
+        """Return True if the probe of every film that this run can render now is over."""
         here = [name for name in self.names if name not in self.away] if PROBE in self.steps else []
         return all(self._states[name, PROBE] in OVER for name in here)
 
     def ready(self, renders: bool) -> Iterator[tuple[str, str]]:
-        """Mechanism and step of what may start now, the most urgent first, to render or beside the render.
+        """Yield mechanism and step that may start now, the most urgent first.
+
+        ``renders`` selects renders, or steps beside the render.
 
         Every probe comes before the first film, so that the forecast stands when the night begins.
         """
@@ -84,8 +86,8 @@ class Board:
             yield name, step
 
     def outcome(self, name: str) -> Literal["waiting", "at work", "done", "failed"]:
-        """How a whole mechanism stands."""
-        states = set(self.of(name).values())
+        """Return the state of a whole mechanism."""
+        states = set(self.steps_of(name).values())
         if states <= set(GOOD):
             return "done"
         if states <= set(OVER):

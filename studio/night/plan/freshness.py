@@ -1,4 +1,4 @@
-"""Which steps have nothing to do: all of them asked in one process, which loads nothing heavy.
+"""Steps with nothing to do: all mechanisms asked in one process, which loads nothing heavy.
 
 ``python -m studio.night fresh`` is that process, because mechanism.py is run for its parameters and may do anything. It
 tells a mechanism a line; what it does not tell is asked by the stages themselves.
@@ -24,7 +24,7 @@ SILENCE = 60.0
 
 
 def fresh_steps(asked: Options) -> dict[str, list[str]]:
-    """By mechanism, the steps that have nothing to do."""
+    """Return the steps with nothing to do, by mechanism."""
     words = [sys.executable, "-m", "studio.night", "fresh", "--preset", asked.preset.name]
     words += [f"--show={asked.show}", f"--sound={asked.sound}", f"--spectra={asked.spectra}", "--", *asked.names]
     fresh: dict[str, list[str]] = {}
@@ -48,7 +48,7 @@ def fresh_steps(asked: Options) -> dict[str, list[str]]:
 
 
 class _Watch:
-    """Kills the process when it tells nothing for too long."""
+    """Timer that kills the process when it prints nothing for too long."""
 
     def __init__(self, process: subprocess.Popen[bytes]) -> None:
         self.process = process
@@ -74,7 +74,7 @@ def tell(names: Iterable[str], preset: Preset, show: str, spectra: str, sound: s
 
 
 def fresh_of(name: str, preset: Preset, show: str, spectra: str, sound: str = "") -> list[str]:
-    """The steps of one mechanism that have nothing to do, as far as the steps that they need have nothing to do."""
+    """Return the steps of one mechanism with nothing to do, if those that they need have none either."""
     asking = _questions(name, preset, show, spectra, sound)
     fresh: list[str] = []
     for step in STEPS:
@@ -91,7 +91,7 @@ def _is_fresh(question: Callable[[], bool]) -> bool:
 
 
 def _questions(name: str, preset: Preset, show: str, spectra: str, sound: str) -> dict[str, Callable[[], bool]]:
-    """By step, whether it has nothing to do."""
+    """Return for each step the question whether it has nothing to do."""
     from mechanisms.stages import shot as shot
     from mechanisms.stages.clearance import stage as clearance
     from mechanisms.stages.parts import stage as parts

@@ -1,4 +1,4 @@
-"""What a user asks of a night: which mechanisms, at which preset, and what is stated of the cost."""
+"""Options of a night: its mechanisms, its preset, and the cost to state."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from shared.stage.paths import all_mechanisms, known_name, unfit_names
 
 @dataclass(frozen=True)
 class Options:
-    """One night."""
+    """Options of one night."""
 
     names: tuple[str, ...]
     """Mechanisms and variants in the order in which their films are made."""
     preset: Preset = PRESETS["preview"]
     show: str = ""
-    """What SHOW asks for in place of the shots."""
+    """Value of SHOW, which replaces the choice of the shots."""
     spectra: str = ""
-    """What SPECTRA asks for; spectra of what a mechanism has not are left out."""
+    """Value of SPECTRA; spectra of things that a mechanism lacks are left out."""
     sound: str = ""
-    """What SOUND asks for: on, off, or nothing, which is on."""
+    """Value of SOUND: on, off, or empty, which is on."""
     watts: float | None = None
     """Power of the machine while it renders (W)."""
     python: str = sys.executable
@@ -33,9 +33,9 @@ class Options:
     unfit: tuple[str, ...] = ()
     """Folders with a mechanism.py whose name is none."""
     whole: bool = False
-    """Whether these are all mechanisms, rather than those of ONLY."""
+    """True if these are all mechanisms, rather than those of ONLY."""
     anyway: bool = False
-    """Whether it begins on a disk that is surely too small."""
+    """True if it begins on a disk that is surely too small."""
 
 
 def options(
@@ -49,7 +49,10 @@ def options(
     aspect: str = "",
     sound: str = "",
 ) -> Options:
-    """Options from words as the Makefile has them. Raises UserError for unfit words and without mechanisms."""
+    """Return options from words of the Makefile.
+
+    Raises UserError for invalid words and without mechanisms.
+    """
     wanted = only_of(only)
     has_sound(sound)
     return Options(
@@ -67,12 +70,15 @@ def options(
 
 
 def only_of(words: str) -> tuple[str, ...]:
-    """The mechanisms of ``ONLY=four-bar,geneva_drive``, each once; raises UserError for one that is not there."""
+    """Return the mechanisms of ``ONLY=four-bar,geneva_drive``, each once.
+
+    Raises UserError for an unknown one.
+    """
     return tuple(dict.fromkeys(known_name(word) for word in re.split(r"[,\s]+", words) if word))
 
 
 def watts_of(words: str) -> float | None:
-    """The power of ``WATTS=85`` (W); raises UserError if it is no positive number."""
+    """Return the power of ``WATTS=85`` (W); raises UserError if it is no positive number."""
     if not words.strip():
         return None
     try:

@@ -1,4 +1,4 @@
-"""The steps of a mechanism, from its files to its film: what each needs, and the command that does it."""
+"""Steps of a mechanism, from its files to its film: the needs of each, and its command."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Step:
     needs: tuple[str, ...] = ()
     """Steps of the same mechanism that have to be done before."""
     renders: bool = False
-    """Whether it takes the one place of the render; the others run beside it."""
+    """True if it takes the one place of the render; the others run beside it."""
     rank: int = 0
     """Among the steps that could run beside the render the lowest rank comes first."""
 
@@ -39,7 +39,7 @@ AUTHORS = ("parts", "solve", "shot", "clearance")
 
 
 def command(step: str, name: str, asked: Options) -> list[str]:
-    """The command line of a step, as the Makefile has it."""
+    """Return the command line of a step, as in the Makefile."""
     if step in AUTHORS:
         return [asked.python, "-m", "mechanisms", step, name]
     words = [asked.python, "-m", "render", step, name]
@@ -54,7 +54,7 @@ def command(step: str, name: str, asked: Options) -> list[str]:
 
 
 def followers(step: str, steps: Sequence[Step] = STEPS) -> list[str]:
-    """The steps that need this one, by themselves or through others."""
+    """Return the steps that need this one, directly or through others."""
     after = {step}
     for other in steps:  # each stands behind those that it needs
         if after & set(other.needs):

@@ -1,1 +1,1 @@
-"""What a run knows of its films while it works: pictures, pace, forecast, errors."""
+"""Progress of a run on its films: pictures, pace, forecast, errors."""

@@ -1,4 +1,4 @@
-"""What a run knows of its films while it works: pictures, pace, errors; it keeps the record and tells the forecast."""
+"""Books of a run: pictures, pace and errors of its films, its record and its forecast."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ REFINED, OFTEN, SELDOM = 60.0, 4.0, 1800.0
 
 
 class Books:
-    """Kept by one coordinator."""
+    """Books of one coordinator."""
 
     def __init__(self, asked: Options, run: Run, log: Log, board: Board) -> None:
         self.asked, self.run, self.log, self.board = asked, run, log, board
@@ -49,14 +49,14 @@ class Books:
         self._said: set[tuple[str, str]] = set()
 
     def started(self, name: str, step: str) -> None:
-        """A step begins."""
+        """Record that a step begins."""
         self._films[name].elsewhere = ""
         if step in (PROBE, FILM):
             self._read(name)
             self.frames[name].begin()
 
     def ended(self, name: str, step: str, seconds: float) -> None:
-        """A step has ended, well or not."""
+        """Record that a step has ended, well or not."""
         self._films[name].seconds += seconds
         if step in (PROBE, FILM):
             self._read(name)
@@ -66,7 +66,7 @@ class Books:
         self._films[name].error = text
 
     def elsewhere(self, name: str, who: str) -> None:
-        """Another process has this mechanism; ``who`` says which."""
+        """Record that another process works on this mechanism; ``who`` names it."""
         if self._films[name].elsewhere != who:
             self._films[name].elsewhere = who
             if (name, who) not in self._said:
@@ -75,22 +75,22 @@ class Books:
             self.changed()
 
     def new_picture(self, name: str) -> bool:
-        """Look at the folder of a film that is being rendered; whether a picture has come."""
+        """Look at the folder of a film that is being rendered; return True if a picture has come."""
         if not self.frames[name].look():
             return False
         self._due = True
         return True
 
     def is_complete(self, name: str) -> bool:
-        """Whether every picture of a film is there, so that only the film itself is to be made."""
+        """Return True if every picture of a film exists, so only the film is to be written."""
         return name in self.frames and bool(self.frames[name].all) and not self.frames[name].left
 
     def each(self, name: str) -> float | None:
-        """Seconds a picture of a film."""
+        """Return the seconds a picture of a film takes."""
         return self.frames[name].each if name in self.frames else None
 
     def moved(self) -> None:
-        """The board has changed: tell the forecast once every probe is made, and write the record."""
+        """Write the record after a change of the board; state the forecast once every probe is over."""
         if self.board.is_measured() and self._told is None and not self.board.is_over():
             self.tell_forecast("forecast")
         self.changed()
@@ -101,7 +101,7 @@ class Books:
         self.write_if_due()
 
     def write_if_due(self) -> None:
-        """Write the record if anything has changed; tell the forecast again now and then."""
+        """Write the record if anything has changed; repeat the forecast now and then."""
         now = time.monotonic()
         if self._told is not None and now - self._told > self._again and not self.board.is_over():
             self._again = min(OFTEN * self._again, SELDOM)
@@ -111,19 +111,22 @@ class Books:
             self._write()
 
     def close(self, ended: Literal["done", "failed", "stopped"], why: str = "") -> None:
-        """The run is over; ``why`` is stated in place of its forecast."""
+        """End the record of the run; ``why`` is stated in place of its forecast."""
         self._record.ended = ended
         self._record.forecast = f"not begun: {why}" if why else self._record.forecast
         self._write()
 
     def forecast(self) -> Forecast:
-        """Forecast of what is left now."""
+        """Return the forecast of the work that is left now."""
         films = [name for name in self.asked.names if self.board.outcome(name) in ("waiting", "at work")]
         known = [self.frames[name] for name in films if name in self.frames and self.frames[name].all]
         return forecast(known, len(films) - len(known), self.asked.preset, out_root())
 
     def tell_forecast(self, word: str) -> None:
-        """Say the forecast, and warn where the disk may be too small for it; raises UserError where it surely is."""
+        """State the forecast, with a warning if the disk may be too small.
+
+        Raises UserError if it surely is.
+        """
         first, self._told = self._told is None, time.monotonic()
         self._read_what_is_there()
         forecast = self.forecast()
@@ -138,11 +141,11 @@ class Books:
             )
 
     def seconds(self, name: str) -> float:
-        """What the steps of a mechanism took in this run, added up."""
+        """Return the seconds that the steps of a mechanism took in this run."""
         return self._films[name].seconds
 
     def _read_what_is_there(self) -> None:
-        """Count the pictures of films whose poster was there already."""
+        """Count the pictures of films whose poster existed already."""
         for name in self.asked.names:
             if name not in self.frames and self.board.state(name, FILM) == "waiting":
                 self._read(name)
@@ -153,10 +156,10 @@ class Books:
 
     def _write(self) -> None:
         for name, film in self._films.items():
-            film.outcome, film.steps = self.board.outcome(name), dict(self.board.of(name))
+            film.outcome, film.steps = self.board.outcome(name), dict(self.board.steps_of(name))
             if name in self.frames:
                 known = self.frames[name]
-                film.done, film.all, film.each = known.done, known.all, known.each
+                film.done, film.all, film.each = known.existing, known.all, known.each
                 film.left = None if known.each is None else known.left * known.each
         self._record.left = self.forecast().seconds
         self._record.updated = _now()

@@ -1,4 +1,4 @@
-"""Whether a night is begun at all: not where the disk surely cannot hold its pictures."""
+"""Check of the disk before a night: it must have room for the pictures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from studio.night.progress.frames import Frames
 
 
 def refuse_before_start(asked: Options, names: tuple[str, ...]) -> None:
-    """Raise UserError where films of ``names`` that were solved already surely need more than the disk has."""
+    """Raise UserError if solved films of ``names`` surely need more than the disk has."""
     if asked.anyway:
         return
     films = [Frames(name, asked.preset) for name in names]
@@ -20,7 +20,10 @@ def refuse_before_start(asked: Options, names: tuple[str, ...]) -> None:
 
 
 def refuse(asked: Options, forecast: Forecast) -> None:
-    """Raise UserError with the numbers where ``found`` surely exceeds what is free, and nobody said ANYWAY."""
+    """Raise UserError with the numbers if the forecast surely exceeds the free space.
+
+    ANYWAY skips the check.
+    """
     if asked.anyway or forecast.can_fit or forecast.free is None:
         return
     raise UserError(

@@ -1,4 +1,4 @@
-"""What the rest of the night takes: time, disk, energy, and the hour at which it ends."""
+"""Forecast of the rest of the night: time, disk, energy, and the hour at which it ends."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ RESERVE = 200e6
 
 @dataclass(frozen=True)
 class Forecast:
-    """Forecast of the films that are still to be made."""
+    """Forecast of the unfinished films."""
 
     films: int
     pictures: int
@@ -45,23 +45,23 @@ class Forecast:
 
     @property
     def fits(self) -> bool:
-        """Whether the disk has room."""
+        """True if the disk has room."""
         return self.free is None or self.bytes + RESERVE <= self.free or not self.pictures
 
     @property
     def can_fit(self) -> bool:
-        """Whether it is not sure that the disk has no room."""
+        """True unless the disk surely has no room."""
         return self.free is None or self.least + RESERVE <= self.free or not self.pictures
 
     def ends(self, now: datetime) -> str:
-        """The hour at which the night is over; with the day if it is another."""
+        """Return the hour at which the night is over, with the day if it is another."""
         if self.seconds is None:
             return "at an hour that is not known yet"
         end = now + timedelta(seconds=self.seconds)
         return f"at {end:%H:%M}" if end.date() == now.date() else f"on {end:%A %d %B at %H:%M}"
 
     def words(self, now: datetime, watts: float | None = None) -> str:
-        """The forecast in a sentence."""
+        """Return the forecast in a sentence."""
         if not self.pictures and not self.unread:
             return "every frame is there"
         text = f"{counted(self.films, 'film')}, {counted(self.pictures, 'frame')} to render"
@@ -79,7 +79,7 @@ class Forecast:
 
 
 def forecast(films: Collection[Frames], unread: int, preset: Preset, disk: Path) -> Forecast:
-    """The forecast over the films that are not finished; ``unread`` more have no known number of pictures."""
+    """Return the forecast over unfinished films; ``unread`` more have an unknown number of pictures."""
     left = [film for film in films if film.left]
     known = [film.each for film in left if film.each is not None]
     unknown = sum(film.each is None for film in left)
@@ -101,13 +101,13 @@ def forecast(films: Collection[Frames], unread: int, preset: Preset, disk: Path)
 
 
 def size(count: float) -> str:
-    """Bytes for people: ``12 MB``, ``3.4 GB``."""
+    """Return bytes in words: ``12 MB``, ``3.4 GB``."""
     if count < 1e9:
         return f"{count / 1e6:.0f} MB"
     return f"{count / 1e9:.1f} GB" if count < 100e9 else f"{count / 1e9:.0f} GB"
 
 
 def energy(joules: float) -> str:
-    """An energy for people, in watt-hours or kilowatt-hours."""
+    """Return an energy in words, in watt-hours or kilowatt-hours."""
     hours = joules / 3600
     return f"{hours:.0f} Wh" if hours < 1000 else f"{hours / 1000:.1f} kWh"

@@ -1,4 +1,4 @@
-"""How far a film is: its pictures that are there, those that lack, and the seconds that one takes."""
+"""Progress of a film: its existing pictures, its missing ones, and the seconds that one takes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FEWEST = 3
 
 @dataclass
 class Frames:
-    """The pictures of one film; all numbers are of pictures, of which a film may show one several times."""
+    """Pictures of one film; all numbers count pictures, which a film may show several times."""
 
     name: str
     preset: Preset
@@ -34,7 +34,7 @@ class Frames:
     """Moments (monotonic) at which pictures were first seen in this run, and how many there were then."""
 
     def read(self, show: str) -> bool:
-        """Read from motion, parts and shot which pictures the film has; False where these are not there yet."""
+        """Read from motion, parts and shot which pictures the film has; False if these are missing."""
         from render.film.inputs import read_film, refuse_missing
 
         out = Out(self.name)
@@ -54,7 +54,7 @@ class Frames:
         return self._measured()
 
     def _measured(self) -> bool:
-        """Read what a picture took in the last run, and look into the folder."""
+        """Read the seconds a picture took in the last run, and look into the folder."""
         from render.frames.store import FrameStore
 
         timing = FrameStore(Out(self.name).frames(self.preset.name)).read_timing()
@@ -64,16 +64,16 @@ class Frames:
 
     @property
     def all(self) -> int:
-        """Pictures of the film."""
+        """Number of pictures of the film."""
         return len(self.keys)
 
     @property
-    def done(self) -> int:
-        """Pictures of the film that are there."""
+    def existing(self) -> int:
+        """Number of pictures of the film that exist."""
         return len({name.partition("-")[0] for name in self.files} & self.keys)
 
     def look(self) -> bool:
-        """Look into the folder; whether there is a picture that was not there before."""
+        """Look into the folder; return True if there is a new picture."""
         folder = Out(self.name).frames(self.preset.name)
         try:
             with os.scandir(folder) as entries:
@@ -86,16 +86,16 @@ class Frames:
             pictures, fresh = {}, set()
         self.files = frozenset(pictures)
         if fresh:
-            self._seen.append((time.monotonic(), self.done))
+            self._seen.append((time.monotonic(), self.existing))
         return bool(fresh)
 
     def begin(self) -> None:
-        """A run of the film begins: its pace is measured anew."""
+        """Begin a run of the film: its pace is measured anew."""
         self._seen.clear()
 
     @property
     def each(self) -> float | None:
-        """Seconds a picture; None while nothing is known."""
+        """Seconds a picture; None while unknown."""
         if len(self._seen) >= FEWEST:
             (first, before), (last, after) = self._seen[0], self._seen[-1]
             if after > before:
@@ -104,5 +104,5 @@ class Frames:
 
     @property
     def left(self) -> int:
-        """Pictures that lack."""
-        return self.all - self.done
+        """Number of missing pictures."""
+        return self.all - self.existing

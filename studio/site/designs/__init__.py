@@ -1,1 +1,1 @@
-"""Designs that a page shows without Python: motions on a grid of main numbers, and polynomials between them."""
+"""Designs that a page shows without Python: motions on a grid of main numbers, with polynomials."""

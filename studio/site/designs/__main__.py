@@ -1,4 +1,7 @@
-"""``python -m studio.site.designs NAME``: write out/<name>/designs.bin; empty where no number can be moved smoothly."""
+"""``python -m studio.site.designs NAME``: write out/<name>/designs.bin.
+
+The file is empty if no number can be moved smoothly.
+"""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ import numpy as np
 
 
 def nodes(low: float, high: float, count: int) -> np.ndarray:
-    """The points between two ends, (count,), rising. ``count`` is at least 2."""
+    """Return the points between two ends, (count,), rising. ``count`` is at least 2."""
     cosines = np.cos(np.pi * np.arange(count - 1, -1, -1) / (count - 1))
     points = 0.5 * (low + high) + 0.5 * (high - low) * cosines
     points[[0, -1]] = low, high
@@ -25,7 +25,7 @@ def nodes(low: float, high: float, count: int) -> np.ndarray:
 
 
 def weights(x: float, points: np.ndarray) -> np.ndarray:
-    """What each node counts at ``x``, (count,); their sum is 1."""
+    """Return the weight of each node at ``x``, (count,); their sum is 1."""
     away = x - points
     if (hit := np.flatnonzero(away == 0)).size:
         return np.eye(len(points))[hit[0]]
@@ -36,7 +36,7 @@ def weights(x: float, points: np.ndarray) -> np.ndarray:
 
 
 def tensor_weights(place: Sequence[float], axes: Sequence[np.ndarray]) -> np.ndarray:
-    """What each design of the grid counts, (product of counts,), the last axis running fastest."""
+    """Return the weight of each design of the grid, (product of counts,), the last axis fastest."""
     out = np.ones(1)
     for x, points in zip(place, axes, strict=True):
         out = np.multiply.outer(out, weights(x, points)).ravel()
@@ -44,5 +44,5 @@ def tensor_weights(place: Sequence[float], axes: Sequence[np.ndarray]) -> np.nda
 
 
 def grid(axes: Sequence[np.ndarray]) -> list[tuple[float, ...]]:
-    """All designs, the last axis running fastest."""
+    """Return all designs, the last axis running fastest."""
     return [tuple(map(float, place)) for place in itertools.product(*axes)]

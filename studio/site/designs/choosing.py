@@ -1,4 +1,4 @@
-"""Which numbers of Params a page offers, and between which ends."""
+"""Numbers of Params that a page offers, and the ends between which they move."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FELT = 1e-3
 
 @dataclass(frozen=True)
 class Axis:
-    """A number of Params between two ends."""
+    """Number of Params between two ends."""
 
     number: Number
     low: float
@@ -27,23 +27,26 @@ class Axis:
 
     @property
     def name(self) -> str:
-        """Its name in Params."""
+        """Name in Params."""
         return self.number.name
 
     def narrower(self) -> Axis:
-        """Ends nearer to the number's own value."""
+        """Return an axis whose ends are nearer to the number's own value."""
         value = self.number.value
         return replace(self, low=value + NARROWER * (self.low - value), high=value + NARROWER * (self.high - value))
 
 
 def axes_of(solved: Solved, numbers: list[Number], most: int) -> list[Axis]:
-    """The main numbers, at most ``most``: those that move the machine most, then those that change its efforts most."""
+    """Return at most ``most`` main numbers.
+
+    First come those that move the mechanism most, then those that change its efforts most.
+    """
     felt: list[tuple[float, float, Axis]] = []
     for number in numbers:
         axis = _widest(number)
         if axis is None or solved.is_late:
             continue
-        moved = solved.at({number.name: number.value + NUDGE * (number.high - number.low)})
+        moved = solved.numbers_at({number.name: number.value + NUDGE * (number.high - number.low)})
         if moved is None:
             continue
         places, efforts = solved.away(moved, solved.usual)
@@ -61,7 +64,10 @@ def axes_of(solved: Solved, numbers: list[Number], most: int) -> list[Axis]:
 
 
 def _widest(number: Number) -> Axis | None:
-    """The number's own range, within WIDEST; None for whole numbers and zeros, which have no multiples."""
+    """Return the number's own range, within WIDEST.
+
+    It is None for whole numbers and zeros, which have no multiples.
+    """
     if number.whole or number.value == 0:
         return None
     ends = sorted(factor * number.value for factor in WIDEST)
@@ -69,9 +75,9 @@ def _widest(number: Number) -> Axis | None:
 
 
 def _that_solves(solved: Solved, axis: Axis) -> Axis | None:
-    """Ends that both solve while all other numbers stay as they are."""
+    """Return ends that both solve while all other numbers stay; None without such."""
     for _ in range(TRIES):
-        if all(solved.at({axis.name: end}) is not None for end in (axis.low, axis.high)):
+        if all(solved.numbers_at({axis.name: end}) is not None for end in (axis.low, axis.high)):
             return axis
         axis = axis.narrower()
     return None

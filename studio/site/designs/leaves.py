@@ -1,4 +1,4 @@
-"""The numbers of a payload as one vector, so that payloads of several designs can be added."""
+"""Numbers of a payload as one vector, so that payloads of several designs can be added."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ ROWS = 91
 DENSE = 32
 """Points of a curve of the skeleton that has more."""
 LEFT_OUT = ("marks", "clearance", "solid", "trails", "gravity", "mechanism", "title", "frame", "couple")
-"""What does not change with a design, or is not shown of one between the stored ones."""
+"""Fields that do not change with a design, or are not shown between the stored ones."""
 
 Path = tuple[str | int, ...]
 
 
 class Unlike(Exception):
-    """Two designs have payloads of different make, so nothing is between them."""
+    """Error for two designs whose payloads have different forms, so that nothing lies between them."""
 
 
 def thinned(payload: dict[str, Any]) -> dict[str, Any]:
-    """A payload at no more than ROWS of its times, evenly taken, and without what is left out."""
+    """Return a payload at no more than ROWS of its times, evenly, without fields that are left out."""
     count = len(payload["time"])
     rows = np.unique(np.linspace(0, count - 1, min(count, ROWS)).round().astype(int))
 
@@ -44,7 +44,10 @@ def thinned(payload: dict[str, Any]) -> dict[str, Any]:
 
 
 def _even(points: np.ndarray) -> np.ndarray:
-    """DENSE points along a curve, (2 DENSE,), at even distances: how many there were depends on its size."""
+    """Return DENSE points along a curve, (2 DENSE,), at even distances.
+
+    The number of points of the curve depends on its size.
+    """
     places = np.asarray(points, float).reshape(-1, 2)
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))])
     even = np.linspace(0.0, along[-1], DENSE)
@@ -52,7 +55,10 @@ def _even(points: np.ndarray) -> np.ndarray:
 
 
 def leaves(payload: Any, path: Path = ()) -> Iterator[tuple[Path, np.ndarray]]:
-    """Every array and number with its place, in one order; whole numbers, words and None are no numbers of a design."""
+    """Yield every array and number with its path, in a fixed order.
+
+    Whole numbers, words and None do not vary with a design.
+    """
     if isinstance(payload, np.ndarray):
         yield path, np.asarray(payload, float).ravel()
     elif isinstance(payload, float):
@@ -66,7 +72,9 @@ def leaves(payload: Any, path: Path = ()) -> Iterator[tuple[Path, np.ndarray]]:
 
 
 def form(payload: Any) -> Any:
-    """A payload with {"#": length} in place of each array and {"#": None} of each number: what a vector is filled into.
+    """Return a payload with {"#": length} for each array and {"#": None} for each number.
+
+    A vector fills it.
 
     Arrays of doubles say so.
     """
@@ -80,7 +88,7 @@ def form(payload: Any) -> Any:
 
 
 def vector(payload: dict[str, Any], base: list[tuple[Path, np.ndarray]] | None = None) -> np.ndarray:
-    """All numbers of a payload; angles within half a turn of those of ``base``. Raises Unlike."""
+    """Return all numbers of a payload; angles within half a turn of those of ``base``. Raises Unlike."""
     ours = list(leaves(payload))
     if base is None:
         return np.concatenate([values for _, values in ours])
@@ -97,5 +105,5 @@ def vector(payload: dict[str, Any], base: list[tuple[Path, np.ndarray]] | None =
 
 
 def where(base: list[tuple[Path, np.ndarray]], *names: str) -> np.ndarray:
-    """Which numbers of the vector stand in arrays with one of these names, (N,) bool."""
+    """Return True for numbers of the vector in arrays of one of these names, (N,)."""
     return np.concatenate([np.full(len(values), path[-1] in names) for path, values in base])

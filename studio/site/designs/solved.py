@@ -1,4 +1,4 @@
-"""One machine solved with any numbers of its Params, as vectors that can be added."""
+"""Mechanism solved with any numbers of its Params, as vectors that can be added."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ EFFORTS = ("effort", "fx", "fy", "torque")
 
 
 class Solved:
-    """The designs of one mechanism; ``patience`` (s) bounds the time that all of them may take."""
+    """Designs of one mechanism; ``patience`` (s) bounds the time of all of them together."""
 
     def __init__(self, author: Author, patience: float) -> None:
         self.author = author
@@ -35,24 +35,24 @@ class Solved:
 
     @property
     def is_late(self) -> bool:
-        """Whether the time is up."""
+        """True if the time is up."""
         return time.monotonic() > self.ends
 
-    def at(self, values: Mapping[str, float]) -> np.ndarray | None:
-        """The numbers of a design, (N,); None where it cannot be solved to its end or is of another make."""
+    def numbers_at(self, values: Mapping[str, float]) -> np.ndarray | None:
+        """Return the numbers of a design, (N,); None if it is not solved to its end or differs in form."""
         key = tuple(sorted(values.items()))
         if key not in self._kept:
-            self._kept[key] = None if self.is_late else self._made(dict(values))
+            self._kept[key] = None if self.is_late else self._solve(dict(values))
         return self._kept[key]
 
     def away(self, first: np.ndarray, second: np.ndarray) -> tuple[float, float]:
-        """How far two designs differ: places in parts of the machine's size, efforts in parts of the largest one."""
+        """Return how far two designs differ, relative to the machine's size and to its largest effort."""
         gap = np.abs(first - second)
         largest = max(float(np.abs(self.usual[self.efforts]).max(initial=0.0)), 1e-12)
         places = float(gap[self.places].max(initial=0.0)) / self.size
         return places, float(gap[self.efforts].max(initial=0.0)) / largest
 
-    def _made(self, values: dict[str, float]) -> np.ndarray | None:
+    def _solve(self, values: dict[str, float]) -> np.ndarray | None:
         try:
             payload: dict[str, Any] = self.author.payload(values, quick=True)
             return vector(thinned(payload), self.base)

@@ -1,4 +1,4 @@
-"""The designs that a page carries: solved on a grid, checked between its nodes, kept in 16 bits a number."""
+"""Designs of a page: solved on a grid, checked between its nodes, kept in 16 bits a number."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHAPES = ((3, 5), (3, 4), (2, 7), (2, 5), (1, 9))
 LARGEST = 1_600_000
 """Bytes of the table, compressed."""
 PLACES, EFFORTS = 4e-3, 0.06
-"""What a design between the nodes may be wrong by: parts of the machine's size, and of its largest effort."""
+"""Largest errors between the nodes, relative to the machine's size and to its largest effort."""
 CHECKS = 6
 """Designs between the nodes that are solved and compared."""
 NARROWINGS = 4
@@ -33,7 +33,7 @@ STEPS = 65535
 
 @dataclass(frozen=True)
 class Table:
-    """What the page gets, and how exact it is: parts of the machine's size, and of its largest effort."""
+    """Table for the page, with its errors relative to the machine's size and largest effort."""
 
     content: bytes
     names: tuple[str, ...]
@@ -43,7 +43,7 @@ class Table:
 
 
 def table_of(author: Author) -> Table | None:
-    """The table of a mechanism; None where no number of it can be moved smoothly. Raises UserError."""
+    """Return the table of a mechanism; None if no number can be moved smoothly. Raises UserError."""
     solved = Solved(author, PATIENCE)
     every = axes_of(solved, numbers_of(author.params), most=max(count for count, _ in SHAPES))
     words = described(author)
@@ -62,12 +62,12 @@ def table_of(author: Author) -> Table | None:
 
 
 def _filled(solved: Solved, axes: list[Axis], per_axis: int, words: dict[str, dict[str, str]]) -> Table | None:
-    """The designs on the grid; None where one cannot be solved or what is between them is not exact enough."""
+    """Return the designs on the grid; None if one is not solved or interpolation is not exact enough."""
     points = [chebyshev.nodes(axis.low, axis.high, per_axis) for axis in axes]
     names = [axis.name for axis in axes]
     rows = []
     for place in chebyshev.grid(points):
-        row = solved.at(dict(zip(names, place, strict=True)))
+        row = solved.numbers_at(dict(zip(names, place, strict=True)))
         if row is None:
             return None
         rows.append(row)
@@ -76,7 +76,7 @@ def _filled(solved: Solved, axes: list[Axis], per_axis: int, words: dict[str, di
     worst = [0.0, 0.0]
     for part in _between(names):
         place = [axis.low + x * (axis.high - axis.low) for axis, x in zip(axes, part, strict=True)]
-        exact = solved.at(dict(zip(names, place, strict=True)))
+        exact = solved.numbers_at(dict(zip(names, place, strict=True)))
         if exact is None:
             return None
         shown = low + span / STEPS * (chebyshev.tensor_weights(place, points) @ codes)
@@ -88,7 +88,7 @@ def _filled(solved: Solved, axes: list[Axis], per_axis: int, words: dict[str, di
 
 
 def _quantised(designs: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Least value and span of each number over all designs, (N,), and codes from 0 to STEPS, (D, N)."""
+    """Return least value and span of each number over all designs, (N,), and codes 0..STEPS, (D, N)."""
     low = designs.min(axis=0).astype(np.float32).astype(float)
     span = (designs.max(axis=0) - low).astype(np.float32).astype(float)
     span = np.where(span > 1e-9 * np.abs(low), span, 0.0)
@@ -97,7 +97,7 @@ def _quantised(designs: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def _between(names: list[str]) -> np.ndarray:
-    """Designs inside the grid, (CHECKS, numbers) in parts of each range; the same ones every time."""
+    """Return designs inside the grid, (CHECKS, numbers), relative to each range; always the same."""
     seed = int.from_bytes(hashlib.sha256(" ".join(names).encode()).digest()[:8], "little")
     return np.random.Generator(np.random.Philox(seed)).uniform(0.03, 0.97, (CHECKS, len(names)))
 
@@ -110,8 +110,10 @@ def _document(
     numbers: tuple[np.ndarray, np.ndarray, np.ndarray],
     worst: list[float],
 ) -> dict[str, Any]:
-    """numbers: as the sliders take them; nodes: of each; form: a payload without its numbers, which are in their order
-    low, and those that are used, low + span * (weights of the designs times codes) / 65535.
+    """Return the document of the table that the page reads.
+
+    It has ``numbers`` as the sliders take them, ``nodes`` of each, and ``form``, a payload without its numbers. These
+    are in their order low, and those that are used, low + span * (weights of the designs times codes) / 65535.
     """
     low, span, codes = numbers
     used = np.flatnonzero(span > 0)

@@ -17,23 +17,23 @@ HANGS = 3.0
 
 
 def work(do: Any, most: int = 10_000) -> Work:
-    """Work whose results are taken as they come, a letter a byte."""
+    """Return work whose results are taken as they come, a letter a byte."""
     return Work(do, lambda _, content: content.decode("latin-1"), most)
 
 
 def doubled(files: Mapping[str, Path], common: str, order: Any) -> bytes:
-    """The order's text twice, after what all have in common."""
+    """Return the order's text twice, after the common part."""
     return files[common].read_bytes() + str(order).encode() * 2
 
 
 def slow(files: Mapping[str, Path], common: str, order: Any) -> bytes:
-    """Takes the order's time."""
+    """Wait for the order's time."""
     time.sleep(order)
     return b"done"
 
 
 def deadly(files: Mapping[str, Path], common: str, order: Any) -> bytes:
-    """The first process that gets the order ends by it."""
+    """End the first process that gets the order."""
     marker = Path(order)
     if marker.name == "dies" and not marker.exists():
         marker.touch()
@@ -43,7 +43,7 @@ def deadly(files: Mapping[str, Path], common: str, order: Any) -> bytes:
 
 
 def refusing(files: Mapping[str, Path], common: str, order: Any) -> bytes:
-    """Fails always, or on one worker."""
+    """Fail always, or on one worker."""
     from distributed import get_worker
 
     if order == "always" or order == get_worker().address:
@@ -52,7 +52,7 @@ def refusing(files: Mapping[str, Path], common: str, order: Any) -> bytes:
 
 
 def hanging(files: Mapping[str, Path], common: str, order: Any) -> bytes:
-    """Hangs on the worker whose address is the order."""
+    """Hang on the worker whose address is the order."""
     from distributed import get_worker
 
     if order == get_worker().address:

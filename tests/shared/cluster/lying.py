@@ -75,6 +75,6 @@ def lie(
 
 
 def small(files: Mapping[str, Path], common: str, order: Any) -> bytes:
-    """An order that takes little time."""
+    """Do an order that takes little time."""
     time.sleep(0.03)
     return b"done"

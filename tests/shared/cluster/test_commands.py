@@ -25,12 +25,12 @@ from tests.running.processes import ends_with_us
 from tests.shared.cluster import acting
 
 HOST, OTHER_HOST = ("127.0.0.2", "127.0.0.3") if sys.platform == "linux" else ("127.0.0.1", "127.0.0.1")
-"""Of scheduler and worker; other systems than Linux have one address of loopback."""
+"""Addresses of scheduler and worker; systems other than Linux have one address of loopback."""
 
 
 @contextmanager
 def started(*words: str, log: Path) -> Iterator[subprocess.Popen[bytes]]:
-    """A scheduler or worker until the block ends."""
+    """Yield a scheduler or worker until the block ends."""
     with log.open("w") as said:
         process = subprocess.Popen(
             [sys.executable, "-m", "shared.cluster", *words], cwd=ROOT, stdout=said, stderr=said,
@@ -64,7 +64,7 @@ def answers_at(port: int) -> bool:
 
 
 def listening(process: subprocess.Popen[bytes]) -> list[tuple[str, int]]:
-    """Addresses on which the process and all that it has started listen."""
+    """Return the addresses on which the process and its descendants listen."""
     family = [psutil.Process(process.pid), *psutil.Process(process.pid).children(recursive=True)]
     connections = [connection for member in family for connection in member.net_connections("inet")]
     return [
@@ -158,12 +158,12 @@ def test_contents_are_whole_and_the_longest_unused_go(tmp_path: Path) -> None:
     parts = [os.urandom(1000) for _ in range(3)]
     names = [content_hash(part) for part in parts]
     for name, part in zip(names[:2], parts[:2], strict=True):
-        kept.put({name: part})
+        kept.keep({name: part})
     os.utime(tmp_path / names[0], (1e9, 2e9))
     os.utime(tmp_path / names[1], (1e9, 1e9))
-    kept.put({names[2]: parts[2]})
+    kept.keep({names[2]: parts[2]})
     assert kept.lacking(names) == [names[1]]
     (tmp_path / names[0]).write_bytes(parts[0][:-1])
     assert Contents(tmp_path).lacking(names) == names[:2]
-    kept.put({names[1]: b"other bytes"})
+    kept.keep({names[1]: b"other bytes"})
     assert names[1] in kept.lacking(names)

@@ -28,7 +28,7 @@ ROOMS = ("shared/cluster",)
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[distributed.Client]:
-    """Three workers within this process."""
+    """Yield a client of three workers within this process."""
     with (
         pytest.MonkeyPatch.context() as patch,
         dask.config.set({"distributed.client.scheduler-info-interval": "200ms"}),
@@ -57,7 +57,7 @@ def dealt(client: distributed.Client, work: Callable[..., Any], orders: dict[str
 
 
 def first_worker(client: distributed.Client) -> str:
-    """By its address; what the client itself knows of the scheduler may be of another moment."""
+    """Return the first worker by its address, since the client's own view may be outdated."""
     client.wait_for_workers(3, timeout=60)
     assert isinstance(client.cluster, distributed.LocalCluster)
     assert client.cluster.scheduler is not None

@@ -25,7 +25,7 @@ ORDERS = {f"k{n}": n for n in range(6)}
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[distributed.Client]:
-    """Two workers within this process."""
+    """Yield a client of two workers within this process."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("MBSD_OUT", str(tmp_path_factory.mktemp("out")))
         with (
@@ -118,7 +118,7 @@ def test_what_a_worker_says_is_printed_as_one_line_of_plain_text() -> None:
 def test_a_worker_that_others_keep_busy_is_asked_at_once(
     client: distributed.Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What it works with is known before it has time; a run waited for that, and ended where it took a minute."""
+    """Its packages are known before it has time; a run once waited for them, and ended after a minute."""
     monkeypatch.setattr(deal, "WAIT", 0.5)
     busy = [client.submit(time.sleep, 1.5, workers=[name], pure=False) for name in workers(client)]
     assert len(list(dealt(client).results())) == len(ORDERS)

@@ -52,7 +52,7 @@ def crank(name: str, length: str = "0.05", imports: str = "") -> str:
 
 
 def mbsd(*words: str, at: Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    """The program, called in ``at`` as its script does."""
+    """Run the program in ``at`` as its script does."""
     names = ("MBSD_OUT", "MBSD_MAKE", "MBSD_FACE", "MBSD_WORKSHOP", "PYTHONPATH", "MECHANISMS", "CLUSTER")
     inherited = {key: value for key, value in os.environ.items() if key not in names}
     command = [sys.executable, "-P", "-m", "mbsd", *words]
@@ -62,7 +62,7 @@ def mbsd(*words: str, at: Path, **environment: str) -> subprocess.CompletedProce
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder, a file, and names of ours that are the user's here."""
+    """Return a user's folder with a folder, a file, and names that the project has too."""
     (tmp_path / "arm").mkdir()
     (tmp_path / "arm" / "mechanism.py").write_text(crank("arm", imports="from .sizes import LENGTH", length="LENGTH"))
     (tmp_path / "arm" / "sizes.py").write_text("LENGTH = 0.04\n")

@@ -1,4 +1,4 @@
-"""What tests ask of an import: the text that is written, formatted as ruff does, and run as a module of its own."""
+"""Import of a file for tests: its written text, formatted by ruff and run as a module of its own."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SAMPLES = Path(__file__).parent / "samples"
 
 
 def built(source: str | Path) -> tuple[Sketch, Mechanism, dict[str, Any]]:
-    """The sketch, the mechanism of the written text, and that text's names."""
+    """Return the sketch, the mechanism of the written text, and that text's names."""
     sketch = read(str(source))
     names: dict[str, Any] = {}
     text = mechanism_py(sketch, "imported")

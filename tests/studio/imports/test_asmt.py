@@ -14,7 +14,7 @@ from tests.studio.imports.imported import SAMPLES, built
 
 
 def series(file: Path) -> dict[str, dict[str, np.ndarray]]:
-    """By owner, the rows of numbers without the input state in front of them."""
+    """Return the rows of numbers by owner, without the input state in front of them."""
     owners: dict[str, dict[str, np.ndarray]] = {}
     owner = "times"
     for line in file.read_text("latin-1").partition("\nTimeSeries")[2].splitlines():

@@ -17,7 +17,7 @@ PINS = {"A": (0.0, 0.0), "B": (0.0, 40.0), "C": (110.0, 90.0), "D": (120.0, 0.0)
 
 
 def sketched(tmp_path: Path, units: int = 4, motor: str = "motor", ground: str = "ground", end: str = "\n") -> Path:
-    """A four-bar with a point of its coupler; the coupler is three lines on a layer, D has two rings."""
+    """Write a four-bar with a coupler point: three lines on a layer, and two rings at D."""
     document = new("R2010", units=units)
     space = document.modelspace()
     for name, place in PINS.items():

@@ -1,4 +1,4 @@
-"""Files that no program wrote: each is an error in a sentence, soon, and nothing that is written fails to load."""
+"""Files that no program wrote: each gives an error in a sentence, and every written file loads."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ def build(p: Params) -> Mechanism:
 
 
 class Page:
-    """What a browser's page hears and says."""
+    """Messages between the server and a browser's page."""
 
     def __init__(self, socket: ClientConnection) -> None:
         self._socket = socket
@@ -81,7 +81,7 @@ class Page:
         self._socket.send(json.dumps(wish))
 
     def hear(self, *kinds: str, wanted: Callable[[dict[str, Any]], bool] = lambda header: True) -> Any:
-        """The next message of one of these kinds, with its payload under ``payload``; others are passed over."""
+        """Return the next message of these kinds, with its payload under ``payload``."""
         ends = time.monotonic() + WAIT
         while True:
             frame = self._socket.recv(timeout=max(ends - time.monotonic(), 0.01))
@@ -125,7 +125,7 @@ class Served:
             yield Page(socket)
 
     def write(self, text: str | bytes, file: str = "mechanism.py") -> None:
-        """As editors do: a new file takes the place of the old one."""
+        """Write a file as editors do: a new file replaces the old one."""
         folder = self.folder / self.session.name
         beside = folder / "unsaved"
         beside.write_bytes(text.encode() if isinstance(text, str) else text)
@@ -133,7 +133,7 @@ class Served:
 
 
 def blank(_: Session) -> bytes:
-    """A page where none is looked at."""
+    """Return a page for tests that look at none."""
     return b"<!doctype html>"
 
 
@@ -147,7 +147,7 @@ def served(
     show: Callable[[Session], bytes] = blank,
     files: Mapping[str, str] = MappingProxyType({}),
 ) -> Iterator[Served]:
-    """A server of one mechanism of a test's own."""
+    """Yield a server of one mechanism of a test's own."""
     (folder / name).mkdir(parents=True)
     for file, text in {"mechanism.py": source, **files}.items():
         (folder / name / file).write_text(text)
@@ -183,7 +183,7 @@ def served(
 
 
 def processes_of(mark: str) -> list[psutil.Process]:
-    """Those that run on and have this mark of a server in their environment."""
+    """Return running processes with this server's mark in their environment."""
     marked = []
     for process in psutil.process_iter():
         try:

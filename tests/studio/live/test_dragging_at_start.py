@@ -49,7 +49,7 @@ def build(p: Params) -> Mechanism:
 
 @pytest.fixture(params=[0.1, 1.0, 30.0])
 def swing(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Author, float]:
-    """The mechanism at some size, under a name of its own, for modules are loaded once."""
+    """Return the mechanism at some size, under a name of its own, since modules are loaded once."""
     root, name = tmp_path / "mechanisms", f"swing_{len(request.node.name)}_{10 * request.param:.0f}"
     (root / name).mkdir(parents=True)
     text = SWING.replace("DURATION", f"SIZE = {request.param}\nDURATION", 1).replace('"swing"', f'"{name}"')
@@ -62,7 +62,7 @@ def swing(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def tip(values: dict[str, float]) -> np.ndarray:
-    """Of the lower rod at the start, for rods of these numbers."""
+    """Return the tip of the lower rod at the start, for rods of these numbers."""
     upper, lower = np.radians(values["angle"]), np.radians(values["turn"])
     return values["upper"] * np.array([np.cos(upper), np.sin(upper)]) + values["lower"] * np.array(
         [np.cos(lower), np.sin(lower)]

@@ -31,7 +31,7 @@ def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 
 def followed(live: Served, page: Page, length: float) -> None:
-    """A save is solved and seen."""
+    """Save a length and wait until the page shows it."""
     live.write(good(length))
     page.hear("solved", wanted=lambda header: header["numbers"][0]["value"] == length)
     assert page.hear("motion")["payload"]
@@ -117,7 +117,7 @@ def test_a_folder_that_was_renamed_may_come_back(live: Served) -> None:
         away.rename(folder)
         page.hear("solved")
         page.hear("motion")
-        live.session.history.put({})
+        live.session.history.add({})
         followed(live, page, 0.46)
 
 

@@ -1,4 +1,4 @@
-"""Who may speak to the server: the token, this machine's name, and pages of the server itself."""
+"""Access to the server: the token, this machine's name, and pages of the server itself."""
 
 from __future__ import annotations
 

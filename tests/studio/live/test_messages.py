@@ -1,4 +1,4 @@
-"""What pages may say, and what a hostile one says: it gets a sentence, and the others notice nothing."""
+"""Messages of pages: a hostile page gets a sentence, and the others notice nothing."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 
 
 def set_and_seen(page: Page, other: Page, length: float) -> None:
-    """One page sets a number, another one sees it."""
+    """Set a number on one page and wait until another one shows it."""
     page.say(do="set", values={"length": length}, final=True)
     other.hear("values", wanted=lambda header: header["values"] == {"length": length})
     other.hear("motion", wanted=lambda header: header["values"] == {"length": length})
@@ -155,16 +155,16 @@ def test_a_flood_of_messages_keeps_nobody_else_waiting(live: Served) -> None:
 
 
 def test_a_page_that_is_too_slow_gets_the_state_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of what it did not take nothing is dropped by itself: it could be that an error is cured."""
+    """No single message is dropped, since it could report that an error is cured."""
     box = Mailbox(lambda: [b"state"])
     for k in range(mailbox.MOST):
-        box.put(b"%d" % k)
+        box.add(b"%d" % k)
     assert len(box) == mailbox.MOST
-    box.put(b"one more")
+    box.add(b"one more")
     assert len(box) == 1
     monkeypatch.setattr(mailbox, "LARGEST", 100)
     for _ in range(50):
-        box.put(b"x" * 40, replaces=True)
+        box.add(b"x" * 40, replaces=True)
     assert len(box) == 2
-    box.put(b"x" * 90)
+    box.add(b"x" * 90)
     assert len(box) == 1

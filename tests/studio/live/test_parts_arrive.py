@@ -95,7 +95,7 @@ def test_parts_follow_the_skeleton(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def _stages(wanted: int) -> int:
-    """Processes that make parts, which get a moment to begin or to end."""
+    """Return the number of processes that build parts, after a moment to begin or end."""
     ends = time.monotonic() + 20
     while True:
         running = 0

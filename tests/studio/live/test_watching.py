@@ -51,7 +51,7 @@ def test_a_touch_is_no_change(tmp_path: Path) -> None:
 
 
 def test_a_file_that_was_saved_while_it_was_read_has_changed(tmp_path: Path) -> None:
-    """What was read of it may be what it was before; its name is known only after that."""
+    """Its content may have been read before the change; its name is known only afterwards."""
     (tmp_path / "folder").mkdir()
     watch = Watch(tmp_path / "folder")
     old, new = tmp_path / "old.txt", tmp_path / "new.txt"

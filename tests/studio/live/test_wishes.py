@@ -1,4 +1,4 @@
-"""What a page asks for: sliders, where a motion stops, drags, undo, fits, and numbers written back."""
+"""Requests of a page: sliders, stops of a motion, drags, undo, fits, and numbers written back."""
 
 from __future__ import annotations
 

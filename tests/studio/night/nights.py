@@ -27,7 +27,7 @@ class Night:
         script.chmod(0o755)
 
     def tell(self, name: str, step: str, words: str) -> None:
-        """What this step of this mechanism does, instead of ending well at once."""
+        """Set the behaviour of this step of this mechanism, which else ends well at once."""
         (self.folder / f"{name}.{step}").write_text(words)
 
     def ran(self) -> list[str]:
@@ -55,7 +55,7 @@ class Night:
         )
 
     def say(self, command: str) -> str:
-        """What ``status`` or ``stop`` say."""
+        """Return the output of ``status`` or ``stop``."""
         variables = os.environ | {"MBSD_OUT": str(self.folder / "out")}
         words = [sys.executable, "-m", "studio.night", command]
         return subprocess.run(words, cwd=ROOT, env=variables, capture_output=True, text=True, check=True).stdout

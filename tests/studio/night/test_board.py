@@ -29,7 +29,7 @@ def play(board: Board, bad: set[tuple[str, str]], data: st.DataObject, cores: in
         assert running
         job = data.draw(st.sampled_from(sorted(running)))
         running.remove(job)
-        (board.fail if job in bad else board.done)(*job)
+        (board.fail if job in bad else board.finish)(*job)
     return order
 
 
@@ -58,15 +58,15 @@ def test_a_probe_that_can_never_be_made_holds_no_film_up():
     board = Board(["a", "b"])
     board.fail("a", "parts")
     for step in ("parts", "solve", "shot", "clearance", PROBE):
-        board.done("b", step)
+        board.finish("b", step)
     assert list(board.ready(True)) == [("b", FILM)]
-    assert board.of("a")[FILM] == "blocked"
+    assert board.steps_of("a")[FILM] == "blocked"
 
 
 @given(st.sets(st.sampled_from(list(NEEDS))))
 def test_what_follows_a_step_with_something_to_do_is_looked_at_again(fresh):
     board = Board(["a"], {"a": fresh})
-    for step, state in board.of("a").items():
+    for step, state in board.steps_of("a").items():
         stale = step not in fresh or any(step in followers(other) for other in set(NEEDS) - fresh)
         assert state == ("waiting" if stale else "fresh")
 
@@ -75,15 +75,15 @@ def test_steps_beside_the_render_come_in_the_order_in_which_it_needs_them():
     board = Board(["a", "b"])
     assert list(board.ready(False)) == [("a", "parts"), ("b", "parts")]
     for name in "ab":
-        board.done(name, "parts")
-        board.done(name, "solve")
+        board.finish(name, "parts")
+        board.finish(name, "solve")
     assert [step for _, step in board.ready(False)] == ["shot", "shot", "clearance", "clearance", "plots", "plots"]
 
 
 def test_a_mechanism_that_another_process_has_holds_no_film_up():
     board = Board(["a", "b"])
     for step in ("parts", "solve", "shot", "clearance", PROBE):
-        board.done("b", step)
+        board.finish("b", step)
     assert list(board.ready(True)) == []
     board.away.add("a")
     assert list(board.ready(True)) == [("b", FILM)]

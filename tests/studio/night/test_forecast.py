@@ -87,7 +87,7 @@ def test_the_pace_of_a_run_replaces_that_of_the_probe(out_root: Path, monkeypatc
         (folder / f".a{number}.part.png").touch()
         assert pictures.look()
         assert not pictures.look()
-    assert (pictures.done, pictures.left, pictures.size) == (4, 6, 1000.0)
+    assert (pictures.existing, pictures.left, pictures.size) == (4, 6, 1000.0)
     pictures.begin()
     assert pictures.each == 10.0
 

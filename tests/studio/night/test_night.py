@@ -23,7 +23,7 @@ def night(tmp_path: Path) -> Night:
 
 
 def alive(night: Night) -> list[str]:
-    """Processes of stand-ins that are left."""
+    """Return the processes of stand-ins that are left."""
     return [line for line in working_for(night.folder).values() if "stand_in.py" in line]
 
 

@@ -21,7 +21,7 @@ PICTURES = 60
 
 @pytest.fixture
 def command(out_root: Path, tmp_path: Path) -> list[str]:
-    """Starts a night over a film of 24 pictures, whose motion, parts and shot are there."""
+    """Return the command of a night over a film of 24 pictures with motion, parts and shot."""
     film_fixture.write(Shot(turns=1, seconds_per_turn=PICTURES / 30))
     script = tmp_path / "python"
     script.write_text(
@@ -32,7 +32,7 @@ def command(out_root: Path, tmp_path: Path) -> list[str]:
 
 
 def pictures(out: Path) -> dict[str, int]:
-    """The pictures that are there, and when they were written."""
+    """Return the existing pictures with the times at which they were written."""
     folder = out / "four_bar" / "frames" / "draft"
     return {path.name: path.stat().st_mtime_ns for path in folder.glob("[!.]*.png")}
 

@@ -18,7 +18,7 @@ NAMES = ["four_bar", "pendulum", "trammel"]
 
 @pytest.fixture
 def recorded(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> NightRecord:
-    """A run that is over, with a film of each; that of the trammel was brought from elsewhere."""
+    """Return the record of a finished run; the trammel's film comes from elsewhere."""
     monkeypatch.setattr(freshness, "current_names", set)
     for name in NAMES:
         out = Out(name)
@@ -26,7 +26,7 @@ def recorded(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> NightRecord:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(f"as {name} was filmed")
         if name != "trammel":
-            Stage(out, "film-draft", key_of(out.motion), [out.film("draft")]).done()
+            Stage(out, "film-draft", key_of(out.motion), [out.film("draft")]).record()
     films = {name: FilmRecord(outcome="done", steps={}, all=30) for name in NAMES}
     return NightRecord(process=1, host="here", preset="draft", started="", updated="", ended="done", films=films)
 

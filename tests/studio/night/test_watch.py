@@ -1,4 +1,4 @@
-"""How long a step may be silent."""
+"""Longest silence of a step."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ NAMES = ["four_bar", "pendulum", "trammel"]
 
 
 class Shop:
-    """Stands for the stages and the browser: pages that are current, pictures that were taken."""
+    """Stand-in for the stages and the browser: current pages, and pictures that were taken."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.current: set[str] = set(NAMES)

@@ -32,16 +32,16 @@ def _film(path: Path, red: int) -> Path:
 
 
 def _stamped(out: Out, name: str, path: Path, *read: Path) -> None:
-    Stage(out, name, key_of(*read), [path]).done()
+    Stage(out, name, key_of(*read), [path]).record()
 
 
 @pytest.fixture
 def out(out_root: Path, monkeypatch: pytest.MonkeyPatch) -> Out:
-    """A machine with all its results, whose pages are made by others."""
+    """Return a mechanism with all its results, whose pages are built by others."""
     out = film_fixture.write()
     for name, path in (("solve", out.motion), ("shot", out.shot)):
         _stamped(out, name, path)
-    Stage(out, "parts", "k", [out.parts, *out.parts_folder.glob("*.stl")]).done()
+    Stage(out, "parts", "k", [out.parts, *out.parts_folder.glob("*.stl")]).record()
     report.run(NAME)
     glb.run(NAME)
     _stamped(out, "film-draft", _film(out.film("draft"), 200), out.motion, out.parts, out.shot)
@@ -105,7 +105,7 @@ def test_what_is_of_the_motion_before_is_left_out_and_named_once(out: Out, capsy
 
 def test_plates_of_other_parts_are_left_out(out: Out, capsys: pytest.CaptureFixture[str]) -> None:
     out.parts.write_bytes(out.parts.read_bytes() + b"\n")
-    Stage(out, "parts", "l", [out.parts, *out.parts_folder.glob("*.stl")]).done()
+    Stage(out, "parts", "l", [out.parts, *out.parts_folder.glob("*.stl")]).record()
     making.run([NAME])
     assert "plate_1.3mf (it is of an older parts.json)" in capsys.readouterr().err
     assert _files(out) == {"mechanism.py", "data.json", f"{NAME}_stl.zip"}

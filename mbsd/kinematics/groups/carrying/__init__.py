@@ -1,1 +1,1 @@
-"""Shared parts of the formulas of all groups: points that bodies carry, branches, and cases of solution."""
+"""Shared parts of all groups' formulas: points that bodies carry, branches, cases of solution."""

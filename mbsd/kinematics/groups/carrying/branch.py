@@ -1,4 +1,4 @@
-"""Branches: of its two poses a group takes the one to which the motion since the last accepted pose leads.
+"""Branches: of its two poses a group takes the one to which the motion since the last pose leads.
 
     theta = theta_0 + sum B_j (z_j - z_0j) + c tau^2 / 2         tau: time since then
 
@@ -34,7 +34,7 @@ def predicted(base, coordinate, b):
 
 @internal
 def doubted(side, reach):
-    """Return True if the predicted distance from where both poses meet is not near to the true one, ``reach`` >= 0."""
+    """Return True if the predicted distance from the meeting of both poses is far from ``reach`` >= 0."""
     return not abs(abs(side) - reach) <= MISSED * reach
 
 

@@ -1,4 +1,4 @@
-"""Points carried by bodies, and bodies hung on points, for columns j = 0 .. C - 1 of B and for what comes after them.
+"""Points on bodies, and bodies on points, for the columns 0 .. C - 1 of B and the last one.
 
 P' = r' + omega s_perp,   in the last column also - omega^2 s: the convective accelerations
 
@@ -36,7 +36,10 @@ def carry_column(body, rate, columns, j, b, x, y, part):
 
 @internal
 def hang_column(body, rate, columns, j, b, vx, vy, omega, x, y):
-    """Rate in column j of body b that turns with omega, whose point with arm (x, y) in world axes has (vx, vy)."""
+    """Set the rate in column j of body b, which turns with omega and has a point with velocity (vx, vy).
+
+    The point's arm (x, y) is in world axes.
+    """
     rate[b, 3 * j] = vx + omega * y
     rate[b, 3 * j + 1] = vy - omega * x
     rate[b, 3 * j + 2] = omega

@@ -1,4 +1,4 @@
-"""Cases of solution of a group, and what its formulas in kinds/ need of each: one formula serves all three.
+"""Cases of solution of a group, and the needs of its formulas: one formula serves all three.
 
     PoseAlone      poses of many designs, whose drivers' angles are tabulated          no columns
     AlongLaws      a driven motion: rates in time, then accelerations                  1 column, and the last

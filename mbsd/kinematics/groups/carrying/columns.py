@@ -1,4 +1,4 @@
-"""Columns of the arrays of independent coordinates that closed forms use (mbsd/dynamics/independent/arrays.py)."""
+"""Columns of arrays of independent coordinates for closed forms (mbsd/dynamics/independent/arrays.py)."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def follow(q, v, a, turn, b, leader, angle):
 
 @internal
 def wound(q, last, v, v_last, a, a_last, h, c):
-    """Return True if angle c turns too far, or unexplained, to be counted from the pose and rates h seconds before."""
+    """Return True if angle c turns too far, or unexplained, for the pose and rates h seconds before."""
     turned = q[c] - last[c]
     gap = turned - h * (0.5 * (v[c] + v_last[c]) - h / 12.0 * (a[c] - a_last[c]))
     return not (abs(turned) <= WOUND and abs(gap) <= UNEXPLAINED)

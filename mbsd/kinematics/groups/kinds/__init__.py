@@ -1,1 +1,1 @@
-"""The groups solved in closed form, a file each: columns, numbers, positions with rates, places alone, columns of B."""
+"""Groups solved in closed form, a file each: columns, numbers, positions with rates, columns of B."""

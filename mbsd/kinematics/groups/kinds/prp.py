@@ -1,4 +1,4 @@
-"""PRP: A slides on K1 and is pinned at C to B, which slides on K2; or C of A runs in a slot of K2 (B: -1).
+"""PRP: A slides on K1, pinned at C to B, which slides on K2; or C of A in a slot of K2 (B: -1).
 
 C = C_1 + s_1 e_1 = C_2 + s_2 e_2 where two slides cross; c_i the point C as K_i carries it:
 

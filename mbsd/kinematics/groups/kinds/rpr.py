@@ -1,4 +1,4 @@
-"""RPR: A pinned to K1 at P, B pinned to K2 at Q, B slides on A; or point Q of K2 runs in a slot of A (B: -1).
+"""RPR: A pinned to K1 at P, B to K2 at Q, B slides on A; or Q of K2 in a slot of A (B: -1).
 
 |Q - P|^2 = t^2 + offset^2; d = Q - P, e the axis of the slide:
 

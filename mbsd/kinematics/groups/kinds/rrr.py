@@ -1,4 +1,4 @@
-"""RRR: A pinned to K1 at P, B pinned to K2 at Q, A pinned to B at C, where the circles about P and Q meet.
+"""RRR: A pinned to K1 at P, B to K2 at Q, A to B at C, where the circles about P and Q meet.
 
 u = C - P, w = C - Q:
 

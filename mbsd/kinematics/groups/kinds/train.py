@@ -1,4 +1,4 @@
-"""TRAIN: A pinned to K1, its angle a sum of known angles, as of wheels (mbsd/kinematics/groups/trains.py)."""
+"""TRAIN: A pinned to K1, its angle a sum of known ones, as of wheels (kinematics/groups/trains.py)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,10 @@ def train(at: Places, body: int, pin: Link, constant: float, shares: dict[int, f
 
 @lazy(None)
 def solve_train(bodies, n, train, body_of, share_of, qk, vk, ak, turn, point):
-    """Positions and rates; train (2,): first share and how many; the angle is their sum. See prp.solve_prp."""
+    """Fill positions and rates; train (2,): first share and count; the angle is their sum.
+
+    See prp.solve_prp.
+    """
     p = point[0]
     body = bodies[FIRST]
     angle = n[CONSTANT]

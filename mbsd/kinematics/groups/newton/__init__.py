@@ -1,1 +1,1 @@
-"""Blocks that no closed form covers, solved by Newton-Raphson in their few unknowns; compiled when first used."""
+"""Blocks without a closed form, solved by Newton-Raphson in few unknowns; compiled when first used."""

@@ -1,4 +1,4 @@
-"""One block of a plan at one time by Newton-Raphson in its few unknowns, with the branch guard of newton.py.
+"""One block at one time by Newton-Raphson in its few unknowns, with the branch guard of newton.py.
 
     predict   poses from the quintic through the last two
     correct   G du = -F,  G = J B;  B the rates of the bodies for unit rates of the unknowns

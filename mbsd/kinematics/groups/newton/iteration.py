@@ -1,4 +1,4 @@
-"""Newton-Raphson of one block:  G du = f - F,  G = J B;  B the rates of the bodies for unit rates of the unknowns.
+"""Newton-Raphson of one block:  G du = f - F,  G = J B;  B: the bodies' rates per unit unknowns.
 
 Tables are those of mbsd/kinematics/groups/blocks.py.
 """
@@ -73,7 +73,7 @@ def correction(block, du, per_metre):
 
 @fused
 def iterate(turned, block, drive, motion, work):
-    """Correct the unknowns (3, n) from where they stand; ``turned``: pins' angles are in ``motion.turn`` at first.
+    """Correct the unknowns (3, n); ``turned``: pins' angles are in ``motion.turn`` at first.
 
     ``work`` takes the factors of G and the equations; bodies stand where the last of them were evaluated. Returns the
     determinant of G, 0 where it is singular, and the last, first and second correction.

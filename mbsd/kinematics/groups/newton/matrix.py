@@ -1,4 +1,4 @@
-"""The small dense system of a block, and how far its bodies went; tables as in mbsd/kinematics/groups/blocks.py."""
+"""Small dense system of a block, and the travel of its bodies; tables as in groups/blocks.py."""
 
 from __future__ import annotations
 
@@ -77,7 +77,10 @@ def extent(q, last, body, per_metre):
 
 @fused
 def turns_too_far(head, tree, q, v, a, k, h, per_metre):
-    """Return True if rates at both ends do not explain the step of a body, or one that carries others winds on."""
+    """Return True if rates do not explain the step of a body, or a carrying one winds on.
+
+    Rates are those at both ends.
+    """
     for e in range(head[BODIES]):
         b = 3 * tree[e, BODY]
         for c in range(b, b + 3):

@@ -1,4 +1,4 @@
-"""Places, columns of unknowns and equations of one block; tables as in mbsd/kinematics/groups/blocks.py.
+"""Places, columns of unknowns and equations of one block; tables as in groups/blocks.py.
 
 Equations are those of mbsd/equations/constraints/relative.py with the bodies of the block alone unknown.
 """
@@ -64,7 +64,7 @@ def read_unknowns(block, q, turn, u):
 
 @fused
 def slid(q, v, a, turn, parent, n, way, speed, gain, point):
-    """The point of a slide on ``parent`` at its way (m), with its rates: S'' = k'' + 2 omega s' e_perp + s'' e."""
+    """Set the point of a slide on ``parent``, with rates: S'' = k'' + 2 omega s' e_perp + s'' e."""
     ex = turn[parent, 0] * n[2] - turn[parent, 1] * n[3]
     ey = turn[parent, 1] * n[2] + turn[parent, 0] * n[3]
     carried(q, v, a, turn, parent, n[0] + way * n[2], n[1] + way * n[3], point)
@@ -77,7 +77,7 @@ def slid(q, v, a, turn, parent, n, way, speed, gain, point):
 
 @fused
 def move(block, u, turned, motion, point):
-    """Place the block's bodies by the unknowns u (3, n) with their rates; ``turned``: pins' angles are in ``turn``."""
+    """Place the block's bodies by the unknowns u (3, n) with rates; ``turned``: pins' are in ``turn``."""
     tree = block.tree
     frame = block.frame
     q = motion.q

@@ -1,1 +1,1 @@
-"""Functions of time as quintic pieces that kernels evaluate: pulses, kinks and jumps are looked for and met."""
+"""Functions of time as quintic pieces for kernels, which resolve pulses, kinks and jumps."""

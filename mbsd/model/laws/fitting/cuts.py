@@ -1,4 +1,4 @@
-"""The span of a law cut where the law or one of its derivatives jumps, and divided into the first pieces of a fit.
+"""Cuts of a law's span where the law or a derivative jumps, and the first pieces of a fit.
 
 A cut is known as a bracket l <= b <= r: the law is smooth up to l and from r on, and what is fitted on either side is
 continued to b.
@@ -66,7 +66,9 @@ def without_edges(cuts: list[Cut], first: float, last: float) -> tuple[list[Cut]
 
 
 def roots(span: tuple[float, float], begin: float, end: float, cuts: Sequence[Cut]) -> tuple[np.ndarray, np.ndarray]:
-    """Begin and end (n, 2) of the first pieces from ``begin`` to ``end`` (s), and the stretch (n,) that each is in.
+    """Return begin and end (n, 2) of the first pieces from ``begin`` to ``end`` (s), and their stretches.
+
+    The stretch (n,) is the one that each piece is in.
 
     A ``span`` (s) without cuts has ROOTS of them; a cut changes those beside it alone.
     """

@@ -45,7 +45,7 @@ class DerivativeError(ModelError):
 
 
 def refuse_between(law: Rows, looks: np.ndarray, rows: np.ndarray) -> None:
-    """Raise DerivativeError where a derivative is wrong between ``looks`` (n,); ``rows`` (n, 3): the law there."""
+    """Raise DerivativeError if a derivative is wrong between ``looks`` (n,); ``rows`` (n, 3) are the law."""
     h, far = np.diff(looks), float(np.abs(looks).max())
     size = sizes(looks, rows)
     for order in (0, 1):
@@ -67,14 +67,17 @@ def refuse_between(law: Rows, looks: np.ndarray, rows: np.ndarray) -> None:
 
 
 def stands_still(looks: np.ndarray, rows: np.ndarray) -> bool:
-    """Return True if f is one number at ``looks`` (n,) and its derivatives rounding, as in the dwell after a rise."""
+    """Return True if f is constant at ``looks`` (n,) and its derivatives rounding, as in a dwell."""
     size, long = np.abs(rows).max(axis=0), looks[-1] - looks[0]
     moves = max(size[1] * long, size[2] * long**2)
     return bool(np.ptp(rows[:, 0]) <= ROUNDING * size[0] and moves <= STILL * size[0])
 
 
 def sizes(looks: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """(3,): the largest f, f' and f'' of ``rows`` (n, 3), f'' at least what a change of f over the whole span takes."""
+    """Return (3,) the largest f, f' and f'' of ``rows`` (n, 3).
+
+    f'' is at least what a change of f over the whole span takes.
+    """
     size = np.abs(rows).max(axis=0)
     size[2] = max(size[2], float(np.ptp(rows[:, 0])) / (looks[-1] - looks[0]) ** 2)
     return size
@@ -83,7 +86,10 @@ def sizes(looks: np.ndarray, rows: np.ndarray) -> np.ndarray:
 def refuse_derivatives(
     at: np.ndarray, left: np.ndarray, middle: np.ndarray, right: np.ndarray, size: np.ndarray
 ) -> None:
-    """Raise DerivativeError where a derivative errs on any of pieces (n, 2) with rows (n, 3) at three times each."""
+    """Raise DerivativeError if a derivative errs on any piece (n, 2), with rows (n, 3) at three times.
+
+    The three times are those of each piece.
+    """
     for order in (0, 1):
         wrong, slope, given = _wrong(at, left, middle, right, size, order, np.inf)
         if wrong.any():
@@ -100,7 +106,9 @@ def refuse_rows_of_pieces(
     size: np.ndarray,
     most: bool,
 ) -> None:
-    """The same before all is tried: where it is straight on RUN pieces in a row or, if these are ``most``, on half.
+    """Raise DerivativeError early, before the fit is complete, for RUN wrong pieces in a row.
+
+    With ``most``, wrong derivatives on more than half of the pieces suffice.
 
     What repeats within each piece looks wrong at its ends and middle, so parts of a golden section are asked, too.
     """
@@ -134,7 +142,10 @@ def _wrong(
     order: int,
     straight: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return True if the derivative of f or f' (order 0 or 1) is off on pieces; its slope there; what the law gives."""
+    """Return True for pieces on which the derivative of f or f' (order 0 or 1) is off, with slopes.
+
+    The slopes (n,) are those of the values, and those that the law gives.
+    """
     width = at[:, 1] - at[:, 0]
     slope = (right[:, order] - left[:, order]) / width
     given = (left[:, order + 1] + 4 * middle[:, order + 1] + right[:, order + 1]) / 6  # Simpson's mean

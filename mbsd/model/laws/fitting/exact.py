@@ -70,7 +70,10 @@ def exact_pieces(
 
 
 def _quintics(h: np.ndarray, left: np.ndarray, right: np.ndarray, far: float, whole: float) -> np.ndarray:
-    """(n, 6) of widths h (n,), from f, f', f'' (n, 3) at both ends; ``far`` (s): latest time, ``whole``: range of f."""
+    """Return (n, 6) quintics over widths h (n,), from f, f', f'' (n, 3) at both ends.
+
+    ``far`` (s): latest time, ``whole``: range of f.
+    """
     slope, bend = (right[:, 1] - left[:, 1] - h * left[:, 2]) * h, (right[:, 2] - left[:, 2]) * h**2
     rise = right[:, 0] - left[:, 0] - h * left[:, 1] - h**2 * left[:, 2] / 2
     beside = np.maximum(np.abs(left), np.abs(right))

@@ -64,7 +64,9 @@ def fit(
     tolerance: float = VALUE_TOLERANCE,
     most_calls: int = MOST_CALLS,
 ) -> Fit:
-    """Pieces of a law over ``first`` .. ``last`` (s), looked at at the times ``looks``; ``load``: f alone counts.
+    """Return pieces of a law over ``first`` .. ``last`` (s), seen at ``looks``; ``load``: only f counts.
+
+    ``looks`` are times (s).
 
     ``tolerance``: of a load, as part of its size. Raises ModelError where a driver's law jumps, has a kink or scatters.
     """
@@ -139,7 +141,10 @@ def _corners(leaves: Leaves, load: bool, allowed: float) -> list[Cut]:
 
 
 def _cut(leaves: Leaves, sampled: Sampled, k: int, core: int, e: int, load: bool) -> Cut:
-    """Around pieces k .. e, at the piece ``core`` that they shrink onto; of a jump between two neighbouring numbers."""
+    """Return a cut around pieces k .. e, or of a jump between neighbouring numbers.
+
+    The pieces shrink onto the piece ``core``.
+    """
     same = leaves.stretch == leaves.stretch[core]
     begin, end = float(leaves.begin[same].min()), float(leaves.end[same].max())
     beside = float(leaves.width[core])

@@ -1,4 +1,4 @@
-"""Values on ever finer pieces, each a polynomial of degree 8 through nine even nodes, until the law is met.
+"""Values on ever finer pieces, polynomials of degree 8 through nine even nodes, until they fit.
 
 A piece is met where its last two Chebyshev coefficients and its distance to the law at the times that are looked at
 beside (look.py) are small enough; else it is halved. What counts for a driver is f'': c T_8((t - middle) / (w / 2)) has
@@ -161,7 +161,10 @@ class Tree:
         return Leaves(*(part[order] for part in whole))
 
     def _look_for_scatter(self, depth: int, begin: np.ndarray, tail: np.ndarray) -> None:
-        """Return True if all pieces of this level are off as much as those of the last one: no halving cures that."""
+        """Record scatter if all pieces of this level are off as much as those of the last one.
+
+        No halving cures that. Raises ModelError for the law of a driver.
+        """
         level = float(np.median(tail))
         small = (SMALL_LOAD if self.load else SMALL) * self.size
         if depth >= LEVEL and SCATTER * self.before < level < small and level > 10 * ROUNDING * self.size:

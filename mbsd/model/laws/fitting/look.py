@@ -1,4 +1,4 @@
-"""Where a function of time is looked at beside the nodes of its fit, so that short pulses are not passed over.
+"""Times beside the nodes of a fit at which a function is evaluated, so that short pulses are seen.
 
     t_k = first + span frac(k g),  k = 1 .. n,  g = (sqrt(5) - 1) / 2
 
@@ -23,7 +23,10 @@ PER_SHORTEST = 4
 
 
 def look_times(first: float, last: float, shortest: float | None = None, count: int = LOOKS) -> np.ndarray:
-    """(n,) rising times (s) between ``first`` and ``last``; ``shortest`` (s): of what the law does, if it is known."""
+    """Return (n,) rising times (s) between ``first`` and ``last``.
+
+    ``shortest`` (s) is the duration of the shortest thing in the law, if known.
+    """
     if shortest is not None:
         count = min(max(math.ceil(PER_SHORTEST * (last - first) / shortest), LEAST), MOST)
     return first + (last - first) * np.sort(np.mod(np.arange(1, count + 1) * GOLDEN, 1.0))

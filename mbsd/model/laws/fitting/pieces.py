@@ -1,4 +1,4 @@
-"""A fit (fit.py) as quintic pieces: through f, f' and f'' at the nodes of each of its polynomials of degree 8.
+"""Quintic pieces of a fit (fit.py), through f, f' and f'' at nodes of its degree-8 polynomials.
 
 A cut stands where f, or f' of a driver, is the same on both sides, which is known better than its bracket.
 

@@ -68,7 +68,7 @@ def _scratch(place: Path) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="made-", dir=place, ignore_cleanup_errors=True) as folder:
         new = Path(folder) / "new"
         with new.open("wb") as lock:
-            locks.take(lock.fileno())
+            locks.try_lock(lock.fileno())
             new.rename(Path(folder) / LOCK)
             yield Path(folder) / "tree"
 

@@ -1,4 +1,4 @@
-"""What a warm process of these tests forks: processes that answer, and end in the way of their names."""
+"""Processes that a warm process of these tests forks: they answer, and end as their names say."""
 
 from __future__ import annotations
 

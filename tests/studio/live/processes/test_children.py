@@ -40,7 +40,7 @@ async def until(there: Callable[[], bool]) -> None:
 
 
 class Ward:
-    """A nursery and what its children say."""
+    """Nursery with the messages of its children."""
 
     def __init__(self) -> None:
         self.nursery = Nursery(LONG, MODULE)
@@ -49,13 +49,13 @@ class Ward:
         self.heard: Heard = []
 
     def child(self, name: str, **request: Any) -> Child:
-        """A child that is asked once."""
+        """Return a child that gets one request."""
         child = self.nursery.child(name, self._hear)
         child.ask(1, {"do": "open", **request})
         return child
 
     async def answer(self) -> tuple[str, str]:
-        """The next one."""
+        """Return the next answer."""
         await until(lambda: bool(self.heard))
         return self.heard.pop(0)
 

@@ -41,7 +41,7 @@ def until(there: Callable[[], bool], what: str) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the environment of other processes in /proc")
 def test_nothing_outlives_a_server_that_was_killed(tmp_path: Path) -> None:
-    """Those that end in order are looked at by each test that has one (served.py)."""
+    """Servers that end in order are checked by each test that has one (served.py)."""
     folder = tmp_path / "mechanisms"
     (folder / "arm").mkdir(parents=True)
     (folder / "arm" / "mechanism.py").write_text(ARM + BEGINS)

@@ -41,7 +41,7 @@ def file_of(live: Served) -> Path:
 
 def solved(live: Served, page: Page, source: str) -> None:
     """Save this source and wait until it is solved."""
-    live.session.history.put({})
+    live.session.history.add({})
     if file_of(live).read_text() != source:
         live.write(source)
         page.hear("solved")
@@ -91,7 +91,7 @@ def test_numbers_with_which_the_file_cannot_be_loaded_are_not_written(live: Serv
     source = ARM.replace(FIELDS, f"{FIELDS}\n{check}")
     with live.page() as page:
         solved(live, page, source)
-        live.session.history.put({"length": 0.3})
+        live.session.history.add({"length": 0.3})
         page.say(do="write")
         told = page.hear("refused")
     assert "nothing was written" in told["text"]
@@ -136,7 +136,7 @@ def test_a_file_that_is_saved_again_and_again_is_left_alone(live: Served, monkey
 
 def test_a_number_that_moves_on_while_it_is_written_stays_moved(live: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     def moved_before(path: Path, before: bytes, after: bytes) -> None:
-        live.session.history.put({"length": 0.29})
+        live.session.history.add({"length": 0.29})
         replace(path, before, after)
 
     with live.page() as page:
@@ -155,7 +155,7 @@ def test_marks_newlines_and_links_stay(live: Served, tmp_path: Path) -> None:
     target.write_bytes(source)
     with live.page() as page:
         solved(live, page, ARM)
-        live.session.history.put({})
+        live.session.history.add({})
         file_of(live).unlink()
         file_of(live).symlink_to(target)
         page.hear("solved")

@@ -119,7 +119,7 @@ def _rounds(faults: Sequence[Fault], count: int, seed: int) -> Iterator[tuple[in
 
 
 def _reference(project: Project) -> tuple[list[bytes], float]:
-    """The films of a run that nothing disturbs, and how long it takes (s)."""
+    """Return the films of an undisturbed run, and its duration (s)."""
     begin = time.monotonic()
     code = project.start().wait(timeout=300)
     if code:
@@ -158,7 +158,7 @@ def _report(outcomes: list[Outcome], seed: int, path: Path) -> int:
 
 
 def _count(text: str) -> int:
-    """A number of rounds."""
+    """Return a number of rounds."""
     number = int(text)
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text} rounds; give 1 or more")

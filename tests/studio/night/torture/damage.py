@@ -1,4 +1,4 @@
-"""What may become of the bytes of a file; each function gives the new ones, None where the file goes."""
+"""Damages of a file's bytes; each function returns the new ones, None to remove the file."""
 
 from __future__ import annotations
 

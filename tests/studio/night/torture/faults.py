@@ -1,4 +1,4 @@
-"""What may go wrong: each fault hits a running project once, and may have to be undone before the next run."""
+"""Faults: each hits a running project once, and may have to be undone before the next run."""
 
 from __future__ import annotations
 
@@ -55,23 +55,23 @@ class Fault:
     name: str
     hit: Hit
     undo: Callable[[Project], object] | None = None
-    """What a user does about it before the next run."""
+    """Remedy of a user before the next run."""
     hits_film: bool = False
-    """Whether the film itself may be what it damages."""
+    """True if it may damage the film itself."""
     during: str = ""
     """A word in the arguments of the process during which it hits; anywhere in the run if empty."""
     target: str = ""
     """The target of make that it needs; any that makes films if empty."""
     cluster: bool = False
-    """Whether the workers of a cluster make the pictures."""
+    """True if the workers of a cluster render the pictures."""
     before: Callable[[Project], object] | None = None
-    """What is done before the run."""
+    """Preparation before the run."""
     ends_well: bool = False
-    """Whether the run does what it is asked for in spite of it."""
+    """True if the run succeeds in spite of it."""
     destroys: int = 0
     """Pictures that it may destroy, each of which is then rendered once more."""
     follow: Callable[[Project], int] | None = None
-    """What is tried when all is done; the number of wrong files that came of it."""
+    """Trial after the run; it returns the number of wrong files."""
 
 
 STAGE, FILM, BLENDER = MODULE, f"{MODULE} film", "render.blender.worker.worker"

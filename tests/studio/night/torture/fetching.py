@@ -21,7 +21,7 @@ PATIENCE = 120.0
 
 
 def is_possible() -> bool:
-    """Whether this machine has the programs."""
+    """Return True if this machine has the programs."""
     return not missing_programs(PROGRAMS)
 
 

@@ -123,7 +123,7 @@ def _follow(address: str, file: Path, server: subprocess.Popen[bytes], chance: r
 
 
 def _is_solved(socket: Any, length: float) -> bool:
-    """Whether this length is solved; not so if the page hears a sentence instead."""
+    """Return True if this length is solved, False if the page gets an error."""
     ends = time.monotonic() + PATIENCE
     while True:
         header, _ = unframed(socket.recv(timeout=max(ends - time.monotonic(), 0.01)))
@@ -135,7 +135,7 @@ def _is_solved(socket: Any, length: float) -> bool:
 
 
 def _hit(server: subprocess.Popen[bytes], chance: random.Random, marks: set[str]) -> None:
-    """A signal to one of the processes of the server."""
+    """Send a signal to one of the processes of the server."""
     hits = []
     with suppress(psutil.Error):
         for process in psutil.Process(server.pid).children(recursive=True):

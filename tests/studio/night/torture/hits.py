@@ -1,4 +1,4 @@
-"""What hits a running project once: signals, limits, damages; each function is, or gives, a :data:`Hit`."""
+"""Hits of a running project: signals, limits, damages; each function is or returns a :data:`Hit`."""
 
 from __future__ import annotations
 
@@ -173,7 +173,7 @@ def damaged(pick: Callable[[Project], list[Path]], how: Callable[[bytes, random.
 
 
 def pictures(project: Project) -> list[Path]:
-    """The pictures that are there."""
+    """Return the existing pictures."""
     return project.pictures()
 
 
@@ -190,7 +190,7 @@ def swapped(project: Project, chance: random.Random) -> bool:
 
 
 def records(project: Project) -> list[Path]:
-    """Stamps, timing and index of the frames."""
+    """Return stamps, timing and index of the frames."""
     stamps = [path for out in project.outs for path in out.stamps.glob("[!.]*.json")]
     nights = list(runs.folder().glob("run-*.json"))
     kept = [path for store in project.stores for path in (store.timing, store.index) if path.is_file()]
@@ -198,11 +198,11 @@ def records(project: Project) -> list[Path]:
 
 
 def results(project: Project) -> list[Path]:
-    """Motion, parts and shot."""
+    """Return motion, parts and shot."""
     files = [path for out in project.outs for path in out.folder.rglob("[!.]*")]
     return [path for path in files if path.suffix in (".json", ".stl") and path.is_file()]
 
 
 def film(project: Project) -> list[Path]:
-    """The finished films."""
+    """Return the finished films."""
     return [path for path in project.films if path.is_file()]

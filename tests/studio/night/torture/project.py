@@ -44,14 +44,14 @@ exec '{python}' -m tests.studio.night.torture.stage $stage "$4" '{folder}'
 
 @dataclass
 class Project:
-    """Its folder, and the make that runs in it."""
+    """Folder of the project, and the make that runs in it."""
 
     folder: Path
     mounted: bool = False
     workers: Workers | None = None
     """The cluster for rounds that have one."""
     clustered: bool = False
-    """Whether it makes the pictures now."""
+    """True if it renders the pictures now."""
     runs: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
     @property
@@ -71,11 +71,11 @@ class Project:
 
     @property
     def films(self) -> list[Path]:
-        """The finished films."""
+        """Return the finished films."""
         return [out.film("draft") for out in self.outs]
 
     def pictures(self) -> list[Path]:
-        """The pictures that are there."""
+        """Return the existing pictures."""
         return [path for store in self.stores for path in store.folder.glob("[!.]*.png")]
 
     def rendered(self) -> list[str]:
@@ -153,7 +153,7 @@ class Project:
         return run
 
     def is_over(self) -> bool:
-        """Whether every command has ended, and every night that one of them has started."""
+        """Return True if every command and every night of one has ended."""
         ended = all(run.poll() is not None for run in self.runs)
         return ended and not any(COORDINATOR in process.arguments for process in self.alive())
 
@@ -166,7 +166,7 @@ class Project:
         return 0 if recorded is not None and recorded.ended == "done" else 1
 
     def said(self) -> str:
-        """What make, its stages and nights in the background said since :meth:`clear_logs`."""
+        """Return the output of make, stages and background nights since :meth:`clear_logs`."""
         paths = [self.folder / "said.txt", runs.log_file()]
         return "\n".join(path.read_text(errors="replace") for path in paths if path.exists())
 

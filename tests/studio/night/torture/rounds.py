@@ -33,7 +33,7 @@ LATEST = {"": 1.1, MAKE: 0.2, STAGE: 0.3, FILM: 0.25, BLENDER: 0.2, "ffmpeg": 0.
 
 @dataclass
 class Outcome:
-    """What became of one round; all counts but the last three should be 0, ``twice`` at most 1."""
+    """Outcome of one round; all counts but the last three should be 0, ``twice`` at most 1."""
 
     fault: str
     target: str
@@ -68,13 +68,13 @@ class Outcome:
 
     @property
     def bad(self) -> bool:
-        """Whether anything was not as it should be."""
+        """True if anything was wrong."""
         return bool(
             self.wrong + self.lost + self.redone + self.refused + self.hangs + self.orphans + self.tracebacks
         ) or bool(self.leftovers or self.twice > 1)
 
     def as_json(self) -> dict[str, Any]:
-        """For the report."""
+        """Return the outcome for the report."""
         return asdict(self)
 
 
@@ -125,7 +125,7 @@ def whole_pictures(project: Project) -> dict[str, int]:
 
 
 def leftovers(project: Project) -> list[str]:
-    """Temporary files and folders below the results."""
+    """Return temporary files and folders below the results."""
     out = project.disk / "out"
     kept = {out / ".blender", out / ".blender" / "user", out / ".blender" / "cache"}
     left = []
@@ -172,7 +172,7 @@ def _faulted_run(project: Project, fault: Fault, chance: random.Random, outcome:
 
 
 def _run(project: Project, outcome: Outcome) -> int:
-    """The command once more, to its end."""
+    """Run the command once more, to its end."""
     project.start()
     return _wait(project, outcome)
 

@@ -64,7 +64,7 @@ def inputs(name: str, folder: Path) -> None:
         return
     for source, target in zip(sources, targets, strict=True):
         write_bytes(target, source.read_bytes())
-    stage.done()
+    stage.record()
     say("inputs", f"{len(targets)} files")
 
 

@@ -164,7 +164,7 @@ class Workers:
 
 
 class Clustered(Protocol):
-    """What may have a cluster: a project under attack."""
+    """Project under attack that may have a cluster."""
 
     @property
     def workers(self) -> Workers | None:
@@ -242,7 +242,7 @@ def is_there(project: Clustered, chance: random.Random) -> bool:
 
 
 def expelled(project: Clustered) -> None:
-    """What a user does about a worker whose answers are wrong."""
+    """Remove a worker with wrong answers, as a user does."""
     assert project.workers is not None
     project.workers.expel()
 
@@ -256,12 +256,12 @@ def no_scheduler(project: Clustered, chance: random.Random) -> bool:
 
 
 def healed(project: Clustered) -> None:
-    """What a user does about a worker."""
+    """Heal a worker as a user does."""
     assert project.workers is not None
     project.workers.heal()
 
 
 def scheduler_again(project: Clustered) -> None:
-    """What a user does about the scheduler."""
+    """Start the scheduler again as a user does."""
     assert project.workers is not None
     project.workers.restart()

@@ -1,1 +1,1 @@
-"""What is beside the workers of the rounds: one that lies, and a study."""
+"""Companions of the workers of the rounds: a lying worker, and a study."""

@@ -45,7 +45,7 @@ KINDS: dict[str, Callable[[Sequence[str]], Any]] = {
     "a picture of 8x8": lambda keys: _sent(keys, _picture(8, 8)),
     "a name outside the folder": lambda keys: _sent(keys, _picture(STAMP.width, STAMP.height), "../../../x.png"),
 }
-"""What it answers for orders with these keys."""
+"""Answers to orders with these keys."""
 
 
 def dask_setup(_: object) -> None:

@@ -28,7 +28,7 @@ COMPUTED = "computed.txt"
 
 
 def build(length: float) -> Mechanism:
-    """A bar."""
+    """Return a bar."""
     from mbsd import Mechanism
 
     m = Mechanism("bar")

@@ -172,7 +172,7 @@ def test_a_worker_that_has_contents_alone_makes_the_same_bytes(
 def test_a_worker_writes_no_file_outside_the_copy_of_the_folder(tmp_path: Path, path: str) -> None:
     tree = tmp_path / "tree"
     with pytest.raises(UserError, match="is no file of an author's"):
-        built._put(tree, path, b"", built.own_folder(tree, "../machines"))
+        built._write_file(tree, path, b"", built.own_folder(tree, "../machines"))
     assert not list(tmp_path.rglob("*.py"))
 
 

@@ -128,5 +128,5 @@ def test_files_of_authors_travel_and_no_others(project: Project) -> None:
 @pytest.mark.parametrize("path", ["../x.py", "/etc/x", "shared/x.py", "mechanisms/stages/x.py", "mechanisms/../x.py"])
 def test_a_worker_writes_no_other_files(tmp_path: Path, path: str) -> None:
     with pytest.raises(UserError, match="is no file of an author's"):
-        built._put(tmp_path / "tree", path, b"")
+        built._write_file(tmp_path / "tree", path, b"")
     assert not list(tmp_path.rglob("*.py"))

@@ -11,7 +11,7 @@ from shared.stage.paths import ROOT
 from studio.command.main import main
 from tests.running.make import EXPORTED
 
-STAGES = ("parts", "solve", "clearance", "shot", "report", "plot", "glb", "poster", "film")
+STAGES = ("parts", "solve", "clearance", "shot", "report", "plots", "glb", "poster", "film")
 
 
 def planned(command: str, name: str, **words: str) -> list[str]:

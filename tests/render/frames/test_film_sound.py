@@ -129,7 +129,7 @@ def test_a_film_that_is_killed_while_it_is_muxed_goes_on_there(
 def test_a_mux_that_fails_leaves_the_film_that_was_there(made: Out, monkeypatch: pytest.MonkeyPatch):
     target = made.film("tiny")
     silent = target.read_bytes()
-    monkeypatch.setattr(encode, "SETTINGS", ("-c:a", "no_such_encoder"))
+    monkeypatch.setattr(encode, "SOUND_SETTINGS", ("-c:a", "no_such_encoder"))
     with pytest.raises(UserError, match=r"four_bar-tiny\.mp4: ffmpeg could not join pictures and sound: .*SOUND=off"):
         film.run("four_bar", TINY)
     assert target.read_bytes() == silent

@@ -9,7 +9,6 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import marker_places
 from mbsd.base.errors import ModelError
-from mbsd.derivatives.driven.tangents import fits_alone
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import Variant, Variants
 from mbsd.dynamics.prepare.inertia import USUAL
@@ -53,6 +52,14 @@ def refuse_opened(along: Along, variants: Variants, q: np.ndarray, closed: list[
     if np.abs(variants.slope(residuals)).max(initial=0.0) * variants.size > KEPT:
         name = variants.variants[0].terms.packed.name
         raise ModelError(fits_alone(name, variants.number.name))
+
+
+def fits_alone(mechanism: str, number: str) -> str:
+    """Return the words of an error for a number at another value of which joints that repeat others open."""
+    return (
+        f"{mechanism}: no derivative by '{number}': joints repeat others, and fit at this value of it alone. Change "
+        "several numbers together by build=, or free a joint"
+    )
 
 
 def _kept_length(packed: Packed, k: int, q: np.ndarray) -> np.ndarray:

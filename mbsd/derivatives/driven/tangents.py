@@ -19,6 +19,7 @@ from mbsd.base.errors import ModelError
 from mbsd.derivatives.driven.beside import differ, displace
 from mbsd.derivatives.numbers.terms import Along, Change, Left, Terms, stacked
 from mbsd.derivatives.numbers.variants import FOURTH, STEP, Variant, Variants
+from mbsd.derivatives.refused_motions import fits_alone
 from mbsd.model.output_times import refuse_beyond_memory
 
 REACH = 1e-4
@@ -53,14 +54,6 @@ def refuse_large(terms: Terms, count: int) -> None:
         f"{packed.name}: derivatives at {count} times of {packed.coordinates} coordinates", 4 * count * size**2,
         "Take fewer steps",
     )  # fmt: skip
-
-
-def fits_alone(mechanism: str, number: str) -> str:
-    """Return the words of an error for a number at another value of which joints that repeat others open."""
-    return (
-        f"{mechanism}: no derivative by '{number}': joints repeat others, and fit at this value of it alone. Change "
-        "several numbers together by build=, or free a joint"
-    )
 
 
 class Inverse:

@@ -71,7 +71,8 @@ def choose(blocks: Iterable[ir.Block], first: Any) -> None:
                 value.value = value.value.kernel_of(first.instance_class)
 
 
-def files_added(arguments: Iterable[Any]) -> tuple[str, ...]:
-    """Return the files of kernels that were added for classes among numba's types ``arguments``, sorted."""
+def files_added(signature: Any) -> tuple[str, ...]:
+    """Return the files of kernels that were added for classes among a signature's types, or these types, sorted."""
+    arguments: Iterable[Any] = getattr(signature, "args", signature)
     kinds = [kind.instance_class for kind in arguments if isinstance(kind, types.BaseNamedTuple)]
     return tuple(sorted({file for kind in kinds for file in _ADDED.get(kind, ())}))

@@ -168,10 +168,16 @@ def _name(path: str) -> str:
 class _Locator(_CacheLocator):
     """Says where numba keeps the code of one function."""
 
-    def __init__(self, py_func: Callable[..., Any], py_file: str, root: Path) -> None:
+    def __init__(self, py_func: Callable[..., Any], py_file: str, root: Path, added: tuple[str, ...] = ()) -> None:
+        """``added``: files of kernels of classes that were added (alternatives.py); their code has a folder of its own,
+        as numba's index cannot be read where such a class is missing.
+        """
         self._line = py_func.__code__.co_firstlineno
         self._stamp = made_of(py_file)
+        if added:
+            self._stamp = hashlib.sha256("".join([self._stamp, *map(made_of, added)]).encode()).hexdigest()[:16]
         name = _name(py_file).removesuffix(".py").strip(os.sep).replace(os.sep, ".").replace("/", ".")
+        name += "+" if added else ""
         self._path = str(root / f"{name[-80:]}-{self._stamp}")
 
     def get_cache_path(self) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
@@ -191,12 +197,29 @@ class _Locator(_CacheLocator):
         """None for functions without a file, such as those of a notebook."""
         if not os.path.isfile(py_file):
             return None
-        made = cls(py_func, py_file, cache_root())
+        return cls._ready(cls(py_func, py_file, cache_root()))
+
+    @staticmethod
+    def _ready(made: _Locator) -> _Locator:
+        """Make the folder."""
         folder = Path(made._path)
         if not folder.is_dir():
             folder.mkdir(parents=True, exist_ok=True)
             _forget_old(folder)
         return made
+
+
+class _LocatorOfAdded:
+    """Says where the code of a function for classes that were added is."""
+
+    def __init__(self, added: tuple[str, ...]) -> None:
+        self.added = added
+
+    def from_function(self, py_func: Callable[..., Any], py_file: str) -> _Locator | None:
+        """Return the locator; None for functions without a file."""
+        if not os.path.isfile(py_file):
+            return None
+        return _Locator._ready(_Locator(py_func, py_file, cache_root(), self.added))
 
 
 class _LocatorToRead:
@@ -274,17 +297,14 @@ class _Files(FunctionCache):
 
     _impl_class = _Results
 
-    def __init__(self, py_func: Callable[..., Any], root: Path | None = None) -> None:
+    def __init__(self, py_func: Callable[..., Any], root: Path | None = None, added: tuple[str, ...] = ()) -> None:
         if root is not None:
             self._impl_class = type("_ResultsToRead", (_Results,), {"_locator_classes": [_LocatorToRead(root)]})
+        elif added:
+            self._impl_class = type("_ResultsOfAdded", (_Results,), {"_locator_classes": [_LocatorOfAdded(added)]})
         super().__init__(py_func)
         locator = self._impl.locator
         self._cache_file = KernelFiles(locator.get_cache_path(), self._impl.filename_base, locator.get_source_stamp())
-
-    def _index_key(self, sig: Any, codegen: Any) -> Any:
-        """Return what code of a signature is found by: kernels of classes that were added belong to it."""
-        added = files_added(getattr(sig, "args", sig))  # a signature when it is saved, types when it is looked for
-        return super()._index_key(sig, codegen) + ((tuple(map(made_of, added)),) if added else ())
 
 
 @contextmanager
@@ -311,6 +331,7 @@ class KernelCache(_Cache):
     def __init__(self, py_func: Callable[..., Any]) -> None:
         self._py_func = py_func
         self._enabled = True
+        self._added: dict[tuple[str, ...], _Files | None] = {}
 
     @cached_property
     def _files(self) -> _Files | None:
@@ -327,6 +348,15 @@ class KernelCache(_Cache):
                 caches.append(_Files(self._py_func, folder))
         return caches
 
+    def _of_added(self, added: tuple[str, ...]) -> _Files | None:
+        """Return the files of code for classes that were added; None without a place for them."""
+        if added not in self._added:
+            try:
+                self._added[added] = _Files(self._py_func, added=added)
+            except (RuntimeError, OSError):
+                self._added[added] = None
+        return self._added[added]
+
     @property
     def cache_path(self) -> str | None:  # pyright: ignore[reportIncompatibleMethodOverride, reportIncompatibleVariableOverride]
         """The folder, if there is one."""
@@ -336,6 +366,9 @@ class KernelCache(_Cache):
         """The compiled function, or None."""
         if not self._enabled:
             return None
+        if added := files_added(sig):
+            own = self._of_added(added)
+            return None if own is None else own.load_overload(sig, target_context)
         overload = None
         for files in (*self._to_read, self._files):
             if overload is None and files is not None:
@@ -346,11 +379,15 @@ class KernelCache(_Cache):
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled function, where the disk takes it."""
-        if not self._enabled or self._files is None:
+        if not self._enabled:
+            return
+        added = files_added(sig)
+        files = self._of_added(added) if added else self._files
+        if files is None:
             return
         try:
-            with _alone_in(self._files.cache_path):
-                self._files.save_overload(sig, data)
+            with _alone_in(files.cache_path):
+                files.save_overload(sig, data)
         except OSError as error:
             _tell_of_full_disk(str(cache_root()), error.strerror or str(error))
 

@@ -220,7 +220,7 @@ def test_generalised_alpha_leaves_rho_of_what_is_infinitely_fast(rho: float) -> 
 
 
 def test_options_are_named_and_checked() -> None:
-    with pytest.raises(ModelError, match="method 'rk4': there is no option 'rho'; there is: none"):
+    with pytest.raises(ModelError, match="method 'rk4': there is no option 'rho'; there is: duration, steps"):
         pendulum().simulate(1.0, method="rk4", rho=0.5)
     with pytest.raises(ModelError, match="no option 'tolerence'"):
         pendulum().simulate(1.0, tolerence=1e-3)

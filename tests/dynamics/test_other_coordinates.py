@@ -5,6 +5,8 @@ Compared with scipy's DOP853 of Newton's and Euler's equations, and with what is
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -12,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.dynamics.formulation import add_formulation
+from mbsd.dynamics.integrators.dop853.dense import interpolant
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from tests.dynamics.rigid_body import Flight, RigidBody, accelerate
 
@@ -126,3 +129,10 @@ def test_one_kernel_may_serve_all_other_classes() -> None:
     word = alternatives({RigidBody: "own"}, "usual")
     assert word.kernel_of(RigidBody) == "own"
     assert word.kernel_of(Flight) == "usual"
+
+
+def test_code_for_an_added_class_is_kept_apart() -> None:
+    """An index that names a class cannot be read by a process that lacks it."""
+    Flight(INTEGRATORS["dop853"], INERTIA, CORNER).fly(START, RATES, TIMES[:3])
+    folder = Path(interpolant._cache.cache_path)
+    assert not [file for file in folder.glob("*.nbi") if b"rigid_body" in file.read_bytes()]

@@ -149,7 +149,8 @@ def test_another_colour_of_a_material_makes_the_pictures_again(
 ):
     out = film_fixture.write(SHOT)
     before = stage_key(out, PRESETS["draft"])
-    shutil.copytree(ROOT / "shared", tmp_path / "shared", ignore=shutil.ignore_patterns("__pycache__"))
+    for folder in ("shared", "mbsd/base"):  # units come from there
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.setattr(stages, "ROOT", tmp_path)
     assert stage_key(out, PRESETS["draft"]) == before
     file = tmp_path / "shared" / "contract" / "materials.py"

@@ -58,4 +58,4 @@ def test_a_body_that_slides_on_one_that_moves_is_told() -> None:
     block = m.body("block", z=0.03)
     m.prismatic("guide", m.bodies["crank"].at(0, 0), block.origin)
     m.drive_coordinate("ram", m.bodies["crank"].origin, block.origin, harmonic(0.01, 6.0))
-    assert "lets 'block' slide on a body that moves" in refusal(m)
+    assert "guides 'block' on a body that moves" in refusal(m)

@@ -75,7 +75,10 @@ def test_rows_that_fail_carry_a_reason_and_do_not_stop_the_others() -> None:
             {"measure": lambda sol: {"x": sol.body("dor").x[-1]}},
             "door: measure fails for the first simulation: .*'dor'",
         ),
-        ({"measure": lambda sol: {"x": sol.bodies["door"]}}, "measure fails for the first simulation: AttributeError"),
+        (
+            {"measure": lambda sol: {"x": sol.bodies["door"]}},
+            r"measure fails for the first simulation: Unknown\w*: .*did you mean .body.",
+        ),
         ({"vary": {"closer": {3: [1.0]}}}, "give its numbers"),
         ({"vary": {"closer": {"stiffness": [[1.0, 2.0], [3.0, 4.0]]}}}, r"a single number, .* give \(2,\)"),
         ({"vary": {"closer": {"stiffness": np.broadcast_to(1.0, 10**12)}}}, "take 100000000 at most"),

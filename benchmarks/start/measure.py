@@ -67,12 +67,12 @@ def _compile(folder: str) -> float:
 def _from_wheel(compiled: str) -> float:
     """A wheel that carries what was compiled into a folder, unpacked where nothing else is compiled."""
 
-    def fill(folder: Path, _: Path) -> None:
+    def fill(folder: Path, sources: Path, python: Path) -> None:
         shutil.copytree(Path(compiled) / "kernels", folder, ignore=shutil.ignore_patterns(".lock"))
 
     with tempfile.TemporaryDirectory() as folder:
         tree = Path(folder) / "tree"
-        with zipfile.ZipFile(build_with_kernels(ROOT, Path(folder), fill)) as archive:
+        with zipfile.ZipFile(build_with_kernels(ROOT, Path(folder), fill=fill)) as archive:
             archive.extractall(tree)
         for room in ("benchmarks", "shared"):
             shutil.copytree(ROOT / room, tree / room)

@@ -197,11 +197,11 @@ class _Locator(_CacheLocator):
         """None for functions without a file, such as those of a notebook."""
         if not os.path.isfile(py_file):
             return None
-        return cls._ready(cls(py_func, py_file, cache_root()))
+        return cls._with_folder(cls(py_func, py_file, cache_root()))
 
     @staticmethod
-    def _ready(made: _Locator) -> _Locator:
-        """Make the folder."""
+    def _with_folder(made: _Locator) -> _Locator:
+        """Return the locator after making its folder, and remove folders of older versions."""
         folder = Path(made._path)
         if not folder.is_dir():
             folder.mkdir(parents=True, exist_ok=True)
@@ -219,7 +219,7 @@ class _LocatorOfAdded:
         """Return the locator; None for functions without a file."""
         if not os.path.isfile(py_file):
             return None
-        return _Locator._ready(_Locator(py_func, py_file, cache_root(), self.added))
+        return _Locator._with_folder(_Locator(py_func, py_file, cache_root(), self.added))
 
 
 class _LocatorToRead:

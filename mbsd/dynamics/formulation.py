@@ -1,4 +1,4 @@
-"""The words in which integrators and events are written, for any choice of coordinates.
+"""Operations of a formulation, which integrators and events call for any choice of coordinates.
 
     q' = N(q) v        M a + J^T lam = Q        J a = gamma
 
@@ -6,8 +6,7 @@ A state is an array y (2, n): n coordinates q, then the velocities v behind one 
 their last entries stay zero. Three idle entries, those of ground, stand in front. M is diagonal. In the plane q' = v;
 in space four Euler parameters change by three rates.
 
-A loop is written once, in the words below, and compiled for each formulation with that formulation's kernels in their
-place, as its first argument says (mbsd/compiling/alternatives.py). ``dyn`` is Dynamics (reference coordinates),
+A loop is written once, in the operations below, and compiled for each formulation with its kernels in their place, as its first argument says (mbsd/compiling/alternatives.py). ``dyn`` is Dynamics (reference coordinates),
 Embedding (independent coordinates), or a class of named tuples that :func:`add_formulation` has entered. It has the
 fields of Dynamics that a loop reads: inertia, inverse, weight, schur.rows, sliding.table, loads.switch, per_size.
 
@@ -147,24 +146,24 @@ push = alternatives({Dynamics: rows.push})
 respond = alternatives({Dynamics: refinement.respond})
 without_contacts = alternatives({Dynamics: without_contacts_in_plane})
 
-_WORDS: dict[str, Alternatives] = {
-    name: word for name, word in list(globals().items()) if isinstance(word, Alternatives)
+_OPERATIONS: dict[str, Alternatives] = {
+    name: kernels for name, kernels in list(globals().items()) if isinstance(kernels, Alternatives)
 }
 
 
 def add_formulation(kind: type, **kernels: Any) -> None:
-    """Add a class of named tuples with its kernels by word; words that have a default may be left out.
+    """Add a class of named tuples with its kernels by operation; those with a default may be left out.
 
-    Raises TypeError for an unknown word or a missing one, and ValueError for a class that was added before.
+    Raises TypeError for an unknown operation or a missing one, and ValueError for a class that was added before.
     """
     for name in kernels:
-        if name not in _WORDS:
-            raise TypeError(f"{kind.__name__}: there is no word '{name}'")
+        if name not in _OPERATIONS:
+            raise TypeError(f"{kind.__name__}: there is no operation '{name}'")
     for name in ("accelerate", "project"):
         if name not in kernels:
             raise TypeError(f"{kind.__name__}: '{name}' is missing")
     for name, kernel in kernels.items():
-        _WORDS[name].add(kind, kernel)
+        _OPERATIONS[name].add(kind, kernel)
 
 
 @inlined

@@ -50,7 +50,7 @@ class Course:
     q: np.ndarray | None = None
     """(T, 3 nb), where it moves smoothly."""
     masses_apart: bool = False
-    """Whether several freedoms join masses so far apart that one solution of the equations of motion is too coarse."""
+    """True if several freedoms join masses so far apart that one solution of the equations of motion is too coarse."""
     dropped: tuple[int, ...] = ()
     """Rows of joints that repeat others."""
 

@@ -135,7 +135,7 @@ class Stats(Suggesting):
     inserted_steps: int
     """Steps added between outputs to stay on the branch."""
     independent: bool = False
-    """Whether a simulation was integrated in independent coordinates (mbsd/dynamics/independent)."""
+    """True if a simulation was integrated in independent coordinates (mbsd/dynamics/independent)."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What many simulations measure: rows that end early and outputs that are left out leave no trace in the digits."""
+"""Measures of many simulations: rows that end early and outputs that are left out leave no trace in the digits."""
 
 from __future__ import annotations
 

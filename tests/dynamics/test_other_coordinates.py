@@ -113,11 +113,11 @@ def test_a_corner_that_does_not_rebound_stays_on_the_plane() -> None:
     assert np.isfinite(end).all()
 
 
-def test_words_that_are_unknown_missing_or_there_already_are_refused() -> None:
+def test_operations_that_are_unknown_missing_or_there_already_raise_an_error() -> None:
     class Other(RigidBody):
         pass
 
-    with pytest.raises(TypeError, match="no word 'speeed'"):
+    with pytest.raises(TypeError, match="no operation 'speeed'"):
         add_formulation(Other, accelerate=accelerate, project=accelerate, speeed=accelerate)
     with pytest.raises(TypeError, match="'project' is missing"):
         add_formulation(Other, accelerate=accelerate)

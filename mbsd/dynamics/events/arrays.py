@@ -139,7 +139,7 @@ class Sticks(NamedTuple):
 
 
 class Stepping(NamedTuple):
-    """What steps need beside a state: tolerances, outputs, and the times of jumps."""
+    """Inputs of a step beside the state: tolerances, outputs, and the times of jumps."""
 
     settings: Any
     """mbsd.dynamics.state.Settings"""

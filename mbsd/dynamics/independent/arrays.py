@@ -136,7 +136,7 @@ TREE_WIDTH, ROWS_WIDTH, FRAME_WIDTH, ARMS_WIDTH = 5, 9, 7, 9
 
 
 class Past(NamedTuple):
-    """What is kept for one block with n unknowns and C columns of B."""
+    """Memory of one block with n unknowns and C columns of B."""
 
     q: Any
     """(3 nb,) the last accepted pose."""

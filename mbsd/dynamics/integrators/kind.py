@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mbsd.dynamics.reference.arrays import Dynamics
 
 ARGUMENTS = ("duration", "steps", "times", "method", "tolerance", "step", "progress", "event_rows", "formulation")
-"""What a simulation takes beside options of its method, for a message: one of them may have been misspelt."""
+"""Arguments of simulate that are no options of a method; a message suggests them for a misspelt one."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Integrator:
     independent: bool = False
     """Whether ``advance`` integrates independent coordinates as well: ``dyn`` is then an Embedding."""
     general: bool = False
-    """Whether ``advance`` steps q' = N(q) v of any formulation; the others step q' = v."""
+    """True if ``advance`` steps q' = N(q) v of any formulation; other methods step q' = v."""
     refusal: Callable[[Dynamics], str | None] = lambda dynamics: None
     """Why this method cannot simulate a mechanism, or None."""
     meets_switches: bool = False

@@ -1,4 +1,4 @@
-"""Which given values of a start are held: rows W of the given ones, after the joints, first given first held.
+"""Given values of a start that are held: rows W of the given ones, after the joints, first given first held.
 
     rows of J, then of what is given, are independent        such a value is held as it is
     of a place x, y the joints leave one direction u alone   u . (x, y) is held, the nearest that the body can come
@@ -35,7 +35,7 @@ def held_values(jac: np.ndarray, given: np.ndarray, places: Sequence[tuple[int, 
 
 
 def is_choice(held: np.ndarray) -> bool:
-    """True if values are held as they are given alone."""
+    """Return True if all held values are held as they are given."""
     return bool((held.sum(axis=1) == 1.0).all() and (held.max(axis=1, initial=0.0) == 1.0).all())
 
 

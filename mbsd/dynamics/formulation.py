@@ -6,9 +6,10 @@ A state is an array y (2, n): n coordinates q, then the velocities v behind one 
 their last entries stay zero. Three idle entries, those of ground, stand in front. M is diagonal. In the plane q' = v;
 in space four Euler parameters change by three rates.
 
-A loop is written once, in the operations below, and compiled for each formulation with its kernels in their place, as its first argument says (mbsd/compiling/alternatives.py). ``dyn`` is Dynamics (reference coordinates),
-Embedding (independent coordinates), or a class of named tuples that :func:`add_formulation` has entered. It has the
-fields of Dynamics that a loop reads: inertia, inverse, weight, schur.rows, sliding.table, loads.switch, per_size.
+A loop is written once, in the operations below, and compiled for each formulation with its kernels in their place, as
+its first argument says (mbsd/compiling/alternatives.py). ``dyn`` is Dynamics (reference coordinates), Embedding
+(independent coordinates), or a class of named tuples that :func:`add_formulation` has added. It has the fields of
+Dynamics that a loop reads: inertia, inverse, weight, schur.rows, sliding.table, loads.switch, per_size.
 
 What every formulation has:
 

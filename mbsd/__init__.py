@@ -39,9 +39,7 @@ if TYPE_CHECKING:
     from mbsd.kinematics.batch import Batch
     from mbsd.mechanism import STANDARD_GRAVITY, Body, Force, Joint, Marker, Mechanism
     from mbsd.model.cylinders.cycle import GasCycle
-    from mbsd.model.cylinders.four_stroke import four_stroke
-    from mbsd.model.cylinders.pressure_table import pressure_table
-    from mbsd.model.cylinders.two_stroke import two_stroke
+    from mbsd.model.cylinders.engine_cycles import four_stroke, pressure_table, two_stroke
     from mbsd.model.event import Event, Happening, angle_reaches, distance_reaches, speed_reaches
     from mbsd.model.laws import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
     from mbsd.model.laws.curve import Curve, curve
@@ -199,12 +197,12 @@ _LATER = {
     "distance_reaches": "mbsd.model.event",
     "flywheel": "mbsd.balancing.flywheel",
     "fit_path": "mbsd.synthesis.fit_path",
-    "four_stroke": "mbsd.model.cylinders.four_stroke",
+    "four_stroke": "mbsd.model.cylinders.engine_cycles",
     "function": "mbsd.model.laws",
     "harmonic": "mbsd.model.laws",
     "optimise": "mbsd.synthesis.optimise",
     "polynomial": "mbsd.model.laws",
-    "pressure_table": "mbsd.model.cylinders.pressure_table",
+    "pressure_table": "mbsd.model.cylinders.engine_cycles",
     "recorded": "mbsd.model.laws",
     "speed_reaches": "mbsd.model.event",
     "Simulated": "mbsd.studies.simulated",
@@ -212,7 +210,7 @@ _LATER = {
     "study": "mbsd.studies.study",
     "table": "mbsd.model.laws",
     "tolerances": "mbsd.tolerancing.tolerances",
-    "two_stroke": "mbsd.model.cylinders.two_stroke",
+    "two_stroke": "mbsd.model.cylinders.engine_cycles",
 }
 """Where each name is; it is loaded when it is asked for, so that the stages can look at what changed without numpy."""
 

@@ -17,9 +17,9 @@ import numpy as np
 
 from mbsd.base.arguments import checked_methods
 from mbsd.base.quantity import counted
-from mbsd.building import Building
-from mbsd.model.adding.forces import Amount
 from mbsd.model.body import Body, Marker
+from mbsd.model.building import Building
+from mbsd.model.entries import Amount
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import STANDARD_GRAVITY, Start
@@ -321,6 +321,12 @@ class Mechanism(Building):
         from mbsd.drawing.of_solution import SkeletonDrawer
 
         return SkeletonDrawer()
+
+    def marker_in_world(self, body: Body, x: float, y: float, angle: float) -> Marker:
+        """See :meth:`mbsd.model.body.Body.at_world`."""
+        from mbsd.kinematics.pose.world_places import marker_in_world
+
+        return marker_in_world(self, body, x, y, angle)
 
     # -- files -------------------------------------------------------------------------------------------------
 

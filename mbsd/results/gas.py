@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from mbsd.model.cams.profile import hermite
-from mbsd.model.chamber import Chamber, CrankCycle
+from mbsd.model.force import Chamber, CrankCycle
 from mbsd.results.force_view import ForceView
 from mbsd.results.moved import Moved
 

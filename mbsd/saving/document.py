@@ -22,9 +22,8 @@ from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
 from mbsd.model.body import Body, Marker
 from mbsd.model.change import given_body, law_name, with_markers
-from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS, Force, ForceKind
-from mbsd.model.joint import KINDS, Joint, JointKind
+from mbsd.model.joint import CONTACT_KINDS, KINDS, Joint, JointKind
 from mbsd.model.mechanism import Model, Start, StartVelocity
 from mbsd.saving.entry import Entry
 from mbsd.saving.laws import called, law_from, plain

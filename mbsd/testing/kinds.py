@@ -4,51 +4,37 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from types import ModuleType
 from typing import Any
 
 import mbsd.dynamics.integrators
-import mbsd.model.contacts
-import mbsd.model.drivers
-import mbsd.model.forces
-import mbsd.model.joints
 from mbsd.base.errors import ModelError
 from mbsd.dynamics.integrators.kind import INTEGRATORS, Integrator
 from mbsd.mechanism import Mechanism
 from mbsd.model.change import given
-from mbsd.model.contact import CONTACT_KINDS, ContactKind
 from mbsd.model.force import FORCE_KINDS, Force, ForceKind
-from mbsd.model.joint import KINDS, Joint, JointKind
+from mbsd.model.joint import CONTACT_KINDS, KINDS, ContactKind, Joint, JointKind
 from mbsd.saving.document import build, document
-
-
-def _load(package: ModuleType) -> None:
-    for module in pkgutil.iter_modules(package.__path__):
-        importlib.import_module(f"{package.__name__}.{module.name}")
 
 
 def joint_kinds() -> list[JointKind]:
     """Kinds of joints and drivers."""
-    _load(mbsd.model.joints)
-    _load(mbsd.model.drivers)
     return list(KINDS.values())
 
 
 def force_kinds() -> list[ForceKind]:
     """Kinds of forces."""
-    _load(mbsd.model.forces)
     return list(FORCE_KINDS.values())
 
 
 def contact_kinds() -> list[ContactKind]:
     """Kinds of rigid contacts."""
-    _load(mbsd.model.contacts)
     return list(CONTACT_KINDS.values())
 
 
 def integrators() -> list[Integrator]:
     """Methods of simulate(), those whose package is not installed included."""
-    _load(mbsd.dynamics.integrators)
+    for module in pkgutil.iter_modules(mbsd.dynamics.integrators.__path__):
+        importlib.import_module(f"mbsd.dynamics.integrators.{module.name}")
     return list(INTEGRATORS.values())
 
 

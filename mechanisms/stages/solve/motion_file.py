@@ -402,7 +402,7 @@ def _hydraulics(view: ForceView) -> contract.HydraulicMotion | None:
 
 def _contact(solution: Solution, name: str, row: int) -> contract.ContactMotion:
     """Return the motion of the contact whose gap is ``row`` of J; the way on which it slides is the next one."""
-    from mbsd.model.contact import ContactKind
+    from mbsd.model.joint import ContactKind
     from mbsd.results.acting import acting
 
     packed, view = solution.packed, solution.contact(name)

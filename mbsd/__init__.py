@@ -28,7 +28,7 @@ from mbsd.base.errors import (
 if TYPE_CHECKING:
     from mbsd.analyses.efforts import ActuatedMotion
     from mbsd.analyses.equilibrium import Equilibrium
-    from mbsd.analyses.finding import Finding
+    from mbsd.analyses.findings import Finding
     from mbsd.analyses.modes import Mode
     from mbsd.analyses.state_space import Linearisation
     from mbsd.balancing.balance import Balance, balance
@@ -44,13 +44,11 @@ if TYPE_CHECKING:
     from mbsd.model.laws import Motion, constant_rate, cycloidal, function, harmonic, polynomial, recorded, table
     from mbsd.model.laws.curve import Curve, curve
     from mbsd.pictures import Animation, Picture, Svg
+    from mbsd.results.fluids import GasView, HydraulicView
     from mbsd.results.force_view import ForceView
     from mbsd.results.friction import FrictionView
-    from mbsd.results.gas import GasView
-    from mbsd.results.hydraulics import HydraulicView
-    from mbsd.results.mobility import Mobility
     from mbsd.results.solution import Solution
-    from mbsd.results.views import ContactView, DriverView, EnergyView, FrameView, JointView, Stats
+    from mbsd.results.views import ContactView, DriverView, EnergyView, FrameView, JointView, Mobility, Stats
     from mbsd.studies.simulated import Simulated, simulated
     from mbsd.studies.study import study
     from mbsd.synthesis.fit_path import PathFit, SynthesisError, fit_path
@@ -158,21 +156,21 @@ _LATER = {
     "EnergyView": "mbsd.results.views",
     "Equilibrium": "mbsd.analyses.equilibrium",
     "Event": "mbsd.model.event",
-    "Finding": "mbsd.analyses.suspicious_units",
+    "Finding": "mbsd.analyses.findings",
     "Force": "mbsd.mechanism",
     "ForceView": "mbsd.results.force_view",
     "FrameView": "mbsd.results.views",
     "FrictionView": "mbsd.results.friction",
     "GasCycle": "mbsd.model.cylinders.cycle",
-    "GasView": "mbsd.results.gas",
-    "HydraulicView": "mbsd.results.hydraulics",
+    "GasView": "mbsd.results.fluids",
+    "HydraulicView": "mbsd.results.fluids",
     "Happening": "mbsd.model.event",
     "Joint": "mbsd.mechanism",
     "JointView": "mbsd.results.views",
     "Linearisation": "mbsd.analyses.state_space",
     "Marker": "mbsd.mechanism",
     "Mechanism": "mbsd.mechanism",
-    "Mobility": "mbsd.results.mobility",
+    "Mobility": "mbsd.results.views",
     "Mode": "mbsd.analyses.modes",
     "Moment": "mbsd.dynamics.events.moment",
     "Motion": "mbsd.model.laws",

@@ -1,10 +1,13 @@
-"""All kinds that are registered: those of mbsd, whose files are imported here, and those of the user."""
+"""All kinds that are registered, those of mbsd and those of the user, and comparisons of arrays."""
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
+from collections.abc import Callable
 from typing import Any
+
+import numpy as np
 
 import mbsd.dynamics.integrators
 from mbsd.base.errors import ModelError
@@ -14,6 +17,34 @@ from mbsd.model.change import given
 from mbsd.model.force import FORCE_KINDS, Force, ForceKind
 from mbsd.model.joint import CONTACT_KINDS, KINDS, ContactKind, Joint, JointKind
 from mbsd.saving.document import build, document
+
+
+def compare(
+    what: str,
+    given: np.ndarray,
+    expected: np.ndarray,
+    tolerance: float | np.ndarray,
+    place: Callable[..., str] = lambda *index: f"at {index}",
+) -> None:
+    """Raise AssertionError if ``given`` is too far from ``expected``, or is no number.
+
+    ``place`` puts the index of the worst element into words.
+    """
+    given, expected = np.broadcast_arrays(given, expected)
+    distance = np.abs(given - expected)
+    excess = np.where(np.isfinite(distance), distance - tolerance, np.inf)
+    if not excess.size or excess.max() <= 0.0:
+        return
+    worst = tuple(int(k) for k in np.unravel_index(int(excess.argmax()), excess.shape))
+    raise AssertionError(
+        f"{what}, {place(*worst)}: {given[worst]:.9g} instead of {expected[worst]:.9g} "
+        f"({np.count_nonzero(excess > 0.0)} of {excess.size} numbers differ)"
+    )
+
+
+def coordinate(bodies: list[str], column: int) -> str:
+    """The name of a coordinate by its number, ground's three included."""
+    return f"{('x', 'y', 'theta')[column % 3]} of '{bodies[column // 3]}'"
 
 
 def joint_kinds() -> list[JointKind]:

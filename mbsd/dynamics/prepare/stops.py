@@ -27,7 +27,7 @@ from mbsd.model.laws.curve import Curve
 from mbsd.model.laws.fitting.fit import Fit, fit
 from mbsd.model.laws.fitting.leaves import BESIDE, ROOTS, Cut, finest, given_cuts
 from mbsd.model.laws.fitting.sampling import FORCE_LOOKS, Sampled, look_times
-from mbsd.results.jump_rows import Jumps
+from mbsd.results.rows import Jumps
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

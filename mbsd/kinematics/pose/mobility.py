@@ -23,7 +23,7 @@ from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, close, rough_pose
 from mbsd.kinematics.pose.phases import let_phases_go, take_phases
 from mbsd.model.mechanism import Model
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 RANK_TOLERANCE = 1e-8
 """A row that adds less than this part of itself to the others repeats them."""

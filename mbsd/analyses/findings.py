@@ -1,4 +1,6 @@
-"""Closed chains of four links that have change points: poses with all links in line, where two assemblies meet.
+"""Findings about a model: links that do not close, gears whose teeth do not mesh, and change points.
+
+A closed chain of four links has change points, poses with all links in line where two assemblies meet, where
 
     pins alone       s + l = p + q      s, l: the shortest and the longest link; p, q: the others
     crank and slide  e = |l - r|        r, l: crank and rod; e: distance of the crank's pin from the line of the slider
@@ -15,11 +17,67 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.analyses.finding import Finding
+from mbsd.arrays.force_phases import relative_poses
 from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import MechanismError
+from mbsd.base.names import Suggesting
+from mbsd.dynamics.prepare.large import mobility
 from mbsd.kinematics.pose.close import assemble
 from mbsd.model.mechanism import Model
+from mbsd.model.teeth import with_radii
+
+
+@dataclass(frozen=True)
+class Finding(Suggesting):
+    """One suspicious number: whose it is, what is odd, what to do."""
+
+    name: str
+    problem: str
+    remedy: str
+    is_note: bool = False
+    """True if it is something to know of a model that may well be meant so."""
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.problem}. {self.remedy}"
+
+
+ROOM = 0.1
+"""Part of the smaller radius by which centres of gears without teeth may stand elsewhere."""
+START_REMEDY = "Look at lengths and places of what it names; m.draw() shows the rough start"
+
+
+def start_problems(m: Model) -> Iterator[Finding]:
+    """Yield what keeps ``m`` from being assembled: links that cannot close, gears apart, a rack on the other side."""
+    try:
+        mobility(m)
+    except MechanismError as error:
+        problem, _, remedy = str(error).removeprefix(f"{m.name}: ").partition(". ")
+        yield Finding("start", problem.rstrip("."), remedy.rstrip(".") or START_REMEDY)
+        return
+    yield from _meshes_apart(m)
+
+
+def _meshes_apart(m: Model) -> Iterator[Finding]:
+    """Gears with play whose centres stand so far from the sum of their radii at the start that no teeth mesh."""
+    if not any(force.kind.mesh for force in m.forces.values()):
+        return
+    packed = pack(m)
+    q = assemble(m, packed, 0.0)
+    for force in packed.forces:
+        if force.kind.mesh is None:
+            continue
+        sized, (x, y, _) = with_radii(force.params), relative_poses(packed, force, q[None])
+        first, second = sized["radius_i"], sized["radius_j"]
+        wanted = first - second if force.params["internal"] else first + second
+        distance, room = float(np.hypot(x, y)[0]), force.params.get("module", ROOM * min(first, second))
+        if abs(distance - wanted) > room:
+            yield Finding(
+                f"force '{force.name}'",
+                f"its centres are {distance:g} m apart at the start, and radii of {first:g} m and {second:g} m say "
+                f"{wanted:g} m, so no teeth mesh",
+                "Move a centre, or give other radii; a module is in metres: 3 mm is 3e-3",
+            )
+
 
 EQUAL = 1e-9
 """Part of the longest link by which sums of lengths may differ and count as equal."""
@@ -28,7 +86,7 @@ MOST_NAMED = 3
 LINKS = 4
 PIN, SLIDE = "pin", "guide"
 """Pairs of :class:`mbsd.model.joint.JointKind` that a chain may have."""
-REMEDY = (
+CHANGE_POINT_REMEDY = (
     "Sweeps and simulations pass such a pose on the smooth continuation, and reactions may grow without bound there: "
     "choose the other way with sweep(switch_at=...), or change a length, or add a link that decides"
 )
@@ -65,7 +123,7 @@ def change_point_chains(m: Model) -> list[Finding]:
     reason = [_finding(packed, *chain) for chain in chains[:MOST_NAMED]]
     more = len(chains) - len(reason)
     if more > 0:
-        reason.append(Finding("chains", f"{more} more closed chains have change points", REMEDY, True))
+        reason.append(Finding("chains", f"{more} more closed chains have change points", CHANGE_POINT_REMEDY, True))
     return reason
 
 
@@ -156,4 +214,9 @@ def _slider_crank(near: _Connection, two: _Connection, three: _Connection, slide
 
 def _finding(packed: Packed, chain: list[int], reason: str) -> Finding:
     names = " - ".join(packed.body_names[link] for link in chain)
-    return Finding(f"chain {names}", f"it has change points, where two assemblies meet, because {reason}", REMEDY, True)
+    return Finding(
+        f"chain {names}",
+        f"it has change points, where two assemblies meet, because {reason}",
+        CHANGE_POINT_REMEDY,
+        True,
+    )

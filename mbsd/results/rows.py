@@ -1,6 +1,7 @@
-"""Two rows at a known time at which forces jump: right before it and right after it, at equal times.
+"""Rows of a motion: at jumps of forces, and after releases of joints and drivers.
 
-A motion is solved at times beside what may jump; where neither accelerations nor reactions do, these rows go.
+A known time at which forces jump has two rows: right before it and right after it, at equal times. A motion is solved
+on both sides of every possible jump; where neither accelerations nor reactions jump, these rows are removed.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from mbsd.results.solution import Solution
+
 
 JUMPED = 1e-6
 """Part of the largest acceleration or reaction by which it differs on both sides of a jump."""
@@ -128,3 +130,24 @@ def _differ(values: np.ndarray, first: int, second: int, arm: float) -> bool:
         gap[:, :2].max(initial=0.0) > JUMPED * max(straight, ROUNDING * turning / arm)
         or gap[:, 2].max(initial=0.0) > JUMPED * max(turning, ROUNDING * straight * arm)
     )
+
+
+def released_rows(sol: Solution) -> dict[str, np.ndarray]:
+    """Return (T,) of each joint and driver that an event releases: True where that has happened."""
+    if sol.held is None:
+        return {}
+    count = len(sol.packed.joints) - sol.packed.contacts
+    joints = zip(sol.packed.joints[:count], sol.packed.first_row, strict=False)
+    gone = {joint.name: ~sol.held[:, first] for joint, first in joints}
+    return {name: since for name, since in gone.items() if since.any()}
+
+
+def release_times(sol: Solution) -> dict[str, float]:
+    """Return the time (s) of the event that released a joint or driver, by its name."""
+    times = {}
+    for name, gone in released_rows(sol).items():
+        row = int(gone.argmax())
+        since, until = sol.t[max(row - 1, 0)], sol.t[row]
+        events = [event.time for event in sol.events if event.what == "event" and since <= event.time <= until]
+        times[name] = float(events[-1] if events else until)
+    return times

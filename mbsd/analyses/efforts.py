@@ -30,10 +30,9 @@ from mbsd.base.errors import MobilityError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.kinematics.limits.closed_contacts import refuse_pushing
 from mbsd.kinematics.pose.phases import take_decided
-from mbsd.model.adding.forces import Amount, add_force, amount_given
+from mbsd.model.entries import Amount, add_force, amount_given
 from mbsd.model.force import Force, ForceKind
-from mbsd.model.forces.actuator import ACTUATOR
-from mbsd.model.forces.torque import TORQUE
+from mbsd.model.forces.loads import ACTUATOR, TORQUE
 from mbsd.model.joint import Joint
 from mbsd.model.mechanism import Model, names_given
 from mbsd.results.solution import Solution

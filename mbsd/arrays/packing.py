@@ -17,9 +17,8 @@ from mbsd.arrays.system_arrays import Parts, arrays_of
 from mbsd.base.users_function import law_of, tell_missed
 from mbsd.equations.products import spread_rows
 from mbsd.equations.system import System, Workspace
-from mbsd.model.contact import ContactKind
 from mbsd.model.force import Force, Masses
-from mbsd.model.joint import ROWS, SPECIALS, Joint
+from mbsd.model.joint import ROWS, SPECIALS, ContactKind, Joint
 from mbsd.model.laws import Motion
 from mbsd.model.mechanism import Model
 

@@ -45,7 +45,7 @@ from mbsd.kinematics.pose.mobility import joint_mobility
 from mbsd.kinematics.pose.open_loops import why_open
 from mbsd.kinematics.pose.phases import active_rows, let_phases_go, refuse_impossible, take_decided, take_phases
 from mbsd.model.mechanism import Model
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 MANY_COORDINATES = 600
 """From here on a mechanism counts as large."""

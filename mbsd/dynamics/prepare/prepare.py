@@ -38,7 +38,7 @@ from mbsd.kinematics.pose.initial import Initial, consistent
 from mbsd.kinematics.pose.mobility import joint_mobility, rows_at
 from mbsd.model.mechanism import Model
 from mbsd.results.measured import measured, measured_rate
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.prepared import PreparedDynamics

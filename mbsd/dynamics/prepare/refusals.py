@@ -36,7 +36,7 @@ from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.ideal_joints import with_ideal_joints
 from mbsd.model.force import Press
 from mbsd.model.mechanism import Model
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.large import MANY_COORDINATES

@@ -23,7 +23,8 @@ from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.single_run import Base
 from mbsd.dynamics.batch.starts import Starts, starts_of
 from mbsd.dynamics.events.arrays import KINETIC, RESTITUTION, STATIC
-from mbsd.dynamics.independent.arrays import KEPT_Q, KEPT_SIZE, Embedding
+from mbsd.dynamics.independent.arrays import Embedding
+from mbsd.dynamics.independent.block import KEPT_Q, KEPT_SIZE
 from mbsd.dynamics.independent.coordinates import coordinates_along
 from mbsd.dynamics.prepare.inertia import USUAL
 from mbsd.dynamics.prepare.refusals import presses

@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mbsd.dynamics.events.users.arrays import Events
 from mbsd.dynamics.reference.sliding import Sliding
-from mbsd.dynamics.repeated_rows.arrays import Repeated
+from mbsd.dynamics.repeated_rows import Repeated
 
 ROW, BLOCK, SIDE, KIND, RELATIVE, FRICTION = range(6)
 """Columns of Contacts.place: the row in J, its block and its place there in Schur.rows; GAP, CLUTCH, WAY or SLIDE; its
@@ -215,8 +214,8 @@ class Contacts(NamedTuple):
     """The contacts with friction."""
     wheels: Wheels
     curves: Curves
-    events: Events
-    """Those of the user; e-th of them is met as row c + e."""
+    events: Any
+    """mbsd.dynamics.events.users.Events, of the user; e-th of them is met as row c + e."""
     repeated: Repeated
     """Rows of joints that repeat others."""
     log: Any

@@ -30,8 +30,7 @@ from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.large import MANY_COORDINATES
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.arrays import scratch_for
-from mbsd.dynamics.reference.projection import project
-from mbsd.dynamics.reference.rows import OPENED_BY
+from mbsd.dynamics.reference.projection import OPENED_BY, project
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.ideal_joints import with_ideal_joints
 from mbsd.model.force import Press

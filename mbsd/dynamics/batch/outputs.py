@@ -235,10 +235,9 @@ class Reactions:
     def _held(self, out: Outputs, times: np.ndarray) -> np.ndarray:
         """Return (R, T, m) True for rows of J that no event has released."""
         packed, events = self.run.ready.packed, self.run.events
-        names = [joint.name for joint in packed.joints]
         held = np.ones(out.lam.shape, bool)
         for when, event in zip(out.released.T[..., None], events, strict=True):
             since = (times > when) | (out.over[:, None] <= times) & (when <= out.over[:, None])
-            for joint in map(names.index, event.releases):
-                held[..., packed.first_row[joint] : packed.first_row[joint + 1]] &= ~since[..., None]
+            for joint in event.releases:
+                held[..., packed.rows_of(joint)] &= ~since[..., None]
         return held

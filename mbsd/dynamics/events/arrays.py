@@ -21,6 +21,8 @@ NEAR, REST, SETTLE, RESTITUTION, SCALE, CLOSED, HELD, SIGN, RELEASED = range(9)
 """Columns of Contacts.number: gap (rate of a clutch, way or slide) and rate that count as zero, slowest rebound,
 coefficient of restitution, what makes the gap dimensionless; whether it is closed (way, slide: sticks) now, and whether
 its row holds; direction in which a way or slide goes, 0 where it does not; whether an event released the joint."""
+ARGUMENTS = {"restitution": RESTITUTION}
+"""Columns of Contacts.number by the arguments of contacts."""
 VALUE, RATE, NORMAL, GIVEN, FREE, ALONE, PUSH, SHIFT = range(8)
 """Rows of Contacts.vector."""
 SKIPPED, TOUCHING, STAYING, TAKING, KEPT, RESTING = range(6)
@@ -50,6 +52,8 @@ KINETIC, STATIC, FORCED, BROKEN, GUESS, NEXT_SIGN, BESIDE, HOLDING = range(8)
 lets it leave its place, 0 where it came to rest, NO_SIGN else; the same once static friction has broken; that in which
 it is taken to slide, and what comes out; friction that may act beside that of the normal force; STATIC, or a hair less
 where all that is at rest has come to its limit."""
+FRICTION_ARGUMENTS = {"friction": KINETIC, "static_friction": STATIC}
+"""Columns of Friction.number by the arguments of contacts."""
 NO_SIGN = 2.0
 
 

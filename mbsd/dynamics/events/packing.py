@@ -46,6 +46,8 @@ ROUNDINGS = ((1.0, 1.0, -1.0, -1.0), (-1.0, 1.0, 1.0, -1.0), (1.0, -1.0, 1.0), (
 STILL = 1e-9
 """Rates below this part of the size (rad) by 1 s are zero."""
 
+Entry = tuple[np.ndarray, tuple[int, ...]]
+"""An array and an index in it."""
 PINS = 2
 """Pins from which on steps without contacts go their own way (reference/pins.py): a third less an evaluation."""
 
@@ -77,7 +79,7 @@ def contacts_of(
 
     return arrays.Contacts(
         np.array(own, np.int64).reshape(-1, arrays.FRICTION + 1),
-        np.array(_numbers_of(ready)).reshape(-1, arrays.RELEASED + 1),
+        _numbers_of(ready),
         clock,
         another(),
         another(),
@@ -124,17 +126,30 @@ def _places(ready: PreparedDynamics) -> list[tuple[int, ...]]:
     return [place(*each) for each in [*rows, *((stick.way, arrays.WAY, stick.at) for stick in ready.sticks)]]
 
 
-def _numbers_of(ready: PreparedDynamics) -> list[tuple[float, ...]]:
-    scale = ready.packed.row_scale()
-    out: list[tuple[float, ...]] = []
-    for contact in ready.switches.contacts:
-        size = scale[contact.gap]
-        near = STILL if contact.always_closed else NEAR
-        out.append((near / size, STILL / size, contact.settle, contact.restitution, size, 0.0, 0.0, 0.0, 0.0))
+def _numbers_of(ready: PreparedDynamics) -> np.ndarray:
+    contacts, n = ready.switches.contacts, len(ready.switches.contacts)
     ways = [(contact.way or 0, 0.0) for _, contact in _rough(ready)]
-    for way, sign in [*ways, *((stick.way, 1.0) for stick in ready.sticks)]:
-        still = STILL / scale[way]
-        out.append((still, still, 0.0, 0.0, scale[way], 0.0, 0.0, sign, 0.0))
+    ways += [(stick.way, 1.0) for stick in ready.sticks]
+    scale = ready.packed.row_scale()[[*(contact.gap for contact in contacts), *(way for way, _ in ways)]]
+    number = np.zeros((len(scale), arrays.RELEASED + 1))
+    number[:, arrays.SCALE] = scale
+    number[:, arrays.NEAR] = number[:, arrays.REST] = STILL / scale
+    gaps = [k for k, contact in enumerate(contacts) if not contact.always_closed]
+    number[gaps, arrays.NEAR] = NEAR / scale[gaps]
+    number[:n, arrays.SETTLE] = [contact.settle for contact in contacts]
+    for argument, column in arrays.ARGUMENTS.items():
+        number[:n, column] = [contact.given(argument) for contact in contacts]
+    number[n:, arrays.SIGN] = [sign for _, sign in ways]
+    return number
+
+
+def entries_of(ready: PreparedDynamics, contacts: arrays.Contacts, name: str) -> dict[str, Entry]:
+    """Return array and index of each number of a contact of the user, by its argument."""
+    k, contact = next((k, own) for k, own in enumerate(ready.switches.contacts) if own.name == name)
+    out: dict[str, Entry] = {argument: (contacts.number, (k, at)) for argument, at in arrays.ARGUMENTS.items()}
+    if contact.sliding >= 0:
+        friction = contacts.friction.number
+        out |= {argument: (friction, (contact.sliding, at)) for argument, at in arrays.FRICTION_ARGUMENTS.items()}
     return out
 
 
@@ -158,7 +173,7 @@ def _sticks_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> arrays.St
 
 def _divides(ready: PreparedDynamics) -> bool:
     """Return True if joints have friction beside contacts, or contacts lose some once they slide."""
-    losing = any(contact.static_friction > contact.friction for _, contact in _rough(ready))
+    losing = any(contact.given("static_friction") > contact.friction for _, contact in _rough(ready))
     return losing or bool(len(ready.dynamics.loads.friction))
 
 
@@ -168,8 +183,8 @@ def _friction_of(ready: PreparedDynamics, c: int, n3: int, rows: int) -> arrays.
     way_of = {k: count + w for w, (k, _) in enumerate(rough)}
     order = [row for k in range(count) for row in ([k, way_of[k]] if k in way_of else [k])]
     number = np.zeros((len(rough), arrays.HOLDING + 1))
-    number[:, arrays.KINETIC] = [contact.friction for _, contact in rough]
-    number[:, arrays.STATIC] = [contact.static_friction for _, contact in rough]
+    for argument, column in arrays.FRICTION_ARGUMENTS.items():
+        number[:, column] = [contact.given(argument) for _, contact in rough]
     own = c if rough or len(ready.dynamics.loads.friction) else 0
     return arrays.Friction(
         np.array([k for k, _ in rough], np.int64),
@@ -310,12 +325,13 @@ def _release(ready: PreparedDynamics, events: Sequence[Event], bare: Schur) -> n
     if any(map(acts_in_python, events)):
         groups += [(len(events) + joint, joint) for joint in range(len(names) - packed.contacts)]
     for group, joint in groups:
-        first = int(packed.first_row[joint])
-        frictions = np.flatnonzero(friction[:, FIRST] == first).tolist()
-        for row in range(first, int(packed.first_row[joint + 1])):
+        rows = packed.rows_of(joint)
+        frictions = np.flatnonzero(friction[:, FIRST] == rows.start).tolist()
+        for row in rows:
             places = ready.switches.place.get(row, (-1, -1)), _place(bare, row)
             out += [
-                (group, row, *places[0], *places[1], at) for at in (frictions if row == first and frictions else [-1])
+                (group, row, *places[0], *places[1], at)
+                for at in (frictions if row == rows.start and frictions else [-1])
             ]
     return np.array(out, np.int64).reshape(-1, users.ITS_FRICTION + 1)
 

@@ -218,8 +218,7 @@ def _reaction(ready: PreparedDynamics, name: str) -> float:
     out, lam = np.zeros_like(state), np.zeros(len(packed.ws.phi))
     derivative(dynamics, scratch_for(dynamics, packed.ws, len(packed.motions), 1), ready.start, state, out, lam)
     packed.specials.check()
-    number = [joint.name for joint in packed.joints].index(name)
-    return math.hypot(*lam[packed.first_row[number] : packed.first_row[number + 1]].tolist())
+    return math.hypot(*lam[packed.rows_of(name)].tolist())
 
 
 BESIDE = (0.003, 0.001)

@@ -38,6 +38,9 @@ from mbsd.numbers.saved import SavedModel
 
 STEP, TINY = 1e-4, 1e-5
 """Steps of a number, as parts of its size: of fourth and of second order."""
+FAR, ALLOWED = 1e-5, 4.0
+"""A variant's motion is this far from the motion itself, in sizes and rad, where its usual step takes it farther than
+so many times this: near a toggle, and after long, a small change of a number is a large one of the motion."""
 SHORTER = 2.0**-8
 """Part of a step that is tried where a mechanism refuses so large a one."""
 KINKED = 1e-2

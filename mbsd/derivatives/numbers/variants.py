@@ -119,7 +119,7 @@ class Variation:
         self.work = copy.deepcopy(m)
         self.base, self.span, self.close, self.contacts, self.starts = base, span, close, contacts or [], starts
         self.loads = loads
-        self.given = repr((self.work.starts, self.work.velocities))
+        self.given = dict(self.work.starts), dict(self.work.velocities)
         self.saved = SavedModel(self.work)
         self.first = pack(self.work, self._contacts(self.work))
         self.motions, self.laws = list(self.first.motions), laws_of(self.first)
@@ -166,7 +166,7 @@ class Variation:
             return Variant(offset, terms, dict(m.traces), places, masses, same_loads, start, dict(m.events))
 
     def _starts_alike(self, m: Model) -> bool:
-        return repr((m.starts, m.velocities)) == self.given
+        return (m.starts, m.velocities) == self.given
 
     def _pushes_alike(self, m: Model, packed: Packed) -> bool:
         """Return True if forces are clearly those of the motion: elements alone, without masses, at the same arms."""

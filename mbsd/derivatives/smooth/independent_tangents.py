@@ -103,8 +103,9 @@ class IndependentTangents:
         if light:
             right[:, :, light] = self._slopes_of_forces(t, held, rates).transpose(1, 2, 0)
         here = t, np.ascontiguousarray(held.pose[:, 0]), states[:, 0, 0].copy(), states[:, 0].copy()
+        room = np.zeros_like(held.pose), np.zeros((count, held.pose.shape[2]))
         for p in self.every.keys() - {*light}:
-            right[:, :, p] = self._slope(p, here, rates[:, 0])
+            right[:, :, p] = self._slope(p, here, rates[:, 0], room)
         y = np.concatenate([self.basis @ self.both.begun(part).T for part in range(2)])
         fastest = float(np.abs(speed).max(initial=0.0)) or 1.0
         slight = slight_changes(f, fastest, np.array(self.both.sizes))
@@ -155,12 +156,12 @@ class IndependentTangents:
         if len(light):
             many = [np.concatenate([part] * len(light)) for part in (along.t, along.q, z)]
             system, given = packed.system, states[light].reshape(-1, *states.shape[2:])
-            poses[light] = self._moved(self.arrays, system.mass, system.inertia, (*many, given), False)[0].reshape(
-                len(light), *poses.shape[1:]
-            )
+            there, rest = poses[light].reshape(-1, 2, width), a[light].reshape(-1, width)
+            self._move(self.arrays, system.mass, system.inertia, (*many, given), False, there, rest)
+            poses[light] = there.reshape(len(light), *poses.shape[1:])
         for s in np.flatnonzero(own).tolist():
             arrays, here = every[of[s]].arrays[s - of.index(of[s])], (along.t, along.q, z, states[s])
-            poses[s], a[s] = self._moved(arrays, mass[s], moment[s], here, accelerations)
+            self._move(arrays, mass[s], moment[s], here, accelerations, poses[s], a[s])
         q, v, a = (part.reshape(len(of), count, -1, 3) for part in (poses[:, :, 0], poses[:, :, 1], a))
         work = np.zeros(q.shape[:2])
         return Motions(
@@ -198,36 +199,35 @@ class IndependentTangents:
         stretch = Stretch(along, compact, rows, [], everywhere, everywhere)
         return at_rows(terms, stretch, variants, self.basis[:, 3:], line.at(along.t))
 
-    def _slope(self, p: int, here: States, rates: np.ndarray) -> np.ndarray:
-        """(T, f) how z'' changes with number p at held states, where it is ``rates`` (T, f)."""
-        last, self.alone[p] = self._beside(p, -1, here)
+    def _slope(self, p: int, here: States, rates: np.ndarray, room: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+        """(T, f) how z'' changes with number p at held states, where it is ``rates`` (T, f); ``room`` is scratch."""
+        last, self.alone[p] = self._beside(p, -1, here, *room)
         if self.alone[p] > ALLOWED * FAR:
             self.both.set_steps({p: TINY * FAR / float(self.alone[p])})
-            last, self.alone[p] = self._beside(p, -1, here)
+            last, self.alone[p] = self._beside(p, -1, here, *room)
         sides, out = self.every[p], last
         out *= sides.weights[-1]
         for k, weight in enumerate(sides.weights[:-1].tolist()):
-            out += weight * (self._beside(p, k, here)[0] if sides.away[k] else rates)
+            out += weight * (self._beside(p, k, here, *room)[0] if sides.away[k] else rates)
         return out
 
-    def _beside(self, p: int, k: int, here: States) -> tuple[np.ndarray, float]:
+    def _beside(self, p: int, k: int, here: States, poses: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, float]:
         """(T, f) z'' on side k of number p at held states, and how far bodies go there (sizes, rad)."""
         sides = self.every[p]
-        poses, a = self._moved(sides.arrays[k], sides.mass[k], sides.moment[k], here, True)
+        self._move(sides.arrays[k], sides.mass[k], sides.moment[k], here, True, poses, a)
         return a @ self.basis.T, float(np.abs((poses[:, 0, 3:] - here[1][:, 3:]) / self.scale).max(initial=0.0))
 
-    def _moved(
-        self, arrays: Embedding, mass: np.ndarray, moment: np.ndarray, here: States, forces: bool
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """(T, 2, 3 nb) poses and velocities, and with ``forces`` accelerations (T, 3 nb). Raises NotSmooth."""
-        t, q, _, states = here
+    def _move(
+        self, arrays: Embedding, mass: np.ndarray, moment: np.ndarray, here: States, forces: bool, poses: np.ndarray,
+        a: np.ndarray,
+    ) -> None:  # fmt: skip
+        """Fill poses and velocities (T, 2, 3 nb), and with ``forces`` accelerations a (T, 3 nb). Raises NotSmooth."""
+        t, *_, states = here
         self._begin(arrays, mass, moment, states[0], float(t[0]))
-        poses, a = np.zeros((len(t), 2, q.shape[1])), np.zeros_like(q)
         clear = motions_beside(arrays, self.scratch, *here, forces, poses, a)
         self.ready.packed.specials.check()
         if clear < len(t):
             raise NotSmooth
-        return poses, a
 
     def _rates(self, t: np.ndarray, states: np.ndarray, held: Held) -> np.ndarray:
         """(T, S, f) z'' at states (T, S, 2, 3 + f). Raises NotSmooth."""

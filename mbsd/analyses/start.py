@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from mbsd.analyses.finding import Finding
-from mbsd.arrays.force_phases import relative_poses
 from mbsd.arrays.packing import pack
+from mbsd.arrays.starts import relative_poses
 from mbsd.base.errors import MechanismError
 from mbsd.dynamics.prepare.large import mobility
 from mbsd.kinematics.pose.close import assemble

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mbsd.equations.assembly import tabulate
-from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
 from mbsd.equations.relative.curve_pieces import (
     CLOSED,
     COUNT,
@@ -30,6 +29,7 @@ from mbsd.equations.relative.curve_pieces import (
     WIDTH,
     foot,
 )
+from mbsd.equations.relative.equation import AT, MARKER_I, MARKER_J
 from mbsd.equations.system import LAST
 
 if TYPE_CHECKING:

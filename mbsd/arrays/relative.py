@@ -85,8 +85,7 @@ class Specials:
         """A system that came from elsewhere, with the addresses of this process."""
         if not self.names:
             return system
-        from mbsd.equations.constraints.relative import AT
-        from mbsd.equations.relative.equation import address_of
+        from mbsd.equations.relative.equation import AT, address_of
 
         numbers = system.numbers.copy()
         for joint, place, row in zip(self.joints, self.places, system.special, strict=True):

@@ -19,8 +19,8 @@ from numba.core.dispatcher import Dispatcher
 
 from mbsd.base.arguments import LARGEST
 from mbsd.base.errors import ModelError
-from mbsd.base.kept import Kept
 from mbsd.base.names import shown
+from mbsd.base.running import Kept
 from mbsd.compiling.callback import Callback, WrongValue
 
 COMPLEX_STEP = 1e-30

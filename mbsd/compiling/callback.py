@@ -33,11 +33,10 @@ from numba.core.ccallback import CFunc
 from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic
 
+from mbsd.base.arguments import described
 from mbsd.base.errors import MechanismError, ModelError
-from mbsd.base.kept import Kept
 from mbsd.base.names import shown
-from mbsd.base.users_function import described
-from mbsd.compiling import interrupts
+from mbsd.base.running import CALLED, Kept, was_interrupted
 
 SIGNATURE = types.void(types.float64, types.CPointer(types.float64), types.CPointer(types.float64))
 PROTOTYPE = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_ssize_t, ctypes.c_ssize_t)
@@ -154,7 +153,7 @@ class Callback:
         failed: BaseException | None = None
         try:
             out[:] = self._values(t, copied)
-            if interrupts.taken():
+            if was_interrupted():
                 raise KeyboardInterrupt
             if all(map(math.isfinite, out)):
                 return
@@ -165,7 +164,7 @@ class Callback:
             self._error = failed
             self._failure[0], self._failure[1], self._failure[2:] = 1.0, t, copied
 
-    interrupts.CALLED.update((_run.__code__,))
+    CALLED.update((_run.__code__,))
 
     def _view(self, address: int, length: int) -> np.ndarray:
         key = address, length
@@ -174,7 +173,7 @@ class Callback:
             self._views[key] = np.frombuffer(buffer, np.float64) if length else np.zeros(0)
         return self._views[key]
 
-    interrupts.CALLED.update((_view.__code__,))
+    CALLED.update((_view.__code__,))
 
     def _compile(self) -> CFunc:
         """The numba function in a frame that splits the input and remembers a failure."""

@@ -11,6 +11,8 @@ arrays changes no field.
 
 Functions of numba's own target may call kernels, which then get their arguments in this way. A kernel that hands an
 array over to such a function is refused when it is compiled.
+
+Tables within one array, as kernels see them: numba's own reshape takes 40 ns, this takes none.
 """
 
 from __future__ import annotations
@@ -18,11 +20,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numba
 from numba.core import cgutils, types
 from numba.core.cpu import CPUContext
 from numba.core.datamodel import ArgPacker, DataModelManager, default_manager
 from numba.core.datamodel.models import ArrayModel, DataModel
 from numba.core.imputils import user_function
+from numba.extending import intrinsic
 
 
 class _ArrayModel(ArrayModel):
@@ -225,3 +229,39 @@ def refuse_others(caller: Any, called: Any) -> None:
 def _kind(function: Any) -> str:
     """The type of a function in machine code."""
     return str(getattr(function, "global_value_type", function.type))
+
+
+if not numba.config.DISABLE_JIT:  # pyright: ignore[reportPrivateImportUsage, reportAttributeAccessIssue]
+
+    @intrinsic
+    def table(typing, array, start, rows, width):  # pyright: ignore[reportUnusedParameter, reportRedeclaration]
+        """(rows, width) of a contiguous array (n,), from ``start`` on; nothing checks that it ends within."""
+        made = types.Array(array.dtype, 2, "C")
+
+        def code(context, builder, signature, arguments):
+            source = context.make_array(signature.args[0])(context, builder, arguments[0])
+            integer = context.get_value_type(types.intp)
+            start, rows, width = (
+                context.cast(builder, value, kind, types.intp)
+                for value, kind in zip(arguments[1:], signature.args[1:], strict=True)
+            )
+            size = integer(context.get_abi_sizeof(context.get_data_type(array.dtype)))
+            view = context.make_array(made)(context, builder)
+            context.populate_array(
+                view,
+                data=builder.gep(source.data, [start]),
+                shape=cgutils.pack_array(builder, [rows, width]),
+                strides=cgutils.pack_array(builder, [builder.mul(width, size), size]),
+                itemsize=size,
+                meminfo=None,
+                parent=None,
+            )
+            return view._getvalue()
+
+        return made(array, start, rows, width), code
+
+else:
+
+    def table(array, start, rows, width):
+        """(rows, width) of a contiguous array (n,), from ``start`` on."""
+        return array[start : start + rows * width].reshape((rows, width))

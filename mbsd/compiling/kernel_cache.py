@@ -30,10 +30,9 @@ from typing import Any
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _Cache, _CacheLocator
 
 from mbsd.compiling.alternatives import files_added, kernel_for
-from mbsd.compiling.kernel_files import KernelFiles
+from mbsd.compiling.kernel_files import SHIPPED, KernelFiles, tell_of_other_kernels
 from mbsd.compiling.kernel_library import Apart
 from mbsd.compiling.lazy_kernel import cell_of
-from mbsd.compiling.shipped_kernels import SHIPPED, tell_of_other_kernels
 
 try:
     import fcntl
@@ -45,7 +44,7 @@ _PACKAGE = Path(__file__).parent.parent
 _HERE = _PACKAGE.parent
 _ABOUT_THE_CACHE = {
     str(_PACKAGE / "compiling" / name)
-    for name in ("kernel_cache.py", "kernel_files.py", "shipped_kernels.py", "notice.py")
+    for name in ("kernel_cache.py", "kernel_files.py", "notice.py")
 }
 """Files that decide where code is kept and what is said, not what it does."""
 KEPT = 4

@@ -19,7 +19,7 @@ import llvmlite.binding as llvm
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from mbsd.compiling.interrupts import CALLED
+from mbsd.base.running import CALLED
 
 LOG = logging.getLogger("mbsd")
 COMPILE = "mbsd.compile"

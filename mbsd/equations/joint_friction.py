@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import internal, kernel, lazy
-from mbsd.equations.markers import move, place
+from mbsd.equations.system import move, place
 
 PIN, GUIDE = 0, 1
 """Places in FRICTION_JOINTS; the third is a pin in a slot."""

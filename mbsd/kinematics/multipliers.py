@@ -17,17 +17,15 @@ from functools import partial
 
 import numpy as np
 
-from mbsd.arrays.approaches import approached_along
 from mbsd.arrays.friction_along import with_friction
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import approached_along, loads_along, pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import times_compact, wrenches
 from mbsd.base.errors import SingularPoseError
 from mbsd.equations.assembly import tabulate
+from mbsd.kinematics.elimination import ALL_SOLVED, multipliers_along
 from mbsd.kinematics.prepared import Prepared
-from mbsd.kinematics.transposed import ALL_SOLVED, multipliers_along
 
 JACOBIAN_NUMBERS = 4_000_000
 """How many numbers of Jacobians are held at once."""

@@ -19,6 +19,10 @@ Where the two assemblies meet, steps do not tell them apart however short they a
 passes these poses.
 
 Source: Haug 1989, ch. 4 (Newton-Raphson); Hairer, Norsett, Wanner, Solving ODEs I, II.6 (Hermite interpolation).
+
+Prediction of a pose: the quintic through the last two poses, velocities and accelerations.
+
+Steps of drivers' laws from one time to the next: which of them can be followed.
 """
 
 from __future__ import annotations
@@ -30,8 +34,6 @@ import numpy as np
 from mbsd.compiling.jit import inlined, kernel
 from mbsd.equations.assembly import evaluate_gamma, evaluate_nu, evaluate_position
 from mbsd.kinematics.elimination import factorise, solve
-from mbsd.kinematics.law_step import jumps
-from mbsd.kinematics.predictor import quintic_factors, quintic_value
 
 TOLERANCE = 1e-12
 """Tolerance of a Newton correction, relative to the mechanism's size (m) and to 1 rad."""
@@ -208,3 +210,66 @@ def sweep(system, seq, fac, ws, size, motion, residual, determinant, start, chos
         if k > 0 and _unexplained(q, v, a, k, h, per_metre) > UNEXPLAINED:
             return BRANCH_DOUBT, k
     return DONE, times.shape[0]
+
+
+LONGEST_STRETCH = 4.0
+"""Beyond this ratio of step lengths the quintic is not trusted; the last (q, v, a) alone predicts."""
+
+
+@inlined
+def quintic_factors(t, k, time):
+    """Return weights at ``time`` of the data of poses k - 1, k - 2: the difference of q, v and a of each.
+
+    With s = ahead / h the quintic is linear in the six data, so its five factors are found once for all coordinates.
+    """
+    ahead = time - t[k - 1]
+    h = t[k - 1] - t[k - 2] if k > 1 else 0.0
+    from_q = 0.0
+    from_v = ahead
+    from_a = 0.5 * ahead * ahead
+    earlier_v = 0.0
+    earlier_a = 0.0
+    if ahead < LONGEST_STRETCH * h:
+        s = ahead / h
+        cube = s * s * s
+        from_q = -cube * (10.0 + s * (15.0 + 6.0 * s))
+        p1 = -cube * (4.0 + s * (7.0 + 3.0 * s))
+        p2 = -cube * (0.5 + s * (1.0 + 0.5 * s))
+        from_v = h * (s + from_q - p1)
+        from_a = h * h * (0.5 * s * s - 0.5 * from_q + p1 - p2)
+        earlier_v = h * p1
+        earlier_a = h * h * p2
+    return from_q, from_v, from_a, earlier_v, earlier_a
+
+
+@inlined
+def quintic_value(factors, k, q, v, a, c):
+    """Coordinate c of the pose that these factors tell, from poses k - 1 and k - 2 in q, v, a (T, 3 nb)."""
+    from_q, from_v, from_a, earlier_v, earlier_a = factors
+    last = k - 1
+    before = max(k - 2, 0)
+    return (
+        q[last, c]
+        + from_q * (q[before, c] - q[last, c])
+        + from_v * v[last, c]
+        + earlier_v * v[before, c]
+        + from_a * a[last, c]
+        + earlier_a * a[before, c]
+    )
+
+
+JUMP = 0.25
+"""Part of a law's step that its rates may leave unexplained."""
+
+
+@inlined
+def jumps(law, before, h, stride):
+    """Return True if a law's value (3,) is over ``stride`` from that h before, or off its rates' lead.
+
+    h is in s.
+    """
+    step = law[0] - before[0]
+    gap = step - h * (0.5 * (law[1] + before[1]) - h / 12.0 * (law[2] - before[2]))
+    if not (abs(step) <= stride and h * abs(law[1]) <= stride and h * abs(before[1]) <= stride):
+        return True
+    return not abs(gap) <= JUMP * abs(step) + 1e-9

@@ -49,7 +49,7 @@ class Repetition:
 
 def period(m: Model) -> float | None:
     """See :meth:`mbsd.mechanism.Mechanism.period`."""
-    from mbsd.kinematics.prepare import prepare
+    from mbsd.kinematics.prepared import prepare
 
     common = common_period(m.drivers.values())
     if common is None:
@@ -146,7 +146,7 @@ def _least_turns(ends: Ends) -> int | None:
 
 def _search(m: Model, common: float, least: int, turns: int) -> int | None:
     """The first multiple of ``least`` up to ``turns`` after which everything is back."""
-    from mbsd.kinematics.prepare import prepare
+    from mbsd.kinematics.prepared import prepare
 
     try:
         with warnings.catch_warnings():

@@ -11,8 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from mbsd.arrays.law_jumps import jump_times
-from mbsd.arrays.laws import compiled_laws, law_values
+from mbsd.arrays.laws import compiled_laws, jump_times, law_values
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.states import columns_of, ones_of, with_states

@@ -11,21 +11,18 @@ import numpy as np
 from mbsd.arrays.chambers import check_pistons, phase_changes, whole_cycles
 from mbsd.arrays.curve_branches import CurveBranches
 from mbsd.arrays.efforts_beside import fill_beside
-from mbsd.arrays.law_jumps import jump_times, reach_beside
-from mbsd.arrays.laws import compiled_laws
+from mbsd.arrays.laws import compiled_laws, jump_times, reach_beside
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError, ModelWarning
 from mbsd.base.names import shown
 from mbsd.base.warning import warn
-from mbsd.kinematics.change_points.sides import determinant_of, sides_of
-from mbsd.kinematics.limits.closed_contacts import refuse_passed_contacts
-from mbsd.kinematics.limits.curve_jumps import refuse_jumps
-from mbsd.kinematics.limits.joints import limits_of, refuse_passed
+from mbsd.kinematics.change_points.passages import determinant_of, sides_of
+from mbsd.kinematics.limits.contacts import refuse_passed_contacts
+from mbsd.kinematics.limits.joints import limits_of, refuse_jumps, refuse_passed
 from mbsd.kinematics.march import March, march_along
 from mbsd.kinematics.multipliers import Efforts, inverse_dynamics, singularity_margin
 from mbsd.kinematics.period import MOST_TURNS, common_period, repetition
-from mbsd.kinematics.prepare import prepare, prepare_beside
-from mbsd.kinematics.prepared import Prepared
+from mbsd.kinematics.prepared import Prepared, prepare, prepare_beside
 from mbsd.kinematics.states_along import states_along
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import equal_times, rising_times

@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mbsd.arrays.force_phases import relative_poses
 from mbsd.arrays.reactions import marker_axes, marker_places
+from mbsd.arrays.starts import relative_poses
 from mbsd.base.codes import AXIS
-from mbsd.equations.interactions.law import OWN, STATE
-from mbsd.equations.interactions.surface import tabulate_stand
+from mbsd.equations.interactions.law import OWN, STATE, tabulate_stand
 from mbsd.model.force import Element
 from mbsd.results.measured import measured
 

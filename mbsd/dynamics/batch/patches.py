@@ -27,7 +27,7 @@ from mbsd.dynamics.independent.arrays import KEPT_Q, KEPT_SIZE, Embedding
 from mbsd.dynamics.independent.coordinates import coordinates_along
 from mbsd.dynamics.prepare.inertia import USUAL
 from mbsd.dynamics.prepare.refusals import presses
-from mbsd.kinematics.groups.carrying.columns import BASE, INERTIA, MASS, THETA
+from mbsd.kinematics.groups.carried import BASE, INERTIA, MASS, THETA
 from mbsd.model.body import rod_inertia
 from mbsd.model.laws import Motion
 from mbsd.model.laws.numbers import Compiled

@@ -47,8 +47,8 @@ from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.repeated_rows.packing import repeated_of
 from mbsd.dynamics.state import State
 from mbsd.dynamics.switches import RunContact
-from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
-from mbsd.equations.constraints.relative import ROW as RELATIVE_ROW
+from mbsd.equations.relative.equation import AT, MARKER_I, MARKER_J
+from mbsd.equations.relative.equation import ROW as RELATIVE_ROW
 from mbsd.kinematics.limits.free_wheels import HALF, MET
 from mbsd.model.event import Event
 from mbsd.model.teeth import with_radii

@@ -2,7 +2,7 @@
 
 z has f coordinates. C = f columns, one more (of the time) where drivers are; each column of ``rate`` is the rate of all
 bodies for one of them, and a last one holds the convective acceleration c. Columns that closed forms use are named in
-mbsd/kinematics/groups/groups.py and carrying/columns.py, entries of the arrays of blocks (block.py) below.
+mbsd/kinematics/groups/groups.py and groups/carried.py, entries of the arrays of blocks (block.py) below.
 """
 
 from __future__ import annotations

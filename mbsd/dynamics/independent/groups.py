@@ -23,13 +23,11 @@ from mbsd.compiling.jit import inlined, internal, lazy
 from mbsd.dynamics.independent.block import embed_block, with_body
 from mbsd.equations.laws import evaluate_laws
 from mbsd.kinematics.groups.blocks import BLOCK, TRAIN
-from mbsd.kinematics.groups.carrying.branch import FLOOR
-from mbsd.kinematics.groups.carrying.cases import PerCoordinate
-from mbsd.kinematics.groups.carrying.columns import AVOID, COS, SIN, SPEED, TURNS, VALUE
-from mbsd.kinematics.groups.carrying.rates import SOLVED
+from mbsd.kinematics.groups.carried import AVOID, COS, SIN, SOLVED, SPEED, TURNS, VALUE
+from mbsd.kinematics.groups.cases import FLOOR, PerCoordinate
 from mbsd.kinematics.groups.groups import FIRST, KIND, LAW, SECOND
 from mbsd.kinematics.groups.kinds.train import embed_train
-from mbsd.kinematics.groups.solve_group import solve_group
+from mbsd.kinematics.groups.solve import solve_group
 
 
 @inlined

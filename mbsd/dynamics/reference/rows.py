@@ -8,9 +8,9 @@ J is kept by rows: three entries for the body of each of a row's two sides.
 from __future__ import annotations
 
 from mbsd.compiling.jit import internal, merged
-from mbsd.equations.constraints.relative import rows as relative_rows
 from mbsd.equations.laws import evaluate_laws
-from mbsd.equations.markers import place
+from mbsd.equations.relative.equation import relative_rows
+from mbsd.equations.system import place
 
 OPENED_BY = 1e-7
 """Residuals (sizes, rad) above which a row that does not hold counts as open."""

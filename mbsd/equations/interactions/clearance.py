@@ -15,8 +15,10 @@ from mbsd.equations.interactions.law import (
     X,
     Y,
     interaction,
+    normal_force,
+    note,
+    touches,
 )
-from mbsd.equations.interactions.normal_force import normal_force, note, touches
 
 JOURNAL, CLEARANCE, STIFFNESS, EXPONENT, DAMPING, FRICTION, CREEP, SLIDE, LOSS, LEAST_APPROACH = range(10)
 SWITCHES = True

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.interactions.law import FX, FY, OWN, SIDE, SWITCH, TORQUE, interaction
-from mbsd.equations.interactions.way import measure
+from mbsd.equations.interactions.law import FX, FY, OWN, SIDE, SWITCH, TORQUE, interaction, measure
 
 (
     FORCE, GAS, EXPONENT, LENGTH, STROKE, IN, OUT, END, END_WAY, FRICTION, SLIP_SPEED, STOP, STOP_DAMPING,

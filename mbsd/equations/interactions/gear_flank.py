@@ -16,8 +16,10 @@ from mbsd.equations.interactions.law import (
     X,
     Y,
     interaction,
+    normal_force,
+    note,
+    touches,
 )
-from mbsd.equations.interactions.normal_force import normal_force, note, touches
 
 MIDDLE, FLANK, BASE_I, BASE_J, HALF, INVOLUTE, PERIOD, STIFFNESS, EXPONENT, DAMPING, LOSS, LEAST_APPROACH = range(12)
 SWITCHES = True

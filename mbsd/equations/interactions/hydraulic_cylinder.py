@@ -6,8 +6,19 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import internal
-from mbsd.equations.interactions.law import FX, FY, LAW, OWN, OWN_STATE, RATE, SIDE, SWITCH, TORQUE, interaction
-from mbsd.equations.interactions.way import measure
+from mbsd.equations.interactions.law import (
+    FX,
+    FY,
+    LAW,
+    OWN,
+    OWN_STATE,
+    RATE,
+    SIDE,
+    SWITCH,
+    TORQUE,
+    interaction,
+    measure,
+)
 
 (
     ONE, OPENING, AREA_A, AREA_B, RETRACTED, STROKE, DEAD_A, DEAD_B, COMPRESSIBILITY, AIR, LEAST, SUPPLY, TANK,

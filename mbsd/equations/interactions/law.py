@@ -8,14 +8,29 @@ feels the opposite at the same point of space, so power and reaction follow for 
 
 ``numbers`` begin at OWN, as those of constraints, and places 4 to 13 of the state are scratch of curve_pieces.py.
 Those whose force has a kink or a jump set SWITCHES and tell where, see switching.py.
+
+Distance or relative angle of two markers, with its rate and the direction in which it grows.
+
+Where a point stands to a surface in the axes of marker i: the line y = 0, or a profile of pieces.
+
+Matter is below the line, and on the right of a profile as its parameter rises. Numbers from OWN on are those of
+curve_pieces.py; with 0 pieces the surface is the line. The law's own numbers come after them, from :func:`after`.
+
+    d  signed distance of the point,  t unit tangent at the foot,  n = t_perp outwards
+
+The normal force between two that touch, pressed ``depth`` into each other at the rate ``rate``:
+
+N = k depth^e max(1 + D rate, 0),   D as given, or loss / approach, the speed with which the contact began
 """
 
 from __future__ import annotations
 
 import importlib
+import math
 
 from mbsd.base.codes import MOST_STATES
-from mbsd.compiling.jit import COMPILED
+from mbsd.compiling.jit import COMPILED, inlined, internal, kernel
+from mbsd.equations.relative.curve_pieces import COUNT, CX, CY, DX, DY, LATER, TABLE, WIDTH, find_foot
 from mbsd.equations.relative.equation import _PYTHON, OWN, A, X, Y, equation
 
 VX, VY, OMEGA, TIME, LAW, LAW_RATE = 14, 15, 16, 17, 18, 19
@@ -55,3 +70,84 @@ def address_of(name: str) -> int:
     """Where the force of this file of mbsd/equations/interactions is; compiles it at first."""
     made = importlib.import_module(f"mbsd.equations.interactions.{name}").force
     return made.address if COMPILED else _PYTHON.index(made)
+
+
+@internal
+def measure(turning, state):
+    """Return value, rate and unit vector in marker i's axes.
+
+    The vector is zero for an angle and at zero distance.
+    """
+    if turning:
+        return state[A], state[OMEGA], 0.0, 0.0
+    length = math.sqrt(state[X] * state[X] + state[Y] * state[Y])
+    if length == 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    ux = state[X] / length
+    uy = state[Y] / length
+    return length, ux * state[VX] + uy * state[VY], ux, uy
+
+
+DISTANCE, TX, TY = 20, 21, 22
+"""Places in the state, filled by :func:`stand`."""
+
+
+@internal
+def after(numbers):
+    """Where the law's own numbers begin."""
+    return TABLE + WIDTH * int(numbers[COUNT]) + LATER
+
+
+@internal
+def stand(numbers, state):
+    """Fill distance and tangent."""
+    if numbers[COUNT] == 0.0:
+        state[DISTANCE] = state[Y]
+        state[TX] = 1.0
+        state[TY] = 0.0
+        return
+    find_foot(numbers, state)
+    speed = math.sqrt(state[DX] * state[DX] + state[DY] * state[DY])
+    tx = state[DX] / speed
+    ty = state[DY] / speed
+    state[DISTANCE] = tx * (state[Y] - state[CY]) - ty * (state[X] - state[CX])
+    state[TX] = tx
+    state[TY] = ty
+
+
+@kernel
+def tabulate_stand(numbers, x, y, state, out):
+    """Distance and tangent out (T, 3) of points x, y (T,), for callers outside the compiled loops."""
+    for k in range(x.shape[0]):
+        state[X] = x[k]
+        state[Y] = y[k]
+        stand(numbers, state)
+        out[k, 0] = state[DISTANCE]
+        out[k, 1] = state[TX]
+        out[k, 2] = state[TY]
+
+
+@inlined
+def note(out, depth, rate, exponent):
+    """Tell those who watch where contacts begin (switching.py) what this one does."""
+    out[SWITCH] = depth
+    out[SPEED] = rate
+    out[POWER] = exponent if exponent != math.floor(exponent) else 0.0
+
+
+@inlined
+def touches(state, depth):
+    """Return True if the two touch: as the step holds it, else by depth."""
+    return state[SIDE] > 0.0 or (state[SIDE] == 0.0 and depth > 0.0)
+
+
+@inlined
+def normal_force(state, depth, rate, stiffness, exponent, damping, loss, least_approach):
+    """N; ``loss`` above 0 takes the place of ``damping``."""
+    approach = state[APPROACH]
+    if loss > 0.0 and approach == approach:  # no number: the motion began with the two pressed into each other
+        damping = loss / max(approach, least_approach)
+    normal = depth
+    if exponent != 1.0:
+        normal = math.copysign(abs(depth) ** exponent, depth)
+    return normal * stiffness * max(1.0 + damping * rate, 0.0)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from mbsd.base.codes import DAMPER, STIFFNESS
-from mbsd.equations.interactions.law import FX, FY, LAW, OWN, TORQUE, interaction
-from mbsd.equations.interactions.way import measure
+from mbsd.equations.interactions.law import FX, FY, LAW, OWN, TORQUE, interaction, measure
 
 
 @interaction

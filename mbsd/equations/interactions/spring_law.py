@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from mbsd.compiling.callback import call
-from mbsd.equations.interactions.law import FX, FY, OWN, TIME, TORQUE, X, Y, interaction
-from mbsd.equations.interactions.way import measure
+from mbsd.equations.interactions.law import FX, FY, OWN, TIME, TORQUE, X, Y, interaction, measure
 
 
 @interaction

@@ -4,8 +4,22 @@ from __future__ import annotations
 
 import math
 
-from mbsd.equations.interactions.law import FX, FY, OMEGA, SIDE, SWITCH, TORQUE, VX, VY, interaction
-from mbsd.equations.interactions.surface import DISTANCE, TX, TY, after, stand
+from mbsd.equations.interactions.law import (
+    DISTANCE,
+    FX,
+    FY,
+    OMEGA,
+    SIDE,
+    SWITCH,
+    TORQUE,
+    TX,
+    TY,
+    VX,
+    VY,
+    after,
+    interaction,
+    stand,
+)
 
 RADIUS, STIFFNESS, DAMPING, GRIP, SLOPE, SHAPE, CURVATURE, STANDSTILL = range(8)
 SWITCHES = True

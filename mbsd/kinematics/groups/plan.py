@@ -14,13 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.base.kept import Kept
+from mbsd.base.running import Kept
 from mbsd.kinematics.groups.blocks import BLOCK, BODIES, BODY, TRAIN, TREE_AT, Blocks
-from mbsd.kinematics.groups.groups import NUMBERS, Groups
-from mbsd.kinematics.groups.kind import Made
-from mbsd.kinematics.groups.links import Link, Places
-from mbsd.kinematics.groups.registry import KINDS, NAMES
-from mbsd.kinematics.groups.tables import tables_of
+from mbsd.kinematics.groups.groups import NUMBERS, Groups, Link, Made, Places
+from mbsd.kinematics.groups.tables import KINDS, NAMES, tables_of
 from mbsd.model.joint import Joint
 
 LETTERS = {

@@ -2,6 +2,10 @@
 
 Lines of a link are divided by its squared length, so that turning it along a vector of that length is two products;
 constant angles are kept as cosine and sine. Columns are named in each kind's file in kinds/.
+
+All kinds of groups, in the order of their codes (groups.py): for the plan and for tables.
+
+A new kind is its file in kinds/, its code, a line here, and one in solve.py.
 """
 
 from __future__ import annotations
@@ -11,13 +15,27 @@ from collections.abc import Sequence
 import numpy as np
 
 from mbsd.kinematics.groups.blocks import BLOCK, TRAIN
-from mbsd.kinematics.groups.carrying.branch import FLOOR
-from mbsd.kinematics.groups.carrying.columns import AVOID, SIGN, SINE
-from mbsd.kinematics.groups.carrying.columns import NUMBERS as WIDTH
-from mbsd.kinematics.groups.groups import COORDINATE, KIND, LAW, NUMBERS, THIRD, WATCHED, Groups
-from mbsd.kinematics.groups.kind import Made
+from mbsd.kinematics.groups.carried import AVOID, SIGN, SINE
+from mbsd.kinematics.groups.carried import NUMBERS as WIDTH
+from mbsd.kinematics.groups.cases import FLOOR
+from mbsd.kinematics.groups.groups import COORDINATE, KIND, LAW, NUMBERS, THIRD, WATCHED, Groups, Made
+from mbsd.kinematics.groups.kinds import driven, prp, rod, rpr, rrp, rrr, slide, welded, yoke
 from mbsd.kinematics.groups.kinds.train import BODY_3
-from mbsd.kinematics.groups.registry import BRANCH, KINDS
+
+KINDS = (
+    driven.KIND,
+    welded.KIND,
+    rrr.KIND,
+    rrp.KIND,
+    rpr.KIND,
+    yoke.KIND,
+    prp.KIND,
+    rod.KIND,
+    slide.KIND,
+)
+NAMES = tuple(kind.name for kind in KINDS)
+BRANCH = {kind.code: kind.branch for kind in KINDS if kind.branch is not None}
+"""Where the sign of the assembly stands."""
 
 
 def tables_of(taken: Sequence[Made]) -> Groups:

@@ -19,8 +19,7 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.equations.assembly import residual_and_jacobian
-from mbsd.equations.constraints.relative import ARM, AT, MARKER_I, MARKER_J, MOTION, ROW
-from mbsd.equations.relative.equation import OWN, WRAPS
+from mbsd.equations.relative.equation import ARM, AT, MARKER_I, MARKER_J, MOTION, OWN, ROW, WRAPS
 
 SAME_POINT = 1e-12
 """Points of a body within this part of the mechanism's size are one."""

@@ -14,8 +14,7 @@ import numpy as np
 
 from mbsd.arrays.reactions import marker_places, relative_velocity
 from mbsd.base.errors import SimulationError
-from mbsd.equations.constraints.relative import AT
-from mbsd.equations.relative.equation import WRAPS
+from mbsd.equations.relative.equation import AT, WRAPS
 from mbsd.model.teeth import with_radii
 
 if TYPE_CHECKING:

@@ -11,9 +11,9 @@ from typing import TypeVar
 
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.relative import FIRST_OWN
-from mbsd.arrays.start_state import copied
+from mbsd.arrays.starts import copied
 from mbsd.base.errors import AssemblyError
-from mbsd.equations.constraints.relative import ACTIVE, ARM, AT
+from mbsd.equations.relative.equation import ACTIVE, ARM, AT
 from mbsd.model.mechanism import Model
 
 Start = TypeVar("Start")

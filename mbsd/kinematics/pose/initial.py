@@ -1,31 +1,84 @@
 """Consistent initial conditions: a closed pose and allowed velocities near the given ones.
 
 Pose: what ``start_near`` gives is held exactly as far as the joints leave it free, first given first held; the rest
-moves until everything closes. A place of which they leave one direction is as near as it can be, see held_values.py.
+moves until everything closes. A place of which they leave one direction is as near as it can be.
 Velocities: what ``start_moving`` gives is held likewise,
 
     J v = nu,   P v = given,   kinetic energy of what was left open as small as it can be.
 
 What could not be kept is reported.
+
+Given values of a start that are held: rows W of the given ones, after the joints, first given first held.
+
+    rows of J, then of what is given, are independent        such a value is held as it is
+    of a place x, y the joints leave one direction u alone   u . (x, y) is held, the nearest that the body can come
+
+u is what is left of the two rows when those before them are taken off, so it turns with the machine: which axes the
+world has does not matter. Velocities of a place go likewise.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mbsd.arrays.force_phases import take_force_phases
 from mbsd.arrays.inertias import inertia_of, least_energy, usual_inertia
 from mbsd.arrays.packing import Packed
-from mbsd.base.kept import Kept
+from mbsd.arrays.starts import take_force_phases
+from mbsd.base.running import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
-from mbsd.kinematics.pose.held_values import held_values, is_choice, places_of
 from mbsd.kinematics.pose.ideal_joints import closed_ideally
+from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
+
+ALIGNED = 1e-12
+"""Part of u across an axis below which it is that axis."""
+
+
+def held_values(jac: np.ndarray, given: np.ndarray, places: Sequence[tuple[int, int]]) -> tuple[list[int], np.ndarray]:
+    """Return independent rows of ``jac`` (m, n), and W (h, k) for rows ``given`` (k, n), both in sizes and rad.
+
+    ``places``: pairs of given rows that are x and y of one place.
+    """
+    kept = independent_rows(np.vstack([jac, given]))
+    rows, chosen = [k for k in kept if k < len(jac)], [k - len(jac) for k in kept if k >= len(jac)]
+    held = np.eye(len(given))[chosen]
+    for pair in half_held(chosen, places):
+        at = next(n for n, k in enumerate(chosen) if k in pair)
+        before = np.vstack([jac[rows], given[[k for k in chosen if k < pair[0]]]])
+        held[at, list(pair)] = free_direction(before, given[list(pair)])
+    return rows, held
+
+
+def is_choice(held: np.ndarray) -> bool:
+    """Return True if all held values are held as they are given."""
+    return bool((held.sum(axis=1) == 1.0).all() and (held.max(axis=1, initial=0.0) == 1.0).all())
+
+
+def half_held(chosen: Sequence[int], places: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Return the pairs of which one is among the ``chosen``."""
+    return [(x, y) for x, y in places if (x in chosen) != (y in chosen)]
+
+
+def free_direction(before: np.ndarray, pair: np.ndarray) -> np.ndarray:
+    """Return u (..., 2), the direction in rows ``pair`` (..., 2, n) of which rows ``before`` (..., r, n) leave most."""
+    basis = np.linalg.qr(np.swapaxes(before, -1, -2))[0]
+    left = pair - (pair @ basis) @ np.swapaxes(basis, -1, -2)
+    u = np.linalg.eigh(left @ np.swapaxes(left, -1, -2))[1][..., -1]
+    u = np.where(np.abs(u) < ALIGNED, 0.0, u)
+    first = np.where(u[..., :1] != 0.0, u[..., :1], u[..., 1:])
+    return u * np.sign(first) / np.hypot(u[..., :1], u[..., 1:])
+
+
+def places_of(coordinates: Sequence[int]) -> list[tuple[int, int]]:
+    """Return the pairs x, y among given coordinates, numbers in (3 nb,)."""
+    return [(k, k + 1) for k, c in enumerate(coordinates) if c % 3 == 0]
+
 
 TOLD = 1e-6
 """The smallest change of a given value that is reported: sizes, rad; of speeds relative to the given ones."""

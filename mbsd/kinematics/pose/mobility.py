@@ -17,8 +17,8 @@ import numpy as np
 
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MobilityError, SingularPoseError
-from mbsd.base.kept import Kept
 from mbsd.base.quantity import counted
+from mbsd.base.running import Kept
 from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.close import CLOSED, close, rough_pose
 from mbsd.kinematics.pose.phases import let_phases_go, take_phases

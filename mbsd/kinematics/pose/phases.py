@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mbsd.base.errors import AssemblyError
-from mbsd.equations.constraints.relative import ACTIVE, ARM, AT, MARKER_I, MARKER_J, ROW
+from mbsd.equations.relative.equation import ACTIVE, ARM, AT, MARKER_I, MARKER_J, ROW
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

@@ -69,7 +69,7 @@ def moved_markers(m: Model) -> Iterator[tuple[Marker, tuple[float, float, float]
 
 def _around(m: Model, body: Body) -> Model:
     """The part of a mechanism that joints and drivers connect with a body other than by ground."""
-    from mbsd.arrays.start_state import copied
+    from mbsd.arrays.starts import copied
 
     links = [(joint.i.body.name, joint.j.body.name) for joint in (*m.joints.values(), *m.drivers.values())]
     near: dict[str, set[str]] = {}

@@ -16,8 +16,8 @@ from mbsd.compiling.jit import apart, internal
 from mbsd.dynamics.events.arrays import BASIS, FOUND, NOW
 from mbsd.dynamics.formulation import along, respond
 from mbsd.dynamics.reference.sliding import slide
-from mbsd.equations.gauss import eliminate
 from mbsd.equations.joint_friction import apply_friction, normal_forces
+from mbsd.equations.products import eliminate
 
 
 @apart

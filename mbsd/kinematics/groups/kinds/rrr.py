@@ -16,18 +16,15 @@ import math
 import numpy as np
 
 from mbsd.compiling.jit import merged
-from mbsd.kinematics.groups.carrying.cases import (
+from mbsd.kinematics.groups.carried import COS, DOUBTED, OMEGA, SIN, SINE, SOLVED, X, Y
+from mbsd.kinematics.groups.cases import (
     branch_of,
     columns_of,
     note_change,
     reached,
     speed_of,
 )
-from mbsd.kinematics.groups.carrying.columns import COS, OMEGA, SIN, SINE, X, Y
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, SOLVED
-from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRR, SECOND
-from mbsd.kinematics.groups.kind import GroupKind, Made, line
-from mbsd.kinematics.groups.links import Link, Places
+from mbsd.kinematics.groups.groups import FIRST, K1, K2, RRR, SECOND, GroupKind, Link, Made, Places, line
 
 P1_X, P1_Y, PA_X, PA_Y, CA_X, CA_Y, Q2_X, Q2_Y, QB_X, QB_Y, CB_X, CB_Y, BRANCH = range(13)
 """P on K1, P on A, C on A, Q on K2, Q on B, C on B, sign of the root."""

@@ -1,12 +1,13 @@
 """Places, columns of unknowns and equations of one block; tables as in groups/blocks.py.
 
-Equations are those of mbsd/equations/constraints/relative.py with the bodies of the block alone unknown.
+Equations are those of mbsd/equations/relative/equation.py with the bodies of the block alone unknown.
 """
 
 from __future__ import annotations
 
 import math
 
+from mbsd.compiling.jit import merged
 from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, TURN, A, F, X, Y, evaluate
 from mbsd.equations.system import LAST, ZERO
 from mbsd.kinematics.groups.blocks import (
@@ -31,11 +32,10 @@ from mbsd.kinematics.groups.blocks import (
     TURNED,
     UNKNOWN,
 )
-from mbsd.kinematics.groups.carrying.rates import carried, follow, hang
-from mbsd.kinematics.groups.newton.fused import fused
+from mbsd.kinematics.groups.carried import carried, follow, hang
 
 
-@fused
+@merged
 def read_unknowns(block, q, turn, u):
     """Unknowns u (n,) of the pose q (3 nb,) of the block's bodies; turns them too."""
     tree = block.tree
@@ -62,7 +62,7 @@ def read_unknowns(block, q, turn, u):
             u[c] = n[2] * ex + n[3] * ey
 
 
-@fused
+@merged
 def slid(q, v, a, turn, parent, n, way, speed, gain, point):
     """Set the point of a slide on ``parent``, with rates: S'' = k'' + 2 omega s' e_perp + s'' e."""
     ex = turn[parent, 0] * n[2] - turn[parent, 1] * n[3]
@@ -75,7 +75,7 @@ def slid(q, v, a, turn, parent, n, way, speed, gain, point):
     point[5] += gain * ey + spin * ex
 
 
-@fused
+@merged
 def move(block, u, turned, motion, point):
     """Place the block's bodies by the unknowns u (3, n) with rates; ``turned``: pins' are in ``turn``."""
     tree = block.tree
@@ -115,7 +115,7 @@ def move(block, u, turned, motion, point):
             hang(q, v, a, turn, body, point[0], n[5], n[6])
 
 
-@fused
+@merged
 def fill_columns(block, q, turn, columns):
     """columns: (bodies, unknowns, 3) rates of each body for a unit rate of each unknown."""
     tree = block.tree
@@ -156,7 +156,7 @@ def fill_columns(block, q, turn, columns):
             columns[own + 3 * c + 1] += turn[parent, 1] * n[2] + turn[parent, 0] * n[3]
 
 
-@fused
+@merged
 def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
     """F of one equation; out (10,) takes it with its derivatives, jac (6,) its row on bodies i and j."""
     i = row[BODY_I]
@@ -213,7 +213,7 @@ def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
     return out[F]
 
 
-@fused
+@merged
 def bend_of(row, n, q, v, turn, out):
     """gamma of one equation without f'', after evaluate_row at the same pose."""
     i = row[BODY_I]

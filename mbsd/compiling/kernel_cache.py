@@ -42,10 +42,7 @@ except ImportError:  # Windows
 LOG = logging.getLogger("mbsd")
 _PACKAGE = Path(__file__).parent.parent
 _HERE = _PACKAGE.parent
-_ABOUT_THE_CACHE = {
-    str(_PACKAGE / "compiling" / name)
-    for name in ("kernel_cache.py", "kernel_files.py", "notice.py")
-}
+_ABOUT_THE_CACHE = {str(_PACKAGE / "compiling" / name) for name in ("kernel_cache.py", "kernel_files.py", "notice.py")}
 """Files that decide where code is kept and what is said, not what it does."""
 KEPT = 4
 """So many versions of one file's kernels are kept."""

@@ -33,8 +33,8 @@ class Loads(NamedTuple):
     law: Any
     """(3,) scratch of a law."""
     interaction: Any
-    """(n, 9) body i, body j, law of time, first number, addresses of the function and of the evaluation, crank, the first
-    body that holds a state of the force, how many do."""
+    """(n, 9) body i, body j, law of time, first number, address of the function, that of the evaluation, crank, the
+    first body that holds a state of the force, how many do."""
     given: Any
     """Numbers of each interaction: arm and axis of i, arm of j (body axes), angle of j less that of i, then its own."""
     state: Any

@@ -23,16 +23,9 @@ from mbsd.base.errors import ModelError
 from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.single_run import Base
 from mbsd.equations.assembly import tabulate
-from mbsd.kinematics.pose.close import CLOSED
-from mbsd.kinematics.pose.initial import (
-    consistent,
-    free_direction,
-    given_coordinates,
-    given_velocities,
-    half_held,
-    places_of,
-)
-from mbsd.kinematics.pose.mobility import RANK_TOLERANCE, independent_rows
+from mbsd.kinematics.pose.close import CLOSED, given_coordinates
+from mbsd.kinematics.pose.held_values import RANK_TOLERANCE, free_direction, half_held, independent_rows, places_of
+from mbsd.kinematics.pose.initial import consistent, given_velocities
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
@@ -163,7 +156,7 @@ class StartsAtOnce(Starts):
         return q, worst
 
     def _held(self, jac: np.ndarray) -> np.ndarray:
-        """(R, h, k) what is held of the given values, by J (R, m, n) in sizes; see kinematics/pose/initial.py."""
+        """(R, h, k) what is held of the given values, by J (R, m, n) in sizes; see kinematics/pose/held_values.py."""
         units = np.eye(jac.shape[2])[self.wanted - 3]
         out = np.repeat(np.eye(len(self.wanted))[self.held][None], len(jac), axis=0)
         for x, y in self.halves:

@@ -1,26 +1,17 @@
 """Consistent initial conditions: a closed pose and allowed velocities near the given ones.
 
 Pose: what ``start_near`` gives is held exactly as far as the joints leave it free, first given first held; the rest
-moves until everything closes. A place of which they leave one direction is as near as it can be.
+moves until everything closes. A place of which they leave one direction is as near as it can be, see held_values.py.
 Velocities: what ``start_moving`` gives is held likewise,
 
     J v = nu,   P v = given,   kinetic energy of what was left open as small as it can be.
 
 What could not be kept is reported.
-
-Given values of a start that are held: rows W of the given ones, after the joints, first given first held.
-
-    rows of J, then of what is given, are independent        such a value is held as it is
-    of a place x, y the joints leave one direction u alone   u . (x, y) is held, the nearest that the body can come
-
-u is what is left of the two rows when those before them are taken off, so it turns with the machine: which axes the
-world has does not matter. Velocities of a place go likewise.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,55 +21,11 @@ from mbsd.arrays.packing import Packed
 from mbsd.arrays.starts import take_force_phases
 from mbsd.base.running import Kept
 from mbsd.equations.assembly import residual_and_jacobian
-from mbsd.kinematics.pose.close import CLOSED, LONGEST_STEP, assemble, close
+from mbsd.kinematics.pose.close import assemble, close, close_holding, start_targets
+from mbsd.kinematics.pose.held_values import held_values
 from mbsd.kinematics.pose.ideal_joints import closed_ideally
-from mbsd.kinematics.pose.mobility import independent_rows
 from mbsd.kinematics.pose.phases import let_phases_go, refuse_impossible, take_phases
 from mbsd.model.mechanism import Model
-
-ALIGNED = 1e-12
-"""Part of u across an axis below which it is that axis."""
-
-
-def held_values(jac: np.ndarray, given: np.ndarray, places: Sequence[tuple[int, int]]) -> tuple[list[int], np.ndarray]:
-    """Return independent rows of ``jac`` (m, n), and W (h, k) for rows ``given`` (k, n), both in sizes and rad.
-
-    ``places``: pairs of given rows that are x and y of one place.
-    """
-    kept = independent_rows(np.vstack([jac, given]))
-    rows, chosen = [k for k in kept if k < len(jac)], [k - len(jac) for k in kept if k >= len(jac)]
-    held = np.eye(len(given))[chosen]
-    for pair in half_held(chosen, places):
-        at = next(n for n, k in enumerate(chosen) if k in pair)
-        before = np.vstack([jac[rows], given[[k for k in chosen if k < pair[0]]]])
-        held[at, list(pair)] = free_direction(before, given[list(pair)])
-    return rows, held
-
-
-def is_choice(held: np.ndarray) -> bool:
-    """Return True if all held values are held as they are given."""
-    return bool((held.sum(axis=1) == 1.0).all() and (held.max(axis=1, initial=0.0) == 1.0).all())
-
-
-def half_held(chosen: Sequence[int], places: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Return the pairs of which one is among the ``chosen``."""
-    return [(x, y) for x, y in places if (x in chosen) != (y in chosen)]
-
-
-def free_direction(before: np.ndarray, pair: np.ndarray) -> np.ndarray:
-    """Return u (..., 2), the direction in rows ``pair`` (..., 2, n) of which rows ``before`` (..., r, n) leave most."""
-    basis = np.linalg.qr(np.swapaxes(before, -1, -2))[0]
-    left = pair - (pair @ basis) @ np.swapaxes(basis, -1, -2)
-    u = np.linalg.eigh(left @ np.swapaxes(left, -1, -2))[1][..., -1]
-    u = np.where(np.abs(u) < ALIGNED, 0.0, u)
-    first = np.where(u[..., :1] != 0.0, u[..., :1], u[..., 1:])
-    return u * np.sign(first) / np.hypot(u[..., :1], u[..., 1:])
-
-
-def places_of(coordinates: Sequence[int]) -> list[tuple[int, int]]:
-    """Return the pairs x, y among given coordinates, numbers in (3 nb,)."""
-    return [(k, k + 1) for k, c in enumerate(coordinates) if c % 3 == 0]
-
 
 TOLD = 1e-6
 """The smallest change of a given value that is reported: sizes, rad; of speeds relative to the given ones."""
@@ -163,16 +110,11 @@ def start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tupl
 def _start_pose(m: Model, packed: Packed, time: float, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:
     """The same of a mechanism whose joints are all there."""
     q = assemble(m, packed, time)
-    given = given_coordinates(m, packed)
-    if not given:
+    if not m.starts:
         return q, []
     let_phases_go(packed)
-    size = np.concatenate([np.ones(3), packed.column_scale()])
-    targets = np.array([nearest_turn(q, c, value) for c, value in given])
-    wanted = np.array([c for c, _ in given])
-    if (np.abs(q[wanted] - targets) / size[wanted]).max() > 1e-12:
-        residual_and_jacobian(packed.system, q, drive, packed.ws)
-        q = _close_holding(packed, q, drive, wanted, targets)
+    q = close_holding(m, packed, q, drive)
+    wanted, targets = start_targets(m, packed, q)
     if take_phases(packed, q, drive):
         q = close(packed, q, drive)[0]
     refuse_impossible(packed, q)
@@ -194,53 +136,6 @@ def tell_coordinates(packed: Packed, q: np.ndarray, given: list[tuple[int, float
             else:
                 deviations.append(f"the {what} of the centre of mass of '{body}' is {q[c]:.6g} m, not {target:.6g}")
     return deviations
-
-
-def given_coordinates(m: Model, packed: Packed) -> list[tuple[int, float]]:
-    """Coordinates (index in (3 nb,), value) that start_near gives, in its order."""
-    given = []
-    number = {name: b for b, name in enumerate(packed.body_names)}
-    for name, start in m.starts.items():
-        b = number[name]
-        given.append((3 * b + 2, start.angle))
-        if start.place is not None:
-            c, s = math.cos(start.angle), math.sin(start.angle)
-            x, y = packed.com[b]
-            given += [(3 * b, start.place[0] + c * x - s * y), (3 * b + 1, start.place[1] + s * x + c * y)]
-    return given
-
-
-def nearest_turn(q: np.ndarray, c: int, value: float) -> float:
-    """``value`` of coordinate c, for an angle up to whole turns."""
-    return value + 2 * math.pi * round((q[c] - value) / (2 * math.pi)) if c % 3 == 2 else value
-
-
-def _close_holding(
-    packed: Packed, q: np.ndarray, drive: np.ndarray, wanted: np.ndarray, targets: np.ndarray
-) -> np.ndarray:
-    """The closed pose with coordinates ``wanted`` at ``targets`` as far as they can be; the given pose if none is near.
-
-    Directions in which places are held may turn on the way.
-    """
-    closed, row_scale, column_scale = q, packed.row_scale(), packed.column_scale()
-    size, units = column_scale[wanted - 3], np.eye(packed.coordinates)[wanted - 3]
-    q, held = q.copy(), np.zeros((0, len(wanted)))
-    for _ in range(50):
-        residual_and_jacobian(packed.system, q, drive, packed.ws)
-        rows = packed.jacobian() * row_scale[:, None] * column_scale
-        if not len(held) or not is_choice(held):
-            held = held_values(rows, units, places_of(wanted.tolist()))[1]
-        phi = np.concatenate([packed.ws.phi * row_scale, held @ ((q[wanted] - targets) / size)])
-        if np.abs(phi).max() <= 1e-13:
-            break
-        jac = np.vstack([rows, held @ units])
-        step = np.linalg.lstsq(jac, -phi, rcond=1e-10)[0]
-        longest = float(np.abs(step).max(initial=0.0))
-        if longest < 1e-15:
-            break
-        q[3:] += step * min(1.0, LONGEST_STEP / longest) * column_scale
-    residual_and_jacobian(packed.system, q, drive, packed.ws)
-    return q if np.abs(packed.ws.phi * row_scale).max(initial=0.0) <= CLOSED else closed
 
 
 def _velocities(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, list[str]]:

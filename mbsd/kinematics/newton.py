@@ -15,6 +15,9 @@ Branch guard: a step is refused, and the caller puts a pose into it, when
 - the determinant of an irreducible block of J changes sign, shrinks fast, or would on a straight line through its last
   two values: near such a pose two assemblies come close, and steps shorter than the way to it tell them apart.
 
+Loops of Newton-Raphson elsewhere solve other systems: blocks of few unknowns (groups/newton/block.py, which share the
+test and the guard), and starts far from closed, by damped steps of least norm (pose/close.py).
+
 Where the two assemblies meet, steps do not tell them apart however short they are: mbsd/kinematics/change_points/
 passes these poses.
 
@@ -84,6 +87,18 @@ def _extent(delta, per_metre):
         if not part <= largest:
             largest = part if part == part else np.inf
     return largest
+
+
+@inlined
+def has_settled(iteration, change, last):
+    """Return True if a correction is small enough, or no longer half as large as the last: rounding is met."""
+    return change <= TOLERANCE or (iteration > 0 and not change < 0.5 * last)
+
+
+@inlined
+def is_suspicious(first, second, step):
+    """Return True if the first two corrections of a step are too large to be near the branch that was predicted."""
+    return first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9
 
 
 @inlined
@@ -177,9 +192,7 @@ def sweep(system, seq, fac, ws, size, motion, residual, determinant, start, chos
                 first = change
             elif iteration == 1:
                 second = change
-            if change <= TOLERANCE:
-                break
-            if iteration > 0 and not change < 0.5 * last:
+            if has_settled(iteration, change, last):
                 break
             last = change
         if not change <= ROUNDING:
@@ -198,7 +211,7 @@ def sweep(system, seq, fac, ws, size, motion, residual, determinant, start, chos
             for c in range(3, n3):
                 delta[0, c] = pose[c] - q[k - 1, c]
             step = _extent(delta[0], per_metre)
-            if first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9:
+            if is_suspicious(first, second, step):
                 return BRANCH_DOUBT, k
             refused = heads_for_zero(determinant, times, k, chosen) if k > chosen else 0
             if refused > 0:

@@ -224,8 +224,14 @@ def solve_groups(groups, blocks, start, motion, determinant, poses, tiny, first_
             before[e, 1] = n[CHANGE]
             if k == 0:
                 before[e, 2] = n[SINE]
+    return SOLVED_CLOSE if comes_close(before) else SOLVED, times.shape[0], 0.0
+
+
+@internal
+def comes_close(before):
+    """Return True if both poses of a group are close to each other at the first or the last row."""
     for e in range(before.shape[0]):
         for c in range(0, 3, 2):
             if 0.0 < before[e, c] < CLOSE_ENDS:
-                return SOLVED_CLOSE, times.shape[0], 0.0
-    return SOLVED, times.shape[0], 0.0
+                return True
+    return False

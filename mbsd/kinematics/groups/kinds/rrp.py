@@ -154,9 +154,8 @@ def solve_rrp(case, e):
             body[a, OMEGA] = turning
             spin = body[k2, OMEGA]
             note_change(case, n, -2.0 * across * (fx * ey - fy * ex + spin * root) * n[PER_SQUARE])
-            twice = 2.0 * spin * sliding
-            tx -= twice * ey
-            ty += twice * ex
+            tx -= 2.0 * spin * sliding * ey
+            ty += 2.0 * spin * sliding * ex
         fx = tx - cx
         fy = ty - cy
         if j == columns:

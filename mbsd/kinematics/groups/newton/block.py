@@ -4,13 +4,9 @@
     correct   G du = -F,  G = J B;  B the rates of the bodies for unit rates of the unknowns
     then      G u' = f' - J v,   G u'' = gamma + f'' - J a      v, a of the block with its unknowns held
 
-It is compiled when a plan with blocks is first solved.
-
-Newton-Raphson of one block:  G du = f - F,  G = J B;  B: the bodies' rates per unit unknowns.
-
-Tables are those of mbsd/kinematics/groups/blocks.py.
-
-The guard of a block's branch: whether a step is doubted.
+It is compiled when a plan with blocks is first solved. Tables are those of mbsd/kinematics/groups/blocks.py. The loop
+is not that of newton.py, since its unknowns are those of hanging bodies and its matrix is small and dense; the test of
+its corrections and the guard are. Simulations in independent coordinates close their blocks by :func:`iterate`, too.
 """
 
 from __future__ import annotations
@@ -41,12 +37,11 @@ from mbsd.kinematics.groups.carried import DOUBTED, MEETING, SOLVED
 from mbsd.kinematics.groups.newton.matrix import extent, factor, held, solve, turns_too_far
 from mbsd.kinematics.groups.newton.rows import bend_of, evaluate_row, fill_columns, move, read_unknowns
 from mbsd.kinematics.newton import (
-    CONTRACTS,
     MAX_ITERATIONS,
     ROUNDING,
-    SUSPICIOUS,
-    TOLERANCE,
+    has_settled,
     heads_for_zero,
+    is_suspicious,
     jumps,
     quintic_factors,
     quintic_value,
@@ -130,9 +125,7 @@ def iterate(turned, block, drive, motion, work):
             first = change
         elif iteration == 1:
             second = change
-        if change <= TOLERANCE:
-            break
-        if iteration > 0 and not change < 0.5 * last:
+        if has_settled(iteration, change, last):
             break
         last = change
     return determinant, change, first, second
@@ -147,7 +140,7 @@ def in_doubt(k, block, history, h, per_metre, first, second):
         step = max(step, extent(q[k], q[k - 1], block.tree[e, BODY], per_metre))
     for e in range(block.head[NEAR]):
         step = max(step, extent(q[k], q[k - 1], block.near[e], per_metre))
-    if first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9:
+    if is_suspicious(first, second, step):
         return DOUBTED
     refused = heads_for_zero(history.determinant, history.times, k, 0)
     if refused > 0:

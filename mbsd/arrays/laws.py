@@ -25,7 +25,7 @@ from mbsd.base.names import shown
 from mbsd.base.quantity import written
 from mbsd.equations.laws import Laws, tabulate_law
 from mbsd.model.laws import Motion
-from mbsd.model.laws.fitting.cuts import finest
+from mbsd.model.laws.fitting.leaves import finest
 from mbsd.model.laws.numbers import (
     ZERO,
     Compiled,

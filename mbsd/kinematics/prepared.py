@@ -25,7 +25,7 @@ from mbsd.kinematics.groups.plan import describe, plan_groups
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.pose.mobility import choose_rows, joint_mobility, refuse_overdriven
 from mbsd.model.mechanism import Model
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 
 @dataclass

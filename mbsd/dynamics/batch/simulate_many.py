@@ -19,8 +19,7 @@ from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.base.running import cores
 from mbsd.base.warning import quiet
 from mbsd.dynamics.batch.designs import Designs
-from mbsd.dynamics.batch.early import all_outputs, plan_of
-from mbsd.dynamics.batch.loop import Measures, Work
+from mbsd.dynamics.batch.loop import Measures, Work, all_outputs, plan_of
 from mbsd.dynamics.batch.single_run import NotCompiled, single_run
 from mbsd.dynamics.batch.worker import TRIED, Worker
 from mbsd.dynamics.integrators.advance import PAUSED_ANYWHERE

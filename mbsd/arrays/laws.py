@@ -1,11 +1,8 @@
-"""Laws of drivers and forces as one table.
-
-Where laws of time jump: f of a force, f'' of a driver, by the pieces that kernels evaluate.
-
-Checks of drivers' laws before solving: finite, positive distances, consistent f' and f''.
+"""Laws of drivers and forces as one table; their jumps, and checks of drivers' laws before solving.
 
 A sweep takes f, f' and f'' as the law gives them. Where its author gave the derivatives, they are compared with f once,
-by making the quintic pieces of which a simulation is made (mbsd/model/laws/fitting/exact.py).
+by making the quintic pieces of which a simulation is made (mbsd/model/laws/fitting/exact.py). Laws of time jump where
+those pieces disagree: in f of a force, in f'' of a driver.
 """
 
 from __future__ import annotations
@@ -37,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def pack_laws(laws: Sequence[Compiled]) -> Laws:
-    """One table of laws; the constant zero is put before them."""
+    """Return one table of laws; the constant zero is put before them."""
     everything = [ZERO, *laws]
     sizes = [len(numbers) for _, numbers in everything]
     return Laws(
@@ -48,7 +45,7 @@ def pack_laws(laws: Sequence[Compiled]) -> Laws:
 
 
 def compiled_laws(packed: Packed, start: float, end: float) -> Laws:
-    """The laws of drivers, then those of forces, for times ``start`` .. ``end`` (s)."""
+    """Return the laws of drivers, then those of forces, for times ``start`` .. ``end`` (s)."""
     laws = []
     for name, motion in zip(packed.driver_names, packed.motions, strict=True):
         with law_of(f"{packed.name}: driver '{name}'"):
@@ -63,7 +60,7 @@ def compiled_laws(packed: Packed, start: float, end: float) -> Laws:
 
 
 def law_values(packed: Packed, laws: Laws, force: Force, times: np.ndarray) -> dict[str, np.ndarray]:
-    """(T,) values of the laws of a force at times (T,) (s), by the names of its method's arguments."""
+    """Return (T,) values of the laws of a force at times (T,) (s), by the names of its method's arguments."""
     out = np.zeros((len(force.laws), len(times), 3))
     for k, rows in zip(directory(packed)[force.name].law, out, strict=True):
         tabulate_law(laws, k, np.ascontiguousarray(times, float), rows)
@@ -118,7 +115,7 @@ def jump_times(packed: Packed, laws: Laws, start: float, end: float) -> dict[flo
 
 
 def reach_beside(start: float, end: float) -> float:
-    """How far (s) from a jump a driven motion from ``start`` to ``end`` (s) is evaluated."""
+    """Return how far (s) from a jump a driven motion from ``start`` to ``end`` (s) is evaluated."""
     return BESIDE * (end - start) + finest(start, end)
 
 

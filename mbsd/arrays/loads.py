@@ -1,12 +1,8 @@
-"""Forces as arrays: elements and terms, interactions, functions of the user, friction of joints.
+"""Forces as arrays and along a motion: elements, interactions, user functions, joint friction.
 
-Approach speeds of contacts by penalty at their beginnings, along a motion, for their damping.
-
-A simulation notes it at each accepted step (mbsd/dynamics/prepare/prepared.py). A driven motion is known at its
-outputs alone; there the depth between two outputs is the cubic through both with their rates, and the approach is its
-slope where it begins to be above zero.
-
-The generalised forces of all loads along a motion.
+Contacts by penalty may be damped by the speed with which they began. A simulation notes it at each accepted step
+(mbsd/dynamics/prepare/prepared.py). A driven motion is known at its outputs alone; there the depth between two outputs
+is the cubic through both with their rates, and the approach is its slope where it begins to be above zero.
 """
 
 from __future__ import annotations
@@ -47,7 +43,7 @@ SHARP = 1e-9
 
 
 def pack_loads(packed: Packed) -> Loads:
-    """The loads of a packed mechanism; laws of forces are numbered after those of the drivers."""
+    """Return the loads of a packed mechanism; laws of forces are numbered after those of the drivers."""
     if packed.forces:
         return _loads(packed)
     none = _KEPT.get((), lambda: _loads(packed))
@@ -154,7 +150,7 @@ def pack_user_forces(packed: Packed, forces: Sequence[ForceRows]) -> tuple[np.nd
 
 
 def _callback(packed: Packed, force: Force) -> Callback:
-    """Made once for each packed mechanism, which keeps it alive."""
+    """Return the callback of a force, made once for each packed mechanism, which keeps it alive."""
     count = len(force.params["bodies"])
     return packed.specials.callback(
         f"{packed.name}: force '{force.name}'",
@@ -163,7 +159,7 @@ def _callback(packed: Packed, force: Force) -> Callback:
 
 
 def law_address(packed: Packed, force: Force) -> int:
-    """Where the law of a spring is, a function of its value and rate; see mbsd/model/forces/springs.py."""
+    """Return the address of the law of a spring, a function of value and rate (model/forces/springs.py)."""
     law = force.params["law"]
     return packed.specials.callback(
         f"{packed.name}: force '{force.name}'", lambda what: Callback(_timed(law), (1, 1), 1, what)

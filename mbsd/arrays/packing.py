@@ -1,8 +1,7 @@
 """Names in, arrays out: a Model as the System the kernels read.
 
-Authors place a body's frame where it is convenient; here alone it is shifted to the centre of mass.
-
-Arrays of a mechanism from its numbers and tables; those of a small one are kept for the next solve.
+Authors place a body's frame where it is convenient; here alone it is shifted to the centre of mass. Arrays of a small
+mechanism are kept for the next solve.
 """
 
 from __future__ import annotations
@@ -62,7 +61,7 @@ _ARRAYS: Kept[Arrays] = Kept()
 
 
 def arrays_of(parts: Parts, specials: Specials, forces: int) -> Arrays:
-    """Arrays whose scratch is the caller's own; the others are shared."""
+    """Return arrays whose scratch is the caller's own; the others are shared."""
     numbers = np.array(parts.numbers, float)
     if specials.names or 3 * (parts.bodies - 1) > MOST_KEPT:
         return _made(parts, numbers, specials, forces)
@@ -116,7 +115,7 @@ def _made(parts: Parts, numbers: np.ndarray, specials: Specials, forces: int) ->
 
 
 def _driven(*tables: np.ndarray) -> np.ndarray:
-    """(drivers, 2) row and motion of the driven rows."""
+    """Return (drivers, 2) row and motion of the driven rows."""
     rows = np.concatenate([table[:, 2:4] for table in tables])
     return rows[rows[:, 1] > 0]
 
@@ -207,7 +206,7 @@ class Packed:
         return None if self.constant is None else (*self.constant, self.system.angle_offset.tobytes())
 
     def contact_gaps(self) -> dict[str, int]:
-        """Contacts by name, and the rows of their gaps; rows that hold joints at rest are none."""
+        """Return contacts by name, and the rows of their gaps; rows that hold joints at rest are none."""
         places = range(len(self.joints) - self.contacts, len(self.joints))
         return {
             self.joints[k].name: int(self.first_row[k]) for k in places if isinstance(self.joints[k].kind, ContactKind)
@@ -226,7 +225,7 @@ class Packed:
         return out
 
     def joint_of_row(self, row: int) -> Joint:
-        """The joint that owns a row of J."""
+        """Return the joint that owns a row of J."""
         return self.joints[int(np.searchsorted(self.first_row, row, side="right")) - 1]
 
     def rows_of(self, joint: str | int) -> range:
@@ -235,11 +234,11 @@ class Packed:
         return range(int(self.first_row[k]), int(self.first_row[k + 1]))
 
     def motion_of(self, number: int) -> int:
-        """The motion of a joint or driver by its place in ``joints``; 0 for joints."""
+        """Return the motion of a joint or driver by its place in ``joints``; 0 for joints."""
         return max(0, number + 1 - (len(self.joints) - len(self.motions)))
 
     def drives(self, times: np.ndarray) -> np.ndarray:
-        """(T, motions + 1, 3) values, rates and accelerations of all laws; index 0 is zero."""
+        """Return (T, motions + 1, 3) values, rates and accelerations of all laws; index 0 is zero."""
         out = np.zeros((len(times), len(self.motions) + 1, 3))
         for k, motion in enumerate(self.motions):
             with law_of(f"{self.name}: driver '{self.driver_names[k]}'"):
@@ -275,24 +274,24 @@ class Packed:
             tell_missed(f"{self.name}: driver '{name}'", self.motions[k])
 
     def row_scale(self) -> np.ndarray:
-        """(m,) what makes residual rows dimensionless: 1 / size for lengths, 1 for angles."""
+        """Return (m,) what makes residual rows dimensionless: 1 / size for lengths, 1 for angles."""
         scale = np.full(int(self.first_row[-1]), 1.0 / self.size)
         scale[self.system.angle[:, 2]] = 1.0
         scale[self.specials.angular_rows] = 1.0
         return scale
 
     def column_scale(self) -> np.ndarray:
-        """(n,) size of a unit step of each coordinate: ``size`` for x and y, 1 for theta."""
+        """Return (n,) size of a unit step of each coordinate: ``size`` for x and y, 1 for theta."""
         scale = np.ones((len(self.body_names) - 1, 3))
         scale[:, :2] = self.size
         return scale.ravel()
 
     def jacobian(self) -> np.ndarray:
-        """(m, n) of the last evaluation, ground's columns left out."""
+        """Return (m, n) of the last evaluation, ground's columns left out."""
         return self.spread(self.ws.jac)
 
     def spread(self, compact: np.ndarray) -> np.ndarray:
-        """Compact Jacobians (..., m, 6) as matrices (..., m, n), ground's columns left out."""
+        """Return compact Jacobians (..., m, 6) as matrices (..., m, n), ground's columns left out."""
         out = np.zeros((*compact.shape[:-1], self.coordinates + 3))
         shape = math.prod(compact.shape[:-2]), compact.shape[-2]
         whole = np.ascontiguousarray(compact, float).reshape(*shape, 6)

@@ -1,8 +1,8 @@
-"""Copies of a mechanism that differ in start, drivers or forces; bodies and joints are shared.
+"""Starts: copies of a mechanism that begin elsewhere, and phases of gears with play.
 
-Phases of gears with play: the constant of their equation, decided by the closed start pose.
-
-It belongs to the packed mechanism, as the phases of gears without play do (mbsd/kinematics/pose/phases.py).
+Copies differ in start, drivers or forces; bodies and joints are shared. The phase of a mesh with play is the constant
+of its equation. It belongs to the packed mechanism, as the phases of gears without play do
+(mbsd/kinematics/pose/phases.py).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ AnyModel = TypeVar("AnyModel", bound=Model)
 
 
 def copied(m: AnyModel) -> AnyModel:
-    """A mechanism of its own with the same bodies: what is added to the copy is not in the original."""
+    """Return a mechanism with the same bodies; what is added to the copy is not in the original."""
     out = copy.copy(m)
     for name in ("bodies", "joints", "drivers", "forces", "contacts", "events", "traces", "starts", "velocities"):
         setattr(out, name, dict(getattr(m, name)))
@@ -34,7 +34,7 @@ def copied(m: AnyModel) -> AnyModel:
 
 
 def held(m: AnyModel, time: float) -> AnyModel:
-    """The same mechanism with its drivers holding still where their laws are at ``time`` (s).
+    """Return the mechanism with its drivers held still where their laws are at ``time`` (s).
 
     Raises ModelError for a law whose derivatives are not its own, as a motion does; what it does later does not matter.
     """
@@ -91,7 +91,7 @@ def take_force_phases(packed: Packed, q: np.ndarray) -> None:
 
 
 def world_angles(packed: Packed, force: Force, q: np.ndarray) -> tuple[float, float, float]:
-    """Angles (rad) of the line from marker i to j, and of both markers, in the pose q (3 nb,)."""
+    """Return angles (rad) of the line from marker i to j, and of both markers, in the pose q (3 nb,)."""
     i, j = packed.markers_of(force)
     bi, bj = (int(packed.system.marker_body[marker]) for marker in (i, j))
     away = marker_places(packed, q[None], j)[0] - marker_places(packed, q[None], i)[0]
@@ -100,7 +100,7 @@ def world_angles(packed: Packed, force: Force, q: np.ndarray) -> tuple[float, fl
 
 
 def relative_poses(packed: Packed, force: Force, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(T,) place x, y (m) and angle (rad) of marker j in the axes of marker i along poses q (T, 3 nb)."""
+    """Return (T,) x, y (m) and angle (rad) of marker j in the axes of marker i along q (T, 3 nb)."""
     i, j = packed.markers_of(force)
     bi, bj = (int(packed.system.marker_body[marker]) for marker in (i, j))
     away = marker_places(packed, q, j) - marker_places(packed, q, i)
@@ -109,7 +109,7 @@ def relative_poses(packed: Packed, force: Force, q: np.ndarray) -> tuple[np.ndar
 
 
 def placed_params(packed: Packed, force: Force, q: np.ndarray) -> dict[str, Any]:
-    """Params with which a force that takes the place of a joint starts as it stands in the pose q (3 nb,)."""
+    """Return params with which a force in place of a joint starts as it stands in q (3 nb,)."""
     out = {**force.params, "start": None}
     if force.kind.mesh is None:
         return out

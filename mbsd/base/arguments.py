@@ -1,17 +1,13 @@
-"""Arguments of public functions: finite numbers, switches that are True or False, names that are text.
+"""Arguments of public functions: finite numbers, switches, names, functions of the user.
 
 A public function is checked by the annotations of its parameters before it runs: ``float`` takes finite numbers,
 ``bool`` True or False, ``int`` whole numbers, ``str`` text; ``| None`` allows None. What other annotations mean, the
 function checks. Text is never read as a number, nor True as 1. Raises ModelError with the mechanism or function, the
-argument and the value.
-
-Values of arguments that were left out, derived by the function that adds an entry.
+argument and the value. Functions and laws of the user are called so that errors give their name and the time.
 
 An argument that is None by default is found from the others: static friction from friction, the inertia of a bar from
 its mass and length. What comes of it stands in the params like a number that was given, but it is none: it is found
 anew when another argument changes, and no file holds it.
-
-Functions and laws of the user, called so that errors are reported with their name and the time.
 """
 
 from __future__ import annotations
@@ -33,7 +29,7 @@ from mbsd.base.names import no_such, shown
 
 
 def value_at(function: Callable[[float], Any], t: float, what: str) -> float:
-    """``function(t)`` as a finite float; ``what`` names it in errors.
+    """Return ``function(t)`` as a finite float; ``what`` names it in errors.
 
     Raises ModelError with the time (s): what the function raised is its cause, what it returned is in its text.
     """
@@ -88,7 +84,7 @@ def refuse_other_arguments(what: str, function: Callable[..., Any], given: str) 
 
 
 def named_parameters(function: Callable[..., Any]) -> dict[str, inspect.Parameter] | None:
-    """Parameters by name; None where its signature does not say them, or it takes any name."""
+    """Return parameters by name; None where its signature does not say them, or it takes any name."""
     try:
         parameters = dict(inspect.signature(function).parameters)
     except (TypeError, ValueError):
@@ -97,7 +93,7 @@ def named_parameters(function: Callable[..., Any]) -> dict[str, inspect.Paramete
 
 
 def described(error: BaseException) -> str:
-    """Type and text of what a function raised, on one line."""
+    """Return type and text of what a function raised, on one line."""
     said = " ".join(str(error).split())
     return f"{type(error).__name__}: {said}" if said else type(error).__name__
 
@@ -107,7 +103,7 @@ FROM_USER = "mbsd_from_user"
 
 
 def users_progress(what: str, function: Any, wanted: str, count: int = 1) -> Callable[..., None] | None:
-    """``function``, which gets ``count`` arguments, as it is to be called; None stays None.
+    """Return ``function``, which gets ``count`` arguments, as it is to be called; None stays None.
 
     ``what`` names mechanism and argument, ``wanted`` says which arguments. Raises ModelError for what is no
     function, or one that takes another number of arguments, as far as its signature says.
@@ -151,7 +147,7 @@ SMALLEST = 1e-100
 
 
 def finite_number(what: str, value: object) -> float:
-    """``value`` as a float; raises ModelError if it is no finite number, or beyond 1e100."""
+    """Return ``value`` as a float; raises ModelError if it is no finite number, or beyond 1e100."""
     if type(value) is float and -LARGEST <= value <= LARGEST:
         return value
     if isinstance(value, bool) or not isinstance(value, NUMBERS):
@@ -164,7 +160,7 @@ def finite_number(what: str, value: object) -> float:
 
 
 def positive_number(what: str, value: object, unit: str = "") -> float:
-    """``value`` as a float above 0, in a ``unit`` that the message names; raises ModelError."""
+    """Return ``value`` as a float above 0, in a ``unit`` that the message names; raises ModelError."""
     number = finite_number(what, value)
     if number <= 0.0:
         raise ModelError(f"{what} is {number:g}{unit and ' ' + unit}; it must be positive")
@@ -172,7 +168,7 @@ def positive_number(what: str, value: object, unit: str = "") -> float:
 
 
 def not_negative_number(what: str, value: object, unit: str = "") -> float:
-    """``value`` as a float of 0 or more, in a ``unit`` that the message names; raises ModelError."""
+    """Return ``value`` as a float of 0 or more, in a ``unit`` that the message names; raises ModelError."""
     number = finite_number(what, value)
     if number < 0.0:
         raise ModelError(f"{what} is {number:g}{unit and ' ' + unit}; it cannot be negative")
@@ -180,7 +176,7 @@ def not_negative_number(what: str, value: object, unit: str = "") -> float:
 
 
 def number_pair(what: str, value: object) -> tuple[float, float]:
-    """``value`` as two floats; raises ModelError if it is anything else."""
+    """Return ``value`` as two floats; raises ModelError if it is anything else."""
     first, second = several_numbers(what, value, 2, "it must be two numbers (x, y)")
     return first, second
 
@@ -199,7 +195,7 @@ def several_numbers(what: str, value: object, count: int, wanted: str) -> tuple[
 
 
 def number_array(what: str, value: object, finite: bool = True) -> np.ndarray:
-    """``value``, nested lists of numbers or an array, as an array of floats of any shape.
+    """Return ``value``, nested lists of numbers or an array, as an array of floats of any shape.
 
     Raises ModelError naming the place of what is no number, and where ``finite``, of what is not finite.
     """
@@ -243,7 +239,7 @@ def _number(what: str, value: object) -> None:
 
 
 def whole_number(what: str, value: object, least: int = 1) -> int:
-    """``value`` as an int; raises ModelError if it is no whole number, or below ``least``."""
+    """Return ``value`` as an int; raises ModelError if it is no whole number, or below ``least``."""
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer) or value < least:
         said = "above zero" if least == 1 else f"from {least} on"
         raise ModelError(f"{what} is {shown(value)}; it must be a whole number {said}")
@@ -251,14 +247,14 @@ def whole_number(what: str, value: object, least: int = 1) -> int:
 
 
 def switch(what: str, value: object) -> bool:
-    """``value`` as a bool; raises ModelError for anything else than True or False."""
+    """Return ``value`` as a bool; raises ModelError for anything else than True or False."""
     if not isinstance(value, bool | np.bool_):
         raise ModelError(f"{what} is {shown(value)}; it must be True or False")
     return bool(value)
 
 
 def text(what: str, value: object) -> str:
-    """``value``, which must be a str; raises ModelError."""
+    """Return ``value``, which must be a str; raises ModelError."""
     if not isinstance(value, str):
         raise ModelError(f"{what} is {shown(value)}; it must be a text")
     return value
@@ -282,13 +278,13 @@ ORDERED = {"Body | str", "Marker"}
 
 
 def annotation_of(parameter: inspect.Parameter) -> str:
-    """The type of a parameter as it is written, whether or not its file postpones annotations."""
+    """Return the type of a parameter as it is written, whether or not its file postpones annotations."""
     given = parameter.annotation
     return given.__name__ if isinstance(given, type) else str(given)
 
 
 def types_of(function: Callable[..., Any]) -> dict[str, tuple[Any, ...]]:
-    """The types that each parameter may have, by its name: ``float | None`` is (float, NoneType).
+    """Return the types that each parameter may have, by its name: ``float | None`` is (float, NoneType).
 
     An annotation that is not known where the function stands, as what is imported for type checkers alone, stays text.
     """
@@ -307,7 +303,7 @@ def types_of(function: Callable[..., Any]) -> dict[str, tuple[Any, ...]]:
 
 
 def checked(function: F) -> F:
-    """``function`` with its arguments checked by their annotations, before it runs."""
+    """Return ``function`` with its arguments checked by their annotations, before it runs."""
     if getattr(function, "arguments_checked", False):
         return function
     signature = inspect.signature(function)
@@ -401,7 +397,7 @@ def _telling_order(check: Callable[[str, Any], object], signature: inspect.Signa
 
 
 def in_order(name: str, signature: inspect.Signature) -> str:
-    """The arguments of a method or function of the mechanism, as they are written."""
+    """Return the arguments of a method or function of the mechanism, as they are written."""
     parameters = [p for p in signature.parameters.values() if p.name not in ("self", "m")]
     words = [f"*{p.name}" if p.kind is p.VAR_POSITIONAL else p.name for p in parameters]
     return f"the arguments are {name}({', '.join(words)})"

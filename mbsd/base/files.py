@@ -1,11 +1,9 @@
-"""Files are written whole: to a temporary file beside the target, then to its name.
+"""Files written whole, to a temporary file beside the target, then to its name; tables as CSV.
 
 A temporary file is locked by its writer for as long as he works, so the next writer of the same target can tell what a
 kill has left and removes it. The system gives a file the rights that the user's umask leaves.
 
-Tables as CSV that spreadsheets read unchanged: the user's names stay text, however they begin.
-
-A spreadsheet takes a cell that begins with = + - @, a tab or a line end for a formula, which may open files and
+A spreadsheet takes a CSV cell that begins with = + - @, a tab or a line end for a formula, which may open files and
 addresses. Such a text gets an apostrophe in front, as OWASP advises (CSV Injection); numbers stay numbers.
 """
 

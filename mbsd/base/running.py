@@ -1,15 +1,13 @@
-"""Long work of a thread that somebody may no longer want: it asks between its steps, and ends.
+"""Work that runs: ended when nobody waits for it, interrupted by Ctrl-C, and not done twice.
 
-Ctrl-C while kernels call functions of the user.
+Long work of a thread asks between its steps whether it is still wanted.
 
-Python handles a signal at the entry of whatever function it runs next. At the entry of one that a kernel calls nothing
+Python handles Ctrl-C at the entry of whatever function it runs next. At the entry of one that a kernel calls nothing
 can be raised, so the interrupt would be lost: it is kept instead, the function gives NaN, the kernel comes back, and
 Callback.check raises.
 
-The last results of functions of numbers alone, by these numbers as bytes.
-
-What a change leaves as it was need not be found again.
-Nothing gets stale, as all that a result depends on is in its key.
+Results of functions of numbers alone are kept by these numbers as bytes. Nothing gets stale, as all that a result
+depends on is in its key.
 """
 
 from __future__ import annotations
@@ -48,7 +46,7 @@ def end_if_unwanted() -> None:
 
 
 def cores() -> int:
-    """Cores that this process may use, which a container or taskset may have made fewer."""
+    """Return cores that this process may use, which a container or taskset may have made fewer."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

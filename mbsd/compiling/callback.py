@@ -70,7 +70,7 @@ class Callback:
     """A user function at an address. Keep it alive as long as kernels may call it."""
 
     def __init__(self, function: Callable, parts: Sequence[int], outputs: int, what: str, timed: bool = True) -> None:
-        """``function(t, part, ...)`` with parts of the given lengths, giving ``outputs`` numbers.
+        """Make ``function(t, part, ...)``, with parts of these lengths and ``outputs`` numbers, callable.
 
         ``what`` names the function in errors: mechanism and joint or force. ``timed``: the time it gets is that of the
         motion. Raises ModelError if it is no function, or if numba cannot compile it.
@@ -176,7 +176,7 @@ class Callback:
     CALLED.update((_view.__code__,))
 
     def _compile(self) -> CFunc:
-        """The numba function in a frame that splits the input and remembers a failure."""
+        """Return the numba function in a frame that splits the input and remembers a failure."""
         function, count, outputs = _spread(self.function, self.parts), sum(self.parts), self.outputs
         scalar, failure = outputs == 1, self._failure.ctypes.data
 
@@ -225,7 +225,7 @@ _FRAMES: Kept[tuple[CFunc, np.ndarray]] = Kept()
 
 
 def _spread(function: Any, parts: tuple[int, ...]) -> Any:
-    """``function(t, part, ...)`` as a compiled function of t and one array."""
+    """Return ``function(t, part, ...)`` as a compiled function of t and one array."""
     ends = [int(end) for end in np.cumsum((0, *parts))]
     pick = tuple(_picker(a, b) for a, b in pairwise(ends))
     if len(pick) == 0:
@@ -250,7 +250,7 @@ def _picker(begin: int, end: int) -> Any:
 
 @intrinsic
 def _pointer(typing, address):  # pyright: ignore[reportUnusedParameter]
-    """A whole number as a pointer to numbers."""
+    """Return a whole number as a pointer to numbers."""
     result = types.CPointer(types.float64)
 
     def code(context, builder, signature, arguments):  # pyright: ignore[reportUnusedParameter]

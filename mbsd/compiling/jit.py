@@ -154,7 +154,7 @@ _RETURNED = {int: types.int64, float: types.float64, bool: types.boolean, None: 
 
 
 def lazy(returns: Any) -> Callable[[Callable[..., Any]], Any]:
-    """The same for large ones that many runs do not call: compiled when first called.
+    """Return a decorator for large kernels that many runs do not call: compiled when first called.
 
     ``returns``: int, float, bool or None, the type of what the function returns.
     """
@@ -206,7 +206,7 @@ class Often:
         self._function, self._calls = function, 0
 
     def __call__(self, *arguments: Any) -> Any:
-        """As the kernel does."""
+        """Call the kernel."""
         self._calls += 1
         if self._calls == OFTEN and isinstance(self._function, Dispatcher):
             self._function = self._function.for_python(tuple(map(self._function.typeof_pyval, arguments)))

@@ -12,7 +12,7 @@ arrays changes no field.
 Functions of numba's own target may call kernels, which then get their arguments in this way. A kernel that hands an
 array over to such a function is refused when it is compiled.
 
-Tables within one array, as kernels see them: numba's own reshape takes 40 ns, this takes none.
+:func:`table` is a view of an array's part as a table: numba's own reshape takes 40 ns, this takes none.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class _ArrayModel(ArrayModel):
         self._passed = tuple(map(self.get_field_position, passed if plain else self._fields))
 
     def get_argument_type(self) -> Any:
-        """Types of what is handed over."""
+        """Return types of what is handed over."""
         return tuple(self._models[k].get_argument_type() for k in self._passed)
 
     def as_argument(self, builder: Any, value: Any) -> Any:
@@ -47,7 +47,7 @@ class _ArrayModel(ArrayModel):
         return tuple(self._models[k].as_argument(builder, self.get(builder, value, k)) for k in self._passed)
 
     def from_argument(self, builder: Any, value: Any) -> Any:
-        """The array again."""
+        """Return the array again."""
         made = cgutils.ir.Constant(self.get_value_type(), None)
         for k, part in zip(self._passed, value, strict=True):
             made = self.set(builder, made, self._models[k].from_argument(builder, part), k)
@@ -227,7 +227,7 @@ def refuse_others(caller: Any, called: Any) -> None:
 
 
 def _kind(function: Any) -> str:
-    """The type of a function in machine code."""
+    """Return the type of a function in machine code."""
     return str(getattr(function, "global_value_type", function.type))
 
 
@@ -235,7 +235,7 @@ if not numba.config.DISABLE_JIT:  # pyright: ignore[reportPrivateImportUsage, re
 
     @intrinsic
     def table(typing, array, start, rows, width):  # pyright: ignore[reportUnusedParameter, reportRedeclaration]
-        """(rows, width) of a contiguous array (n,), from ``start`` on; nothing checks that it ends within."""
+        """Return (rows, width) of a contiguous array (n,) from ``start`` on; nothing checks its end."""
         made = types.Array(array.dtype, 2, "C")
 
         def code(context, builder, signature, arguments):
@@ -263,5 +263,5 @@ if not numba.config.DISABLE_JIT:  # pyright: ignore[reportPrivateImportUsage, re
 else:
 
     def table(array, start, rows, width):
-        """(rows, width) of a contiguous array (n,), from ``start`` on."""
+        """Return (rows, width) of a contiguous array (n,), from ``start`` on."""
         return array[start : start + rows * width].reshape((rows, width))

@@ -5,7 +5,7 @@ nor checks what it reads, so after a power cut every later run would end in an E
 mark and the SHA-256 of what stands before it, which unpickling passes over. A file without that mark is one of numba's
 own or of an older version; it counts if it can be unpickled.
 
-Compiled code that came in the wheel: where it is, and what it is for.
+Compiled code that came in the wheel stands in ``SHIPPED``; ``MADE_FOR`` says for which Python, numba and processor.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class KernelFiles(IndexDataCacheFile):
     """Index and data files of one function."""
 
     def _load_index(self) -> dict[Any, str]:
-        """The data file of each signature; empty if the index is missing, damaged or cannot be read."""
+        """Return the data file of each signature; empty if the index is missing, damaged or cannot be read."""
         return self._read_or_removed(Path(self._index_path), super()._load_index) or {}
 
     def _load_data(self, name: str) -> Any:

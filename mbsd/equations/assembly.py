@@ -26,7 +26,7 @@ from mbsd.equations.system import move, place
 
 @inlined
 def _begin_position(system, q, drive, ws):
-    """Without rows of slots, ways along them, and distances."""
+    """Evaluate all positions but slots, ways along them, and distances."""
     place(system, q, ws)
     point_rows(system, ws)
     angle_rows(system, q, drive, ws)
@@ -36,7 +36,7 @@ def _begin_position(system, q, drive, ws):
 
 @inlined
 def _begin_gamma(system, v, drive, ws, gamma):
-    """Without rows of slots, ways along them, and distances, and without drivers."""
+    """Evaluate all of gamma but slots, ways along them, distances and drivers."""
     move(system, v, ws)
     point_gamma(system, ws, gamma)
     angle_gamma(system, gamma)
@@ -80,7 +80,7 @@ def evaluate_gamma(system, v, drive, ws, gamma):
 
 @apart
 def position(system, q, drive, ws):
-    """evaluate_position for kernels that do not contain it."""
+    """Call evaluate_position, for kernels that do not contain it."""
     evaluate_position(system, q, drive, ws)
 
 
@@ -94,7 +94,7 @@ def _keep_rows(ws, k, phi, jacobians):
 
 @kernel
 def tabulate_all(system, drives, q, v, ws, phi, jacobians, gamma):
-    """``tabulate`` for all mechanisms."""
+    """Tabulate as ``tabulate`` for all mechanisms."""
     for k in range(q.shape[0]):
         evaluate_position(system, q[k], drives[k], ws)
         if phi.shape[0] > 0:
@@ -104,7 +104,7 @@ def tabulate_all(system, drives, q, v, ws, phi, jacobians, gamma):
 
 @kernel
 def tabulate_some(system, drives, q, v, ws, phi, jacobians, gamma):
-    """``tabulate`` where no row is of a slot, a way along it, or a distance: compiled in half the time."""
+    """Tabulate without slots, ways along them and distances: this compiles in half the time."""
     for k in range(q.shape[0]):
         _begin_position(system, q[k], drives[k], ws)
         if phi.shape[0] > 0:
@@ -117,8 +117,6 @@ def tabulate(system, drives, q, v, ws, phi, jacobians, gamma):
     """Fill phi, gamma (T, m) and compact J (T, m, 6) along q, v (T, 3 nb); none if phi is empty.
 
     Called from Python.
-
-    From Python.
     """
     more = len(system.slot) + len(system.along) + len(system.distance)
     (tabulate_all if more else tabulate_some)(system, drives, q, v, ws, phi, jacobians, gamma)

@@ -45,7 +45,7 @@ from mbsd.equations.system import PLACE
 
 @inlined
 def point_rows(system, ws):
-    """Residual (m) and Jacobian."""
+    """Fill residual (m) and Jacobian."""
     table = system.point
     phi = ws.phi
     jac = ws.jac
@@ -67,7 +67,7 @@ def point_rows(system, ws):
 
 @inlined
 def point_gamma(system, ws, gamma):
-    """Acceleration right-hand side (m/s^2)."""
+    """Fill the acceleration right-hand side (m/s^2)."""
     table = system.point
     for k in range(table.shape[0]):
         i = table[k, 0] & PLACE
@@ -79,7 +79,7 @@ def point_gamma(system, ws, gamma):
 
 @inlined
 def angle_rows(system, q, drive, ws):
-    """Residual (rad) and Jacobian."""
+    """Fill residual (rad) and Jacobian."""
     table = system.angle
     for k in range(table.shape[0]):
         r = table[k, 2]
@@ -92,14 +92,14 @@ def angle_rows(system, q, drive, ws):
 
 @inlined
 def angle_gamma(system, gamma):
-    """Acceleration right-hand side (rad/s^2) without f''."""
+    """Fill the acceleration right-hand side (rad/s^2) without f''."""
     for k in range(system.angle.shape[0]):
         gamma[system.angle[k, 2]] = 0.0
 
 
 @inlined
 def slot_rows(system, ws):
-    """Residual (m) and Jacobian."""
+    """Fill residual (m) and Jacobian."""
     table = system.slot
     jac = ws.jac
     for k in range(table.shape[0]):
@@ -123,7 +123,7 @@ def slot_rows(system, ws):
 
 @inlined
 def slot_gamma(system, v, ws, gamma):
-    """Acceleration right-hand side (m/s^2)."""
+    """Fill the acceleration right-hand side (m/s^2)."""
     table = system.slot
     for k in range(table.shape[0]):
         i = table[k, 0]
@@ -140,7 +140,7 @@ def slot_gamma(system, v, ws, gamma):
 
 @inlined
 def along_rows(system, drive, ws):
-    """Residual (m) and Jacobian."""
+    """Fill residual (m) and Jacobian."""
     table = system.along
     jac = ws.jac
     for k in range(table.shape[0]):
@@ -162,7 +162,7 @@ def along_rows(system, drive, ws):
 
 @inlined
 def along_gamma(system, v, ws, gamma):
-    """Acceleration right-hand side (m/s^2) without f''."""
+    """Fill the acceleration right-hand side (m/s^2) without f''."""
     table = system.along
     for k in range(table.shape[0]):
         i = table[k, 0]
@@ -179,7 +179,7 @@ def along_gamma(system, v, ws, gamma):
 
 @inlined
 def distance_rows(system, drive, ws):
-    """Residual (m) and Jacobian."""
+    """Fill residual (m) and Jacobian."""
     table = system.distance
     jac = ws.jac
     for k in range(table.shape[0]):
@@ -202,7 +202,7 @@ def distance_rows(system, drive, ws):
 
 @inlined
 def distance_gamma(system, ws, gamma):
-    """Acceleration right-hand side (m/s^2) without f''."""
+    """Fill the acceleration right-hand side (m/s^2) without f''."""
     table = system.distance
     for k in range(table.shape[0]):
         i = table[k, 0]

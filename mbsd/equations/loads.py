@@ -1,9 +1,7 @@
 """The compiled evaluation of all forces.
 
-Elements and terms as mbsd/model/force.py defines them; interactions and forces of the user by the address of a
-function, so that nobody compiles what his model does not use.
-
-The kernel that calls the functions of the user's forces; see mbsd/model/forces/user_force.py.
+Elements and terms are those of mbsd/model/force.py. Interactions and forces of the user (model/forces/user_force.py)
+are called by the address of a function, so that nobody compiles what his model does not use.
 """
 
 from __future__ import annotations
@@ -63,7 +61,7 @@ class Loads(NamedTuple):
 
 @inlined
 def arm_of(cos_sin, body, x, y):
-    """The arm (x, y) in the axes of a body, turned into those of ground."""
+    """Return the arm (x, y) in the axes of a body, turned into those of ground."""
     c = cos_sin[body, 0]
     s = cos_sin[body, 1]
     return c * x - s * y, s * x + c * y
@@ -94,7 +92,7 @@ def between(kind, axis, arm_i, arm_j, i, j, t, q, v):
 
 @inlined
 def effort(term, number, first, end, laws, law, t, x, rate):
-    """The sum of the terms ``first`` to ``end`` at a length or angle x and its rate (N, N m)."""
+    """Return the sum of the terms ``first`` to ``end`` at a length or angle x and its rate (N, N m)."""
     force = 0.0
     for k in range(first, end):
         what = term[k, 0]

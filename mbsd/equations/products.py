@@ -1,12 +1,7 @@
-"""Compiled: products with the Jacobians of a motion, and the reactions that they make of multipliers.
+"""Compiled products with Jacobians: reactions from multipliers, residuals of the equations of motion.
 
-Numbers are added in one order: body by body, row by row.
-
-Compiled residuals of the equations of motion along states beside a known motion.
-
-Accelerations and lam are held.
-
-Compiled: small dense systems of linear equations by Gaussian elimination with row pivoting.
+Numbers are added in one order: body by body, row by row. Small dense systems are solved by Gaussian elimination with
+row pivoting.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ of ``special``, first four of each constraint's ``numbers`` (kinematics/pose/pha
 Bodies are numbered 0 .. nb-1; body 0 is ground. A row of the Jacobian touches two bodies, so six numbers hold it.
 A constraint table has one row per constraint: marker i, marker j, first row in J, motion (0: none, constant 0).
 
-Where the markers are and how they move: one kernel for all of them.
+Markers move with their bodies; one kernel places all of them.
 
     arm      s = R(theta) s_local
     position p = r + s
@@ -76,11 +76,11 @@ class System(NamedTuple):
     """(k,) m, for the rows of ``distance``."""
 
     def changed(self, **arrays: np.ndarray) -> System:
-        """The same mechanism with other arrays."""
+        """Return the mechanism with other arrays."""
         return self._replace(**{name: constant(array) for name, array in arrays.items()})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Deep copies, and what is unpickled, are constant too: kernels are compiled for such arrays."""
+        """Return deep copies, and what is unpickled, are constant too: kernels are compiled for such arrays."""
         return constant_system, tuple(self)
 
 
@@ -116,13 +116,13 @@ class Workspace(NamedTuple):
 
 
 def constant(array: np.ndarray) -> np.ndarray:
-    """The same array, which cannot be written into any more."""
+    """Return the array, which cannot be written into any more."""
     array.setflags(write=False)
     return array
 
 
 def constant_system(*arrays: np.ndarray) -> System:
-    """The System of these arrays, in the order of its fields."""
+    """Return the System of these arrays, in the order of its fields."""
     return System(*map(constant, arrays))
 
 

@@ -3,10 +3,9 @@
 The numbers of the groups (mbsd/kinematics/groups) are linear in the places of the markers, so those of all designs are
 one matrix product. Designs share the branch of the mechanism itself.
 
-Designs that a batch gives up near other assemblies: swept in finer steps, then one by one.
-
-A batch looks at no pose between its steps, so it cannot tell a change point from a near miss. The march of a single
-sweep can (march.py): it passes change points on the smooth continuation, and refuses what does not close.
+A batch looks at no pose between its steps, so it cannot tell a change point from a near miss. Designs whose branches
+come near each other are doubted: swept in finer steps, then one by one by the march of a single sweep (march.py). That
+passes change points on the smooth continuation, and raises an error for a design that does not close.
 """
 
 from __future__ import annotations
@@ -184,7 +183,7 @@ class DesignSweeps:
         return Batch(self.grid, points, angles, closes, (status == DOUBTED).any(axis=0))
 
     def arms_of(self, values: np.ndarray) -> np.ndarray:
-        """(n, points, 2) of the traced points, from centres of mass."""
+        """Return (n, points, 2) of the traced points, from centres of mass."""
         arms = np.tile(self.arms, (len(values), 1, 1))
         for column, change in enumerate(self.moved):
             if change.trace is not None:
@@ -192,7 +191,7 @@ class DesignSweeps:
         return arms
 
     def system_of(self, values: np.ndarray) -> System:
-        """The arrays of one design whose numbers differ from the mechanism's own by ``values`` (moved,) (m)."""
+        """Return the arrays of a design whose numbers differ from the mechanism's by ``values`` (moved,) (m)."""
         system = self.packed.system
         arms, lengths = system.marker_arm.copy(), system.distance_length.copy()
         for value, change in zip(values.tolist(), self.moved, strict=True):
@@ -216,7 +215,7 @@ class DesignSweeps:
         )  # fmt: skip
 
     def _numbers(self, values: np.ndarray) -> np.ndarray:
-        """(n, g, 14) numbers of the groups of all designs; exact, for they are linear in places and lengths."""
+        """Return (n, g, 14) numbers of all designs' groups, exact since linear in places and lengths."""
         out = np.tile(self.groups.number, (len(values), 1, 1))
         for column, slope in enumerate(self.slopes):
             if slope is not None:
@@ -249,7 +248,7 @@ def slopes(packed: Packed, q0: np.ndarray, groups: Groups, moved: Sequence[Moved
 
 
 def _driven(groups: Groups, drives: np.ndarray) -> np.ndarray:
-    """(T, g, 2) which no design changes: cosine and sine of driven angles, other laws."""
+    """Return (T, g, 2) which no design changes: cosine and sine of driven angles, other laws."""
     driven = np.zeros((len(drives), len(groups.kind), 2))
     for e, kind in enumerate(groups.kind):
         if kind == DRIVEN:

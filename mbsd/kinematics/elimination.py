@@ -14,16 +14,13 @@ numeric work is then flat loops over index triples:
     factor    w[target] -= w[lower] * w[upper]
     solve     y[i] -= L y[k] forward;  dense block;  y[k] -= U y[j] backward
 
+Multipliers of a large mechanism follow from the same factors, whose steps are taken backwards, each with its two
+positions exchanged. A dense solve takes n^3, this one as many operations as J has nonzeros and fill.
+
+    J = P^T S^-1 L B U Q   =>   J^T lam = f,   lam = P^T S L^-T B^-T U^-T Q f
+
 Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 6 (block triangular form), 7 (Markowitz) and 9 (a
 fixed pivot sequence).
-
-Multipliers of a large mechanism: J^T lam = f solved with the elimination sequence of J.
-
-    J = P^T S^-1 L B U Q   =>   lam = P^T S L^-T B^-T U^-T Q f
-
-The factors are those with which Newton-Raphson solves J x = b (elimination.py); their steps are taken backwards, each
-with its two positions exchanged. A dense solve takes n^3, this one as many operations as J has nonzeros and fill.
-Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 9.
 """
 
 from __future__ import annotations
@@ -242,7 +239,7 @@ def _triples(rows: list) -> np.ndarray:
 def _cheapest_pivot(
     pattern: np.ndarray, usable: np.ndarray, open_rows: np.ndarray, open_columns: np.ndarray
 ) -> tuple[int, int] | None:
-    """Markowitz: the usable entry with the least product of other entries in its row and column."""
+    """Return the usable entry with the fewest other entries in row and column (Markowitz)."""
     active = pattern & open_rows[:, None] & open_columns[None, :]
     candidates = usable & active
     if not candidates.any():
@@ -312,7 +309,7 @@ def _factorise_block(seq, fac):
 
 @inlined
 def solve(seq, fac, sides, rhs, x):
-    """J x = rhs for the first ``sides`` (1 or 2) right-hand sides at once.
+    """Solve J x = rhs for the first ``sides`` (1 or 2) right-hand sides at once.
 
     rhs (2, m) by row of J; x (2, 3 nb) by coordinate, ground's entries untouched.
     """
@@ -362,7 +359,7 @@ def multipliers_along(seq, fac, compact, loads, lam):
 
 @inlined
 def _solve_transposed(seq, fac, load, lam):
-    """J^T lam = load; load (3 nb,) by coordinate, lam (m,) by row of J."""
+    """Solve J^T lam = load; load (3 nb,) by coordinate, lam (m,) by row of J."""
     w, block, mixed, y = fac.values, fac.block, fac.mixed, fac.side
     n, size = seq.rows.shape[0], block.shape[0]
     p = n - size

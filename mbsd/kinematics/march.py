@@ -1,6 +1,7 @@
-"""March along a driven motion, pose by pose, closed forms first; failed steps are halved.
+"""March along a driven motion, pose by pose, closed forms first; failed steps are divided.
 
-Errors of impossible motions: a toggle, a jump to the other assembly, a joint that opens.
+Motions that cannot go on end in errors that name the time and the drivers: a toggle, a jump to the other assembly, a
+redundant joint that opens.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ def kinematics_at(ready: Prepared, times: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def march_along(ready: Prepared, times: np.ndarray, switch_at: Sequence[float] | np.ndarray = ()) -> March:
-    """The motion at rising times (T,) (s): closed forms where they serve, else Newton-Raphson.
+    """Return the motion at rising times (T,) (s): closed forms where they serve, else Newton-Raphson.
 
     It passes change points on the smooth continuation, and goes on to the other assembly at those of ``switch_at`` (s).
     """
@@ -98,7 +99,7 @@ def march_along(ready: Prepared, times: np.ndarray, switch_at: Sequence[float] |
 
 
 def _near_ends(ready: Prepared, times: np.ndarray) -> March | None:
-    """The motion by Newton-Raphson where it begins or ends near a change point; None where it does not."""
+    """Return the motion by Newton-Raphson if it begins or ends near a change point, else None."""
     steps = Steps(ready.packed, times)
     try:
         q, v, a, passages = _newton(ready, steps, np.zeros(0))
@@ -171,7 +172,7 @@ def _all_close(ready: Prepared, steps: Steps, q: np.ndarray) -> bool:
 def _newton(
     ready: Prepared, steps: Steps, switch_at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[Passage]]:
-    """Positions, velocities, accelerations (T, 3 nb) at all steps, and passages past change points.
+    """Return positions, velocities, accelerations (T, 3 nb) at all steps, and passages past change points.
 
     Steps that the kernel refuses are divided.
     """
@@ -245,7 +246,7 @@ REDUNDANT_GAP = 1e-7
 
 
 def error_out_of_reach(packed: Packed, time: float) -> Exception:
-    """The error for a motion on whose way a group cannot close, whatever Newton-Raphson made of it."""
+    """Return the error for a motion on whose way a group cannot close, whatever Newton-Raphson made of it."""
     return SingularPoseError(
         f"{packed.name}: the links cannot follow the drivers beyond t = {time:.9g} s "
         f"({driver_values(packed, packed.drives(np.array([time]))[0])}): a toggle, beyond which they do not "
@@ -256,7 +257,7 @@ def error_out_of_reach(packed: Packed, time: float) -> Exception:
 def refuse_disagreeing(
     packed: Packed, grid: np.ndarray, residual: np.ndarray, q: np.ndarray, drives: np.ndarray
 ) -> None:
-    """Rows left out as redundant must hold too."""
+    """Raise AssemblyError where rows that were left out as redundant do not hold."""
     k = int(np.argmax(residual))
     if residual[k] <= REDUNDANT_GAP * max(packed.size, 1.0):
         return
@@ -272,7 +273,7 @@ def refuse_disagreeing(
 def error_of_step(
     packed: Packed, status: int, grid: np.ndarray, index: int, drives: np.ndarray, q: np.ndarray, v: np.ndarray
 ) -> Exception:
-    """The error for a step that halving does not cure."""
+    """Return the error for a step that halving does not cure."""
     last = max(index - 1, 0)
     rates = np.abs(v[last].reshape(-1, 3)[1:, 2])
     where = f"t = {grid[last]:.6g} s ({driver_values(packed, drives[last])})"

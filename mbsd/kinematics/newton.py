@@ -22,10 +22,6 @@ Where the two assemblies meet, steps do not tell them apart however short they a
 passes these poses.
 
 Source: Haug 1989, ch. 4 (Newton-Raphson); Hairer, Norsett, Wanner, Solving ODEs I, II.6 (Hermite interpolation).
-
-Prediction of a pose: the quintic through the last two poses, velocities and accelerations.
-
-Steps of drivers' laws from one time to the next: which of them can be followed.
 """
 
 from __future__ import annotations
@@ -72,7 +68,7 @@ class DrivenMotion(NamedTuple):
 
 @inlined
 def _predict(q, v, a, t, k, time, out):
-    """Pose at ``time`` from results 0 .. k-1: the quintic through the last two, or the last alone."""
+    """Predict the pose at ``time``: the quintic through results k-2 and k-1, or the last alone."""
     factors = quintic_factors(t, k, time)
     for c in range(3, q.shape[1]):
         out[c] = quintic_value(factors, k, q, v, a, c)
@@ -80,7 +76,7 @@ def _predict(q, v, a, t, k, time, out):
 
 @kernel
 def _extent(delta, per_metre):
-    """Largest part of a change of pose (3 nb,): lengths in sizes, angles in rad; NaN counts as infinite."""
+    """Return the largest part of a change of pose (3 nb,) in sizes and rad; NaN counts as infinite."""
     largest = 0.0
     for b in range(3, delta.shape[0], 3):
         part = max(abs(delta[b]) * per_metre, abs(delta[b + 1]) * per_metre, abs(delta[b + 2]))
@@ -91,13 +87,13 @@ def _extent(delta, per_metre):
 
 @inlined
 def has_settled(iteration, change, last):
-    """Return True if a correction is small enough, or no longer half as large as the last: rounding is met."""
+    """Return True if a correction is small enough, or more than half the last: rounding is met."""
     return change <= TOLERANCE or (iteration > 0 and not change < 0.5 * last)
 
 
 @inlined
 def is_suspicious(first, second, step):
-    """Return True if the first two corrections of a step are too large to be near the branch that was predicted."""
+    """Return True if the first two corrections of a step are too large for the predicted branch."""
     return first > SUSPICIOUS * step + 1e-9 or second > CONTRACTS * first + 1e-9
 
 
@@ -257,7 +253,7 @@ def quintic_factors(t, k, time):
 
 @inlined
 def quintic_value(factors, k, q, v, a, c):
-    """Coordinate c of the pose that these factors tell, from poses k - 1 and k - 2 in q, v, a (T, 3 nb)."""
+    """Return coordinate c by these factors from poses k - 1 and k - 2 in q, v, a (T, 3 nb)."""
     from_q, from_v, from_a, earlier_v, earlier_a = factors
     last = k - 1
     before = max(k - 2, 0)

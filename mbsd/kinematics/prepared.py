@@ -1,9 +1,4 @@
-"""A mechanism that is ready to be solved over and over.
-
-Jacobians at unrelated poses, by which the elimination is planned.
-
-Preparation of a mechanism: mobility, closed start pose, elimination sequence, groups.
-"""
+"""Preparation of a mechanism for motions: mobility, closed start pose, elimination sequence, groups."""
 
 from __future__ import annotations
 
@@ -59,7 +54,7 @@ _SAMPLES: Kept[np.ndarray] = Kept()
 
 
 def sample_jacobians(packed: Packed) -> np.ndarray:
-    """(4, m, n) at unrelated poses, to see which entries are constant."""
+    """Return (4, m, n) at unrelated poses, to see which entries are constant."""
     numbers = packed.numbers()
     return _sampled(packed) if numbers is None else _SAMPLES.get(numbers, lambda: _sampled(packed))
 

@@ -45,7 +45,7 @@ def states_along(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray, a:
 
 
 def _start(packed: Packed, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(n,) SI."""
+    """Return (n,) SI."""
     out: list[float] = []
     for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
         if force.kind.states is not None:
@@ -59,7 +59,7 @@ def _start(packed: Packed, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarr
 
 
 def _stretches(packed: Packed, laws: Laws, t: np.ndarray) -> list[tuple[float, float]]:
-    """From jump to jump of the laws (s)."""
+    """Return from jump to jump of the laws (s)."""
     start, end = float(t[0]), float(t[-1])
     if not end > start:
         return []

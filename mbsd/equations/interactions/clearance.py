@@ -26,7 +26,7 @@ SWITCHES = True
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above."""
+    """Fill the force; own numbers by the names above."""
     out[FX] = 0.0
     out[FY] = 0.0
     out[TORQUE] = 0.0

@@ -28,7 +28,7 @@ SWITCHES = True
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above."""
+    """Fill the force; own numbers by the names above."""
     stand(numbers, state)
     own = after(numbers)
     out[FX] = 0.0

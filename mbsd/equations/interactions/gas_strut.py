@@ -15,7 +15,7 @@ SWITCHES = True
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above."""
+    """Fill the force; own numbers by the names above."""
     length, rate, ux, uy = measure(False, state)
     in_by = numbers[LENGTH] - length
     size = numbers[FORCE] * (numbers[GAS] / (numbers[GAS] - in_by)) ** numbers[EXPONENT]

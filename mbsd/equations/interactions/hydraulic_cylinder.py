@@ -33,7 +33,7 @@ LITTLE = 1e-3
 
 @internal
 def orifice(drop, transition):
-    """The root of the pressure drop (Pa) with its sign, linear where that is below ``transition``."""
+    """Return the root of the pressure drop (Pa) with its sign, linear where that is below ``transition``."""
     return drop / math.sqrt(math.sqrt(drop * drop + transition * transition))
 
 
@@ -49,7 +49,7 @@ def bulk(pressure, flow, compressibility, air, least):
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers by the names above."""
+    """Fill the force; own numbers by the names above."""
     length, rate, ux, uy = measure(False, state)
     a = numbers[ONE] * state[OWN_STATE]
     b = numbers[ONE] * state[OWN_STATE + 1]

@@ -1,4 +1,4 @@
-"""Arguments of an interaction's function, which is compiled only when a model uses it.
+"""Arguments of interactions' functions, which are compiled when a model uses them; shared laws.
 
     void force(const double *numbers, const double *state, double *out)
 
@@ -7,20 +7,17 @@
 feels the opposite at the same point of space, so power and reaction follow for all kinds at once.
 
 ``numbers`` begin at OWN, as those of constraints, and places 4 to 13 of the state are scratch of curve_pieces.py.
-Those whose force has a kink or a jump set SWITCHES and tell where, see switching.py.
+Forces with a kink or a jump set SWITCHES and tell where, see switching.py.
 
-Distance or relative angle of two markers, with its rate and the direction in which it grows.
+Shared by several laws: the distance or relative angle of the markers (:func:`measure`), the place of a point at a
+surface (:func:`stand`), and the normal force N between two that touch:
 
-Where a point stands to a surface in the axes of marker i: the line y = 0, or a profile of pieces.
+    surface   the line y = 0, or a profile of pieces; matter is below the line, on the right as the parameter rises
+              d signed distance of the point,  t unit tangent at the foot,  n = t_perp outwards
+    normal    N = k depth^e max(1 + D rate, 0),   D as given, or loss / approach, the speed with which it began
 
-Matter is below the line, and on the right of a profile as its parameter rises. Numbers from OWN on are those of
-curve_pieces.py; with 0 pieces the surface is the line. The law's own numbers come after them, from :func:`after`.
-
-    d  signed distance of the point,  t unit tangent at the foot,  n = t_perp outwards
-
-The normal force between two that touch, pressed ``depth`` into each other at the rate ``rate``:
-
-N = k depth^e max(1 + D rate, 0),   D as given, or loss / approach, the speed with which the contact began
+Numbers of a profile are those of curve_pieces.py from OWN on; with 0 pieces the surface is the line. The law's own
+numbers come after them, from :func:`after`.
 """
 
 from __future__ import annotations
@@ -67,7 +64,7 @@ def switches(name: str) -> bool:
 
 
 def address_of(name: str) -> int:
-    """Where the force of this file of mbsd/equations/interactions is; compiles it at first."""
+    """Return where the force of this file of mbsd/equations/interactions is; compiles it at first."""
     made = importlib.import_module(f"mbsd.equations.interactions.{name}").force
     return made.address if COMPILED else _PYTHON.index(made)
 
@@ -94,7 +91,7 @@ DISTANCE, TX, TY = 20, 21, 22
 
 @internal
 def after(numbers):
-    """Where the law's own numbers begin."""
+    """Return where the law's own numbers begin."""
     return TABLE + WIDTH * int(numbers[COUNT]) + LATER
 
 
@@ -117,7 +114,7 @@ def stand(numbers, state):
 
 @kernel
 def tabulate_stand(numbers, x, y, state, out):
-    """Distance and tangent out (T, 3) of points x, y (T,), for callers outside the compiled loops."""
+    """Fill out (T, 3) with distance and tangent of points x, y (T,), for callers in Python."""
     for k in range(x.shape[0]):
         state[X] = x[k]
         state[Y] = y[k]
@@ -143,7 +140,7 @@ def touches(state, depth):
 
 @inlined
 def normal_force(state, depth, rate, stiffness, exponent, damping, loss, least_approach):
-    """N; ``loss`` above 0 takes the place of ``damping``."""
+    """Return n; ``loss`` above 0 takes the place of ``damping``."""
     approach = state[APPROACH]
     if loss > 0.0 and approach == approach:  # no number: the motion began with the two pressed into each other
         damping = loss / max(approach, least_approach)

@@ -8,7 +8,7 @@ from mbsd.equations.interactions.law import FX, FY, OWN, TIME, TORQUE, X, Y, int
 
 @interaction
 def force(numbers, state, out):
-    """Own numbers: the address of the law, a function of value and rate, and 1 for a torsion spring."""
+    """Fill the force; numbers: the address of a law of value and rate, and 1 for a torsion spring."""
     turning = numbers[OWN + 1] > 0.0
     value, rate, ux, uy = measure(turning, state)
     state[X] = value  # the place is not read again

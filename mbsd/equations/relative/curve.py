@@ -18,7 +18,7 @@ from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers as in curve_pieces.py."""
+    """Fill F (m); own numbers as in curve_pieces.py."""
     find_foot(numbers, relative)
     speed = math.sqrt(relative[DX] * relative[DX] + relative[DY] * relative[DY])
     tx = relative[DX] / speed

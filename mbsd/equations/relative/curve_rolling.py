@@ -50,7 +50,7 @@ WEIGHTS = (0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286
 
 @internal
 def arc_length(numbers, piece, u, scratch):
-    """Arc length at u (m), counted from the begin of the curve; overwrites the scratch."""
+    """Return arc length at u (m), counted from the begin of the curve; overwrites the scratch."""
     begin = numbers[TABLE + WIDTH * piece]
     inside = u
     if numbers[CLOSED] == 0.0:
@@ -67,7 +67,7 @@ def arc_length(numbers, piece, u, scratch):
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers as in curve_pieces.py."""
+    """Fill F (m); own numbers as in curve_pieces.py."""
     find_foot(numbers, relative)
     piece = int(relative[PIECE])
     u = relative[U]

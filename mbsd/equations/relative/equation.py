@@ -4,14 +4,14 @@
 
 Whatever depends only on how two bodies stand to each other is a function F(x, y, a) of the relative pose: place (x, y)
 of marker j in the axes of marker i (m) and the angle ``a`` of marker j against marker i (rad, never wrapped). The file
-of an equation fills, by the indices below, F, its gradient and its second derivatives; this file makes
-from them the rows of Phi, J and gamma.
+of an equation fills, by the indices below, F, its gradient and its second derivatives. Here they become rows of Phi, J
+and gamma.
 
 ``numbers`` begins with the constants that the start pose decides, then come those of the joint, from ``OWN`` on. What
 events change stands in ``relative``: ZERO, which an equation whose sliding is counted takes off like PHASE, and LAST
 (mbsd/equations/system.py). Its places 4 to 13 are the equation's scratch.
 
-Constraints F(x, y, a) = f(t) of two markers' relative pose: gears, rolling, curves, cams, users'.
+The row of a constraint F(x, y, a) = f(t):
 
 d     = p_j - p_i;   u = unit axis of marker i;   n = u_perp
 x     = u . d,   y = n . d,   a = theta_j - theta_i + offset
@@ -26,7 +26,7 @@ J     = F_x J_x + F_y J_y + F_a J_a
 gamma = F_x gamma_x + F_y gamma_y - z'^T F_zz z' + f''
         z = (x, y, a),  x' = u . d' + omega_i y,  y' = n . d' - omega_i x,  a' = omega_j - omega_i
 
-Source: chain rule; the relative coordinates are those of the files along.py, slot.py and angle.py.
+Source: chain rule; the relative coordinates are those of constraints.py.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def equation(function: Callable) -> Any:
 
 
 def address_of(constraint: str) -> int:
-    """Where the equation of the constraint of this name is; compiles it at first."""
+    """Return where the equation of the constraint of this name is; compiles it at first."""
     made = importlib.import_module(f"mbsd.equations.relative.{constraint}").residual
     return made.address if COMPILED else _PYTHON.index(made)
 
@@ -93,7 +93,7 @@ if COMPILED:
 
     @intrinsic
     def evaluate_from(typing, address, numbers, first, relative, out):  # pyright: ignore[reportUnusedParameter, reportRedeclaration]
-        """The same with pointers, of the numbers from ``first`` on."""
+        """Call the equation at ``address`` with pointers, of the numbers from ``first`` on."""
 
         def code(context, builder, signature, arguments):
             where, numbers, first, *others = arguments
@@ -108,13 +108,13 @@ else:
         _PYTHON[address](numbers, relative, out)
 
     def evaluate_from(address, numbers, first, relative, out):
-        """The same, of the numbers from ``first`` on."""
+        """Call the equation at ``address``, of the numbers from ``first`` on."""
         _PYTHON[address](numbers[first:], relative, out)
 
 
 @lazy(None)
 def relative_rows(system, q, drive, ws):
-    """Residual and Jacobian. A row that is left out is zero."""
+    """Fill residual and Jacobian of all constraints of relative pose; rows that are left out with zero."""
     for k in range(system.special.shape[0]):
         i = system.special[k, MARKER_I]
         j = system.special[k, MARKER_J]
@@ -152,7 +152,7 @@ def relative_rows(system, q, drive, ws):
 
 @lazy(None)
 def relative_gamma(system, v, ws, gamma):
-    """Acceleration right-hand side without f'', after rows at the same pose."""
+    """Fill the acceleration right-hand side without f'', after relative_rows at the same pose."""
     for k in range(system.special.shape[0]):
         i = system.special[k, MARKER_I]
         j = system.special[k, MARKER_J]

@@ -42,7 +42,7 @@ TWO_PI = 2.0 * math.pi
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers r_i, s r_j."""
+    """Fill F (m); own numbers r_i, s r_j."""
     x = relative[X]
     y = relative[Y]
     square = x * x + y * y

@@ -13,7 +13,7 @@ from mbsd.equations.system import ZERO
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers g_x, g_y, g_a, and b, which counts to c."""
+    """Fill F (m); own numbers g_x, g_y, g_a, and b, which counts to c."""
     gx = numbers[OWN]
     gy = numbers[OWN + 1]
     ga = numbers[OWN + 2]

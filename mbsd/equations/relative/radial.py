@@ -16,7 +16,7 @@ from mbsd.equations.system import ZERO
 
 @equation
 def residual(numbers, relative, out):
-    """F (m); own numbers s, c."""
+    """Fill F (m); own numbers s, c."""
     x = relative[X]
     y = relative[Y]
     s = numbers[OWN]

@@ -4,10 +4,8 @@ The march comes to a pose where steps, however short, do not tell two assemblies
 (assemblies.py), the steps nearby are left out, and it goes on beyond, on the smooth continuation or, where asked
 for, on the other assembly. Poses near the change point are those of the passage.
 
-Poses beside a change point for the efforts near it, and the determinant of J at these.
-
-mbsd/arrays/efforts_beside.py says how. There are poses on both sides of the change point, or on one side alone where
-the motion begins or ends there or switches to the other assembly.
+Efforts near a change point follow from poses beside it (mbsd/arrays/efforts_beside.py): on both sides, or on one side
+alone where the motion begins or ends there or switches to the other assembly.
 """
 
 from __future__ import annotations
@@ -74,7 +72,9 @@ class Passage:
         return min(float(np.abs(assembly.nodes).min()) for assembly in (self.before, self.after))
 
     def motion(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """q, v, a (T, 3 nb) at ``times`` (T,) near the change point; where it switches, those before it."""
+        """Return q, v, a (T, 3 nb) at ``times`` (T,) near the change point.
+
+        Where the motion switches, they are those before it."""
         way = self.way.at(times)
         late = (times > self.time) & ~self.is_at(times)
         q, slope, bend = self.before.at(way[:, 0])
@@ -84,15 +84,15 @@ class Passage:
         return q, slope * rate, bend * rate * rate + slope * second
 
     def is_at(self, times: np.ndarray) -> np.ndarray:
-        """(T,) whether the pose at ``times`` (s) is the change point itself, but for rounding."""
+        """Return (T,) whether the pose at ``times`` (s) is the change point itself, but for rounding."""
         return np.abs(self.way.at(times)[:, 0]) <= ITSELF
 
     def is_near(self, times: np.ndarray) -> np.ndarray:
-        """(T,) whether steps right beyond the gap at ``times`` (s) are those of the passage."""
+        """Return (T,) whether steps right beyond the gap at ``times`` (s) are those of the passage."""
         return np.abs(self.way.at(times)[:, 0]) <= FILLED
 
     def covers(self, times: np.ndarray) -> np.ndarray:
-        """(T,) which of the rising ``times`` (s) belong to it: those around it that stay within ``radius``."""
+        """Return (T,) True for the rising ``times`` (s) around it that stay within ``radius``."""
         near = np.abs(self.way.at(times)[:, 0]) <= self.radius
         first, last = int(np.searchsorted(times, self.start, side="right")), int(np.searchsorted(times, self.end))
         while first > 0 and near[first - 1]:
@@ -160,7 +160,7 @@ class Passages:
         return q, v, a
 
     def _meeting(self, row: int, pose: np.ndarray, v: np.ndarray) -> tuple[Way, Assembly] | None:
-        """The way past the change point near a pose, and the smooth motion on it; None where there is none."""
+        """Return the way past the change point near a pose, and the smooth motion on it; None without one."""
         steps, solver, time = self.steps, self.solver, float(self.steps.times[row])
         way = way_from(steps.packed, steps.drives, steps.drives[row], time, v, solver, pose)
         ahead = None if way is None else find_ahead(solver, way, pose)
@@ -182,7 +182,7 @@ class Passages:
         return way, Assembly(assembly.nodes - root, assembly.parts, assembly.determinant)
 
     def _in_time(self, row: int, way: Way, assembly: Assembly) -> Passage:
-        """When the motion is near the change point, and on which assembly it goes on."""
+        """Return when the motion is near the change point, and on which assembly it goes on."""
         known = self.steps.times[: row + 1]
         outside = np.flatnonzero(np.abs(way.at(known)[:, 0]) >= EDGE)
         start = float(known[outside[-1]]) if len(outside) else -np.inf
@@ -242,7 +242,7 @@ class Passages:
 
 
 def _meeting_time(way: Way, time: float) -> float:
-    """When p is 0 if it goes on as it goes at ``time``, forward or backward (s)."""
+    """Return when p is 0 if it goes on as it goes at ``time``, forward or backward (s)."""
     p, rate, _ = way.at(np.array([time]))[0]
     return time - p / rate if rate else time
 
@@ -289,8 +289,9 @@ def sides_of(passage: Passage, times: np.ndarray) -> list[Side]:
 def sides_beside(
     time: float, rows: np.ndarray, pace: float, start: float, end: float, is_switched: bool = False
 ) -> list[Side]:
-    """The same for a change point at ``time`` (s); in ``pace`` (s) the motion goes on by 1 size or rad.
+    """Return poses beside a change point at ``time`` (s).
 
+    In ``pace`` (s) the motion goes on by 1 size or rad.
     ``rows`` (R,): times of the efforts (s); ``start``, ``end``: times of the whole motion (s).
     """
     away = pace * NEAR * APART

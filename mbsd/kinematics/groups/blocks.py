@@ -4,8 +4,6 @@ Each body hangs from a known one or from an earlier one of its block, so that fe
 the way of a slide, or all three coordinates where there is neither. What else holds the bodies are the equations, all
 of them functions F(x, y, a) of the relative pose of two markers (equations/relative/equation.py). A gear wheel in an
 eccentric bearing, a cam's follower and a Geneva's wheel are blocks of one unknown.
-
-Records that kernels of a block hand on: its tables, the motion that they fill, and their scratch.
 """
 
 from __future__ import annotations
@@ -94,7 +92,7 @@ def with_scratch(
     train_body: Sequence[int],
     share: Sequence[float],
 ) -> Blocks:
-    """The fields of the same names as arrays, and the scratch."""
+    """Return the fields of the same names as arrays, and the scratch."""
     most = max((row[BODIES] for row in head), default=0)
     return Blocks(
         head=np.array(head, np.int64).reshape(-1, 9),

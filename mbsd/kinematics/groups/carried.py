@@ -1,6 +1,4 @@
-"""Columns of arrays of independent coordinates for closed forms (mbsd/dynamics/independent/arrays.py).
-
-Points carried by bodies, for the closed forms, and when a step between two poses is doubted.
+"""Points carried by bodies, for the closed forms, and when a step between two poses is doubted.
 
 p = r + s,   p' = r' + omega s_perp,   p'' = r'' + alpha s_perp - omega^2 s;   s_perp = (-s_y, s_x)
 
@@ -9,11 +7,10 @@ above zero, at the poses and between them. Between two poses D is the cubic thro
 has a minimum there and falls by more than half, a pose at the minimum decides. Bodies turn by less than ``WOUND`` from
 pose to pose, so whole turns are counted, and the quintic through both ends is the motion between them.
 
-Points on bodies, and bodies on points, for the columns 0 .. C - 1 of B and the last one.
+Functions with ``column`` in their names do the same for columns 0 .. C - 1 of B, the rates of all bodies for each
+independent coordinate (mbsd/dynamics/independent/arrays.py), and for a last one, which takes convective accelerations:
 
-P' = r' + omega s_perp,   in the last column also - omega^2 s: the convective accelerations
-
-B: the rates of all bodies for each independent coordinate (mbsd/dynamics/independent/arrays.py).
+P' = r' + omega s_perp,   in the last column also - omega^2 s
 """
 
 from __future__ import annotations
@@ -46,7 +43,7 @@ UNEXPLAINED = 0.02
 
 @internal
 def carried(q, v, a, turn, b, x, y, out):
-    """Point with arm (x, y) of body b into out (8,): place, velocity, acceleration, arm in world axes."""
+    """Fill out (8,) with place, velocity, acceleration and world arm of the point (x, y) of body b."""
     c = turn[b, 0]
     s = turn[b, 1]
     sx = c * x - s * y
@@ -86,7 +83,7 @@ def hang(q, v, a, turn, b, p, x, y):
 
 @internal
 def follow(q, v, a, turn, b, leader, angle):
-    """Body b turns with its leader, at a fixed angle to it."""
+    """Turn body b with its leader, at a fixed angle to it."""
     q[3 * b + 2] = q[3 * leader + 2] + angle
     v[3 * b + 2] = v[3 * leader + 2]
     a[3 * b + 2] = a[3 * leader + 2]
@@ -104,7 +101,7 @@ def wound(q, last, v, v_last, a, a_last, h, c):
 
 @internal
 def dip(fall, before, rise, after):
-    """Where between two poses the squared sine has a low minimum, as a part of the step; 0 if nowhere.
+    """Return the part of the step at which the squared sine has a low minimum; 0 if nowhere.
 
     ``fall`` and ``rise``: its rates at both ends times the step. Source: cubic Hermite interpolation.
     """
@@ -122,19 +119,19 @@ def dip(fall, before, rise, after):
 
 @internal
 def turned_x(body, b, x, y):
-    """World x of a vector (x, y) in the axes of body b."""
+    """Return world x of a vector (x, y) in the axes of body b."""
     return body[b, COS] * x - body[b, SIN] * y
 
 
 @internal
 def turned_y(body, b, x, y):
-    """World y of a vector (x, y) in the axes of body b."""
+    """Return world y of a vector (x, y) in the axes of body b."""
     return body[b, SIN] * x + body[b, COS] * y
 
 
 @internal
 def carry_column(body, rate, columns, j, b, x, y, part):
-    """Rate (part 0: x, 1: y) in column j of a point with arm (x, y) in world axes that body b carries."""
+    """Return the rate (part 0: x, 1: y) in column j of the point with world arm (x, y) on body b."""
     omega = rate[b, 3 * j + 2]
     out = rate[b, 3 * j] - omega * y if part == 0 else rate[b, 3 * j + 1] + omega * x
     if j == columns:

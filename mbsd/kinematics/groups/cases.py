@@ -92,7 +92,7 @@ class PerCoordinate(NamedTuple):
 
 
 def formula(function: Callable[..., Any]) -> Any:
-    """The kernel of a kind that few mechanisms hold: compiled when one first does.
+    """Return the kernel of a kind that few mechanisms hold: compiled when one first does.
 
     The loop over designs takes its code in, for there a call costs as much as the pose.
     """
@@ -252,7 +252,7 @@ MISSED = 0.5
 
 @internal
 def predicted(base, coordinate, b):
-    """Angle of body b (rad)."""
+    """Return angle of body b (rad)."""
     columns = coordinate.shape[0] - 1
     since = coordinate[columns, VALUE]
     theta = base[b, THETA] + 0.5 * base[b, BEND] * since * since
@@ -269,7 +269,7 @@ def doubted(side, reach):
 
 @internal
 def angle_of(body, base, coordinate, b):
-    """Angle of body b (rad), all its turns counted."""
+    """Return angle of body b (rad), all its turns counted."""
     guess = predicted(base, coordinate, b)
     angle = math.atan2(body[b, SIN], body[b, COS])
     turns = (guess - angle) / (2.0 * math.pi) + 0.5

@@ -1,16 +1,12 @@
-"""Groups solved in closed form, as tables: driven bodies and Assur groups of one or two bodies.
+"""Groups solved in closed form, their kinds and joints: driven bodies, Assur groups of one or two bodies.
 
-A group has bodies A and B (or A alone), which stand on known bodies K1 and K2. What its numbers are stands in its file
-in kinds/; arms are from centres of mass, in body axes (m).
-
-Source: Assur 1914; Norton, Design of Machinery, ch. 4, 6, 7 (loop closure of dyads).
-
-Joints as groups see them, and where their points are on the bodies at the closed pose of the start.
+A group has bodies A and B (or A alone), which stand on known bodies K1 and K2. Each kind has a file in kinds/, which
+says what its numbers are; arms are from centres of mass, in body axes (m). Joints have letters: see LETTERS in plan.py.
 
 All numbers of groups but the branch are linear in the places of the markers, which mbsd/kinematics/design_sweeps.py
 relies on.
 
-Kind of a group, described by its file in kinds/. Joints have letters: see LETTERS in plan.py.
+Source: Assur 1914; Norton, Design of Machinery, ch. 4, 6, 7 (loop closure of dyads).
 """
 
 from __future__ import annotations
@@ -83,11 +79,11 @@ class Places:
         self.system, self.pose = system, pose
 
     def arm(self, marker: int) -> list[float]:
-        """Arm of a marker, from its body's centre of mass, in body axes (m)."""
+        """Return arm of a marker, from its body's centre of mass, in body axes (m)."""
         return [float(value) for value in self.system.marker_arm[marker]]
 
     def axis(self, marker: int) -> Vector:
-        """Unit x axis of a marker, in body axes."""
+        """Return unit x axis of a marker, in body axes."""
         x, y = self.system.marker_axis[marker]
         return float(x), float(y)
 
@@ -96,15 +92,15 @@ class Places:
         return self.pose[body, :2] + turned(arm, float(self.pose[body, 2]))
 
     def along(self, body: int, axis: Vector | list[float] | np.ndarray) -> np.ndarray:
-        """Direction (2,) of an axis of a body."""
+        """Return direction (2,) of an axis of a body."""
         return turned(axis, float(self.pose[body, 2]))
 
     def side_of(self, p: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
-        """1.0 if C is to the left of the line from P to Q, else -1.0."""
+        """Return 1.0 if C is to the left of the line from P to Q, else -1.0."""
         return math.copysign(1.0, cross(q - p, c - p))
 
     def pin(self, pin: Link) -> list[float]:
-        """P on K1, P on A."""
+        """Return the places of a pin: P on K1, P on A."""
         return [*self.arm(pin.there), *self.arm(pin.here)]
 
     def on_slide(self, slide: Link, arm: list[float]) -> list[float]:
@@ -123,18 +119,18 @@ class Places:
 
 
 def own_angle(link: Link) -> float:
-    """Constant angle of this body against the other (rad)."""
+    """Return constant angle of this body against the other (rad)."""
     return -link.offset if link.first else link.offset
 
 
 def turned(vector, angle: float) -> np.ndarray:
-    """(2,) turned by an angle (rad)."""
+    """Return (2,) turned by an angle (rad)."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> float:
-    """Cross product of two vectors (2,)."""
+    """Return cross product of two vectors (2,)."""
     return float(a[0] * b[1] - a[1] * b[0])
 
 

@@ -3,9 +3,7 @@
 Where no group can be added, the smallest set of bodies that the equations left fix together is taken as a block: the
 irreducible blocks of J tell which bodies depend on which. So a gear train, a cam or a triad costs Newton-Raphson in its
 own few unknowns, and what stands on it is closed again. Joints that repeat others are left out, and looked at
-afterwards.
-
-Bodies of a block, their connections and equations as tables (mbsd/kinematics/groups/blocks.py).
+afterwards. The bodies of a block, their connections and their equations become tables (blocks.py).
 
 Source: Duff, Erisman, Reid, Direct Methods for Sparse Matrices, ch. 6 (block triangular form).
 """
@@ -65,7 +63,7 @@ class Parts(NamedTuple):
 
 
 def plan_parts(packed: Packed, q0: np.ndarray, pattern: np.ndarray, kept: np.ndarray) -> Parts | None:
-    """Groups and blocks at the closed pose q0 (3 nb,), or None where the mechanism is solved as a whole.
+    """Return groups and blocks at the closed pose q0 (3 nb,); None if the mechanism is solved as a whole.
 
     ``pattern`` (m, n): the entries of J that are not zero; ``kept`` (n,): the rows that fix all coordinates.
     """
@@ -152,7 +150,7 @@ class _Parts:
         self.plan.take((BLOCK, (bodies[0], -1, 0, 0), len(self.head) - 1, []), bodies)
 
     def cost(self) -> float:
-        """Cost of one time (us)."""
+        """Return cost of one time (us)."""
         blocks = [
             PINNED if head[BODIES] == 1 and self.tree[head[TREE_AT]][HANGS] == PIN else BESIDE + EACH * head[EQUATIONS]
             for head in self.head
@@ -160,7 +158,7 @@ class _Parts:
         return CLOSED * (len(self.plan.taken) - len(blocks)) + sum(blocks)
 
     def tables(self) -> Parts:
-        """As the kernels read them."""
+        """Return groups and blocks as the kernels read them."""
         carriers = {int(body) for kind, bodies, _, _ in self.plan.taken if kind < BLOCK for body in bodies[2:]}
         for head in self.head:
             own = {row[0] for row in self.tree[head[TREE_AT] : head[TREE_AT] + head[BODIES]]}
@@ -214,7 +212,7 @@ _FIXED: Kept[tuple[int, ...] | None] = Kept()
 
 
 def _fixed(own: np.ndarray, unknown: Sequence[int], arms: Sequence[int]) -> tuple[int, ...] | None:
-    """The same from the entries of those rows and bodies, and the arm of each row or 0."""
+    """Return the fixed bodies from the entries of rows and bodies, and the arm of each row or 0."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
@@ -243,7 +241,7 @@ def _fixed(own: np.ndarray, unknown: Sequence[int], arms: Sequence[int]) -> tupl
 
 
 def hanging(plan: Plan, members: set[int], left: Sequence[int]) -> Hanging | None:
-    """The block of ``members`` with those of the rows ``left`` that hold it; None where it is too large."""
+    """Return the block of ``members`` with the rows of ``left`` that hold it; None if it is too large."""
     packed, inside = plan.packed, plan.known | members
     rows = [row for row in left if all(int(body) in inside for body in packed.system.row_body[row])]
     tree, joints = hanging_tree(plan, members)
@@ -255,7 +253,7 @@ def hanging(plan: Plan, members: set[int], left: Sequence[int]) -> Hanging | Non
 
 
 def hanging_tree(plan: Plan, members: set[int]) -> tuple[list[tuple[int, int, Link | None]], set[int]]:
-    """Bodies in the order of their placing, how they hang and by what; the joints that they hang by."""
+    """Return bodies in the order of placing, how they hang and by what; the joints they hang by."""
     placed, waiting = set(plan.known), sorted(members)
     tree: list[tuple[int, int, Link | None]] = []
     joints: set[int] = set()
@@ -289,7 +287,7 @@ class Tables(NamedTuple):
 
 
 def tables_of(plan: Plan, block: Hanging) -> Tables | None:
-    """As tables; None if an equation is half of a pin."""
+    """Return the tables of a block; None if an equation is half of a pin."""
     members = {body: place for place, (body, _, _) in enumerate(block.tree)}
     written = equations_of(plan.packed, block.equations, members)
     if written is None:
@@ -307,7 +305,7 @@ def tables_of(plan: Plan, block: Hanging) -> Tables | None:
 def equations_of(
     packed: Packed, rows: Sequence[int], place: dict[int, int]
 ) -> tuple[list[list[int]], list[list[float]]] | None:
-    """The equations as tables; None if one of them is half of a pin."""
+    """Return the equations as tables; None if one of them is half of a pin."""
     system, stride = packed.system, strides(packed)
     special_at = {int(entry[ROW]): k for k, entry in enumerate(system.special)}
     offset = {int(row[2]): float(system.angle_offset[k]) for k, row in enumerate(system.angle)}

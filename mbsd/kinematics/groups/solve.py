@@ -5,8 +5,6 @@ tells whether it closes, and its rate tells whether it does between two poses (c
 
 The branch is that of the start. A step is doubted, and a pose between is asked for, where the squared sine may vanish
 between its ends, where a body turns too far to count turns, or where a law moves too far or jumps.
-
-One group of any kind: the place where a kind's number becomes its kernel.
 """
 
 from __future__ import annotations
@@ -102,7 +100,7 @@ def give(body, rate, b, q, v, a, turn):
 
 @internal
 def take(body, rate, b, q, v, a, turn):
-    """Pose and rates of body b from a row of the motion to the closed forms."""
+    """Take pose and rates of body b from a row of the motion to the closed forms."""
     at = 3 * b
     body[b, X] = q[at]
     body[b, Y] = q[at + 1]
@@ -116,7 +114,7 @@ def take(body, rate, b, q, v, a, turn):
 
 @internal
 def turned_on(body, b, before):
-    """Angle of body b (rad), whose cosine and sine are known, next to the angle ``before``."""
+    """Return angle of body b (rad), whose cosine and sine are known, next to the angle ``before``."""
     angle = math.atan2(body[b, SIN], body[b, COS])
     return angle + 2.0 * math.pi * math.floor((before - angle) / (2.0 * math.pi) + 0.5)
 

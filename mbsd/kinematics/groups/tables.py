@@ -3,9 +3,7 @@
 Lines of a link are divided by its squared length, so that turning it along a vector of that length is two products;
 constant angles are kept as cosine and sine. Columns are named in each kind's file in kinds/.
 
-All kinds of groups, in the order of their codes (groups.py): for the plan and for tables.
-
-A new kind is its file in kinds/, its code, a line here, and one in solve.py.
+A new kind is its file in kinds/, its code (groups.py), a line in KINDS here, and one in solve.py.
 """
 
 from __future__ import annotations
@@ -39,7 +37,7 @@ BRANCH = {kind.code: kind.branch for kind in KINDS if kind.branch is not None}
 
 
 def tables_of(taken: Sequence[Made]) -> Groups:
-    """The groups of a plan, in the order of their solution."""
+    """Return the groups of a plan, in the order of their solution."""
     kind = np.array([code for code, _, _, _ in taken], np.int64)
     body = np.array([bodies for _, bodies, _, _ in taken], np.int64).reshape(-1, 4)
     motion = np.array([law for _, _, law, _ in taken], np.int64)
@@ -62,7 +60,7 @@ def tables_of(taken: Sequence[Made]) -> Groups:
 
 
 def rows_of(kind: np.ndarray, number: np.ndarray) -> np.ndarray:
-    """(..., g, 21) of Groups.row, from (..., g, 14) numbers of groups of these kinds."""
+    """Return (..., g, 21) of Groups.row, from (..., g, 14) numbers of groups of these kinds."""
     out = np.zeros((*number.shape[:-1], WIDTH))
     for e, code in enumerate(kind):
         n = np.moveaxis(number[..., e, :], -1, 0)

@@ -1,8 +1,7 @@
 """Rigid contacts, stops and limits in analyses without contact forces: sweeps, statics and others.
 
-Only a simulation knows the forces of contacts. Elsewhere a motion or pose that needs them is refused here, by name.
-
-Rows of J for contacts and for limits of joints.
+Only a simulation knows the forces of contacts. Elsewhere a motion or pose that needs them ends in an error that names
+the contact. Gaps are residuals of rows of J that a second packing has for contacts and for limits of joints.
 """
 
 from __future__ import annotations
@@ -138,7 +137,7 @@ def all_contacts(m: Model, packed: Packed, q: np.ndarray) -> list[Joint]:
 
 
 def with_contacts(m: Model, packed: Packed, contacts: list[Joint]) -> Packed:
-    """The same mechanism with rows for contacts after all others, and the phases that its start decided."""
+    """Return the mechanism with rows for contacts after all others, and the phases of its start."""
     out = pack(m, contacts)
     out.motions = packed.motions
     take_decided(out, packed)

@@ -67,7 +67,7 @@ class FreeWheels:
         )
 
     def _rate(self, state: np.ndarray, i: int, j: int) -> np.ndarray:
-        """How the line of centres changes (m/s)."""
+        """Return how the line of centres changes (m/s)."""
         ends = (relative_velocity(self.packed, state[:1], state[1:], None, k)[0] for k in (j, i))
         return next(ends) - next(ends)
 

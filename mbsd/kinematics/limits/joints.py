@@ -1,15 +1,14 @@
-"""Limits of joints; a driven motion that passes one is an error with the time and the number.
+"""Limits of joints and branches of curves: a driven motion that leaves them raises an error.
 
-In a simulation they are stops without rebound; ``m.stop`` makes stops with one.
+In a simulation limits are stops without rebound; ``m.stop`` makes stops with one.
 
     revolute               angle of marker j against marker i (rad), whole turns counted
     prismatic, pin_in_slot place of marker j along the x axis of marker i (m)
 
 ``limits=(lower, upper)``; None on one side is a one-way stop.
 
-Sweeps in which a point may have left the branch of a curve that crosses itself.
-
-A sweep predicts so well that the nearest foot is on the right branch; it is refused where a foot jumps nevertheless.
+A sweep predicts so well that a point's nearest foot on a curve that crosses itself is on the right branch. Where a foot
+jumps nevertheless, the point may have left its branch.
 """
 
 from __future__ import annotations
@@ -51,7 +50,7 @@ class Limit:
 
 
 def limits_of(packed: Packed) -> list[Limit]:
-    """The limited joints of a mechanism."""
+    """Return the limited joints of a mechanism."""
     limits = []
     for joint, (i, j) in zip(packed.joints, packed.markers, strict=True):
         given = joint.params.get("limits")
@@ -129,7 +128,7 @@ def _with_peaks(value: np.ndarray) -> np.ndarray:
 
 
 def _crossing(limit: Limit, times: np.ndarray, value: np.ndarray, at: int) -> float:
-    """Time when the limit is met, by a straight line between outputs."""
+    """Return time when the limit is met, by a straight line between outputs."""
     if at == 0:
         return float(times[0])
     end = limit.lower if value[at] < limit.lower else limit.upper

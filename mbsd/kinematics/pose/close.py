@@ -1,9 +1,11 @@
 """Assembled pose at the start: rough angles, a walk over joints for places, then Gauss-Newton.
 
 Steps are damped (least norm, limited length, halved until the residual falls), so the pose closes near where the
-author put it. Bodies without a rough angle are tried at several angles.
+author put it. Bodies without a rough angle are tried at several angles. If none closes, the error names the joint that
+stays open, and a link that is longer than the others of its loop together.
 
-Reason of links that do not close: the open joint, and a link longer than the others together.
+Starts of many rows (dynamics/batch/starts.py) and of large mechanisms (dynamics/prepare/large.py) have loops of their
+own: the first solves all rows in one call, the second by sparse factors. Held values are as here.
 """
 
 from __future__ import annotations
@@ -63,7 +65,7 @@ def assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
 
 
 def _assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
-    """The same of a mechanism whose joints are all there."""
+    """Return the closed pose of a mechanism whose joints all hold."""
     drive = packed.drives(np.array([time]))[0]
     numbers = packed.numbers()
     if numbers is None:
@@ -79,7 +81,7 @@ def _assemble(m: Model, packed: Packed, time: float) -> np.ndarray:
 
 
 def _nearest(m: Model, packed: Packed, drive: np.ndarray) -> _Nearest:
-    """The pose nearest to a closed one, found anew; drive (motions + 1, 3)."""
+    """Return the pose nearest to a closed one, found anew; drive (motions + 1, 3)."""
     best: tuple[float, np.ndarray] | None = None
     for attempt in range(ATTEMPTS):
         q = rough_pose(m, packed, drive, attempt)
@@ -96,7 +98,7 @@ def _nearest(m: Model, packed: Packed, drive: np.ndarray) -> _Nearest:
 
 
 def close_with_phases(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> tuple[np.ndarray, float]:
-    """Close all rows that say where bodies are, with bodies turned as given; the others mesh as they then stand."""
+    """Close rows of places, with bodies turned as given; the others mesh as bodies then stand."""
     let_phases_go(packed)
     q, worst = close(packed, q, drive)
     if worst <= CLOSED and packed.specials.phased:
@@ -142,7 +144,7 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
 
 
 def given_coordinates(m: Model, packed: Packed) -> list[tuple[int, float]]:
-    """Coordinates (index in (3 nb,), value) that start_near gives, in its order."""
+    """Return coordinates (index in (3 nb,), value) that start_near gives, in its order."""
     given = []
     number = {name: b for b, name in enumerate(packed.body_names)}
     for name, start in m.starts.items():
@@ -156,18 +158,18 @@ def given_coordinates(m: Model, packed: Packed) -> list[tuple[int, float]]:
 
 
 def nearest_turn(q: np.ndarray, c: int, value: float) -> float:
-    """``value`` of coordinate c, for an angle up to whole turns."""
+    """Return ``value`` of coordinate c, for an angle up to whole turns."""
     return value + 2 * math.pi * round((q[c] - value) / (2 * math.pi)) if c % 3 == 2 else value
 
 
 def start_targets(m: Model, packed: Packed, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the coordinates that start_near gives, and their values (k,) with angles as near to q as turns allow."""
+    """Return the coordinates that start_near gives, and values (k,) within half a turn of q."""
     given = given_coordinates(m, packed)
     return np.array([c for c, _ in given], np.int64), np.array([nearest_turn(q, c, value) for c, value in given])
 
 
 def close_holding(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) -> np.ndarray:
-    """Return the pose (3 nb,) that closes and holds what start_near gives as far as the joints leave it free.
+    """Return the closed pose (3 nb,) that holds what start_near gives as far as the joints let it.
 
     ``q``: a closed pose, which is returned where no such pose is near. Directions in which places are held may turn on
     the way.
@@ -229,7 +231,7 @@ def rough_pose(m: Model, packed: Packed, drive: np.ndarray, attempt: int) -> np.
 
 
 def placed_pose(m: Model, packed: Packed, angle: np.ndarray) -> np.ndarray:
-    """(3 nb,) of bodies at angles (nb,), at places that ``start_near`` gives or a walk over the joints."""
+    """Return (3 nb,) bodies at angles (nb,), placed by ``start_near`` or by a walk over the joints."""
     q = np.zeros((len(packed.body_names), 3))
     q[:, 2] = angle
     placed = {0}
@@ -312,7 +314,7 @@ def _marker_place(packed: Packed, q: np.ndarray, marker: int) -> np.ndarray:
 
 
 def unwind_angles(packed: Packed, q: np.ndarray) -> None:
-    """Angles of welds and sliders hold up to whole turns: take the turn nearest to the rough pose."""
+    """Take the whole turns of welds and sliders that are nearest to the rough pose."""
     system = packed.system
     turns = np.zeros(len(system.angle))
     for k, (i, j, _row, motion) in enumerate(system.angle):
@@ -343,7 +345,7 @@ def why_open(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray, time: f
 
 
 def _short_links(m: Model, packed: Packed, joint: Joint, drive: np.ndarray) -> str:
-    """In a loop of pinned links: the one that is longer than the others together, if so."""
+    """Return in a loop of pinned links: the one that is longer than the others together, if so."""
     loop = _loop_through(m, joint)
     if loop is None:
         return ""
@@ -385,7 +387,7 @@ class _Crossing(NamedTuple):
 
 
 def _loop_through(m: Model, joint: Joint) -> list[_Crossing] | None:
-    """The shortest loop of pins through ``joint`` (any loop if it is no pin); None if there is none."""
+    """Return the shortest loop of pins through ``joint`` (any loop if it is no pin), or None."""
     pins = [j for j in m.joints.values() if j.kind.pair == "pin"]
     if joint not in pins:
         loops = [loop for pin in pins if (loop := _loop_through(m, pin))]
@@ -405,6 +407,6 @@ def _loop_through(m: Model, joint: Joint) -> list[_Crossing] | None:
 
 
 def turned(angle: float, vector: np.ndarray) -> np.ndarray:
-    """``vector`` (2,) turned by ``angle`` (rad)."""
+    """Return ``vector`` (2,) turned by ``angle`` (rad)."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])

@@ -26,7 +26,7 @@ P1_X, P1_Y, PA_X, PA_Y, OFFSET, SENSE = range(6)
 
 
 def driven(at: Places, body: int, links: dict[str, Link]) -> Made:
-    """A body with a pin and a driver of its angle."""
+    """Return a body with a pin and a driver of its angle."""
     pin, drive = links["R"], links["D"]
     sense = -1.0 if drive.first else 1.0
     return DRIVEN, (body, -1, pin.other, drive.other), drive.motion, [*at.pin(pin), drive.offset, sense]

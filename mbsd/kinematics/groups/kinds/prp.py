@@ -37,7 +37,7 @@ NEARLY_PARALLEL = 1e-3
 
 
 def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
-    """A sliding body whose point runs in a slot of a known one."""
+    """Return a sliding body whose point runs in a slot of a known one."""
     slide, slot = links["P"], links["S"]
     if slot.first:
         return None
@@ -47,7 +47,7 @@ def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
 
 
 def two_slides(at: Places, a: int, b: int, slide: Link, inner: Link, second: Link) -> Made:
-    """Two sliding bodies pinned to each other."""
+    """Return two sliding bodies pinned to each other."""
     arm = at.arm(inner.there)
     return _made(at, a, b, slide, at.arm(inner.here), second.other, [*at.on_slide(second, arm), *arm])
 

@@ -46,7 +46,7 @@ UA_X, UA_Y, SQUARE = CA_X, CA_Y, BRANCH
 
 
 def rod(at: Places, a: int, links: dict[str, Link]) -> Made:
-    """A pinned body held by a rod or an actuator."""
+    """Return a pinned body held by a rod or an actuator."""
     pin, held = links["R"], links["L"]
     numbers = [*at.pin(pin), *at.arm(held.here), *at.arm(held.there), held.offset]
     p, q = at.world(a, numbers[PA_X:CA_X]), at.world(held.other, numbers[Q2_X:LENGTH])

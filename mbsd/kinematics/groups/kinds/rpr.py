@@ -62,7 +62,7 @@ COS_B, SIN_B = ANGLE, BRANCH
 
 
 def in_own_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
-    """A pinned body in whose slot a point of a known one runs."""
+    """Return a pinned body in whose slot a point of a known one runs."""
     pin, slot = links["R"], links["S"]
     if not slot.first:
         return None
@@ -73,7 +73,7 @@ def in_own_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
 
 
 def on_each_other(at: Places, a: int, b: int, pin: Link, slide: Link, outer: Link) -> Made:
-    """Two pinned bodies of which one slides on the other."""
+    """Return two pinned bodies of which one slides on the other."""
     angle = -own_angle(slide)
     axis = at.axis(slide.here) if slide.first else turned(at.axis(slide.there), angle)
     q_on_b = at.arm(outer.here)

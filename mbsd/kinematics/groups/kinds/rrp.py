@@ -46,7 +46,7 @@ UA_X, UA_Y, COS_B, SIN_B, SQUARE, PER_SQUARE = CA_X, CA_Y, ANGLE, BRANCH, 14, 15
 
 
 def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
-    """A pinned body whose point runs in a slot of a known one."""
+    """Return a pinned body whose point runs in a slot of a known one."""
     pin, slot = links["R"], links["S"]
     if slot.first:
         return None
@@ -55,7 +55,7 @@ def in_slot(at: Places, a: int, links: dict[str, Link]) -> Made | None:
 
 
 def on_slide(at: Places, a: int, b: int, pin: Link, inner: Link, slide: Link) -> Made:
-    """A pinned body, pinned to one that slides."""
+    """Return a pinned body, pinned to one that slides."""
     arm = at.arm(inner.there)
     return _made(at, (a, b, pin.other, slide.other), pin, at.arm(inner.here), at.on_slide(slide, arm), arm)
 

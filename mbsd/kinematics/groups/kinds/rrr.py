@@ -46,7 +46,7 @@ SQUARE, DIFFERENCE, PER_SQUARES = range(12, 15)
 
 
 def two_pinned(at: Places, a: int, b: int, outer_a: Link, inner: Link, outer_b: Link) -> Made:
-    """Two bodies pinned to known ones and to each other."""
+    """Return two bodies pinned to known ones and to each other."""
     numbers = [
         *at.pin(outer_a),
         *at.arm(inner.here),
@@ -69,7 +69,10 @@ KIND = GroupKind(RRR, "RRR", _row, two=("RRR",), of_two=two_pinned, branch=BRANC
 
 @merged
 def solve_rrr(case, e):
-    """Place the bodies of group e and fill their rates. See prp.solve_prp. Written out: the commonest group by far."""
+    """Place the bodies of group e and fill their rates. See prp.solve_prp.
+
+    The rates are written out in full, as no other group is as common.
+    """
     bodies = case.group[e]
     n = case.number[e]
     body = case.body

@@ -33,7 +33,7 @@ ACROSS = 1e-9
 
 
 def driven_slide(at: Places, a: int, links: dict[str, Link]) -> Made | None:
-    """A sliding body whose way along the slide is driven."""
+    """Return a sliding body whose way along the slide is driven."""
     slide, drive = links["P"], links["A"]
     if drive.other != slide.other:
         return None

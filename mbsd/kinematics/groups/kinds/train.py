@@ -34,7 +34,7 @@ UNSURE = 1.0
 
 
 def train(at: Places, body: int, pin: Link, constant: float, shares: dict[int, float]) -> Made | None:
-    """A group for columns of B; None where the angle is a sum of more than two."""
+    """Return a group for columns of B; None where the angle is a sum of more than two."""
     if len(shares) > 2:
         return None
     (second, share_2), (third, share_3) = [*shares.items(), (0, 0.0), (0, 0.0)][:2]
@@ -70,7 +70,7 @@ def solve_train(bodies, n, train, body_of, share_of, qk, vk, ak, turn, point):
 
 @lazy(int)
 def embed_train(bodies, n, body, rate, base, coordinate):
-    """Positions and columns of B. See prp.embed_prp."""
+    """Place the body and fill its columns of B. See prp.solve_prp."""
     a = bodies[FIRST]
     k1 = bodies[K1]
     k2 = bodies[K2]

@@ -26,7 +26,7 @@ COS_A, SIN_A = ANGLE, 5
 
 
 def welded(at: Places, body: int, links: dict[str, Link]) -> Made:
-    """A body with a weld."""
+    """Return a body with a weld."""
     weld = links["W"]
     return WELDED, (body, -1, weld.other, 0), 0, [*at.pin(weld), own_angle(weld)]
 

@@ -33,7 +33,7 @@ PARALLEL = 1e-9
 
 
 def yoke(at: Places, a: int, links: dict[str, Link]) -> Made | None:
-    """A sliding body in whose slot a point of a known body runs."""
+    """Return a sliding body in whose slot a point of a known body runs."""
     slide, slot = links["P"], links["S"]
     if not slot.first:
         return None

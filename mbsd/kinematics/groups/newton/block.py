@@ -53,7 +53,7 @@ COLUMNS = LARGEST * LARGEST
 
 @merged
 def linearise(block, q, turn, work, values):
-    """values (n,) of the equations, their rows and derivatives in ``work``, and G in its matrix."""
+    """Fill values (n,) of the equations, their rows and derivatives in ``work``, and G in its matrix."""
     count = block.head[BODIES]
     n = block.head[EQUATIONS]
     rows = block.rows
@@ -77,7 +77,7 @@ def linearise(block, q, turn, work, values):
 
 @merged
 def correction(block, du, per_metre):
-    """Largest of a change of the unknowns, in sizes and rad; NaN counts as infinite."""
+    """Return largest of a change of the unknowns, in sizes and rad; NaN counts as infinite."""
     tree = block.tree
     largest = 0.0
     for e in range(block.head[BODIES]):
@@ -133,7 +133,7 @@ def iterate(turned, block, drive, motion, work):
 
 @merged
 def in_doubt(k, block, history, h, per_metre, first, second):
-    """The branch guard after row k: SOLVED, or in which step a pose is needed."""
+    """Return SOLVED if row k is on its branch, else in which step a pose is needed."""
     q = history.q
     step = 0.0
     for e in range(block.head[BODIES]):

@@ -15,7 +15,7 @@ SINGULAR = 1e-12
 
 @merged
 def factor(matrix, order, n):
-    """LU of matrix (n n,) with partial pivoting; returns its determinant, 0 where it is singular."""
+    """Factorise matrix (n n,) by LU with row pivoting; return its determinant, 0 where it is singular."""
     determinant = 1.0
     smallest = math.inf
     largest = 0.0
@@ -58,7 +58,7 @@ def solve(matrix, order, n, x):
 
 @merged
 def held(jac, row, rates):
-    """Rate of an equation at rates (3 nb,) of the bodies."""
+    """Return rate of an equation at rates (3 nb,) of the bodies."""
     i = 3 * row[BODY_I]
     j = 3 * row[BODY_J]
     rate = 0.0
@@ -69,7 +69,7 @@ def held(jac, row, rates):
 
 @merged
 def extent(q, last, body, per_metre):
-    """How far a body goes, in sizes and rad; NaN counts as infinite."""
+    """Return how far a body goes, in sizes and rad; NaN counts as infinite."""
     b = 3 * body
     way = max(abs(q[b] - last[b]) * per_metre, abs(q[b + 1] - last[b + 1]) * per_metre, abs(q[b + 2] - last[b + 2]))
     return way if way == way else math.inf

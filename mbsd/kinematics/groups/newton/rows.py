@@ -37,7 +37,7 @@ from mbsd.kinematics.groups.carried import carried, follow, hang
 
 @merged
 def read_unknowns(block, q, turn, u):
-    """Unknowns u (n,) of the pose q (3 nb,) of the block's bodies; turns them too."""
+    """Read the unknowns u (n,) of the block's bodies from the pose q (3 nb,), and turn the bodies."""
     tree = block.tree
     count = block.head[BODIES]
     for e in range(count):
@@ -117,7 +117,7 @@ def move(block, u, turned, motion, point):
 
 @merged
 def fill_columns(block, q, turn, columns):
-    """columns: (bodies, unknowns, 3) rates of each body for a unit rate of each unknown."""
+    """Fill columns (bodies, unknowns, 3) with rates of each body for a unit rate of each unknown."""
     tree = block.tree
     frame = block.frame
     unknowns = block.head[EQUATIONS]
@@ -158,7 +158,7 @@ def fill_columns(block, q, turn, columns):
 
 @merged
 def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
-    """F of one equation; out (10,) takes it with its derivatives, jac (6,) its row on bodies i and j."""
+    """Return F of an equation; fill out (10,) with F and its derivatives, jac (6,) with its row."""
     i = row[BODY_I]
     j = row[BODY_J]
     six = turn[i, 0] * n[0] - turn[i, 1] * n[1]
@@ -215,7 +215,7 @@ def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
 
 @merged
 def bend_of(row, n, q, v, turn, out):
-    """gamma of one equation without f'', after evaluate_row at the same pose."""
+    """Return gamma of one equation without f'', after evaluate_row at the same pose."""
     i = row[BODY_I]
     j = row[BODY_J]
     omega = v[3 * i + 2]

@@ -148,3 +148,25 @@ def normal_force(state, depth, rate, stiffness, exponent, damping, loss, least_a
     if exponent != 1.0:
         normal = math.copysign(abs(depth) ** exponent, depth)
     return normal * stiffness * max(1.0 + damping * rate, 0.0)
+
+
+@inlined
+def end_stop(state, out, by, rate, stroke, stiffness, damping):
+    """Return the force (N) of stops at 0 and ``stroke`` against a travel ``by`` (m); put its depth into SWITCH."""
+    way = 1.0
+    depth = by - stroke
+    if -by > depth:
+        way = -1.0
+        depth = -by
+    out[SWITCH] = depth
+    if touches(state, depth):
+        return way * stiffness * depth * max(1.0 + way * damping * rate, 0.0)
+    return 0.0
+
+
+@inlined
+def act_along(out, turning, size, ux, uy):
+    """Fill out with a force (N) along a unit vector, or with a torque (N m) if it is ``turning``: see measure."""
+    out[FX] = ux * size
+    out[FY] = uy * size
+    out[TORQUE] = size if turning else 0.0

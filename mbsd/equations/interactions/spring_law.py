@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mbsd.compiling.callback import call
-from mbsd.equations.interactions.law import FX, FY, OWN, TIME, TORQUE, X, Y, interaction, measure
+from mbsd.equations.interactions.law import OWN, TIME, X, Y, act_along, interaction, measure
 
 
 @interaction
@@ -15,6 +15,4 @@ def force(numbers, state, out):
     state[Y] = rate
     call(int(numbers[OWN]), state[TIME], state, out)  # pyright: ignore[reportCallIssue]
     size = out[0]
-    out[FX] = ux * size
-    out[FY] = uy * size
-    out[TORQUE] = size if turning else 0.0
+    act_along(out, turning, size, ux, uy)

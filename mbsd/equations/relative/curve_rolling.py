@@ -40,7 +40,21 @@ from mbsd.equations.relative.curve_pieces import (
     find_foot,
     place_on,
 )
-from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, PHASE, A, F, X, Y, equation
+from mbsd.equations.relative.equation import (
+    FA,
+    FX,
+    FXX,
+    FXY,
+    FY,
+    FYY,
+    PHASE,
+    A,
+    F,
+    X,
+    Y,
+    clear,
+    equation,
+)
 from mbsd.equations.system import ZERO
 
 NODES = (-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640)
@@ -95,6 +109,7 @@ def residual(numbers, relative, out):
     first = 1.0 - r * kappa
     outer = first * kappa_rate * d / (w * w * w) - r * kappa_rate / (w * w)
     mixed = first * kappa / (w * w)
+    clear(out)
     out[F] = value
     out[FX] = first * tx / w
     out[FY] = first * ty / w
@@ -102,6 +117,3 @@ def residual(numbers, relative, out):
     out[FXX] = outer * tx * tx - 2.0 * mixed * tx * ty
     out[FXY] = outer * tx * ty + mixed * (tx * tx - ty * ty)
     out[FYY] = outer * ty * ty + 2.0 * mixed * tx * ty
-    out[FXA] = 0.0
-    out[FYA] = 0.0
-    out[FAA] = 0.0

@@ -39,7 +39,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from mbsd.compiling.jit import COMPILED, at_address, lazy
+from mbsd.compiling.jit import COMPILED, at_address, inlined, lazy
 
 X, Y, A, TURN = 0, 1, 2, 3
 """Places in ``relative``. TURN: how far the arm that carries both centres is turned against body i (rad)."""
@@ -61,6 +61,13 @@ def equation(function: Callable) -> Any:
         return at_address(SIGNATURE)(function)
     _PYTHON.append(function)
     return function
+
+
+@inlined
+def clear(out):
+    """Set F and its derivatives to zero; an equation then fills those that are not."""
+    for k in range(F, FAA + 1):
+        out[k] = 0.0
 
 
 def address_of(constraint: str) -> int:
@@ -112,6 +119,37 @@ else:
         _PYTHON[address](numbers[first:], relative, out)
 
 
+@inlined
+def fill_row(out, ux, uy, x, y, arm_ix, arm_iy, arm_jx, arm_jy, jac):
+    """Fill jac (6,) with the row of an equation from its gradient ``out``, at (x, y) in the axes (ux, uy) of marker i."""
+    gx = out[FX] * ux - out[FY] * uy
+    gy = out[FX] * uy + out[FY] * ux
+    jac[0] = -gx
+    jac[1] = -gy
+    jac[2] = out[FX] * y - out[FY] * x + gx * arm_iy - gy * arm_ix - out[FA]
+    jac[3] = gx
+    jac[4] = gy
+    jac[5] = -gx * arm_jy + gy * arm_jx + out[FA]
+
+
+@inlined
+def gamma_of(out, ux, uy, x, y, vx, vy, cx, cy, omega, a_rate):
+    """Return gamma of an equation without f'': d' = (vx, vy), c_j - c_i = (cx, cy), omega of body i, rate of a."""
+    along = ux * vx + uy * vy
+    across = ux * vy - uy * vx
+    gamma_x = -(ux * cx + uy * cy + 2.0 * omega * across - omega * omega * x)
+    gamma_y = -(ux * cy - uy * cx - 2.0 * omega * along - omega * omega * y)
+    x_rate = along + omega * y
+    y_rate = across - omega * x
+    bend = (
+        out[FXX] * x_rate * x_rate
+        + out[FYY] * y_rate * y_rate
+        + out[FAA] * a_rate * a_rate
+        + 2.0 * (out[FXY] * x_rate * y_rate + out[FXA] * x_rate * a_rate + out[FYA] * y_rate * a_rate)
+    )
+    return out[FX] * gamma_x + out[FY] * gamma_y - bend
+
+
 @lazy(None)
 def relative_rows(system, q, drive, ws):
     """Fill residual and Jacobian of all constraints of relative pose; rows that are left out with zero."""
@@ -140,14 +178,7 @@ def relative_rows(system, q, drive, ws):
         out = ws.equation[k]
         evaluate(system.address[k], system.numbers[at:], relative, out)
         ws.phi[r] = out[F] - drive[system.special[k, MOTION], 0]
-        gx = out[FX] * ux - out[FY] * uy
-        gy = out[FX] * uy + out[FY] * ux
-        ws.jac[r, 0] = -gx
-        ws.jac[r, 1] = -gy
-        ws.jac[r, 2] = out[FX] * y - out[FY] * x + gx * ws.arm[i, 1] - gy * ws.arm[i, 0] - out[FA]
-        ws.jac[r, 3] = gx
-        ws.jac[r, 4] = gy
-        ws.jac[r, 5] = -gx * ws.arm[j, 1] + gy * ws.arm[j, 0] + out[FA]
+        fill_row(out, ux, uy, x, y, ws.arm[i, 0], ws.arm[i, 1], ws.arm[j, 0], ws.arm[j, 1], ws.jac[r])
 
 
 @lazy(None)
@@ -166,22 +197,10 @@ def relative_gamma(system, v, ws, gamma):
         y = ux * dy - uy * dx
         vx = ws.velocity[j, 0] - ws.velocity[i, 0]
         vy = ws.velocity[j, 1] - ws.velocity[i, 1]
-        along = ux * vx + uy * vy
-        across = ux * vy - uy * vx
         cx = ws.convective[j, 0] - ws.convective[i, 0]
         cy = ws.convective[j, 1] - ws.convective[i, 1]
-        gamma_x = -(ux * cx + uy * cy + 2.0 * omega * across - omega * omega * x)
-        gamma_y = -(ux * cy - uy * cx - 2.0 * omega * along - omega * omega * y)
-        x_rate = along + omega * y
-        y_rate = across - omega * x
         a_rate = v[3 * system.marker_body[j] + 2] - omega
-        bend = (
-            out[FXX] * x_rate * x_rate
-            + out[FYY] * y_rate * y_rate
-            + out[FAA] * a_rate * a_rate
-            + 2.0 * (out[FXY] * x_rate * y_rate + out[FXA] * x_rate * a_rate + out[FYA] * y_rate * a_rate)
-        )
-        gamma[system.special[k, ROW]] = out[FX] * gamma_x + out[FY] * gamma_y - bend
+        gamma[system.special[k, ROW]] = gamma_of(out, ux, uy, x, y, vx, vy, cx, cy, omega, a_rate)
 
 
 MARKER_I, MARKER_J, ROW, MOTION, AT, ARM, ACTIVE = range(7)

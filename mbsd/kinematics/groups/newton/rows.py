@@ -8,7 +8,23 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import merged
-from mbsd.equations.relative.equation import FA, FAA, FX, FXA, FXX, FXY, FY, FYA, FYY, TURN, A, F, X, Y, evaluate
+from mbsd.equations.relative.equation import (
+    FA,
+    FX,
+    FXX,
+    FXY,
+    FY,
+    FYY,
+    TURN,
+    A,
+    F,
+    X,
+    Y,
+    clear,
+    evaluate,
+    fill_row,
+    gamma_of,
+)
 from mbsd.equations.system import LAST, ZERO
 from mbsd.kinematics.groups.blocks import (
     ACROSS,
@@ -182,8 +198,7 @@ def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
         relative[LAST] = math.nan
         evaluate(row[ADDRESS], numbers[row[AT] :], relative, out)
     else:
-        for c in range(FX, FAA + 1):
-            out[c] = 0.0
+        clear(out)
         if kind == ALONG:
             out[F] = x - n[6]
             out[FX] = 1.0
@@ -202,14 +217,7 @@ def evaluate_row(row, n, q, turn, numbers, relative, out, jac):
             out[FXX] = y * y / cube
             out[FXY] = -x * y / cube
             out[FYY] = x * x / cube
-    gx = out[FX] * ux - out[FY] * uy
-    gy = out[FX] * uy + out[FY] * ux
-    jac[0] = -gx
-    jac[1] = -gy
-    jac[2] = out[FX] * y - out[FY] * x + gx * siy - gy * six - out[FA]
-    jac[3] = gx
-    jac[4] = gy
-    jac[5] = -gx * sjy + gy * sjx + out[FA]
+    fill_row(out, ux, uy, x, y, six, siy, sjx, sjy, jac)
     return out[F]
 
 
@@ -234,17 +242,4 @@ def bend_of(row, n, q, v, turn, out):
     cy = omega * omega * siy - other * other * sjy
     x = ux * dx + uy * dy
     y = ux * dy - uy * dx
-    along = ux * vx + uy * vy
-    across = ux * vy - uy * vx
-    gamma_x = -(ux * cx + uy * cy + 2.0 * omega * across - omega * omega * x)
-    gamma_y = -(ux * cy - uy * cx - 2.0 * omega * along - omega * omega * y)
-    x_rate = along + omega * y
-    y_rate = across - omega * x
-    a_rate = other - omega
-    bend = (
-        out[FXX] * x_rate * x_rate
-        + out[FYY] * y_rate * y_rate
-        + out[FAA] * a_rate * a_rate
-        + 2.0 * (out[FXY] * x_rate * y_rate + out[FXA] * x_rate * a_rate + out[FYA] * y_rate * a_rate)
-    )
-    return out[FX] * gamma_x + out[FY] * gamma_y - bend
+    return gamma_of(out, ux, uy, x, y, vx, vy, cx, cy, omega, other - omega)

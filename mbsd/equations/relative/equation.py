@@ -121,7 +121,7 @@ else:
 
 @inlined
 def fill_row(out, ux, uy, x, y, arm_ix, arm_iy, arm_jx, arm_jy, jac):
-    """Fill jac (6,) with the row of an equation from its gradient ``out``, at (x, y) in the axes (ux, uy) of marker i."""
+    """Fill jac (6,) with the row of an equation by its gradient ``out``: (x, y) in axes (ux, uy) of marker i."""
     gx = out[FX] * ux - out[FY] * uy
     gy = out[FX] * uy + out[FY] * ux
     jac[0] = -gx

@@ -129,8 +129,7 @@ def close(packed: Packed, q: np.ndarray, drive: np.ndarray, rows: int | None = N
         if not (np.isfinite(jac).all() and np.isfinite(phi).all()):
             return q, math.inf
         step = _least(jac, -phi)
-        longest = length_of_step(step)
-        step *= min(1.0, LONGEST_STEP / longest) if longest > 0 else 1.0
+        step, longest = damped(step)
         before, old = float(np.linalg.norm(phi)), q.copy()
         for _ in range(12):
             q[3:] = old[3:] + step * column_scale
@@ -190,19 +189,22 @@ def close_holding(m: Model, packed: Packed, q: np.ndarray, drive: np.ndarray) ->
         if np.abs(phi).max() <= 1e-13:
             break
         jac = np.vstack([rows, held @ units])
-        step = np.linalg.lstsq(jac, -phi, rcond=1e-10)[0]
-        longest = length_of_step(step)
+        step, longest = damped(np.linalg.lstsq(jac, -phi, rcond=1e-10)[0])
         if longest < 1e-15:
             break
-        q[3:] += step * min(1.0, LONGEST_STEP / longest) * column_scale
+        q[3:] += step * column_scale
     residual_and_jacobian(packed.system, q, drive, packed.ws)
     return q if np.abs(packed.ws.phi * row_scale).max(initial=0.0) <= CLOSED else closed
 
 
-def length_of_step(step: np.ndarray) -> float:
-    """Return how far ``step`` (n,) moves or turns a body, in sizes or rad; the world's axes do not matter."""
+def damped(step: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return ``step`` (n,) no longer than ``LONGEST_STEP``, and how far it moves or turns a body, in sizes or rad.
+
+    The world's axes do not matter.
+    """
     x, y, angle = step.reshape(-1, 3).T
-    return float(np.maximum(np.hypot(x, y), np.abs(angle)).max(initial=0.0))
+    longest = float(np.maximum(np.hypot(x, y), np.abs(angle)).max(initial=0.0))
+    return step * (min(1.0, LONGEST_STEP / longest) if longest > 0 else 1.0), longest
 
 
 def _least(jac: np.ndarray, right: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import zlib
 
 import numpy as np
 
-from mbsd.arrays.start_state import started_at
+from mbsd.arrays.starts import started_at
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from tools.hunt.families import all_families
 from tools.hunt.judging.agreement import Growth

@@ -14,10 +14,10 @@ from shared.stage.errors import UserError
 from shared.stage.face import is_of_make
 from shared.stage.paths import known_name, mechanism_names, work_in
 from shared.stage.suggestions import did_you_mean
-from studio.command import doing, made
-from studio.command.options import OPTIONS
+from studio.command import commands, running
 from studio.command.place import Place, is_path, place_of, place_of_file
 from studio.command.running import Run
+from studio.command.stages import OPTIONS
 from studio.command.table import COMMANDS, Command
 
 EPILOG = """\
@@ -145,9 +145,9 @@ def main(arguments: Sequence[str] | None = None, make: bool = False) -> int:
         planned=asked.plan,
     )
     operand = _operand(command, asked, place)
-    code = doing.do(command, operand, said, run)
+    code = commands.do(command, operand, said, run)
     if run.quiet and not run.planned:
-        print(made.summary(command, operand, run, code))
+        print(running.summary(command, operand, run, code))
     return code
 
 

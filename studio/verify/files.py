@@ -2,19 +2,37 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 
-from studio.verify.finding import Finding
+# Finding of a comparison: the same, different, made from other inputs, or missing.
+
+
+Verdict = Literal["same", "differs", "outdated", "missing"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One file, frame or film. ``outdated``: its inputs have changed since, so nothing follows."""
+
+    what: str
+    verdict: Verdict
+    detail: str = ""
+
+    def __str__(self) -> str:
+        word = {"outdated": "made from other inputs", "missing": "not compared"}.get(self.verdict, self.verdict)
+        return f"{self.what}: {word}{', ' * bool(self.detail)}{self.detail}"
+
 
 LONGEST = 60
 """Characters of a value in a message."""
 
 
-def compared(what: str, old: Path, new: Path) -> Finding:
+def compare(what: str, old: Path, new: Path) -> Finding:
     """Return the comparison of the existing file with the one built again."""
     if not new.is_file():
         return Finding(what, "differs", "it was not made again")

@@ -21,7 +21,7 @@ from shared.contract.shot import Shot
 from shared.stage import jsonfile
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
-from studio.verify import files, pictures, verify
+from studio.verify import files, verify
 from studio.verify import film as compared_film
 from tools.fixtures import film_fixture
 
@@ -133,25 +133,25 @@ def test_what_is_not_there_is_told(out_root: Path) -> None:
 
 @pytest.mark.parametrize(("words", "numbers"), [("", [0, 40, 80]), ("5", [5]), ("7, 3,7", [3, 7]), ("119 0", [0, 119])])
 def test_chosen_frames(words: str, numbers: list[int]) -> None:
-    assert pictures.chosen(words, 120, "arm") == numbers
+    assert compared_film.chosen(words, 120, "arm") == numbers
 
 
 def test_few_frames_are_chosen_once() -> None:
-    assert pictures.chosen("", 1, "arm") == [0]
-    assert pictures.chosen("", 2, "arm") == [0, 1]
+    assert compared_film.chosen("", 1, "arm") == [0]
+    assert compared_film.chosen("", 2, "arm") == [0, 1]
 
 
 @pytest.mark.parametrize("words", ["120", "-1", "1.5", "x", "²"])
 def test_no_such_frame(words: str) -> None:
     with pytest.raises(UserError, match=r"arm: there is no frame .*; the film has frames 0 to 119"):
-        pictures.chosen(words, 120, "arm")
+        compared_film.chosen(words, 120, "arm")
 
 
 def test_differences_of_files(tmp_path: Path) -> None:
     old, new = tmp_path / "a.json", tmp_path / "b.json"
     old.write_text('{"a": [1, {"b": 2}], "c": 1}')
-    assert str(files.compared("a", old, new)) == "a: differs, it was not made again"
-    assert str(files.compared("a", new, old)) == "a: differs, it is not there, but was made again"
+    assert str(files.compare("a", old, new)) == "a: differs, it was not made again"
+    assert str(files.compare("a", new, old)) == "a: differs, it is not there, but was made again"
     for text, words in (
         ('{"a": [1, {"b": 3}], "c": 1}', "at a[1].b: 2, made again 3"),
         ('{"a": [1], "c": 1}', "at a[1]: {'b': 2}, made again nothing"),
@@ -160,9 +160,9 @@ def test_differences_of_files(tmp_path: Path) -> None:
         ('{"a": [1, {"b"', "it is not whole JSON; from byte 14 on; 28 bytes, made again 14"),
     ):
         new.write_text(text)
-        assert files.compared("a", old, new).detail == words
+        assert files.compare("a", old, new).detail == words
     new.write_bytes(old.read_bytes())
-    assert files.compared("a", old, new).verdict == "same"
+    assert files.compare("a", old, new).verdict == "same"
 
 
 def test_a_damaged_film_is_a_finding(tmp_path: Path) -> None:
@@ -178,7 +178,7 @@ def test_a_damaged_film_is_a_finding(tmp_path: Path) -> None:
     (scratch := tmp_path / "scratch").mkdir()
 
     def finding() -> str:
-        return str(compared_film.compared(path, scratch, store, index, TINY))
+        return str(compared_film.compare_film(path, scratch, store, index, TINY))
 
     assert finding() == "film: not compared, arm-tiny.mp4 is not there"
     encode.encode(((store.folder / name).read_bytes() for name in names), 4, TINY, 30, path)

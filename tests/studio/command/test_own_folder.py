@@ -12,7 +12,7 @@ import pytest
 
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from studio.command import settings
+from studio.command.place import read
 
 CRANK = '''"""A crank of {length} m."""
 from dataclasses import dataclass
@@ -160,7 +160,7 @@ def test_unfit_settings_are_refused(folder: Path, text: str, said: str) -> None:
 def test_a_byte_order_mark_is_no_setting(tmp_path: Path) -> None:
     """Editors on Windows write one."""
     (tmp_path / "mbsd.toml").write_bytes(b'\xef\xbb\xbfpreset = "draft"\n')
-    assert settings.read(tmp_path).preset == "draft"
+    assert read(tmp_path).preset == "draft"
 
 
 @pytest.mark.parametrize(
@@ -180,7 +180,7 @@ def test_files_that_are_no_settings_are_refused_in_a_sentence(tmp_path: Path, co
     """They ended in tracebacks."""
     (tmp_path / "mbsd.toml").write_bytes(content)
     with pytest.raises(UserError, match=said) as refused:
-        settings.read(tmp_path)
+        read(tmp_path)
     assert str(refused.value).startswith(f"{tmp_path / 'mbsd.toml'}")
 
 

@@ -10,8 +10,8 @@ import pytest
 
 from shared.stage.paths import ROOT
 from studio.command.main import parser
-from studio.command.options import OPTIONS
-from studio.command.plan import plan_line
+from studio.command.running import plan_line
+from studio.command.stages import OPTIONS
 from studio.command.table import COMMANDS
 
 MODEL = """from dataclasses import dataclass

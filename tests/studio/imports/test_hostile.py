@@ -16,12 +16,10 @@ from hypothesis import strategies as st
 from mbsd import MechanismError
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from studio.imports.limits import DEEPEST, LARGEST_FILE, MOST
-from studio.imports.names import RESERVED, Names, Titles
+from studio.imports.limits import DEEPEST, LARGEST_FILE, MOST, RESERVED, Names, Titles
 from studio.imports.pmks_records import stamped
-from studio.imports.reading import read, read_text
+from studio.imports.reading import read, read_text, try_out
 from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch, Slide
-from studio.imports.trial import try_out
 from studio.imports.writing import mechanism_py
 from tests.studio.imports.imported import SAMPLES, built
 from tools.hunt.outcome import AGREED, HUNG, REFUSED, WRONG

@@ -12,9 +12,8 @@ import pytest
 
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT
-from studio.imports.reading import read, read_text
+from studio.imports.reading import difference, read, read_text
 from studio.imports.sketch import GROUND, Link, Motor, Pin, Sketch, Slide
-from studio.imports.trial import difference
 from studio.imports.writing import mechanism_py
 from tests.studio.imports.imported import SAMPLES, built
 

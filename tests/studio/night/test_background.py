@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from studio.night.commands import logout
+from studio.night import background
 from tests.running.needs import needs
 from tests.studio.night.nights import Night, finished, until
 
@@ -74,16 +74,16 @@ def test_where_the_system_ends_all_at_the_logout_a_scope_and_a_word_stand_agains
         (programs / name).chmod(0o755)
     monkeypatch.setenv("PATH", f"{programs}:{os.environ['PATH']}")
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
-    monkeypatch.setattr(logout, "LINGERING", tmp_path)
+    monkeypatch.setattr(background, "LINGERING", tmp_path)
     monkeypatch.setenv("LOGNAME", "ada")
     said: list[str] = []
-    logout.warn_if_it_ends_all(lambda _, text: said.append(text))
+    background.warn_if_it_ends_all(lambda _, text: said.append(text))
     assert said == ["this system ends all programs of yours when you log out; run: loginctl enable-linger ada"]
-    assert logout.scope()[:3] == ["systemd-run", "--user", "--scope"]
+    assert background.scope()[:3] == ["systemd-run", "--user", "--scope"]
     (tmp_path / "ada").touch()
-    logout.warn_if_it_ends_all(lambda _, text: said.append(text))
+    background.warn_if_it_ends_all(lambda _, text: said.append(text))
     assert len(said) == 1
     (programs / "busctl").write_text("#!/bin/sh\necho 'b false'\n")
-    assert logout.scope() == []
+    assert background.scope() == []
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert not logout.ends_all()
+    assert not background.ends_all()

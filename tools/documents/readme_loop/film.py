@@ -24,7 +24,7 @@ from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import Out
-from studio.live.child.shown import Shown
+from studio.live.child.author import Shown
 from tools.documents.pages import DOCS
 from tools.documents.readme_loop.story import CHANGED, CRANK, LINES, RATE, frames, run
 

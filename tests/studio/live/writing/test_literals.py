@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from shared.stage.errors import UserError
 from studio.live.numbers import changed, numbers_of
-from studio.live.writing.literals import replaced
-from studio.live.writing.overriding import deciding_line
+from studio.live.writing import deciding_line, replaced
 
 FILE = "mechanisms/x/mechanism.py"
 SOURCE = '''# -*- coding: {coding} -*-

@@ -10,9 +10,8 @@ from shared.stage.paths import all_mechanisms
 from shared.stage.scale import scale_of
 from shared.system.missing import missing_libraries, sentence
 from studio.command import stages
-from studio.command.options import SCENES
 from studio.command.running import Run
-from studio.command.stages import Stage
+from studio.command.stages import SCENES, Stage
 from studio.command.table import Command
 
 

@@ -1,16 +1,23 @@
-"""Pages and their pictures, one mechanism after the other: fresh ones are kept, failures listed."""
+"""Pages and their pictures, one mechanism after the other: fresh ones are kept, failures listed.
+
+``python -m studio.pages [--only four_bar,pendulum]``; exit code 1 if a page or a picture fails.
+"""
 
 from __future__ import annotations
 
+import argparse
 import subprocess
 import sys
 from collections.abc import Sequence
 
 from render.view import pictures
-from shared.stage.console import progress, say, warn
+from shared.stage.console import progress, run_cli, say, warn
 from shared.stage.errors import UserError
-from shared.stage.paths import ROOT, Out, out_root
+from shared.stage.paths import ROOT, Out, all_mechanisms, known_name, out_root
 from shared.system import missing
+
+# Pages and their pictures, one mechanism after the other: fresh ones are kept, failures listed.
+
 
 STEPS = (("mechanisms", "parts", "--or-none"), ("mechanisms", "solve"), ("mechanisms", "shot"), ("render", "view"))
 """Stages that ``mbsd view <name>`` runs."""
@@ -111,3 +118,24 @@ def _table(failed: dict[str, str]) -> None:
     for name, error in failed.items():
         table.add_row(name, error)
     Console(width=None if sys.stdout.isatty() else WIDTH).print(table)
+
+
+# ``python -m studio.pages [--only four_bar,pendulum]``; exit code 1 if a page or a picture fails.
+
+
+def main() -> int:
+    """Read the command line and write missing pages and pictures."""
+    parser = argparse.ArgumentParser(
+        prog="python -m studio.pages", description="The page of every mechanism, and a picture of each by Chromium."
+    )
+    parser.add_argument("--only", default="", help="these mechanisms: four_bar,pendulum; all if not given")
+    parser.add_argument("--fresh", action="store_true", help="print the names whose page has nothing to do")
+    asked = parser.parse_args()
+    names = [known_name(name) for name in asked.only.split(",")] if asked.only else all_mechanisms()
+    if asked.fresh:
+        return tell_fresh(names)
+    return run(names)
+
+
+if __name__ == "__main__":
+    run_cli(main)

@@ -23,13 +23,10 @@ from shared.stage.face import to_run
 from shared.stage.files import refusal, write_bytes
 from shared.stage.paths import ROOT, Out, out_root, refuse_links
 from shared.stage.stages import Stage, key_of
-from studio.pages import making as view_pages
-from studio.site import loops
-from studio.site.downloads import write_downloads
-from studio.site.entries import Entry, entry_of
-from studio.site.machine_page import write_machine_page
-from studio.site.pages import machine, wall
-from studio.site.purposes import filters, neighbours
+from studio import pages as view_pages
+from studio.site import pages
+from studio.site.entries import Entry, entry_of, filters, neighbours, write_downloads
+from studio.site.pages import machine, wall, write_machine_page
 
 ASSETS = Path(__file__).with_name("assets")
 TITLE = "Machines in motion"
@@ -121,10 +118,10 @@ def _write_mechanism(name: str, folder: Path, freshness: Freshness) -> Entry:
     entry = entry_of(name)
     folder.mkdir(parents=True, exist_ok=True)
     entry.has_sliders = write_machine_page(name, folder / "machine.html")
-    film = next(filter(shown.is_of_now, loops.films_of(out)), None) or _skeleton(out)
+    film = next(filter(shown.is_of_now, pages.films_of(out)), None) or _skeleton(out)
     if film is not None:
-        entry.loop = _once(film, folder / "loop.mp4", loops.write_loop)
-    whole = next(filter(shown.is_of_now, loops.page_films(out)), None)
+        entry.loop = _once(film, folder / "loop.mp4", pages.write_loop)
+    whole = next(filter(shown.is_of_now, pages.page_films(out)), None)
     if whole is not None:
         entry.film = _once(whole, folder / "film.mp4", _copied)
     poster = out.poster if out.poster.is_file() and shown.is_of_now(out.poster) else None
@@ -153,7 +150,7 @@ def _picture(poster: Path | None, film: Path | None, target: Path) -> str:
         return _once(poster, target, lambda source, path: write_bytes(path, small_poster(source)))
     if film is None:
         raise UserError("it has neither a poster nor a film, so there is no picture of it")
-    return _once(film, target, loops.write_still)
+    return _once(film, target, pages.write_still)
 
 
 def _copied(source: Path, target: Path) -> None:

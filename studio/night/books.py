@@ -9,16 +9,11 @@ from datetime import datetime
 from typing import Literal
 
 from shared.stage.paths import out_root
-from studio.night.files import record
-from studio.night.files.log import Log
-from studio.night.files.record import FilmRecord, NightRecord
-from studio.night.files.runs import Run
-from studio.night.plan.board import Board
+from studio.night import runs
+from studio.night.forecast import Forecast, Frames, forecast, refuse
 from studio.night.plan.options import Options
-from studio.night.plan.steps import FILM, PROBE
-from studio.night.progress.disk import refuse
-from studio.night.progress.forecast import Forecast, forecast
-from studio.night.progress.frames import Frames
+from studio.night.plan.steps import FILM, PROBE, Board
+from studio.night.runs import FilmRecord, Log, NightRecord, Run
 
 GAP = 0.5
 """Seconds between two writings of the record, where only pictures were made."""
@@ -163,7 +158,7 @@ class Books:
                 film.left = None if known.each is None else known.left * known.each
         self._record.left = self.forecast().seconds
         self._record.updated = _now()
-        record.write(self.run, self._record)
+        runs.write(self.run, self._record)
 
 
 def _now() -> str:

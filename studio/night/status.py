@@ -1,26 +1,31 @@
-"""``mbsd status``: the state of every film, from files alone, during a run and after its end."""
+"""``mbsd status`` and ``mbsd stop``: the state of every film, from files alone, and the end of every run."""
 
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Sequence
 from datetime import datetime, timedelta
 
 from render.freshness import Freshness
-from shared.stage.console import duration
+from shared.stage.console import duration, say
+from shared.stage.errors import UserError
 from shared.stage.face import to_run
+from shared.stage.files import refusal
 from shared.stage.paths import Out
 from shared.stage.stages import is_recorded
-from studio.night.files import record, runs
-from studio.night.files.record import FilmRecord, NightRecord
-from studio.night.files.runs import Run
+from studio.night import runs
+from studio.night.runs import FilmRecord, NightRecord, Run
+
+# ``mbsd status``: the state of every film, from files alone, during a run and after its end.
+
 
 HEAD = ("film", "frames", "each", "left", "at")
 
 
 def tell() -> int:
     """Print the state of every run, a row for each film; always 0."""
-    known = [(run, recorded) for run in runs.runs() if (recorded := record.read(run)) is not None]
+    known = [(run, recorded) for run in runs.runs() if (recorded := runs.read(run)) is not None]
     if not known:
         start, here = to_run("overnight"), to_run("all")
         print(f"No night was started here yet: {start} starts one, {here} the same in this terminal.")
@@ -101,3 +106,48 @@ def table(rows: Sequence[tuple[str, ...]]) -> list[str]:
         middle = "  ".join(word.rjust(width) for word, width in zip(numbers, widths[1:-1], strict=True))
         lines.append(f"  {first.ljust(widths[0])}  {middle}  {last}".rstrip())
     return lines
+
+
+# ``mbsd stop``: end every run on this tree after the frame in flight, and report the end.
+
+
+LOOK = 0.2
+"""Seconds between two looks."""
+WORD = 30.0
+"""Seconds between two words on what is waited for."""
+
+
+def stop() -> int:
+    """Stop all runs and wait for their end; 0 also without any.
+
+    Raises UserError if it cannot ask.
+    """
+    running = runs.alive()
+    if not running:
+        say("stop", "no night is at work here")
+        return 0
+    for run in running:
+        try:
+            run.ask_to_stop()
+        except OSError as error:
+            raise UserError(refusal(run.wish, error)) from error
+    began = announced = time.monotonic()
+    for run in running:
+        say("stop", f"run {run.number} ends after {_in_flight(run)}; Ctrl-C leaves it to that")
+        while run.is_alive():
+            time.sleep(LOOK)
+            if time.monotonic() - announced > WORD:
+                announced = time.monotonic()
+                say("stop", f"run {run.number}: {duration(announced - began)}, still {_in_flight(run)}")
+        say("stop", f"run {run.number} has ended after {duration(time.monotonic() - began)}; the same command goes on")
+    return 0
+
+
+def _in_flight(run: Run) -> str:
+    """Return the work it waits for: ``the frame in flight of four_bar (about 8.3 s)``."""
+    recorded = runs.read(run)
+    if recorded is not None:
+        for name, film in recorded.films.items():
+            if any(film.steps.get(step) == "running" for step in ("poster", "film")):
+                return f"the frame in flight of {name}" + (f" (about {duration(film.each)})" if film.each else "")
+    return "what it is at"

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import getpass
 import hashlib
 import os
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -18,11 +20,55 @@ from shared.stage.files import refusal
 from shared.stage.lineage import VARIABLE
 from shared.stage.paths import ROOT, out_root, refuse_links
 from shared.system import missing
-from studio.night.commands import logout
-from studio.night.files import record, runs
-from studio.night.files.runs import Run
+from studio.night import runs
+from studio.night.forecast import refuse_before_start
 from studio.night.plan.options import Options
-from studio.night.progress.disk import refuse_before_start
+from studio.night.runs import Run
+
+# Logout: whether the system ends processes that a user has left running, and the remedy.
+#
+# systemd does so where KillUserProcesses is set in logind.conf: a run then has to be in a scope of the user's manager,
+# and that manager has to linger.
+
+
+LINGERING = Path("/var/lib/systemd/linger")
+QUESTION = (
+    *("busctl", "get-property", "org.freedesktop.login1", "/org/freedesktop/login1"),
+    *("org.freedesktop.login1.Manager", "KillUserProcesses"),
+)
+
+
+def ends_all() -> bool:
+    """Return True if the system ends everything at the logout; False if that is unknown."""
+    if shutil.which(QUESTION[0]) is None:
+        return False
+    try:
+        answer = subprocess.run(QUESTION, capture_output=True, text=True, timeout=5)
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return answer.returncode == 0 and answer.stdout.split() == ["b", "true"]
+
+
+def scope() -> list[str]:
+    """Return the words before a command that is to outlive the session; none if all commands do."""
+    if not ends_all() or shutil.which("systemd-run") is None or not os.environ.get("XDG_RUNTIME_DIR"):
+        return []
+    return ["systemd-run", "--user", "--scope", "--quiet", "--collect"]
+
+
+def warn_if_it_ends_all(warn: Callable[[str, str], None]) -> None:
+    """Warn with a remedy if the system would end the run at the logout."""
+    user = _user()
+    if ends_all() and not (LINGERING / user).exists():
+        warn("night", f"this system ends all programs of yours when you log out; run: loginctl enable-linger {user}")
+
+
+def _user() -> str:
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError):
+        return "$USER"
+
 
 BEGIN = 30.0
 """Seconds that a run has to appear."""
@@ -40,7 +86,7 @@ def start(asked: Options) -> int:
     UserError where the results cannot be written, the disk is surely too small, or the run does not begin.
     """
     for run in runs.alive():
-        recorded = record.read(run)
+        recorded = runs.read(run)
         who = f" (process {recorded.process} on {recorded.host}, since {recorded.started})" if recorded else ""
         warn("night", f"run {run.number} is at work already{who}; this one takes what that one is not at")
     refuse_before_start(asked, asked.names)
@@ -55,7 +101,7 @@ def start(asked: Options) -> int:
         say("night", f"there is no tmux to attach to, which does not matter; see it work: tail -f {runs.log_file()}")
     status, stop = to_run("status"), to_run("stop")
     say("night", f"{status} tells how far it is, {stop} ends it after the frame in flight; {runs.log_file()}")
-    logout.warn_if_it_ends_all(warn)
+    warn_if_it_ends_all(warn)
     if sys.stdout.isatty():
         _tell_forecast(night)
     else:
@@ -79,14 +125,14 @@ def _launch(command: list[str], environment: dict[str, str]) -> str:
         runs.folder().mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise UserError(refusal(runs.folder(), error)) from error
-    scope = logout.scope()
+    survive = scope()
     tmux = missing.program("tmux")
     if tmux is not None:
         # A server of its own has the environment of this command; that of the user's server may be of another day.
         socket = f"night-{_tree()}"
         session = _free_session(tmux, socket)
         launched = subprocess.run(
-            [*scope, tmux, "-L", socket, "new-session", "-d", "-s", session, "-c", str(ROOT), *command],
+            [*survive, tmux, "-L", socket, "new-session", "-d", "-s", session, "-c", str(ROOT), *command],
             env={key: value for key, value in environment.items() if key not in ("TMUX", "TMUX_PANE")},
             stdin=subprocess.DEVNULL,
             capture_output=True,
@@ -98,7 +144,7 @@ def _launch(command: list[str], environment: dict[str, str]) -> str:
     else:
         warn("night", f"tmux is not installed ({missing.remedy(['tmux'])}), so there is nothing to attach to")
     subprocess.Popen(
-        [*scope, "nohup", *command],
+        [*survive, "nohup", *command],
         cwd=ROOT,
         env=environment,
         stdin=subprocess.DEVNULL,
@@ -143,11 +189,11 @@ def _tell_forecast(night: Run) -> None:
     """Wait until the forecast is known or the run is over, and print it."""
     say("night", "a frame of every film is measured for the forecast; Ctrl-C ends the waiting, not the night")
     try:
-        _wait(lambda: not night.is_alive() or bool((recorded := record.read(night)) and recorded.forecast))
+        _wait(lambda: not night.is_alive() or bool((recorded := runs.read(night)) and recorded.forecast))
     except KeyboardInterrupt:
         print()
         return
-    recorded = record.read(night)
+    recorded = runs.read(night)
     if recorded is not None and recorded.forecast:
         say("night", f"forecast: {recorded.forecast}")
 

@@ -1,21 +1,29 @@
-"""Nights on one tree: each has a number, a lock that ends with its process, a record, a stop file.
-
-Several runs may be at work at once; a mechanism belongs to one of them while a step of it runs.
-"""
+"""Runs on one tree: each has a number, a lock that ends with its process, a record, a log and a stop."""
 
 from __future__ import annotations
 
 import os
 import socket
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from datetime import datetime
 from pathlib import Path
+from types import TracebackType
+from typing import IO, Literal
 
-from shared.stage import locks
+import msgspec
+
+from shared.stage import console, jsonfile, locks
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.files import refusal
 from shared.stage.paths import out_root, refuse_links
+
+# Nights on one tree: each has a number, a lock that ends with its process, a record, a stop file.
+#
+# Several runs may be at work at once; a mechanism belongs to one of them while a step of it runs.
+
 
 MOST = 64
 """Runs at once on one tree."""
@@ -158,3 +166,127 @@ def _sign(handle: int) -> None:
     with suppress(OSError):  # a full disk; who it is is a courtesy
         os.ftruncate(handle, 0)
         os.pwrite(handle, f"process {os.getpid()} on {socket.gethostname()}\n".encode(), 0)
+
+
+# Record of a run: the state of every film, rewritten after each change. Nothing depends on it.
+
+
+class FilmRecord(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
+    """One mechanism."""
+
+    outcome: Literal["waiting", "at work", "done", "failed"]
+    steps: dict[str, str]
+    """State by step, as of the board."""
+    seconds: float = 0.0
+    """Seconds that its steps took in this run, added up."""
+    done: int = 0
+    """Pictures of the film that are there."""
+    all: int = 0
+    """Pictures of the film; 0 until motion, parts and shot are there."""
+    each: float | None = None
+    """Seconds a picture."""
+    left: float | None = None
+    """Seconds until the last picture."""
+    error: str = ""
+    """The last error, of whichever step."""
+    elsewhere: str = ""
+    """The other process that is at it, in words; empty if none is."""
+
+
+class NightRecord(msgspec.Struct, forbid_unknown_fields=True, kw_only=True):
+    """One run."""
+
+    schema: Literal["mbsd.night"] = "mbsd.night"
+    schema_version: Literal[1] = 1
+    process: int
+    host: str
+    preset: str
+    started: str
+    """Local date and time."""
+    updated: str
+    ended: Literal["", "done", "failed", "stopped"] = ""
+    """Empty while it runs, and for ever where it was killed."""
+    forecast: str = ""
+    """The forecast of the whole night, in a sentence; empty until it stands."""
+    left: float | None = None
+    """Seconds until the last film, of what is known."""
+    films: dict[str, FilmRecord]
+
+
+def write(run: Run, record: NightRecord) -> bool:
+    """Write the record; False if the disk takes none, which stops no film."""
+    try:
+        jsonfile.write(run.record, record)
+    except UserError:
+        return False
+    return True
+
+
+def read(run: Run) -> NightRecord | None:
+    """Return the record of a run; None if there is none or it cannot be read."""
+    try:
+        return jsonfile.read(run.record, NightRecord)
+    except UserError:
+        return None
+
+
+# Messages of a night: on its terminal, and with date and time in out/night/log.txt.
+
+
+LONGEST = 20e6
+"""Bytes of the log after which a new one begins; the old one stays as log-before.txt."""
+
+
+class Log:
+    """Log of a night. A terminal that has gone, or a full disk, stops no film."""
+
+    def __init__(self, number: int) -> None:
+        self.mark = f" [{number}]" if number > 1 else ""
+        """Tells lines of several runs apart."""
+        self._file: int | None = None
+
+    def __enter__(self) -> Log:
+        path = log_file()
+        with suppress(OSError):
+            if path.exists() and path.stat().st_size > LONGEST:
+                path.replace(path.with_name("log-before.txt"))
+            self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW, 0o644)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._file is not None:
+            os.close(self._file)
+            self._file = None
+
+    def say(self, text: str) -> None:
+        """Write a line of the night itself."""
+        self._write(f"night: {text}")
+        self._show(lambda: console.say("night", text))
+
+    def warn(self, text: str) -> None:
+        """Write a line that the user should see in the morning."""
+        self._write(f"night: warning: {text}")
+        self._show(lambda: console.warn("night", text))
+
+    def fail(self, text: str) -> None:
+        """Write a line on stderr that reports a failure."""
+        self._write(f"error: {text}")
+        self._show(lambda: console.fail(text))
+
+    def relay(self, text: str, stream: IO[str] | None = None) -> None:
+        """Write a line of a step's output."""
+        self._write(text)
+        self._show(lambda: print(text, file=stream or sys.stdout, flush=True))
+
+    def _write(self, text: str) -> None:
+        if self._file is not None:
+            line = f"{datetime.now():%Y-%m-%d %H:%M:%S}{self.mark} {text}\n"
+            with suppress(OSError):
+                os.write(self._file, line.encode(errors="replace"))
+
+    def _show(self, how: object) -> None:
+        with suppress(OSError):
+            if callable(how):
+                how()

@@ -100,7 +100,7 @@ PROGRAMS_OF_TESTS = @$(PYTHON) -m shared.system --for-tests || case "$${STRICT:-
 # pyright comes whole in its wheel; without this it asks the network whether it is the newest.
 export PYRIGHT_PYTHON_IGNORE_WARNINGS := 1
 
-# The outermost make: a stage ends with it, also when make was killed and could not tell (shared/stage/lineage.py).
+# The outermost make: a stage ends with it, also when make was killed and could not tell (shared/stage/signals.py).
 ifndef MBSD_MAKE
 export MBSD_MAKE := $(shell echo $$PPID)
 endif

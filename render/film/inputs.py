@@ -75,8 +75,8 @@ def read_film(out: Out, show: str = "", aspect: float = ASPECT) -> Film:
     """
     from render.film.film import Film
     from shared.contract import read_motion, read_parts
+    from shared.contract.parts import with_rods
     from shared.contract.shot import read_shot, shown
-    from shared.contract.spanning import with_rods
 
     refuse_missing(out)
     shot = shown(read_shot(out.shot), show)

@@ -5,14 +5,63 @@ from __future__ import annotations
 import argparse
 import ipaddress
 import os
+import signal
 import socket
+import subprocess
 import sys
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
-from shared.cluster import address, authority, keeper
+from shared.cluster import address
 from shared.stage.console import run_cli, say
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, out_root
+from shared.stage.signals import end_with_parent, terminable
+
+# Keeper of a worker: Dask's worker ends with its scheduler, and another one waits for the next.
+
+
+PAUSE = 1.0
+"""s between the end of a worker and its successor, which itself waits until a scheduler answers."""
+END = 20.0
+"""s in which a worker ends that was asked to."""
+
+
+def keep(command: Sequence[str], scheduler: str) -> int:
+    """Run Dask's worker by ``command`` again and again; return its exit code after an error.
+
+    SIGTERM, SIGHUP or Ctrl-C end it, and the worker with it. The worker gets SIGTERM if this process is killed.
+    """
+    with terminable():
+        while True:
+            code = _run(command)
+            if code != 0:
+                return code if code > 0 else 128 - code
+            say("cluster", f"the scheduler {scheduler} has gone; this worker waits until it is back (Ctrl-C ends it)")
+            time.sleep(PAUSE)
+
+
+def _run(command: Sequence[str]) -> int:
+    process = subprocess.Popen(
+        command,
+        start_new_session=True,  # Ctrl-C on the terminal reaches us alone
+        preexec_fn=partial(end_with_parent, signal.SIGTERM),
+    )
+    try:
+        return process.wait()
+    finally:
+        if process.poll() is None:
+            process.terminate()
+            try:
+                process.wait(END)
+            except subprocess.TimeoutExpired:
+                with suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+
 
 WITHOUT_HTTP = ("--no-dashboard", "--dashboard-address", "127.0.0.1:0", "--preload", "shared.cluster.preload")
 """Dask starts its HTTP server always, by default on all interfaces: it begins on loopback, and the preload ends it."""
@@ -21,7 +70,7 @@ WITHOUT_HTTP = ("--no-dashboard", "--dashboard-address", "127.0.0.1:0", "--prelo
 def main() -> None:
     """Read the command line and run its command.
 
-    The scheduler takes the place of this process; a worker is kept by it (keeper.py).
+    The scheduler takes the place of this process; a worker is kept by this one, see :func:`keep`.
     """
     parser = argparse.ArgumentParser(prog="python -m shared.cluster", description="Scheduler, workers, certificates.")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -41,7 +90,7 @@ def main() -> None:
     if arguments.command == "certificates":
         if not arguments.folder:
             raise UserError("say where the certificates go: make certificates CLUSTER_TLS=folder")
-        authority.make(Path(arguments.folder))
+        address.make(Path(arguments.folder))
         say(
             "cluster",
             f"{arguments.folder}: ca.pem, cert.pem, key.pem; copy the folder to every machine, show key.pem to nobody",
@@ -62,7 +111,7 @@ def main() -> None:
     address.address()
     folder = out_root() / ".cluster" / "dask"
     folder.mkdir(parents=True, exist_ok=True)
-    sys.exit(keeper.keep(worker_command(arguments.address, host, arguments.name, folder), arguments.address))
+    sys.exit(keep(worker_command(arguments.address, host, arguments.name, folder), arguments.address))
 
 
 def scheduler_command(host: str, port: int) -> list[str]:

@@ -15,10 +15,9 @@ import msgspec
 
 from shared.contract import Motion, Parts
 from shared.contract.materials import MATERIALS
-from shared.contract.mount import Kind
+from shared.contract.parts import Kind
 from shared.stage import jsonfile
-from shared.stage.errors import UserError
-from shared.stage.suggestions import did_you_mean
+from shared.stage.errors import UserError, did_you_mean
 
 Unit = Annotated[float, msgspec.Meta(ge=0, le=1)]
 Positive = Annotated[float, msgspec.Meta(gt=0)]

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 import cadquery as cq
 
 from shared.shapes import outline
-from shared.shapes.build import bore, eased, extruded, turned
-from shared.shapes.once import built_once
+from shared.shapes.build import bore, built_once, eased, extruded, turned
 from shared.shapes.solid import placed
 
 

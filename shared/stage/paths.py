@@ -10,11 +10,10 @@ import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.face import to_run
 from shared.stage.memory import recalled
 from shared.stage.scale import Scale
-from shared.stage.suggestions import did_you_mean
 
 ROOT = Path(__file__).resolve().parents[2]
 """The folder that holds the rooms: the clone, or the one that an installed package brings them in."""

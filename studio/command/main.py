@@ -10,10 +10,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
-from shared.stage.errors import UserError
+from shared.stage.errors import UserError, did_you_mean
 from shared.stage.face import is_of_make
 from shared.stage.paths import known_name, mechanism_names, work_in
-from shared.stage.suggestions import did_you_mean
 from studio.command import commands, running
 from studio.command.place import Place, is_path, place_of, place_of_file
 from studio.command.running import Run

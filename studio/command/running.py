@@ -14,11 +14,10 @@ from pathlib import Path
 import msgspec
 
 from render.presets import preset_named
-from shared.stage.lineage import VARIABLE
 from shared.stage.memory import remembered
 from shared.stage.paths import ROOT, Out, out_root
 from shared.stage.scale import scale_of
-from shared.stage.signals import Stopped, terminable
+from shared.stage.signals import VARIABLE, Stopped, terminable
 from shared.stage.stages import outdated_by, results_of
 from studio.command.table import COMMANDS, Command
 

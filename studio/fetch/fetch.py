@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from shared.stage import locks
+from shared.stage import files
 from shared.stage.console import say
 from shared.stage.errors import UserError
 from shared.stage.files import refusal
@@ -93,7 +93,7 @@ def _locked(folder: Path) -> Iterator[int]:
     try:
         while True:
             handle = _lock_of(folder)
-            if locks.try_lock(handle) and os.fstat(handle).st_nlink:
+            if files.try_lock(handle) and os.fstat(handle).st_nlink:
                 yield handle
                 return
             os.close(handle)

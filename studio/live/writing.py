@@ -30,8 +30,7 @@ from studio.live.processes.nursery import Nursery
 # Numbers in the source of a mechanism.py: only the literal of each is replaced.
 #
 # A default of Params is a number, or a tuple of numbers at whose place it stands; ``field(default=...)`` is one, too.
-# A
-# default that is computed (``2 * pi``) is replaced as a whole. Of a variant, the numbers are those of VARIANTS.
+# A default that is computed (``2 * pi``) is replaced as a whole. Of a variant, the numbers are those of VARIANTS.
 
 
 LINES = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)?")
@@ -254,8 +253,7 @@ def _exchanged(first: Path, second: Path) -> bool:
 # Writer of numbers into mechanism.py, which checks that Params then has them.
 #
 # The file as it would be is loaded first, in a process of its own: where a later line, a method of Params or a
-# decorator
-# has the last word on a number, the literal would change and the mechanism would not.
+# decorator has the last word on a number, the literal would change and the mechanism would not.
 
 
 TRIES = 3

@@ -17,8 +17,8 @@ from shared.stage.console import say, warn
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.files import refusal
-from shared.stage.lineage import VARIABLE
 from shared.stage.paths import ROOT, out_root, refuse_links
+from shared.stage.signals import VARIABLE
 from shared.system import missing
 from studio.night import runs
 from studio.night.forecast import refuse_before_start

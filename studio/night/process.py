@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
 from render.blender.process import Patience
-from shared.stage.lineage import VARIABLE
 from shared.stage.paths import ROOT
+from shared.stage.signals import VARIABLE
 
 BESIDE = 10
 """Niceness of what runs beside the render, which has the first claim on the cores."""

@@ -14,7 +14,7 @@ from typing import IO, Literal
 
 import msgspec
 
-from shared.stage import console, jsonfile, locks
+from shared.stage import console, files, jsonfile
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.files import refusal
@@ -55,7 +55,7 @@ class Run:
 
     def is_alive(self) -> bool:
         """Return True if the process of this run is at work, by its lock."""
-        return self.lock.exists() and not locks.is_abandoned(self.lock)
+        return self.lock.exists() and not files.is_abandoned(self.lock)
 
     def ask_to_stop(self) -> None:
         """Ask the run to end after the frame in flight."""
@@ -157,7 +157,7 @@ def _opened(path: Path) -> int:
 
 def _try_lock(handle: int) -> bool:
     try:
-        return locks.try_lock(handle)
+        return files.try_lock(handle)
     except OSError:
         return True  # a disk without locks: two runs do each other's work twice there, and no harm
 

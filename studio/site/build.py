@@ -16,7 +16,7 @@ from pathlib import Path
 from render.freshness import Freshness
 from render.gallery import small_poster
 from shared.contract.quantity import counted
-from shared.stage import locks
+from shared.stage import files
 from shared.stage.console import progress, say, warn
 from shared.stage.errors import Busy, UserError
 from shared.stage.face import to_run
@@ -54,7 +54,7 @@ def _alone(folder: Path) -> Iterator[None]:
         raise UserError(refusal(lock, error)) from error
     try:
         try:
-            own = locks.try_lock(handle)
+            own = files.try_lock(handle)
         except OSError as error:
             raise UserError(refusal(lock, error, "lock")) from error
         if not own:

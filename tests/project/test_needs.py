@@ -14,14 +14,15 @@ from tests.running.make import run
 from tests.running.needs import SOLVER
 
 LACKING = """
-from shared.system import missing, wanted
+from shared.system import missing
+from shared.system import missing
 from tests.running import needs
 missing.missing_libraries = needs.missing_libraries = lambda: {libraries!r}
-for name in list(wanted.PROGRAMS):
-    del wanted.PROGRAMS[name]
-wanted.PROGRAMS["sh"] = wanted.Program("dash")
-wanted.PROGRAMS["nowhere"] = wanted.Program("nowhere-server", "nowhere")
-wanted.LIBRARIES["libNowhere.so.1"] = "libnowhere1"
+for name in list(missing.PROGRAMS):
+    del missing.PROGRAMS[name]
+missing.PROGRAMS["sh"] = missing.Program("dash")
+missing.PROGRAMS["nowhere"] = missing.Program("nowhere-server", "nowhere")
+missing.LIBRARIES["libNowhere.so.1"] = "libnowhere1"
 needs.TESTS = __import__("pathlib").Path(__file__).parent
 """
 TESTS = """

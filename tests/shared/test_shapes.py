@@ -13,8 +13,7 @@ from shared.contract import Mass
 from shared.shapes import base, engraving, outline
 from shared.shapes.build import extruded
 from shared.shapes.link import Eye, link, plate_link
-from shared.shapes.pin import Groove, Head, bushing, circlip, pin, stylus, washer
-from shared.shapes.pivot import Pivot
+from shared.shapes.pin import Groove, Head, Pivot, bushing, circlip, pin, stylus, washer
 from shared.shapes.screw import SOCKET, socket_screw
 from shared.shapes.solid import placed
 from shared.shapes.units import cubic_metres, inertia_metres, metres, mm

@@ -16,8 +16,7 @@ from pathlib import Path
 
 from mbsd import MechanismError
 from shared.stage.errors import UserError
-from studio.imports.reading import read
-from studio.imports.reading import difference, try_out
+from studio.imports.reading import difference, read, try_out
 from studio.imports.writing import mechanism_py
 from tools.hunt.outcome import AGREED, REFUSED, WRONG, CaseResult, Outcome, Raw, attempt
 from tools.hunt_imports.mutations import Damaged, damaged

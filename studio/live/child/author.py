@@ -23,9 +23,9 @@ from render.view.document import encode
 from render.view.payload import payload
 from shared import contract
 from shared.contract import Motion, Parts
+from shared.contract.parts import with_rods
 from shared.contract.shot import Shot
 from shared.contract.skeleton import Moving as Told
-from shared.contract.spanning import with_rods
 from shared.stage import console
 from shared.stage.errors import UserError
 from shared.stage.paths import Out, mechanism_file, mechanism_folder, shown_file

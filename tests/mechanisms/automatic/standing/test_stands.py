@@ -12,7 +12,7 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.loading.wishes import wishing
 from shared.contract import consistency
 from shared.contract.materials import MATERIALS
-from shared.contract.mount import Kind
+from shared.contract.parts import Kind
 from shared.shapes.bodies import Bodies
 from shared.shapes.solid import Solid
 from tools.hunt_parts.case import meshed, overlapping, proven

@@ -1,13 +1,4 @@
-"""Path of a belt or chain round two pulleys: its length, and places along it.
-
-The first pulley's centre is the origin, the second's at (distance, 0). The belt goes counter-clockwise round the first,
-on straight along the common tangent, round the second (clockwise if it is crossed), and back:
-
-    open       cos(beta) = (r1 - r2) / d      arcs 2 pi - 2 beta and 2 beta
-    crossed    cos(beta) = (r1 + r2) / d      arcs 2 pi - 2 beta, both
-
-beta is the angle between the line of centres and the radius to a tangent's end. Lengths in any one unit.
-"""
+"""Belts and chains round two pulleys: the length of their path, places along it, and their thickness."""
 
 from __future__ import annotations
 
@@ -16,6 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+# Path of a belt or chain round two pulleys: its length, and places along it.
+#
+# The first pulley's centre is the origin, the second's at (distance, 0). The belt goes counter-clockwise round the
+# first, on straight along the common tangent, round the second (clockwise if it is crossed), and back:
+#
+# open       cos(beta) = (r1 - r2) / d      arcs 2 pi - 2 beta and 2 beta crossed    cos(beta) = (r1 + r2) / d
+# arcs 2 pi - 2 beta, both
+#
+# beta is the angle between the line of centres and the radius to a tangent's end. Lengths in any one unit.
+
 
 Array = NDArray[np.float64]
 
@@ -97,3 +99,28 @@ class BeltPath:
 
 def _ray(angle: Array | float) -> Array:
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+# Thickness of a belt or chain in the film and in the clearance proof, from its rim's radius.
+#
+# A round belt carries marks that stand out a little. A chain has rollers on pins between two rows of plates.
+
+
+LONG, PROUD = 1.6, 1.06
+"""Half of a mark's length, and its radius."""
+ROLLER, BOLT = 0.9, 0.35
+"""Radii of a chain's roller and of its pin."""
+PLATES, PIN, PLATE = 1.5, 2.1, 0.42
+"""How far a chain's plates lie from the middle, half a pin's length, a plate's radius."""
+APART = 1.1
+"""How far the strands of a crossed belt pass over and under each other."""
+
+
+def half_width(radius: float, chain: bool) -> float:
+    """Return the extent from the middle line out, in the plane."""
+    return radius * (ROLLER if chain else PROUD)
+
+
+def half_height(radius: float, chain: bool, crossed: bool) -> float:
+    """Return the extent from the middle line up."""
+    return radius * ((PIN if chain else PROUD) + (APART if crossed else 0.0))

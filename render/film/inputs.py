@@ -75,7 +75,7 @@ def read_film(out: Out, show: str = "", aspect: float = ASPECT) -> Film:
     """
     from render.film.film import Film
     from shared.contract import read_motion, read_parts
-    from shared.contract.parts import with_rods
+    from shared.contract.geometry import with_rods
     from shared.contract.shot import read_shot, shown
 
     refuse_missing(out)

@@ -19,8 +19,8 @@ from shared.stage.paths import refuse_links
 
 # Locks on files that belong to one process. The system releases a lock when its owner ends.
 #
-# A lock therefore tells what the number of a process cannot: whether the owner still runs, also in a container, after
-# a restart of the machine, or on another computer that shares the disk.
+# A lock therefore tells what the number of a process cannot: whether the owner still runs, also in a container, after a
+# restart of the machine, or on another computer that shares the disk.
 
 
 def try_lock(handle: int) -> bool:

@@ -96,8 +96,8 @@ def _coming_again(
 
 # Link of a stage to make: a stage that make has started ends with make, however make ends.
 #
-# GNU make passes SIGTERM on to the commands it started, but no other signal, and a SIGKILL or a shell in between
-# breaks the chain. Without a word from make its stages would go on rendering for hours.
+# GNU make passes SIGTERM on to the commands it started, but no other signal, and a SIGKILL or a shell in between breaks
+# the chain. Without a word from make its stages would go on rendering for hours.
 
 
 VARIABLE = "MBSD_MAKE"

@@ -18,8 +18,8 @@ from studio.live.numbers import LARGEST
 
 # Message as bytes: its header's length (uint32, little endian), the header as JSON, the payload.
 #
-# Server and browser, and server and child, send the same frames, so a motion that a child has solved is passed on as
-# it is. page/connection.js reads them.
+# Server and browser, and server and child, send the same frames, so a motion that a child has solved is passed on as it
+# is. page/connection.js reads them.
 
 
 LARGEST_FRAME = 1 << 30

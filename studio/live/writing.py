@@ -29,8 +29,8 @@ from studio.live.processes.nursery import Nursery
 
 # Numbers in the source of a mechanism.py: only the literal of each is replaced.
 #
-# A default of Params is a number, or a tuple of numbers at whose place it stands; ``field(default=...)`` is one, too.
-# A default that is computed (``2 * pi``) is replaced as a whole. Of a variant, the numbers are those of VARIANTS.
+# A default of Params is a number, or a tuple of numbers at whose place it stands; ``field(default=...)`` is one, too. A
+# default that is computed (``2 * pi``) is replaced as a whole. Of a variant, the numbers are those of VARIANTS.
 
 
 LINES = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)?")

@@ -8,11 +8,9 @@ import msgspec
 import pytest
 
 from mbsd import Mechanism
-from tools.numbers.events.case import Case
-from tools.numbers.events.commands import quick_cases, verdict
-from tools.numbers.events.condition import MOST
-from tools.numbers.events.loop import IN_LOOP, beside
-from tools.numbers.events.record import Record, read
+from tools.numbers.events.commands import IN_LOOP, beside, quick_cases, verdict
+from tools.numbers.events.difference import MOST
+from tools.numbers.events.record import Case, Record, read
 from tools.numbers.events.table import cases
 
 RECORDS: dict[str, Record] = read()

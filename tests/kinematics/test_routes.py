@@ -17,7 +17,7 @@ from mbsd.kinematics.march import march_along
 from mbsd.kinematics.prepare import prepare
 from mbsd.kinematics.prepared import Prepared
 from tools.models.assur_models import crank
-from tools.models.random_machines import RandomMachine
+from tools.random_mechanisms.shafts import RandomMachine
 
 
 def both(ready: Prepared, times: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:

@@ -18,15 +18,13 @@ from itertools import chain
 
 from shared.stage.console import run_cli, say
 from shared.stage.paths import out_root
-from tools.hunt.asked import parser, refuse_unknown
-from tools.hunt.loop import follow, seeds
+from tools.hunt.loop import follow, parser, refuse_unknown, seeds
 from tools.hunt.outcome import CaseResult
 from tools.hunt.pool import results
 from tools.hunt_parts import case
-from tools.hunt_parts.kept import Kept
-from tools.hunt_parts.outcome import WRONG
-from tools.hunt_parts.own_kinds import KINDS
+from tools.hunt_parts.outcome import WRONG, Kept
 from tools.hunt_parts.report import Tally
+from tools.random_mechanisms.own_kinds import KINDS
 
 LIMIT = 900.0
 """s of one case, some fifty times the usual."""

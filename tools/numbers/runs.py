@@ -27,7 +27,7 @@ from mbsd.kinematics.prepare import prepare
 from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import KINDS
-from tools.documents.integrators.mechanisms import four_bar, pendulum
+from tools.documents.integrators import four_bar, pendulum
 
 Run = Callable[[], Any]
 FORMULATIONS = ("independent", "reference")

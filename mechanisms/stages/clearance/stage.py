@@ -121,7 +121,7 @@ def check(
     from mechanisms.stages.clearance.path import axes_of, paths
     from mechanisms.stages.clearance.search import RESOLUTION, Sweep
     from mechanisms.stages.clearance.slide import slides_of
-    from shared.contract.parts import with_rods
+    from shared.contract.geometry import with_rods
 
     name, motion = title or parts.mechanism, with_rods(motion, parts)
     _refuse_lost(name, pieces, motion)

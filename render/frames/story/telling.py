@@ -28,7 +28,7 @@ from render.report import description
 from render.report.facts import facts, reasons
 from render.report.transmission import marks
 from shared.contract import Motion, read_motion, read_parts
-from shared.contract.parts import with_rods
+from shared.contract.geometry import with_rods
 from shared.contract.shot import Shot, read_shot, shown
 from shared.contract.shot import Story as Wishes
 from shared.stage.console import duration

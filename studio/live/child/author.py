@@ -23,7 +23,7 @@ from render.view.document import encode
 from render.view.payload import payload
 from shared import contract
 from shared.contract import Motion, Parts
-from shared.contract.parts import with_rods
+from shared.contract.geometry import with_rods
 from shared.contract.shot import Shot
 from shared.contract.skeleton import Moving as Told
 from shared.stage import console

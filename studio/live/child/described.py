@@ -33,8 +33,8 @@ from studio.live.numbers import Number, numbers_of, parsed
 # Numbers of a model that a number of Params decides, and the unit that follows.
 #
 # Lengths are found by Euler's theorem: a place F of the model grows as the lengths x that decide it do, F = sum of x
-# dF/dx over all numbers that change it, which no angle and no ratio among them obeys. A number that is itself a mass,
-# a rate or an angle of the model has its unit.
+# dF/dx over all numbers that change it, which no angle and no ratio among them obeys. A number that is itself a mass, a
+# rate or an angle of the model has its unit.
 
 
 STEP = 1e-4

@@ -18,8 +18,7 @@ from tools.hunt.loop import seeds
 from tools.hunt.outcome import CaseResult
 from tools.hunt_parts import case
 from tools.hunt_parts.__main__ import hunt
-from tools.hunt_parts.kept import Kept
-from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, STUCK, UNSOUND, reason
+from tools.hunt_parts.outcome import BUILT, COLLIDES, ERROR, STUCK, UNSOUND, Kept, reason
 from tools.models.four_bars import angles, model
 
 SEED = 4_000_000

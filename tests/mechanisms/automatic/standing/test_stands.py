@@ -16,7 +16,7 @@ from shared.contract.parts import Kind
 from shared.shapes.bodies import Bodies
 from shared.shapes.solid import Solid
 from tools.hunt_parts.case import meshed, overlapping, proven
-from tools.models.machines_along import V_TWO, engine
+from tools.models.shaft_machines import V_TWO, engine
 
 STEPS, PIN = 90, 8.0
 

@@ -7,6 +7,7 @@ import fcntl
 import glob
 import hashlib
 import os
+import re
 import secrets
 import shutil
 from collections.abc import Callable, Collection, Iterator
@@ -52,6 +53,8 @@ def is_abandoned(path: Path) -> bool:
 # Files written whole: a temporary file beside the target, then a rename.
 
 
+TEMPORARY = re.compile(r"\..+-[0-9a-f]{8}(\.[^.]+)?")
+"""Name of a temporary file; mbsd/base/files.py gives the same."""
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 FORBIDDEN = (errno.EACCES, errno.EPERM, errno.EROFS)
 IN_THE_WAY = (errno.EISDIR, errno.ENOTDIR, errno.EEXIST, errno.ENOTEMPTY)
@@ -76,7 +79,7 @@ def whole_file(path: Path, put: Callable[[Path, Path], object] = os.replace) -> 
     handle = -1
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _remove_leftovers(path)
+        remove_leftovers(path.parent, f".{glob.escape(path.stem)}-*{glob.escape(path.suffix)}")
         handle, temporary = _locked_file(path)
         yield temporary
         with temporary.open("rb") as written:
@@ -128,10 +131,13 @@ def _locked_file(path: Path) -> tuple[int, Path]:
         os.close(handle)  # another process took it for a leftover before it was locked
 
 
-def _remove_leftovers(path: Path) -> None:
-    """Remove temporary files of ``path`` whose writer was killed, as the lock shows."""
-    for left in path.parent.glob(f".{glob.escape(path.stem)}-*{glob.escape(path.suffix)}"):
-        if is_abandoned(left):
+def remove_leftovers(folder: Path, name: str = ".*-*") -> None:
+    """Remove temporary files in ``folder`` whose writer was killed, as the lock shows.
+
+    ``name`` is their pattern: those of one target, or of all, such as the half film of a killed ``mbsd animate``.
+    """
+    for left in folder.glob(name):
+        if TEMPORARY.fullmatch(left.name) and is_abandoned(left):
             left.unlink(missing_ok=True)
 
 

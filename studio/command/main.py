@@ -12,7 +12,8 @@ from typing import Any, NoReturn
 
 from shared.stage.errors import UserError, did_you_mean
 from shared.stage.face import is_of_make
-from shared.stage.paths import known_name, mechanism_names, work_in
+from shared.stage.files import remove_leftovers
+from shared.stage.paths import Out, known_name, mechanism_names, work_in
 from studio.command import commands, running
 from studio.command.place import Place, is_path, place_of, place_of_file
 from studio.command.running import Run
@@ -144,6 +145,8 @@ def main(arguments: Sequence[str] | None = None, make: bool = False) -> int:
         planned=asked.plan,
     )
     operand = _operand(command, asked, place)
+    if command.of == "machine" and not run.planned:
+        remove_leftovers(Out(operand).folder)
     code = commands.do(command, operand, said, run)
     if run.quiet and not run.planned:
         print(running.summary(command, operand, run, code))

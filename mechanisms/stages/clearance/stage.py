@@ -57,7 +57,7 @@ LOOKS = 4
 PACKAGES = ("manifold3d", "numpy")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / name for name in ("clearance", "parts_files.py")),
-    *contract_sources("belt_path", "belt_section", "clearance", "spanning"),
+    *contract_sources("clearance", "geometry"),
 ]
 
 

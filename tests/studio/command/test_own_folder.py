@@ -81,7 +81,10 @@ def test_folders_and_files_are_solved_where_they_lie_and_again_only_when_they_ch
         assert done.returncode == 0, done.stderr
         assert "nothing to do" not in done.stdout.splitlines()[-1]
         assert (folder / "out" / name / "data.json").is_file()
+        half = folder / "out" / name / ".animation-0123abcd.mp4"  # of an animate that was killed
+        half.write_bytes(b"half a film")
         assert f"solve: {name}: nothing to do" in mbsd("solve", name, at=folder).stdout
+        assert not half.exists()
     (folder / "lengths.py").write_text("LENGTH = 0.031\n")
     assert "solve: arm: nothing to do" in mbsd("solve", "arm", at=folder).stdout
     assert "nothing to do" not in mbsd("solve", "wheel", at=folder).stdout.splitlines()[-1]

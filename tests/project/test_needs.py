@@ -15,7 +15,6 @@ from tests.running.needs import SOLVER
 
 LACKING = """
 from shared.system import missing
-from shared.system import missing
 from tests.running import needs
 missing.missing_libraries = needs.missing_libraries = lambda: {libraries!r}
 for name in list(missing.PROGRAMS):

@@ -12,6 +12,8 @@ from typing import Any
 
 import pytest
 
+from tests.running import samples
+
 SECONDS = Path(__file__).with_name("seconds.json")
 """Seconds that each long group took; `make test PYTEST="... --record-seconds"` writes it anew."""
 LONG = 4.0
@@ -57,6 +59,7 @@ class Order:
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Mark, before ``-m`` chooses, and sort by group; the order within a group stays."""
         seconds = recorded()
+        samples.mark(items)
         for item in items:
             if is_fast(item.nodeid, seconds) and item.get_closest_marker("slow") is None:
                 item.add_marker("fast")

@@ -253,7 +253,7 @@ install: ## uv, Python 3.13, every package at its locked version; kernels compil
 	@sh tools/install.sh
 
 libraries: install ## whether the system has what parts and pictures load; their targets ask before they begin
-	@test ! -d .venv || test -f .venv/libraries-found || { echo "error: parts and pictures need these libraries; nothing was made" >&2; exit 1; }
+	@test ! -d .venv || test -f .venv/libraries-found || { echo "error: parts and pictures need these libraries; nothing was built" >&2; exit 1; }
 
 test: install ## all tests but the slow ones; PYTEST="-k name" picks some; STRICT=1 skips none
 	$(PROGRAMS_OF_TESTS)

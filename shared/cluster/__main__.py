@@ -40,7 +40,7 @@ def keep(command: Sequence[str], scheduler: str) -> int:
             code = _run(command)
             if code != 0:
                 return code if code > 0 else 128 - code
-            say("cluster", f"the scheduler {scheduler} has gone; this worker waits until it is back (Ctrl-C ends it)")
+            say("cluster", f"the scheduler {scheduler} is gone; this worker waits until it is back (Ctrl-C ends it)")
             time.sleep(PAUSE)
 
 
@@ -89,7 +89,7 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.command == "certificates":
         if not arguments.folder:
-            raise UserError("say where the certificates go: make certificates CLUSTER_TLS=folder")
+            raise UserError("give a folder for the certificates: make certificates CLUSTER_TLS=folder")
         address.make(Path(arguments.folder))
         say(
             "cluster",
@@ -106,7 +106,7 @@ def main() -> None:
         sys.stdout.flush()
         os.execv(sys.executable, scheduler_command(host, arguments.port))
     if not arguments.address:
-        raise UserError("say where the scheduler is: make worker CLUSTER=tcp://127.0.0.1:8786")
+        raise UserError("give the address of the scheduler: make worker CLUSTER=tcp://127.0.0.1:8786")
     os.environ[address.VARIABLE] = arguments.address
     address.address()
     folder = out_root() / ".cluster" / "dask"
@@ -147,7 +147,7 @@ def refuse_open(host: str, plain: bool) -> None:
         return
     raise UserError(
         f"HOST={host} can be reached by others, and a worker runs what it is sent: make certificates, and give their "
-        "folder as CLUSTER_TLS=folder, or say --plain where nobody else can reach that network"
+        "folder as CLUSTER_TLS=folder, or give --plain where nobody else can reach that network"
     )
 
 

@@ -65,7 +65,7 @@ def address() -> str:
     given = os.environ.get(VARIABLE, "").strip()
     scheme, _, rest = given.partition("://")
     if given and (scheme not in ("tcp", "tls") or ":" not in rest):
-        raise UserError(f"CLUSTER={given} is no address of a scheduler; write tcp://name:8786, or tls://name:8786")
+        raise UserError(f"CLUSTER={given} is not the address of a scheduler; write tcp://name:8786, or tls://name:8786")
     if scheme == "tls":
         certificates()
     return given
@@ -117,7 +117,7 @@ def make(folder: Path) -> None:
     files = {name: folder / name for name in ("ca.pem", "cert.pem", "key.pem")}
     for path in files.values():
         if path.exists():
-            raise UserError(f"{path} is there already; remove it or choose another folder")
+            raise UserError(f"{path} exists already; remove it or choose another folder")
     authority, key = ec.generate_private_key(ec.SECP256R1()), ec.generate_private_key(ec.SECP256R1())
     issuer = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, f"{NAME} authority")])
     subject = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, NAME)])

@@ -68,7 +68,7 @@ class Bodies(dict[str, list[Solid]]):
         UserError for a body that has no solids yet, whose main piece they would be.
         """
         if not self.get(body):
-            raise UserError(f"dress('{body}'): it has no solids that are to be dressed; there are: {', '.join(self)}")
+            raise UserError(f"dress('{body}'): it has no solids to dress; there are: {', '.join(self)}")
         self[body] = [*self[body], *(replace(solid, dressing=True) for solid in solids)]
 
     def leave_out(self, body: str) -> None:

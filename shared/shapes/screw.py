@@ -103,7 +103,7 @@ def ball_stud(
     swells.sort(key=lambda swell: swell[0])
     for (_, high, _), (low, _, _) in pairwise(swells):
         if low < high:
-            raise ValueError(f"a stud's balls and collars overlap between {low:g} and {high:g} mm; put them apart")
+            raise ValueError(f"a stud's balls and collars overlap between {low:g} and {high:g} mm; move them apart")
     points: list[tuple[float, ...]] = []
     if not swells or swells[0][0] > start:
         points += [(0.0, start), (r - 0.3, start), (r, start + 0.3)]

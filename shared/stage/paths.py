@@ -306,7 +306,7 @@ def mechanism_folder(name: str) -> Path:
     source = _source(owner_of(name))
     if source is not None and source.name == "mechanism.py" and _is_twofold(source):
         owner = owner_of(name)
-        raise UserError(f"{owner}/mechanism.py and {owner}.py in {MECHANISMS} have one name; give one another name")
+        raise UserError(f"{owner}/mechanism.py and {owner}.py in {MECHANISMS} have the same name; rename one of them")
     if source is None:
         known, name = mechanism_names(), mechanism_name(name)
         if name in RESERVED and name in unfit_names():

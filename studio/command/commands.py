@@ -96,7 +96,7 @@ def export(command: Command, name: str, said: Mapping[str, str], run: Run) -> in
 def _has_libraries() -> bool:
     missing = missing_libraries()
     if missing:
-        fail(f"parts and pictures need these libraries; nothing was made: {sentence(missing)}")
+        fail(f"parts and pictures need these libraries; nothing was built: {sentence(missing)}")
     return not missing
 
 

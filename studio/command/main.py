@@ -71,7 +71,7 @@ class Once(argparse.Action):
         option = OPTIONS[self.dest.replace("_", "-")]
         given.append(values)
         if not option.joint and len(set(given)) > 1:
-            parser.error(f"--{option.name} takes one value, and has {' and '.join(given)}")
+            parser.error(f"--{option.name} takes one value, but was given {' and '.join(given)}")
         setattr(namespace, self.dest, option.joint.join(given) if option.joint else values)
 
 
@@ -177,7 +177,7 @@ def _said(command: Command, asked: argparse.Namespace, place: Place, make: bool)
             where = "" if getattr(asked, name.replace("-", "_")) else " in mbsd.toml"
             hint = did_you_mean(value, option.choices)
             spelled = f"{option.variable}={value}" if make else f"--{name} {value}"
-            raise UserError(f"{spelled}{where} is no {name}; choose one of: {', '.join(option.choices)}{hint}")
+            raise UserError(f"{spelled}{where} is not a valid {name}; choose one of: {', '.join(option.choices)}{hint}")
         said[name] = value
     return said
 
@@ -193,7 +193,7 @@ def _operand(command: Command, asked: argparse.Namespace, place: Place) -> str:
         names = mechanism_names()
         if len(names) != 1:
             there = f"there is: {', '.join(names)}" if names else "there is none here; mbsd new excavator makes one"
-            raise UserError(f"mbsd {command.name}: say which machine; {there}")
+            raise UserError(f"mbsd {command.name}: name a mechanism; {there}")
         name = names[0]
     return known_name(name)
 

@@ -65,7 +65,7 @@ def read(folder: Path) -> Settings:
     try:
         settings = msgspec.toml.decode(content.removeprefix(codecs.BOM_UTF8), type=Settings)
     except RecursionError as error:
-        raise UserError(f"{file}: it is nested too deep; {_known()}") from error
+        raise UserError(f"{file}: it is nested too deeply; {_known()}") from error
     except (msgspec.DecodeError, ValueError) as error:  # a number of 5000 digits is a ValueError
         raise UserError(f"{file}: {error}; {_known()}") from error
     for field in msgspec.structs.fields(Settings):
@@ -76,7 +76,7 @@ def read(folder: Path) -> Settings:
 
 
 def _known() -> str:
-    return f"it may say: {', '.join(field.encode_name for field in msgspec.structs.fields(Settings))}"
+    return f"its fields are: {', '.join(field.encode_name for field in msgspec.structs.fields(Settings))}"
 
 
 # Place in which a command works: the clone, or the nearest folder of the user's own.
@@ -143,7 +143,7 @@ def place_of_file(folder: Path, operand: str) -> tuple[Place, str]:
     if path.is_file() and (path.parent / "mechanism.py").is_file():
         path = path.parent
     if not (path.is_file() and path.suffix == ".py") and not (path / "mechanism.py").is_file():
-        what = "has no mechanism.py" if path.is_dir() else "is no file or folder of a mechanism"
+        what = "has no mechanism.py" if path.is_dir() else "is not a file or folder of a mechanism"
         raise UserError(f"{operand} {what}; give the name or the path of a mechanism, such as lamp, lamp.py or lamp/")
     for place in (place_of(folder), place_of(path.parent), place_of(path if path.is_dir() else path.parent)):
         machines = place.machines or ROOT / "mechanisms"
@@ -156,7 +156,7 @@ def place_of_file(folder: Path, operand: str) -> tuple[Place, str]:
 
 def _refuse_none(folder: Path) -> None:
     if not folder.is_dir():
-        raise UserError(f"{folder} is no folder; say which one holds the machines")
+        raise UserError(f"{folder} is not a folder; give the folder of the mechanisms")
 
 
 def _inside(folder: Path, machines: Path) -> str:

@@ -90,7 +90,7 @@ def _numbers(text: str, line: int, count: int = 1) -> list[float]:
     try:
         numbers = [float(word.replace("d", "e") if word.count("d") == 1 else word) for word in text.split()]
     except ValueError:
-        raise UserError(f"line {line}: {text.strip()[:60]!r} are no numbers") from None
+        raise UserError(f"line {line}: {text.strip()[:60]!r} are not numbers") from None
     if len(numbers) < count or not all(math.isfinite(number) for number in numbers):
         raise UserError(f"line {line}: {text.strip()[:60]!r} should be {count} finite numbers")
     return numbers[:count]
@@ -197,12 +197,12 @@ class _Reader:
         axes = [(joint, self._ends(joint)[0].axes[:, 2]) for joint in turning]
         if not axes:
             names = ", ".join(f"{joint.word} {joint.text('Name')}" for joint in self.joints[:4]) or "there are none"
-            raise UserError(f"no joint says in which plane it moves ({names}): a RevoluteJoint does")
+            raise UserError(f"no joint gives the plane of motion ({names}): a RevoluteJoint does")
         normal = axes[0][1]
         for joint, axis in axes:
             if np.linalg.norm(np.cross(axis, normal)) > ALIGNED:
                 raise UserError(
-                    f"{joint.word} {joint.text('Name')} turns about another axis than the rest; it is spatial"
+                    f"{joint.word} {joint.text('Name')} turns about another axis than the others; the file is spatial"
                 )
         lead = int(np.argmax(np.abs(normal)))
         normal = normal * np.sign(normal[lead])
@@ -280,7 +280,7 @@ class _Reader:
             radii = (joint.number("radiusI"), joint.number("radiusJ"))
             self.sketch.joints.append(Gears(name, i.part, j.part, (self._flat(i.origin), self._flat(j.origin)), radii))
         elif not (kind in IDLE and normal):
-            raise UserError(f"{kind} {name} cannot be said in the plane of the pins")
+            raise UserError(f"{kind} {name} cannot be expressed in the plane of the pins")
 
     def _slide(self, name: str, order: tuple[_Marker, _Marker], axis: np.ndarray) -> None:
         first, second = order

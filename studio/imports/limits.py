@@ -55,7 +55,7 @@ def check_count(things: Sized, words: str) -> None:
 
 
 def check_depth(depth: int, where: str) -> None:
-    """Raise UserError for a text nested too deep; ``where`` names the line or element."""
+    """Raise UserError for a text nested too deeply; ``where`` names the line or element."""
     if depth > DEEPEST:
         raise UserError(f"{where}: it is nested deeper than {DEEPEST} levels")
 
@@ -69,7 +69,7 @@ def parsed_json(text: str) -> dict[str, Any]:
     try:
         data = json.loads(text, parse_float=_number, parse_int=_whole_number, parse_constant=_number)
     except RecursionError as error:
-        raise UserError("its JSON is nested too deep") from error
+        raise UserError("its JSON is nested too deeply") from error
     except ValueError as error:
         raise UserError(f"its JSON cannot be read ({error})") from error
     if not isinstance(data, dict):
@@ -80,7 +80,7 @@ def parsed_json(text: str) -> dict[str, Any]:
 def _number(text: str) -> float:
     number = float(text)
     if not math.isfinite(number):
-        raise ValueError(f"{text[:40]} is no finite number")
+        raise ValueError(f"{text[:40]} is not a finite number")
     return number
 
 

@@ -65,18 +65,18 @@ def read_text(text: str, name: str) -> Sketch:
             ) from error
         sketch.left_out = [printable(words) for words in sketch.left_out]
         return sketch
-    raise UserError(f"{name} is of no program that is known here; known are: {', '.join(FORMATS)}")
+    raise UserError(f"{name} is not a file of a known program; known are: {', '.join(FORMATS)}")
 
 
 def _decoded(content: bytes, file: Path) -> str:
     if b"\0" in content:
-        raise UserError(f"{printable(str(file))} is no text")
+        raise UserError(f"{printable(str(file))} is not text")
     for encoding in ENCODINGS:
         try:
             return content.decode(encoding)
         except UnicodeDecodeError:
             continue
-    raise UserError(f"{printable(str(file))} is no text")
+    raise UserError(f"{printable(str(file))} is not text")
 
 
 # Trial of a written mechanism.py: loaded and built in memory, and compared with its source.
@@ -98,12 +98,11 @@ def try_out(text: str, name: str) -> Mechanism:
         exec(compile(text.encode(), f"{name}/mechanism.py", "exec", dont_inherit=True), module.__dict__)
         return module.build(module.Params())
     except MechanismError as error:
-        raise UserError(f"what was read makes no mechanism: {error}") from error
+        raise UserError(f"the file makes no valid mechanism: {error}") from error
     except Exception as error:
         cause = f"{type(error).__name__}: {printable(str(error))[:200]}"
         raise UserError(
-            f"what was read makes no file that can be loaded ({cause}); that is a fault of this importer: "
-            "please report it"
+            f"the written mechanism.py cannot be loaded ({cause}); that is a fault of this importer: please report it"
         ) from error
 
 
@@ -119,7 +118,7 @@ def difference(sketch: Sketch, m: Mechanism) -> str:
     if sketch.freedom is not None and not freedom >= sketch.freedom == sketch.counted_freedom():
         return (
             f"the degrees of freedom differ: {sketch.freedom} in the file, {freedom} in this mechanism; "
-            "it moves otherwise until what was left out is added"
+            "it moves differently until you add what was left out"
         )
     if sketch.inputs and sketch.inputs != freedom:
         return (

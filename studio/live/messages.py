@@ -190,7 +190,7 @@ def wish_of(text: str | bytes) -> Wish:
     except (DecodeError, UnicodeError) as error:
         raise UserError(f"the page's message is no JSON: {str(error)[:SHOWN]}") from error
     except RecursionError as error:
-        raise UserError("the page's message is refused: it is nested too deep") from error
+        raise UserError("the page's message is refused: it is nested too deeply") from error
 
 
 def known(names: Iterable[str], numbers: list[dict[str, Any]]) -> None:

@@ -160,7 +160,7 @@ class Session:
 
     def _write(self, wish: Write) -> None:
         if self.board.error is not None:
-            raise UserError("mechanism.py has an error, so nothing is written into it; cure it first")
+            raise UserError("mechanism.py has an error, so nothing is written into it; fix it first")
         messages.known(wish.names or (), self.board.numbers)
         now = self.history.now
         values = {name: now[name] for name in (now if wish.names is None else wish.names) if name in now}

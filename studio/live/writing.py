@@ -41,7 +41,7 @@ def replaced(source: bytes, file: str, values: dict[str, float | int], variant: 
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError) as error:
-        raise UserError(f"{file}: {error}; cure it first, then numbers can be written into it") from error
+        raise UserError(f"{file}: {error}; fix it first, then numbers can be written into it") from error
     encoding, _ = tokenize.detect_encoding(BytesIO(source.replace(b"\r", b"\n")).readline)
     text = source.decode(encoding)
     starts = _line_starts(text)
@@ -347,7 +347,7 @@ class Writer:
             still = f"it would still be {new[name]:g}" if name in new else "there would be no such number"
             raise UserError(
                 f"{self._file}:{deciding or line}: {name} cannot be written: {where} decides it, so with {value:g} in "
-                f"line {line} {still}; nothing was written. Change it in that line, or take that line away"
+                f"line {line} {still}; nothing was written. Change it in that line, or delete that line"
             )
 
     def _computed(self, before: bytes, values: dict[str, Any], variant: str | None) -> list[str]:

@@ -30,7 +30,7 @@ def main() -> int | None:
     fresh.add_argument("--spectra", default="")
     fresh.add_argument("names", nargs="*")
     commands.add_parser("status", help="what every film is at")
-    commands.add_parser("stop", help="end the runs after the frame in flight")
+    commands.add_parser("stop", help="end the runs after the current frame")
     arguments = parser.parse_args()
     if arguments.command == "fresh":
         from render.presets import preset_named

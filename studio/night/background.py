@@ -88,19 +88,19 @@ def start(asked: Options) -> int:
     for run in runs.alive():
         recorded = runs.read(run)
         who = f" (process {recorded.process} on {recorded.host}, since {recorded.started})" if recorded else ""
-        warn("night", f"run {run.number} is at work already{who}; this one takes what that one is not at")
+        warn("night", f"run {run.number} is running already{who}; this run takes what that run does not work on")
     refuse_before_start(asked, asked.names)
     before = {run.number for run in runs.alive()}
     environment = {key: value for key, value in os.environ.items() if key not in OF_MAKE}
     attach = _launch(_command(asked), environment)
     night = _begun(before)
-    say("night", f"started as run {night.number}; it goes on after you have logged out")
+    say("night", f"started as run {night.number}; it continues after you log out")
     if attach:
         say("night", f"attach to it: {attach} (Ctrl-B D leaves it running)")
     else:
-        say("night", f"there is no tmux to attach to, which does not matter; see it work: tail -f {runs.log_file()}")
+        say("night", f"tmux is not needed; follow the run with: tail -f {runs.log_file()}")
     status, stop = to_run("status"), to_run("stop")
-    say("night", f"{status} tells how far it is, {stop} ends it after the frame in flight; {runs.log_file()}")
+    say("night", f"{status} shows its progress, {stop} ends it after the current frame; {runs.log_file()}")
     warn_if_it_ends_all(warn)
     if sys.stdout.isatty():
         _tell_forecast(night)
@@ -142,7 +142,7 @@ def _launch(command: list[str], environment: dict[str, str]) -> str:
             return f"tmux -L {socket} attach -t {session}"
         warn("night", f"tmux could not start a session ({launched.stderr.strip()}); it goes on without")
     else:
-        warn("night", f"tmux is not installed ({missing.remedy(['tmux'])}), so there is nothing to attach to")
+        warn("night", f"tmux is not installed ({missing.remedy(['tmux'])}), so you cannot attach to the run")
     subprocess.Popen(
         [*survive, "nohup", *command],
         cwd=ROOT,

@@ -142,7 +142,7 @@ class Coordinator:
                 longest = limit(making, self.books.each(process.name), process.signs)
                 if process.silence > longest:
                     process.hung = True
-                    self.log.warn(f"{process.name}: {process.step} gave no sign of life for {duration(longest)}")
+                    self.log.warn(f"{process.name}: {process.step} was silent for {duration(longest)}")
                     self._kill(process)
         self.books.write_if_due()
 
@@ -178,7 +178,7 @@ class Coordinator:
 
     def _stop_after_frame(self) -> None:
         """End the steps beside the render at once, the render after its next picture."""
-        self.log.say("asked to stop; it ends after the frame in flight")
+        self.log.say("stop requested; the run ends after the current frame")
         for process in self._others():
             process.end()
         while self.running:

@@ -60,11 +60,9 @@ def _last_words(
     left = len(asked.names) - done - len(failed)
     words = f"{done} done" + (f", {left} not finished" if left else "")
     if bad:
-        log.fail(
-            f"{words}, failed: {' '.join(bad)}; their errors stand above, {to_run('status')} tells the last of each"
-        )
+        log.fail(f"{words}, failed: {' '.join(bad)}; their errors are above, {to_run('status')} shows the last of each")
     if not finished:
-        log.say(f"stopped as asked after {duration(seconds)}: {words}; the same command goes on from here")
+        log.say(f"stopped after {duration(seconds)}: {words}; the same command goes on from here")
         return STOPPED
     if not bad:
         log.say(f"{words} in {duration(seconds)}")

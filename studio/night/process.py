@@ -139,7 +139,7 @@ def ending(process: Process) -> str:
     """Return the fault in half a sentence: the step's last error, else how it ended."""
     code = process.code() or 0
     if process.hung:
-        return "it gave no sign of life and was killed"
+        return "it was silent for too long and was killed"
     if process.error:
         return process.error
     if code < 0:

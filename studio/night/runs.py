@@ -58,7 +58,7 @@ class Run:
         return self.lock.exists() and not files.is_abandoned(self.lock)
 
     def ask_to_stop(self) -> None:
-        """Ask the run to end after the frame in flight."""
+        """Ask the run to end after the current frame."""
         self.wish.touch()
 
     def is_asked_to_stop(self) -> bool:

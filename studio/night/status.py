@@ -108,7 +108,7 @@ def table(rows: Sequence[tuple[str, ...]]) -> list[str]:
     return lines
 
 
-# ``mbsd stop``: end every run on this tree after the frame in flight, and report the end.
+# ``mbsd stop``: end every run on this tree after the current frame, and report the end.
 
 
 LOOK = 0.2
@@ -144,10 +144,10 @@ def stop() -> int:
 
 
 def _in_flight(run: Run) -> str:
-    """Return the work it waits for: ``the frame in flight of four_bar (about 8.3 s)``."""
+    """Return the work it waits for: ``the current frame of four_bar (about 8.3 s)``."""
     recorded = runs.read(run)
     if recorded is not None:
         for name, film in recorded.films.items():
             if any(film.steps.get(step) == "running" for step in ("poster", "film")):
-                return f"the frame in flight of {name}" + (f" (about {duration(film.each)})" if film.each else "")
+                return f"the current frame of {name}" + (f" (about {duration(film.each)})" if film.each else "")
     return "what it is at"

@@ -58,7 +58,7 @@ def _alone(folder: Path) -> Iterator[None]:
         except OSError as error:
             raise UserError(refusal(lock, error, "lock")) from error
         if not own:
-            raise Busy(f"another process makes {folder}; wait for it or stop it")
+            raise Busy(f"another process writes {folder}; wait for it or stop it")
         yield
     finally:
         os.close(handle)
@@ -103,7 +103,7 @@ class _Shown:
             files = "; ".join(f"{file} ({why})" for file, why in self.older.items())
             warn(
                 "site",
-                f"{self._out.name}: left out, being of an older version: {files}; {to_run('run', self._out.name)}",
+                f"{self._out.name}: left out, because it is outdated: {files}; {to_run('run', self._out.name)}",
             )
 
 
@@ -113,7 +113,7 @@ def _write_mechanism(name: str, folder: Path, freshness: Freshness) -> Entry:
     if not (out.motion.is_file() and out.view.is_file()):
         raise UserError("it has no page")
     if why := freshness.why_older(out, out.view):
-        raise UserError(f"its page is of an older version: {why}")
+        raise UserError(f"its page is outdated: {why}")
     shown = _Shown(out, freshness)
     entry = entry_of(name)
     folder.mkdir(parents=True, exist_ok=True)
@@ -139,7 +139,7 @@ def _skeleton(out: Out) -> Path | None:
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
     if done.returncode:
         said = (done.stderr.strip() or done.stdout.strip() or f"exit code {done.returncode}").splitlines()[-1]
-        warn("site", f"{out.name} stands still on the wall: {said}")
+        warn("site", f"{out.name} has no film on the wall: {said}")
         return None
     return out.animation("skeleton", ".mp4")
 

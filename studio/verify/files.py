@@ -35,9 +35,9 @@ LONGEST = 60
 def compare(what: str, old: Path, new: Path) -> Finding:
     """Return the comparison of the existing file with the one built again."""
     if not new.is_file():
-        return Finding(what, "differs", "it was not made again")
+        return Finding(what, "differs", "it was not rebuilt")
     if not old.is_file():
-        return Finding(what, "differs", "it is not there, but was made again")
+        return Finding(what, "differs", "it does not exist, but was rebuilt")
     ours, other = old.read_bytes(), new.read_bytes()
     if ours == other:
         return Finding(what, "same", f"{len(ours)} bytes")
@@ -48,7 +48,7 @@ def compare(what: str, old: Path, new: Path) -> Finding:
 
 def _first_byte(ours: bytes, other: bytes) -> str:
     place = next((k for k, (a, b) in enumerate(zip(ours, other, strict=False)) if a != b), min(len(ours), len(other)))
-    return f"from byte {place} on; {len(ours)} bytes, made again {len(other)}"
+    return f"from byte {place} on; {len(ours)} bytes, rebuilt {len(other)}"
 
 
 def _of_json(what: str, ours: bytes, other: bytes) -> Finding:
@@ -59,7 +59,7 @@ def _of_json(what: str, ours: bytes, other: bytes) -> Finding:
     if _inputs(first) != _inputs(second):
         return Finding(what, "outdated", "something that it follows from has changed since")
     where = _first_field(first, second, "")
-    return Finding(what, "differs", f"at {where[0]}: {where[1]}, made again {where[2]}" if where else "in its layout")
+    return Finding(what, "differs", f"at {where[0]}: {where[1]}, rebuilt {where[2]}" if where else "in its layout")
 
 
 def _inputs(document: Any) -> Any:

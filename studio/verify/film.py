@@ -53,7 +53,7 @@ def compare_frame(frame: int, name: str, store: FrameStore, again: FrameStore) -
     what = f"frame {frame}"
     old = store.read(name)
     if old is None:
-        return Finding(what, "differs", f"{name} is gone, or is not the picture that was rendered any more")
+        return Finding(what, "differs", f"{name} is gone or was changed since it was rendered")
     new = next(iter(sorted(again.folder.glob(f"{name.partition('-')[0]}-*.png"))), None)
     if new is None:
         return Finding(what, "outdated", "the film was made from another motion, other solids, another shot or sources")
@@ -64,7 +64,7 @@ def pixels(what: str, old: bytes, new: bytes) -> Finding:
     """Compare two PNGs by their pixels."""
     ours, other = _decoded(old), _decoded(new)
     if ours.shape != other.shape:
-        return Finding(what, "differs", f"{_size(ours)} pixels, made again {_size(other)}")
+        return Finding(what, "differs", f"{_size(ours)} pixels, rebuilt {_size(other)}")
     far = np.abs(ours.astype(np.int16) - other).max(axis=2)
     if not far.any():
         beside = "the same bytes" if old == new else "other bytes around the same pixels"
@@ -104,7 +104,7 @@ def compare_film(
     ``sound`` is its sound made again, of a film that has some.
     """
     if not film.is_file():
-        return Finding("film", "missing", f"{film.name} is not there")
+        return Finding("film", "missing", f"{film.name} does not exist")
     damaged = sorted({name for name in index.frames if store.read(name) is None})
     if damaged:
         return Finding("film", "differs", f"{len(damaged)} of its pictures are gone or damaged, such as {damaged[0]}")
@@ -121,7 +121,7 @@ def compare_film(
     if old == new:
         return Finding("film", "same", f"{len(old)} decoded frames, {whole}")
     if len(old) != len(new):
-        return Finding("film", "differs", f"{len(old)} frames decode, made again {len(new)}")
+        return Finding("film", "differs", f"{len(old)} frames decode, rebuilt {len(new)}")
     wrong = [k for k, (a, b) in enumerate(zip(old, new, strict=True)) if a != b]
     return Finding("film", "differs", f"{len(wrong)} of {len(old)} decoded frames, the first is frame {wrong[0]}")
 

@@ -73,5 +73,5 @@ def _of_export(
         else:
             again("render", "usd", out.name, f"--format={form}")
     except UserError as error:
-        return Finding(what, "differs", f"it cannot be made again: {error}")
+        return Finding(what, "differs", f"it cannot be rebuilt: {error}")
     return files.compare(what, file, scratch / "export" / file.name)

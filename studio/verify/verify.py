@@ -37,7 +37,7 @@ def run(name: str, preset: Preset, frames: str = "", show: str = "") -> int:
     """
     out = Out(name)
     if not out.motion.is_file():
-        raise UserError(f"{out.name}: {out.motion} is not there; {to_run('run', out.name)} first")
+        raise UserError(f"{out.name}: {out.motion} does not exist; {to_run('run', out.name)} first")
     home = out_root() / ".verify"
     try:
         with scratch_folder(home) as scratch:
@@ -88,7 +88,7 @@ def _of_pictures(
     try:
         heard = write_sound(out, preset, show, scratch / sound.name)
     except UserError as error:
-        findings.append(Finding(what, "differs", f"it cannot be made again: {error}"))
+        findings.append(Finding(what, "differs", f"it cannot be rebuilt: {error}"))
         return [*findings, film.compare_film(there, scratch, store, index, preset)]
     findings.append(files.compare(what, sound, heard))
     return [*findings, film.compare_film(there, scratch, store, index, preset, heard)]
@@ -114,7 +114,7 @@ def _stage(root: Path, module: str, *arguments: str) -> None:
     command = [sys.executable, "-m", module, *arguments]
     done = subprocess.run(command, cwd=ROOT, env=os.environ | {"MBSD_OUT": str(root)})
     if done.returncode:
-        raise UserError(f"{' '.join(command[2:])}: ended with code {done.returncode}; its error stands above")
+        raise UserError(f"{' '.join(command[2:])}: ended with code {done.returncode}; its error is above")
 
 
 def _complain(_: str, text: str) -> None:

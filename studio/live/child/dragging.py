@@ -80,8 +80,8 @@ def _at_start(
     """Return numbers that put the thing at ``to`` in the start pose, if forces move the mechanism."""
     if time > 0:
         raise UserError(
-            f"{author.name}: forces move it, so numbers decide where '{thing['name']}' is at its start alone, not at "
-            f"{time:g} s; go to the start (Home) and drag it there"
+            f"{author.name}: it moves under forces, so its numbers place '{thing['name']}' at the start alone, "
+            f"not at {time:g} s; go to the start (Home) and drag it there"
         )
     now = {number.name: number.value for number in numbers_of(author.changed(values)) if not number.whole}
     names, start, extent = list(now), np.array(list(now.values())), pack(base).size

@@ -119,9 +119,9 @@ def test_a_cluster_with_certificates_does_work_and_lets_nobody_else_in(
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ("server", "no address"),
-        ("tcp://server", "no address"),
-        ("http://server:1", "no address"),
+        ("server", "is not the address"),
+        ("tcp://server", "is not the address"),
+        ("http://server:1", "is not the address"),
         ("tls://a:1", "CLUSTER_TLS"),
     ],
 )

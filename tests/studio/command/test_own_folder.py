@@ -147,8 +147,8 @@ def test_settings_are_said_once_and_found_from_below(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ('preset = "huge"', "--preset huge in mbsd.toml is no preset; choose one of: draft"),
-        ('colour = "red"', "unknown field `colour`; it may say: preset, aspect"),
+        ('preset = "huge"', "--preset huge in mbsd.toml is not a valid preset; choose one of: draft"),
+        ('colour = "red"', "unknown field `colour`; its fields are: preset, aspect"),
         ("preset = ", "mbsd.toml: "),
     ],
 )
@@ -226,7 +226,7 @@ def test_a_machine_may_be_given_by_its_path(folder: Path, path: str) -> None:
 def test_a_path_without_a_machine_is_an_error(folder: Path) -> None:
     missing = mbsd("check", "lamp.py", at=folder)
     assert missing.returncode == 1
-    assert "error: lamp.py is no file or folder of a mechanism; give the name or the path" in missing.stderr
+    assert "error: lamp.py is not a file or folder of a mechanism; give the name or the path" in missing.stderr
     (folder / "empty").mkdir()
     assert "error: empty/ has no mechanism.py" in mbsd("check", "empty/", at=folder).stderr
     assert "there is: arm, wheel; did you mean 'wheel'?" in mbsd("check", "Wheel", at=folder).stderr
@@ -256,7 +256,7 @@ def test_a_machine_that_is_not_there_is_refused_with_those_that_are(folder: Path
     done = mbsd("run", "whel", at=folder)
     assert done.returncode == 1
     assert f"there is no mechanism 'whel' in {folder}; there is: arm, wheel; did you mean 'wheel'?" in done.stderr
-    assert "say which machine; there is: arm, wheel" in mbsd("run", at=folder).stderr
+    assert "name a mechanism; there is: arm, wheel" in mbsd("run", at=folder).stderr
     (folder / "empty").mkdir()
     assert "mbsd new excavator makes one" in mbsd("run", at=folder / "empty").stderr
     assert mbsd("rnu", "arm", at=folder).returncode == 2
@@ -265,12 +265,12 @@ def test_a_machine_that_is_not_there_is_refused_with_those_that_are(folder: Path
 def test_what_is_no_folder_or_has_two_of_a_name_is_refused(folder: Path) -> None:
     for place in ("nowhere", "wheel.py"):
         done = mbsd("-C", place, "list", at=folder)
-        assert (done.returncode, f"{folder / place} is no folder" in done.stderr) == (1, True)
+        assert (done.returncode, f"{folder / place} is not a folder" in done.stderr) == (1, True)
     (folder / "wheel").mkdir()
     (folder / "wheel" / "mechanism.py").write_text(crank("wheel"))
     done = mbsd("solve", "wheel", at=folder)
     assert done.returncode == 1
-    assert f"wheel/mechanism.py and wheel.py in {folder} have one name; give one another name" in done.stderr
+    assert f"wheel/mechanism.py and wheel.py in {folder} have the same name; rename one of them" in done.stderr
     (folder / "wheel" / "mechanism.py").unlink()
     assert "write VARIANTS" in (said := mbsd("compare", "wheel", at=folder).stderr)
     assert "beside build() in wheel.py, each" in said

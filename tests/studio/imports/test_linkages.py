@@ -90,12 +90,12 @@ def test_pylinkage_is_read() -> None:
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        (b"", "is of no program that is known here; known are: PMKS+"),
-        (b"hello", "is of no program that is known here"),
-        (b"\0\1\2", "is no text"),
+        (b"", "is not a file of a known program; known are: PMKS+"),
+        (b"hello", "is not a file of a known program"),
+        (b"\0\1\2", "is not text"),
         (b"<linkage2></linkage2>", "the file has no links"),
         (b"ground,input,R,a,b", "is of no program"),
-        (b"mech=\nground,input,R,1,2\nrubbish", "line 3 is no joint of PMKS"),
+        (b"mech=\nground,input,R,1,2\nrubbish", "line 3 is not a joint of PMKS"),
         (b'{"joints": [], "links": [{"position": 1}]}', "no file of pylinkage (JSON) (KeyError: 'id')"),
         (b'{"TypeOfJoint"', "its JSON cannot be read"),
         (b"freeCAD\nAssembly\n", "Assembly has no Name"),
@@ -121,7 +121,7 @@ def test_links_of_pmks_may_be_called_as_a_kind_of_joint(tmp_path: Path) -> None:
     file.write_text((SAMPLES / "4bar1.txt").read_text().replace("input", "R").replace("output", "P"))
     assert set(read(str(file)).links) == {"R", "coupler", "P"}
     file.write_text("mech=\nground,R,R,x,1,2\n")
-    with pytest.raises(UserError, match="line 2 is no joint of PMKS"):
+    with pytest.raises(UserError, match="line 2 is not a joint of PMKS"):
         read(str(file))
 
 

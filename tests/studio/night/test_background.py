@@ -39,13 +39,13 @@ def test_it_goes_on_without_its_terminal_and_says_how_to_attach(night: Night, tm
     needs("tmux")
     code, out, err = finished(night.start("four_bar", command="start"))
     assert code == 0, err
-    assert "started as run 1; it goes on after you have logged out" in out
+    assert "started as run 1; it continues after you log out" in out
     attach = re.findall(r"attach to it: tmux (-L \S+) attach -t (night\S*)", out)[0]
     listing = subprocess.run(["tmux", *attach[0].split(), "list-sessions", "-F", "#S"], capture_output=True, text=True)
     assert attach[1] in listing.stdout.split()
     until(lambda: "four_bar clearance" in night.ran())
     again = finished(night.start("slider_crank", command="start"))
-    assert "run 1 is at work already (process" in again[2]
+    assert "run 1 is running already (process" in again[2]
     assert "started as run 2" in again[1]
     assert "attach -t night-2" in again[1]
     until(lambda: "slider_crank film" in night.ran())

@@ -89,7 +89,7 @@ def test_what_is_of_the_motion_before_is_left_out_and_named_once(out: Out, capsy
     before = (site / "picture.jpg").read_bytes()
     _solved_again(out)
     assert build.run([NAME]) == 0
-    (warning,) = [line for line in capsys.readouterr().err.splitlines() if "older version" in line]
+    (warning,) = [line for line in capsys.readouterr().err.splitlines() if "outdated" in line]
     for file in ("report.md", f"{NAME}.glb", f"{NAME}-draft.mp4", "poster.png"):
         assert f"{file} (it is of an older data.json)" in warning
     assert "plate" not in warning
@@ -117,7 +117,7 @@ def test_a_machine_whose_files_have_changed_since_is_left_out(
     monkeypatch.setattr(freshness, "current_names", lambda names: set())
     with pytest.raises(UserError, match="no machine has a motion to show"):
         build.run([NAME])
-    assert "its page is of an older version: the machine has changed since it was solved" in capsys.readouterr().err
+    assert "its page is outdated: the machine has changed since it was solved" in capsys.readouterr().err
 
 
 def test_archives_have_the_same_bytes_each_time(out: Out) -> None:

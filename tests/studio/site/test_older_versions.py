@@ -83,7 +83,7 @@ def test_what_is_of_the_motion_before_is_left_out_and_named_once(out: Out, capsy
     """Report, GLB, film and plates of the machine before were published without a word."""
     assert build.run([NAME]) == 0
     site = out.folder.parent / "site" / NAME
-    assert not capsys.readouterr().err.count("older")
+    assert not capsys.readouterr().err.count("outdated")
     assert _files(out) == ALL
     assert (site / "film.mp4").read_bytes() == out.film("draft").read_bytes()
     before = (site / "picture.jpg").read_bytes()

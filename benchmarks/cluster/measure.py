@@ -69,10 +69,7 @@ def _ratio(task: Callable[..., Any], what: str) -> float:
 
 
 def _row(workers: int, tasks: int, largest: int) -> str:
-    with _cluster([[sys.executable, "-m", "benchmarks.cluster.work", "ADDRESS", str(workers)]]) as (
-        where,
-        process,
-    ):
+    with _cluster([[sys.executable, "-m", "benchmarks.cluster.work", "ADDRESS", str(workers)]]) as (where, process):
         hand.LARGEST, kept = largest, hand.LARGEST
         try:
             _deal(where, workers, work.nothing, dict.fromkeys(map(str, range(workers)), 0))  # all are known, none lacks

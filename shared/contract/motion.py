@@ -12,17 +12,7 @@ from typing import Annotated, Literal
 import msgspec
 
 from shared.contract.base import UNITS, NonNegative, Positive, Provenance, Series, Strict
-from shared.contract.loads import (
-    Action,
-    Acts,
-    ContactMotion,
-    EffortUnit,
-    ForceMotion,
-    Look,
-    Pair,
-    Shape,
-    ValueUnit,
-)
+from shared.contract.loads import Action, Acts, ContactMotion, EffortUnit, ForceMotion, Look, Pair, Shape, ValueUnit
 
 # Vibration of the frame in data.json: inertia forces, centre of mass, harmonics of the crank.
 
@@ -80,7 +70,7 @@ _SECOND = _FIRST | {
     "events": "rows right before and right after an event share its time: poses agree there, rates may differ",
 }
 _THIRD = _SECOND | {
-    "acts": "where a joint or contact acts with fx, fy and the torque of acts; null: at (x, y) with its own torque",
+    "acts": "where a joint or contact acts with fx, fy and the torque of acts; null: at (x, y) with its own torque"
 }
 CONVENTIONS_OF = {1: _FIRST, 2: _SECOND, 3: _THIRD}
 """By version of the file."""

@@ -31,15 +31,7 @@ def base_plate(
     shape = eased(shape, edge, ">Z", chamfer=True)
     shape = eased(shape, edge / 2, "<Z", chamfer=True)
     through = bore(screw + 0.5, -thickness, 0, 0)
-    seat = turned(
-        [
-            (0, -head[1]),
-            (head[0] / 2, -head[1]),
-            (head[0] / 2, -0.4),
-            (head[0] / 2 + 0.9, 0.5),
-            (0, 0.5),
-        ]
-    )
+    seat = turned([(0, -head[1]), (head[0] / 2, -head[1]), (head[0] / 2, -0.4), (head[0] / 2 + 0.9, 0.5), (0, 0.5)])
     for x, y in counterbores:
         shape = shape.cut(placed(through, x, y)).cut(placed(seat, x, y))
     for x, y, diameter, depth in tapped:

@@ -52,16 +52,7 @@ def bore(diameter: float, z0: float, z1: float, chamfer: float = 0.0) -> cq.Work
     if c == 0:
         return extruded(circle(0, 0, r), z1 - z0 + 2 * over, z0 - over)
     wide = r + c + over
-    return turned(
-        [
-            (0, z0 - over),
-            (wide, z0 - over),
-            (r, z0 + c),
-            (r, z1 - c),
-            (wide, z1 + over),
-            (0, z1 + over),
-        ]
-    )
+    return turned([(0, z0 - over), (wide, z0 - over), (r, z0 + c), (r, z1 - c), (wide, z1 + over), (0, z1 + over)])
 
 
 def eased(shape: cq.Workplane, size: float, faces: str = "|Z", chamfer: bool = False) -> cq.Workplane:

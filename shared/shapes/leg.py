@@ -257,10 +257,7 @@ def ergometer(hip: Point, low: float, thick: float) -> list[Solid]:
         turn = 2 * math.pi * k / 5
         window = circle(x + 0.52 * radius * math.cos(turn), y + 0.52 * radius * math.sin(turn), 0.22 * radius)
         disc = disc.cut(extruded(window, 2 * thick, low + thick - 1.0))
-    return [
-        Solid("frame", shape, "aluminium_red", 2),
-        Solid("flywheel", eased(disc, 1.5, ">Z"), "cast_iron", 5),
-    ]
+    return [Solid("frame", shape, "aluminium_red", 2), Solid("flywheel", eased(disc, 1.5, ">Z"), "cast_iron", 5)]
 
 
 def _tubes(tubes: Sequence[tuple[Point, Point, float]], low: float, thick: float) -> cq.Workplane:

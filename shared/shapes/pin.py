@@ -243,10 +243,7 @@ class Pivot:
         shape = bushing(inner, self.bushing, self.flange, self.flange_thickness, length)
         below = placed(shape.rotate((0, 0, 0), (1, 0, 0), 180), x, y, z - fit.seat)
         above = placed(shape, x, y, z + thickness + fit.seat)
-        return [
-            Solid(f"bushing_{joint}_low", below, "bronze", 1),
-            Solid(f"bushing_{joint}_high", above, "bronze", 1),
-        ]
+        return [Solid(f"bushing_{joint}_low", below, "bronze", 1), Solid(f"bushing_{joint}_high", above, "bronze", 1)]
 
     def washer_at(self, name: str, x: float, y: float, z: float, material: str = "steel") -> Solid:
         """Return a washer from z up, on the pin at (x, y)."""

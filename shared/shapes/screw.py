@@ -35,16 +35,7 @@ def socket_screw(nominal: float, length: float) -> cq.Workplane:
     r, edge, k = nominal / 2, head_diameter(nominal) / 2, float(nominal)
     c = 0.12 * nominal
     body = turned(
-        [
-            (0, -length),
-            (r - c, -length),
-            (r, -length + c),
-            (r, 0),
-            (edge, 0),
-            (edge, k - c),
-            (edge - c, k),
-            (0, k),
-        ]
+        [(0, -length), (r - c, -length), (r, -length + c), (r, 0), (edge, 0), (edge, k - c), (edge - c, k), (0, k)]
     )
     hexagon = SOCKET[nominal]
     socket = cq.Workplane(origin=(0, 0, k / 2)).polygon(6, hexagon / math.cos(math.pi / 6)).extrude(k)

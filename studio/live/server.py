@@ -141,10 +141,7 @@ class Live:
         self._name, self._parts = name, parts
         self.session: Session | None = None
         self._ended = False
-        routes = [
-            Route("/{token}/", self._show, methods=["GET"]),
-            WebSocketRoute("/{token}/socket", self._socket),
-        ]
+        routes = [Route("/{token}/", self._show, methods=["GET"]), WebSocketRoute("/{token}/socket", self._socket)]
         self.app = Gate(Starlette(routes=routes, lifespan=self._lifespan), self.token, port)
 
     @property

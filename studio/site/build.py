@@ -102,8 +102,7 @@ class _Shown:
         if self.older:
             files = "; ".join(f"{file} ({why})" for file, why in self.older.items())
             warn(
-                "site",
-                f"{self._out.name}: left out, because it is outdated: {files}; {to_run('run', self._out.name)}",
+                "site", f"{self._out.name}: left out, because it is outdated: {files}; {to_run('run', self._out.name)}"
             )
 
 

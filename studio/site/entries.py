@@ -117,11 +117,7 @@ def write_downloads(name: str, folder: Path, is_of_now: Callable[[Path], bool]) 
 
 def _offered(out: Out, source: Path, is_of_now: Callable[[Path], bool]) -> Iterator[tuple[str, str, bytes]]:
     yield source.name, "the model, Python", source.read_bytes()
-    singles = (
-        (out.motion, "the motion, JSON"),
-        (out.glb, "parts in motion, glTF"),
-        (out.report, "the report"),
-    )
+    singles = ((out.motion, "the motion, JSON"), (out.glb, "parts in motion, glTF"), (out.report, "the report"))
     for path, words in singles:
         if path.is_file() and is_of_now(path):
             yield path.name, words, path.read_bytes()

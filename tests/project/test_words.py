@@ -49,7 +49,7 @@ LITERAL = {
     "hangs? on": (  # on a pin, a sleeve, a master rod
         *("mechanisms/chain/", "mechanisms/double_pendulum/", "mbsd/drawing/skeleton.py", "mbsd/machines/"),
         "mbsd/model/cylinders/",
-    ),
+    )
 }
 """Places in which a word means what it says."""
 

@@ -47,13 +47,7 @@ def main() -> int:
 
 
 def hunt(
-    n: int,
-    seed: int,
-    jobs: int,
-    kind: str | None = None,
-    solids: bool = True,
-    limit: float = LIMIT,
-    anew: bool = False,
+    n: int, seed: int, jobs: int, kind: str | None = None, solids: bool = True, limit: float = LIMIT, anew: bool = False
 ) -> int:
     """n cases, of one kind if it is given; 0 if nothing was found. Goes on where one like it was stopped."""
     kept = Kept(out_root() / "hunt_parts" / f"{_named(seed, kind, solids)}.jsonl")

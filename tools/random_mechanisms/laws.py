@@ -110,11 +110,7 @@ def rise(rng: np.random.Generator) -> Subject:
     )
     size, turn = float(rng.uniform(0.1, 2.0)), 2 * math.pi
     laws = (
-        (
-            lambda u: u - math.sin(turn * u) / turn,
-            lambda u: 1 - math.cos(turn * u),
-            lambda u: turn * math.sin(turn * u),
-        )
+        (lambda u: u - math.sin(turn * u) / turn, lambda u: 1 - math.cos(turn * u), lambda u: turn * math.sin(turn * u))
         if rng.random() < 0.5
         else (
             lambda u: 10 * u**3 - 15 * u**4 + 6 * u**5,

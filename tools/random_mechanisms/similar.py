@@ -40,12 +40,7 @@ DIMENSIONS: dict[str, dict[str, Dimension]] = {
     "torque": {"torque": MOMENT, "law": MOMENT},
     "force": {"force": FORCE, "law": FORCE, "direction": RATIO},
     "rope": {"length": LENGTH, "restitution": RATIO},
-    "rigid_contact": {
-        "radius": LENGTH,
-        "restitution": RATIO,
-        "friction": RATIO,
-        "static_friction": RATIO,
-    },
+    "rigid_contact": {"radius": LENGTH, "restitution": RATIO, "friction": RATIO, "static_friction": RATIO},
 }
 """Numbers of the kinds that can be given in other units; ``law``: of all laws and motions."""
 TURNED = {"free_angle", "phase", "fires_at", "offset", "direction"}
@@ -76,12 +71,7 @@ def mirrored(m: Mechanism) -> Mechanism | None:
             params["torque"] = _negative(params["torque"])
         return _with_laws(replace(entry, params=params), sign)
 
-    return _rebuilt(
-        m,
-        lambda x, y, angle: (x, -y, -angle),
-        lambda body: (body.mass, body.inertia),
-        entry_of,
-    )
+    return _rebuilt(m, lambda x, y, angle: (x, -y, -angle), lambda body: (body.mass, body.inertia), entry_of)
 
 
 def in_units(m: Mechanism, length: float, mass: float) -> Mechanism | None:
@@ -175,12 +165,7 @@ def _rebuilt(
 
 
 def _tables(m: Mechanism, out: Mechanism) -> list[tuple[Mapping[str, Any], dict[str, Any]]]:
-    return [
-        (m.joints, out.joints),
-        (m.drivers, out.drivers),
-        (m.forces, out.forces),
-        (m.contacts, out.contacts),
-    ]  # pyright: ignore[reportReturnType]
+    return [(m.joints, out.joints), (m.drivers, out.drivers), (m.forces, out.forces), (m.contacts, out.contacts)]  # pyright: ignore[reportReturnType]
 
 
 def _with_laws(entry: Any, factor: float) -> Any:

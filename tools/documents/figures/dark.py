@@ -19,13 +19,7 @@ from mbsd.drawing.inks import hex_of, lch_of, on_dark
 COLOUR = re.compile(r"#[0-9a-f]{6}\b")
 PAPER = "#0d1117"
 """Colour of GitHub's dark pages."""
-NEUTRAL = {
-    look.PAPER: PAPER,
-    look.INK: "#e6edf3",
-    look.QUIET: "#9198a1",
-    look.FAINT: "#262c36",
-    look.LOAD: "#a9b6c6",
-}
+NEUTRAL = {look.PAPER: PAPER, look.INK: "#e6edf3", look.QUIET: "#9198a1", look.FAINT: "#262c36", look.LOAD: "#a9b6c6"}
 MAPS = ("viridis",)
 """Colours of data stay what their bar says."""
 

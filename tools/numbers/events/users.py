@@ -232,11 +232,7 @@ def stays_zero() -> Mechanism:
     m = Mechanism("loose", gravity=(0, -G))
     arm = m.bar("arm", 1.0, mass=1.0)
     m.revolute("hinge", m.ground.at(0, 0), arm.start)
-    m.event(
-        "gone",
-        lambda t, moment: moment.body("arm").omega + 3.0,
-        action=lambda moment: moment.release("hinge"),
-    )
+    m.event("gone", lambda t, moment: moment.body("arm").omega + 3.0, action=lambda moment: moment.release("hinge"))
     m.start_near(arm=0)
     return m
 

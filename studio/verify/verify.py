@@ -133,7 +133,3 @@ def _sum(name: str, findings: list[Finding]) -> int:
         words.append(f"{counts['differs']} different")
     say("verify", f"{name}: {', '.join(words)}")
     return int(bool(counts["differs"] or counts["outdated"]))
-
-
-def _hyphens(name: str) -> str:
-    return name.replace("_", "-")

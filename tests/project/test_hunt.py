@@ -117,7 +117,7 @@ def test_what_is_wrong_ends_in_an_exit_code(out_root: Path, monkeypatch: pytest.
     )
     assert hunt(2, seed=1, jobs=1) == 1
     report = json.loads((out_root / "hunt.json").read_text())
-    assert report["wrong_cases"] == 2
+    assert report["found_cases"]["wrong"] == 2
     assert report["findings"][0]["seed"] == 1_000_000
 
 

@@ -21,9 +21,9 @@ from shared.stage.paths import out_root
 from tools.hunt.loop import follow, parser, refuse_unknown, seeds
 from tools.hunt.outcome import CaseResult
 from tools.hunt.pool import results
+from tools.hunt.report import Tally
 from tools.hunt_parts import case
-from tools.hunt_parts.outcome import WRONG, Kept
-from tools.hunt_parts.report import Tally
+from tools.hunt_parts.outcome import BUILT, REFUSED, STATES, WRONG, Kept
 from tools.random_mechanisms.own_kinds import KINDS
 
 LIMIT = 900.0
@@ -53,16 +53,17 @@ def hunt(
     kept = Kept(out_root() / "hunt_parts" / f"{_named(seed, kind, solids)}.jsonl")
     if anew:
         kept.path.unlink(missing_ok=True)
-    tally, before = Tally(), kept.read(seeds(seed, n))
+    tally = Tally("mbsd.hunt_parts", STATES, WRONG, (BUILT, REFUSED))
+    before = kept.read(seeds(seed, n))
     if before:
         others = f", {kept.others} of them by other sources (--anew looks at all again)" if kept.others else ""
         say("hunt-parts", f"{len(before)} of {n} are known{others}: {kept.path}")
 
     def add(result: CaseResult) -> list[str]:
-        outcome = tally.add(result)
+        found = tally.add(result)
         if result not in before:
             kept.add(result)
-        return [f"{outcome.state}: case {result.seed} ({result.family}): {outcome.detail}"] * (outcome.state in WRONG)
+        return [f"{outcome.state}: case {result.seed} ({result.family}): {outcome.detail}" for outcome in found]
 
     known = {result.seed for result in before}
     fresh = results(

@@ -135,7 +135,7 @@ def test_settings_are_said_once_and_found_from_below(folder: Path) -> None:
     assert machine.endswith("of full size, only if the motion needs their masses")
     assert scaled.startswith("parts wheel --scale 1:5  ")
     assert f"{folder}/results/wheel/scale_1_5/parts/" in scaled
-    assert "--scale tiny is no scale" in mbsd("print", "wheel", "--scale", "tiny", at=folder).stderr
+    assert "--scale tiny is not a scale" in mbsd("print", "wheel", "--scale", "tiny", at=folder).stderr
     for command in ("parts", "clearance", "film"):
         assert "scale" not in mbsd(command, "wheel", "--plan", at=folder).stdout
     done = mbsd("solve", at=folder / "arm")

@@ -152,7 +152,7 @@ def test_freedoms_that_differ_from_the_files_are_said(tmp_path: Path) -> None:
 
 def test_freedoms_that_differ_though_nothing_was_left_out_are_an_error() -> None:
     text = (SAMPLES / "slider_crank_mbsd_core.json").read_text().replace('"revolute_joints": 3', '"revolute_joints": 2')
-    with pytest.raises(UserError, match="its counts say 2 revolute joints, and it has 3"):
+    with pytest.raises(UserError, match="its counts say 2 revolute joints, and there are 3"):
         read_text(text, "a.json")
     sketch = read(str(SAMPLES / "4bar1.txt"))
     del sketch.joints[1]

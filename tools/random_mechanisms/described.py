@@ -23,13 +23,9 @@ from mbsd.model.body import Body, Marker
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint
 from mbsd.model.laws import Motion
-from mbsd.model.laws.constant_rate import ConstantRate
 from mbsd.model.laws.curve import Curve
-from mbsd.model.laws.cycloidal import Cycloidal
-from mbsd.model.laws.harmonic import Harmonic
-from mbsd.model.laws.polynomial import Polynomial
-from mbsd.model.laws.recorded import Recorded
-from mbsd.model.laws.table import Table
+from mbsd.model.laws.formulas import ConstantRate, Cycloidal, Harmonic, Polynomial
+from mbsd.model.laws.splines import Recorded, Table
 from mbsd.model.mechanism import Start, StartVelocity
 
 # Laws and curves moved by a constant, or with their sign changed, each as a law of its own kind where it has one.

@@ -9,7 +9,7 @@ import numpy as np
 
 from mbsd import Mechanism, constant_rate, cycloidal, function, harmonic, polynomial, table
 from mbsd.model.laws import Motion
-from mbsd.model.laws.recorded import recorded
+from mbsd.model.laws.splines import recorded
 from tools.random_mechanisms.subject import Subject, family
 
 # Laws of drivers: turns and swings of every kind, each over a known time.

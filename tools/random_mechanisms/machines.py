@@ -10,7 +10,7 @@ import numpy as np
 from mbsd import GasCycle, Mechanism, constant_rate, harmonic, pressure_table, two_stroke
 from mbsd.arrays.chambers import chambers
 from mbsd.model.body import Body
-from mbsd.results.gas import GasView
+from mbsd.results.fluids import GasView
 from mbsd.results.solution import Solution
 from tools.random_mechanisms.laws import Drive, swinging, turning
 from tools.random_mechanisms.subject import Subject, family

@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-import importlib
 import math
-import pkgutil
 import warnings
 
 import numpy as np
 
-import mbsd.model.contacts
-import mbsd.model.drivers
-import mbsd.model.forces
-import mbsd.model.joints
 from mbsd import Mechanism
 from mbsd.kinematics.period import common_period
-from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
-from mbsd.model.joint import KINDS
+from mbsd.model.joint import CONTACT_KINDS, KINDS
 from mbsd.model.laws.examples import EXAMPLES
 from mechanisms.stages.loading import loading
 from mechanisms.stages.solve import solving
@@ -25,11 +18,6 @@ from shared.stage.paths import mechanism_names
 from tools.random_mechanisms.subject import Builder, Subject, attempt, family
 
 # The example of every kind in the solver's registries, so that a new kind is hunted without being named here.
-
-
-for _package in (mbsd.model.joints, mbsd.model.drivers, mbsd.model.forces, mbsd.model.contacts):
-    for _module in pkgutil.iter_modules(_package.__path__):
-        importlib.import_module(f"{_package.__name__}.{_module.name}")
 
 
 CENTRES = {"gear_pair": 0.3, "belt": 0.7}

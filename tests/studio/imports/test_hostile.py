@@ -42,10 +42,10 @@ def test_damaged_samples_are_read_or_refused(seed: int) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("http://[", "of no program that is known here"),
+        ("http://[", "not a file of a known program"),
         ("https://app.pmksplus.com:99999999/?[", "its checksum is wrong"),
-        ("https://app.pmksplus.com/?" + stamped(f"0P.TY.K,0.101.{'7' * 300_000}..YRAB...JB."), "is no joint"),
-        ("https://app.pmksplus.com/?" + stamped(f"{'7' * 300_000}.TY.K,0.101.....JB."), "is no number"),
+        ("https://app.pmksplus.com/?" + stamped(f"0P.TY.K,0.101.{'7' * 300_000}..YRAB...JB."), "is not a joint"),
+        ("https://app.pmksplus.com/?" + stamped(f"{'7' * 300_000}.TY.K,0.101.....JB."), "is not a number"),
         ("mech=\n" + PIN + "a,b,R," + "9" * 400 + ",0,0,tfff\n", "it must be a number up to 1e+09"),
         ("mech=\n" + PIN + "a,b,R,nan,0,0,tfff\n", "points of link 'a' is nan"),
         ("mech=\n" + PIN + "a,b,R,1e999,0,0,tfff\n", "it must be a number up to 1e+09"),

@@ -94,7 +94,7 @@ def test_pylinkage_is_read() -> None:
         (b"hello", "is not a file of a known program"),
         (b"\0\1\2", "is not text"),
         (b"<linkage2></linkage2>", "the file has no links"),
-        (b"ground,input,R,a,b", "is of no program"),
+        (b"ground,input,R,a,b", "is not a file of a known program"),
         (b"mech=\nground,input,R,1,2\nrubbish", "line 3 is not a joint of PMKS"),
         (b'{"joints": [], "links": [{"position": 1}]}', "no file of pylinkage (JSON) (KeyError: 'id')"),
         (b'{"TypeOfJoint"', "its JSON cannot be read"),

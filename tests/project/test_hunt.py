@@ -276,7 +276,7 @@ def test_solutions_over_other_spans_agree_where_a_law_is_known_by_values_alone()
 
 
 def test_contradicting_velocities_start_alike_in_all_words_of_a_refused_motion() -> None:
-    """Which of the given components a joint leaves depends on the axes: the centres approach, or go apart."""
+    """A joint keeps components that depend on the axes: the centres approach, or go apart."""
     m = Mechanism("loose", gravity=None)
     ring, gear = m.body("ring", 2.0, inertia=1.0), m.body("gear", 1.0, inertia=0.1)
     m.gear_pair("mesh", ring.origin, gear.origin, radius_i=0.5, radius_j=0.2, internal=True)

@@ -1,4 +1,4 @@
-"""What a machine lacks is told at the start and at the end; tests that want it are skipped, or refused in CI."""
+"""Missing programs are reported at the start and at the end; their tests are skipped, or refused in CI."""
 
 from __future__ import annotations
 

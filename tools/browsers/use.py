@@ -247,7 +247,7 @@ def use(browser: Browser, out: Out, page: Path, pictures: Path) -> Iterator[str]
         for part in PARTS:
             yield from _pin(browser, out, motion, view, part, stage, pictures)
     yield from _driven(browser, motion)
-    yield from _asked(browser, motion, stage)
+    yield from _select_joints(browser, motion, stage)
     yield from tabled(browser, motion)
     yield from touched(browser, motion, stage)
     browser.ask(f"{APP}.store.set({{view: '3d', selected: null, theme: 'auto', shown: {{trails: true}}}})")
@@ -353,7 +353,7 @@ def _driven(browser: Browser, motion: Motion) -> Iterator[str]:
     browser.act(press("Space"))
 
 
-def _asked(browser: Browser, motion: Motion, stage: dict[str, float]) -> Iterator[str]:
+def _select_joints(browser: Browser, motion: Motion, stage: dict[str, float]) -> Iterator[str]:
     """A click on a joint, a drag on its curve, arrows, help."""
     browser.act(press("Home"))
     browser.ask(FRAME)

@@ -1,4 +1,4 @@
-"""Whether two solutions of one mechanism in different words agree, and within which bounds.
+"""Agreement of two solutions of one mechanism in different words, and its bounds.
 
 Compared are numbers that do not depend on the description: places, velocities and accelerations of centres of mass and
 angles of bodies, carried back into the first description; forces and moments that joints and drivers give; energies.
@@ -246,7 +246,7 @@ class Verdict:
 
     @property
     def agrees(self) -> bool:
-        """Whether all is within bounds."""
+        """True if all is within bounds."""
         return self.worst <= 1.0
 
 
@@ -317,7 +317,7 @@ def _extent(first: Solution, other: Solution, words: Words) -> float:
 
 @dataclass
 class Growth:
-    """What a nudge of NUDGE comes to, over NUDGE, the largest so far at each output of the first solution."""
+    """Growth of a nudge of NUDGE, over NUDGE: the largest so far at each output of the first solution."""
 
     of: dict[str, np.ndarray]
 

@@ -172,12 +172,12 @@ How far masses are apart, and so what is lost in rounding, depends on the frames
 
 
 def expected_refusal(error: MechanismError) -> bool:
-    """Whether the program says beforehand that it will not."""
+    """Return True if the program says beforehand that it refuses."""
     return any(words in str(error) for words in PROMISED)
 
 
 def cannot_be_saved(m: Mechanism) -> bool:
-    """Whether the model holds a Python function, or events."""
+    """Return True if the model holds a Python function, or events."""
     laws = [driver.motion for driver in m.drivers.values()]
     laws += [law for force in m.forces.values() for law in force.laws.values()]
     kinds = [KINDS[joint.kind.name].saved for joint in m.joints.values()]

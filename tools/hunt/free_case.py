@@ -52,11 +52,11 @@ class Free:
         return 0.0 if self.first is None else float(self.first.singularity_margin.min())
 
     def touches(self) -> bool:
-        """Whether events decide the motion."""
+        """True if events decide the motion."""
         return "contacts" in self.subject.traits
 
     def remembers(self, k: int) -> bool:
-        """Whether a contact acts at output k whose damping depends on how fast it began, which no start can say."""
+        """Return True if a contact acts at output k whose damping depends on its first speed, which no start has."""
         first = self.first
         if first is None or first.approached is None:
             return False
@@ -82,7 +82,7 @@ class Free:
         return outcome
 
     def _falls(self, m: Mechanism, other: Solution, words: Words, options: dict[str, Any]) -> bool:
-        """Whether a difference is ten times less where both tolerances are a hundred times less, or steps end there.
+        """Return True if tolerances a hundred times less make a difference ten times less, or end steps there.
 
         A nudge at the start does not tell how errors made on the way grow, as in a close encounter of two masses; where
         steps then shrink to rounding, no tolerance tells more.

@@ -60,11 +60,11 @@ EACH = 30.0
 
 
 class Report(Protocol):
-    """What a hunt counts."""
+    """Counts of a hunt."""
 
     @property
     def findings(self) -> Any:
-        """What was found, as a sized thing."""
+        """Findings, as a sized thing."""
         ...
 
     def write(self, path: Path, seed: int, n: int, seconds: float) -> None:

@@ -93,7 +93,7 @@ def moved(m: Mechanism, rng: np.random.Generator, pose: Pose, may_reorder: bool 
 
 @dataclass
 class Asked:
-    """What is differentiated, by the names of the first machine."""
+    """Request of derivatives, by the names of the first machine."""
 
     bodies: list[str]
     places: list[tuple[str, bool]]
@@ -103,13 +103,13 @@ class Asked:
     def labels(self, quantity: int, number: int) -> tuple[str, str]:
         """Names of one of the quantities and of one of the numbers of the first machine."""
         same = Moved(Mechanism("same"), np.eye(2), np.eye(2))
-        return self.of(same)[quantity], self.to(same)[number]
+        return self.names_of_quantities(same)[quantity], self.names_of_numbers(same)[number]
 
-    def of(self, words: Moved) -> list[str]:
+    def names_of_quantities(self, words: Moved) -> list[str]:
         """Names of the quantities."""
         return [f"{words.name(body)}.{part}" for body in self.bodies for part in PARTS] + ["kinetic"]
 
-    def to(self, words: Moved) -> list[str]:
+    def names_of_numbers(self, words: Moved) -> list[str]:
         """Names of the numbers."""
         places = [f"{words.name(joint)}.{axis}" for joint, _ in self.places for axis in "xy"]
         return [*places, *(f"{words.name(body)}.mass" for body in self.masses)]
@@ -191,9 +191,11 @@ def beside_its_own(
     same = Moved(m, np.eye(2), np.eye(2))
 
     def slopes(words: Moved, m: Mechanism) -> tuple[np.ndarray | None, MechanismError | None]:
-        of = asked.of(words)
+        of = asked.names_of_quantities(words)
         derived, error = attempt(
-            lambda: m.sensitivities(of, asked.to(words), times=times, simulate=is_free, tolerance=TOLERANCE)
+            lambda: m.sensitivities(
+                of, asked.names_of_numbers(words), times=times, simulate=is_free, tolerance=TOLERANCE
+            )
         )
         every = None if derived is None else np.stack([derived[label] for label in of], axis=1)
         return (None if every is None else asked.carried_back(every, words)), error

@@ -1,4 +1,4 @@
-"""What must be the same to the last bit: a model changed to its numbers and one built with them, a solution pickled."""
+"""Results that must be the same to the last bit: a model changed to its numbers and one built with them, a solution pickled."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ TABLES = ("joints", "drivers", "forces", "contacts")
 
 
 def changed(name: str, m: Mechanism, rng: np.random.Generator) -> Outcome:
-    """Whether a model changed to the numbers of ``m`` is that model; under the variation's name."""
+    """Return the outcome of a model changed to the numbers of ``m``, which must be that model."""
     differs = changed_differs(m, rng)
     if differs is None:
         return Outcome(name, UNCLEAR, "nothing to change, or no file could hold it")
@@ -59,7 +59,7 @@ def changed(name: str, m: Mechanism, rng: np.random.Generator) -> Outcome:
 
 
 def pickled(name: str, sol: Solution | None) -> Outcome:
-    """Whether a solution, if there is one, comes back as it was; under the variation's name."""
+    """Return the outcome of pickling a solution, if there is one, which must come back as it was."""
     if sol is None:
         return Outcome(name, UNCLEAR, "refused as built")
     differs = pickled_differs(sol)
@@ -67,7 +67,7 @@ def pickled(name: str, sol: Solution | None) -> Outcome:
 
 
 def changed_differs(m: Mechanism, rng: np.random.Generator) -> str | None:
-    """What a model that is built with other numbers and changed to those of ``m`` has otherwise; "" if nothing.
+    """Return how a model built with other numbers and changed to those of ``m`` differs; "" if it does not.
 
     Numbers that may follow from others are left out now and then. None where there is nothing to change, or no file
     could hold the model.
@@ -127,7 +127,7 @@ def _altered(entry: dict[str, Any], table: str, rng: np.random.Generator) -> lis
 
 
 def bits(m: Mechanism) -> tuple[Any, ...]:
-    """What the solver and a file get of a model."""
+    """Return all that the solver and a file get of a model."""
     packed = pack(m, list(m.contacts.values()))
     loads = [part.tobytes() for part in pack_loads(packed) if isinstance(part, np.ndarray)]
     return document(m), [np.asarray(array).tobytes() for array in packed.system], loads

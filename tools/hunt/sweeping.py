@@ -49,7 +49,7 @@ class Driven:
 
     @property
     def doubtful(self) -> bool:
-        """Whether the motion comes near a singular pose, as far as the first solution saw."""
+        """True if the motion comes near a singular pose, as far as the first solution saw."""
         seen = 0.0 if self.first is None else float(self.first.singularity_margin.min())
         return min(seen, self.subject.distance) < HEALTHY
 

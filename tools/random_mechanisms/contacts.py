@@ -101,7 +101,7 @@ outputs within a long step have the error of its interpolant, which is of order 
 
 
 def audited(sol: Solution, formulation: str = "auto") -> list[str]:
-    """What a solution gains or loses without work."""
+    """Return what a solution gains or loses without work, in words."""
     bound, changed = _change(sol)
     if changed <= bound:
         return []

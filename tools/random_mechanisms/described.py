@@ -41,7 +41,7 @@ class Raised(Motion):
 
     @property
     def period(self) -> float | None:
-        """That of the law."""
+        """Period of the law (s)."""
         return self.law.period
 
     def over(self, first: float, last: float) -> Motion:

@@ -219,7 +219,7 @@ def continued(rng: np.random.Generator) -> Subject:
 
 
 @family("points on curves beside themselves", weight=0.5)
-def beside(rng: np.random.Generator) -> Subject:
+def points_beside_curves(rng: np.random.Generator) -> Subject:
     """A hairpin, a way to and fro, the same with crooked legs; a bead or a small rolling disc."""
     kind, gap = int(rng.integers(3)), float(10 ** rng.uniform(-1.5, -0.5))
     turn, up = np.linspace(0.0, math.pi, 9)[1:-1], np.linspace(0.0, 1.0, int(rng.integers(5, 15)))

@@ -254,7 +254,7 @@ class Built:
         return self.form.reach([law.over(0.0, self.duration) for law in self.laws], self.duration)
 
     def usual(self) -> Subject:
-        """Whether it can move all the way is known unless it comes near a change point."""
+        """Build dyads of usual lengths; only near a change point is it unknown whether they can move all the way."""
         least = self.reach()
         possible = True if least > ROOMY else False if least < -ROOMY else None
         return self.subject(possible, math.sqrt(max(least, 0.0)))

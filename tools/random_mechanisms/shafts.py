@@ -32,7 +32,7 @@ class RandomMachine:
         self.m.drive_angle("motor", shaft, constant_rate(rate, start) if steady else harmonic(1.5, rate, start))
         self.m.start_near(**{shaft.name: math.degrees(start)})
 
-    def at(self, x: float, y: float, angle: float = 0.0):
+    def on_ground(self, x: float, y: float, angle: float = 0.0):
         """A point of ground in the axes of the machine."""
         c, s = math.cos(self.turn), math.sin(self.turn)
         x, y = x * self.scale, y * self.scale
@@ -48,7 +48,7 @@ class RandomMachine:
     def shaft(self, x: float, y: float, angle: float = 0.0) -> Body:
         """A body pinned to ground."""
         made = self.body(angle)
-        self.m.revolute(f"pin {made.name}", self.at(x, y), made.origin)
+        self.m.revolute(f"pin {made.name}", self.on_ground(x, y), made.origin)
         self.shafts.append((made, x, y))
         return made
 
@@ -56,7 +56,7 @@ class RandomMachine:
         """One of the shafts so far."""
         return self.shafts[int(self.random.integers(len(self.shafts)))]
 
-    def beside(self, distance: float) -> tuple[Body, Body]:
+    def next_shaft(self, distance: float) -> tuple[Body, Body]:
         """A shaft and a new one at a distance."""
         old, x, y = self.some()
         way = self.random.uniform(0.0, 2 * math.pi)
@@ -65,13 +65,13 @@ class RandomMachine:
     def gear(self) -> None:
         """Gears, one perhaps far smaller than the other."""
         first, second = self.random.uniform(0.05, 0.5, 2)
-        old, new = self.beside(float(first + second))
+        old, new = self.next_shaft(float(first + second))
         radii = {"radius_i": first * self.scale, "radius_j": second * self.scale}
         self.m.gear_pair(f"gear {new.name}", old.origin, new.origin, **radii)
 
     def belt(self) -> None:
         """Open or crossed."""
-        old, new = self.beside(1.5)
+        old, new = self.next_shaft(1.5)
         first, second = self.random.uniform(0.1, 0.6, 2) * self.scale
         crossed = bool(self.random.integers(2))
         self.m.belt(f"belt {new.name}", old.origin, new.origin, radius_i=first, radius_j=second, crossed=crossed)
@@ -83,7 +83,7 @@ class RandomMachine:
         wheel = self.body()
         self.m.revolute(f"pin {wheel.name}", arm.at(reach * self.scale, 0.0), wheel.origin)
         own, rolling = (reach - radius) * self.scale, radius * self.scale
-        self.m.gear_pair(f"gear {wheel.name}", self.at(x, y), wheel.origin, radius_i=own, radius_j=rolling)
+        self.m.gear_pair(f"gear {wheel.name}", self.on_ground(x, y), wheel.origin, radius_i=own, radius_j=rolling)
 
     def differential(self) -> None:
         """A shaft as sun, a ring of ground, a carrier and one planet."""
@@ -94,7 +94,7 @@ class RandomMachine:
         radii = {"radius_i": own * self.scale, "radius_j": planet * self.scale}
         self.m.gear_pair(f"sun {wheel.name}", sun.origin, wheel.origin, **radii)
         radii = {"radius_i": (own + 2 * planet) * self.scale, "radius_j": planet * self.scale}
-        self.m.gear_pair(f"ring {wheel.name}", self.at(x, y), wheel.origin, internal=True, **radii)
+        self.m.gear_pair(f"ring {wheel.name}", self.on_ground(x, y), wheel.origin, internal=True, **radii)
 
     def cam(self) -> None:
         """A flat or a roller follower that swings."""
@@ -123,7 +123,7 @@ class RandomMachine:
         pinion, x, y = self.some()
         radius = float(self.random.uniform(0.1, 0.4))
         rack = self.body()
-        self.m.prismatic(f"guide {rack.name}", self.at(x, y - radius), rack.origin)
+        self.m.prismatic(f"guide {rack.name}", self.on_ground(x, y - radius), rack.origin)
         self.m.rack_and_pinion(f"rack {rack.name}", rack.origin, pinion.origin, radius=radius * self.scale)
         other = self.shaft(x + 0.8, y)
         self.m.rack_and_pinion(f"rack {other.name}", rack.origin, other.origin, radius=radius * self.scale)
@@ -145,7 +145,7 @@ class RandomMachine:
         self.m.revolute(f"A {first.name}", shaft.at(crank * size, 0.0), first.origin)
         self.m.revolute(f"B {first.name}", first.at(near, 0.0), second.at(far, 0.0))
         px, py = x + gap * math.cos(way), y + gap * math.sin(way)
-        self.m.revolute(f"C {first.name}", self.at(px, py), second.origin)
+        self.m.revolute(f"C {first.name}", self.on_ground(px, py), second.origin)
         self.shafts.append((second, px, py))
 
     KINDS: dict[str, Callable[[RandomMachine], None]] = {

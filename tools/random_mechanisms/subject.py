@@ -1,4 +1,4 @@
-"""What is hunted: a mechanism, how long it moves, and what is known about it without the solver."""
+"""Subject of a hunt: a mechanism, its duration, and what is known about it without the solver."""
 
 from __future__ import annotations
 

@@ -132,7 +132,7 @@ def signature(name: str, function: Callable[..., Any], bound: bool = False) -> s
 
 
 def _of_the_class(parameter: inspect.Parameter) -> bool:
-    """Whether a dataclass makes this by itself: nobody gives it."""
+    """Return True if a dataclass makes this by itself: nobody gives it."""
     return repr(parameter.default) == "<factory>"
 
 
@@ -295,12 +295,12 @@ def _class(name: str, owner: type, alone: bool) -> str:
     if issubclass(owner, BaseException):
         parts += [f"A kind of `{owner.__mro__[1].__name__}`.", text(owner.__doc__)]
     else:
-        made = [] if owner.__module__.startswith(GIVEN_BACK) else [code(f"class {_made(name, owner)}")]
+        made = [] if owner.__module__.startswith(GIVEN_BACK) else [code(f"class {_signature(name, owner)}")]
         parts += [*made, text(owner.__doc__), _source(owner), *_members(name, owner, "##" if alone else "###")]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _made(name: str, owner: type) -> str:
+def _signature(name: str, owner: type) -> str:
     try:
         return signature(name, owner).removesuffix(" -> None")
     except (TypeError, ValueError):

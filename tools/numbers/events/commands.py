@@ -36,17 +36,17 @@ class Beside(NamedTuple):
     within: float
 
 
-def beside(only: str) -> Iterator[Beside]:
+def compare(only: str) -> Iterator[Beside]:
     """Yield runs whose names contain ``only`` beside one row of the loop each; refused runs have no motion."""
     records = read()
     for case in cases():
         record = records[case.name]
         own = records[record.same_as] if record.same_as else record
         if only in case.name and own.outcome is not None:
-            yield _beside(case, own.outcome, own.within)
+            yield _compare(case, own.outcome, own.within)
 
 
-def _beside(case: Case, outcome: Outcome, within: float) -> Beside:
+def _compare(case: Case, outcome: Outcome, within: float) -> Beside:
     m, given = case.build(), dict(case.options)
     rows = given.pop("event_rows", False)
     times = [moment.t for moment in outcome.between]
@@ -110,7 +110,7 @@ def _same(m: Mechanism) -> dict[str, dict[str, list[float]]]:
 def show(only: str) -> None:
     """Print a table of all, a line as soon as it is known."""
     print("| run | way | difference | bound |\n|---|---|--:|--:|")
-    for each in beside(only):
+    for each in compare(only):
         print(f"| {each.name} | {each.way} | {each.apart:.1e} | {each.within:.0e} |", flush=True)
 
 

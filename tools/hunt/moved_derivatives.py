@@ -191,7 +191,7 @@ def beside_its_own(
     same = Moved(m, np.eye(2), np.eye(2))
 
     def slopes(words: Moved, m: Mechanism) -> tuple[np.ndarray | None, MechanismError | None]:
-        of = asked.names_of_quantities(words)
+        of, to = asked.names_of_quantities(words), asked.names_of_numbers(words)
         derived, error = attempt(
             lambda: m.sensitivities(
                 of, asked.names_of_numbers(words), times=times, simulate=is_free, tolerance=TOLERANCE

@@ -1,4 +1,4 @@
-"""Results that must be the same to the last bit: a model changed to its numbers and one built with them, a solution pickled."""
+"""Results that must be the same to the last bit: of a model changed and one built so, of a pickled solution."""
 
 from __future__ import annotations
 

@@ -192,11 +192,7 @@ def beside_its_own(
 
     def slopes(words: Moved, m: Mechanism) -> tuple[np.ndarray | None, MechanismError | None]:
         of, to = asked.names_of_quantities(words), asked.names_of_numbers(words)
-        derived, error = attempt(
-            lambda: m.sensitivities(
-                of, asked.names_of_numbers(words), times=times, simulate=is_free, tolerance=TOLERANCE
-            )
-        )
+        derived, error = attempt(lambda: m.sensitivities(of, to, times=times, simulate=is_free, tolerance=TOLERANCE))
         every = None if derived is None else np.stack([derived[label] for label in of], axis=1)
         return (None if every is None else asked.carried_back(every, words)), error
 

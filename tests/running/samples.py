@@ -52,6 +52,9 @@ SAMPLES: dict[str, tuple[str, ...]] = {
             "v6",
         ),
     ),
+    "tests/project/test_injection.py::test_a_stage_refuses_a_link_in_place_of_a_folder_of_results": (
+        *("four_bar", "four_bar/frames"),
+    ),
     "tests/render/film/test_scene_framing.py::"
     "test_every_body_that_moves_stays_in_the_frame_over_the_whole_film_and_fills_it": ("*-mount1",),
     "tests/render/film/test_writing.py::test_words_have_a_contrast_of_four_and_a_half_to_whatever_is_behind_them": (
@@ -63,6 +66,7 @@ SAMPLES: dict[str, tuple[str, ...]] = {
     ),
     "tests/render/frames/test_film_resumes.py::test_a_film_goes_on_where_it_was_stopped": ("SIGTERM", "SIGKILL"),
     "tests/render/frames/test_full_disk.py::test_a_limit_on_the_size_of_files": ("film",),
+    "tests/saving/test_saving.py::test_every_kind_of_force_comes_back": ("*-two_bodies",),
     "tests/shared/test_geneva_shapes.py::test_wheel_passes_the_locking_disc_without_touching_it": ("3-*", "6-*"),
     "tests/shared/test_leg_shapes.py::test_outlines_make_valid_solids_of_any_size": ("*-0.1",),
     "tests/shared/test_lineage.py::test_whatever_ends_run_all_ends_its_stages": ("make-15", "make-9", "the night-9"),

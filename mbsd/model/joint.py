@@ -154,13 +154,6 @@ class JointKind(ByName):
         return sum(ROWS[name] for name in self.constraints)
 
 
-def cam_numbers(profile: Mapping[str, Any]) -> np.ndarray:
-    """Numbers of the constraint of a cam, from its plain data."""
-    from mbsd.model.cams.followers import cam_from
-
-    return cam_from(profile).numbers
-
-
 KINDS: dict[str, JointKind] = {}
 
 

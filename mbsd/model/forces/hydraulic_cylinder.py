@@ -217,16 +217,11 @@ def hydraulic_cylinder(
     params = amounts_given(
         m, name, rod=rod, air=air, leak=leak, tank=tank, outside=outside, friction=friction, stop_damping=stop_damping
     )
-    for key, value in (
-        ("bore", bore), ("stroke", stroke), ("retracted", retracted), ("supply", supply), ("rated_drop", rated_drop),
-        ("density", density), ("bulk_modulus", bulk_modulus), ("transition", transition), ("slip_speed", slip_speed),
-    ):  # fmt: skip
-        params[key] = above_zero(m, name, key, value)
-    for key, value in (
-        ("rated_flow", rated_flow), ("orifice", orifice), ("dead_a", dead_a), ("dead_b", dead_b),
-        ("pressure_a", pressure_a), ("pressure_b", pressure_b), ("stop_stiffness", stop_stiffness),
-    ):  # fmt: skip
-        params[key] = None if value is None else above_zero(m, name, key, value)
+    params |= above_zero(
+        m, name, bore=bore, stroke=stroke, retracted=retracted, supply=supply, rated_drop=rated_drop, density=density,
+        bulk_modulus=bulk_modulus, transition=transition, slip_speed=slip_speed, rated_flow=rated_flow, orifice=orifice,
+        dead_a=dead_a, dead_b=dead_b, pressure_a=pressure_a, pressure_b=pressure_b, stop_stiffness=stop_stiffness,
+    )  # fmt: skip
     what = f"{m.name}: force '{name}'"
     if not rod < bore:
         raise ModelError(f"{what}: rod is {rod:g} m, but the bore only {bore:g} m; the rod is inside of the bore")

@@ -40,14 +40,18 @@ import numpy as np
 from mbsd.model.body import Marker
 from mbsd.model.entries import join, phase_given, radii_given
 from mbsd.model.joint import Joint, JointKind, register_joint
-from mbsd.model.mechanism import Model, number_given
+from mbsd.model.mechanism import Model
+from mbsd.model.plane_curves import (
+    checked_points,
+    curve_numbers,
+    curve_pieces,
+    disc_numbers,
+    farthest_step,
+    refuse_tight,
+)
 
 
 def _point_on_curve_numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
-    import numpy as np
-
-    from mbsd.model.plane_curves import curve_numbers, curve_pieces, farthest_step
-
     closed, distance = params["closed"], params["distance"]
     pieces = curve_pieces(np.array(params["points"], float), closed)
     return [curve_numbers(*pieces, closed, distance, 0.0, farthest_step(*pieces, closed, distance))]
@@ -87,11 +91,7 @@ def point_on_curve(
 
     ``distance`` (m) is how far it stays to the left of the curve; beyond its ends an open curve goes on straight.
     """
-    from mbsd.model.plane_curves import checked_points
-
-    what = f"{m.name}: joint '{name}'"
-    plain = checked_points(what, points, closed)
-    distance = number_given(m, f"joint '{name}': distance", distance)
+    plain = checked_points(f"{m.name}: joint '{name}'", points, closed)
     return join(m, POINT_ON_CURVE, name, curve, point, None, points=plain, closed=bool(closed), distance=distance)
 
 
@@ -116,12 +116,6 @@ def rolling_disc(
     return join(m, ROLLING_DISC, name, line, disc, None, **radii, phase=phase_given(m, name, phase))
 
 
-def _rolling_on_curve_numbers(params: Mapping[str, Any]) -> list[np.ndarray]:
-    from mbsd.model.plane_curves import disc_numbers
-
-    return disc_numbers(params, follows=True)
-
-
 ROLLING_ON_CURVE = register_joint(
     JointKind(
         "rolling_on_curve",
@@ -129,7 +123,7 @@ ROLLING_ON_CURVE = register_joint(
         example=lambda m, i, j: m.rolling_on_curve(
             "example", i, j, [(-6, -1), (-4, -0.5), (-2, 0), (0, -0.3), (2, -0.5), (4, 0.2), (6, 0.1)], radius=0.2
         ),
-        numbers=_rolling_on_curve_numbers,
+        numbers=lambda params: disc_numbers(params, follows=True),
         lengths=("radius", "points"),
         touching="curve",
     )
@@ -152,8 +146,6 @@ def rolling_on_curve(
 
     The points are in the axes of marker ``curve`` (m); beyond its ends an open curve goes on straight.
     """
-    from mbsd.model.plane_curves import checked_points, refuse_tight
-
     what = f"{m.name}: joint '{name}'"
     radii, plain = radii_given(m, name, radius=radius), checked_points(what, points, closed)
     refuse_tight(what, plain, closed, radii["radius"])

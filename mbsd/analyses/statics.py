@@ -22,7 +22,7 @@ from functools import cached_property
 
 import numpy as np
 
-from mbsd.arrays.inertias import coupled
+from mbsd.arrays.inertias import coupled, weight_of
 from mbsd.arrays.laws import compiled_laws
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.loads_along import loads_along
@@ -189,7 +189,4 @@ def statics(packed: Packed, time: float) -> Statics:
     """Statics of a packed mechanism whose drivers hold where they are at ``time`` (s)."""
     drive = packed.drives(np.array([time]))[0]
     drive[:, 1:] = 0.0
-    system = packed.system
-    weight = np.zeros((len(system.mass), 3))
-    weight[:, :2] = system.mass[:, None] * system.gravity
-    return Statics(packed, time, drive, pack_loads(packed), compiled_laws(packed, time, time), weight.ravel())
+    return Statics(packed, time, drive, pack_loads(packed), compiled_laws(packed, time, time), weight_of(packed))

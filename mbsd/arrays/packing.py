@@ -117,6 +117,11 @@ class Packed:
         """The joint that owns a row of J."""
         return self.joints[int(np.searchsorted(self.first_row, row, side="right")) - 1]
 
+    def rows_of(self, joint: str | int) -> range:
+        """Return the rows of J of a joint, driver or contact, by its name or its place in ``joints``."""
+        k = [each.name for each in self.joints].index(joint) if isinstance(joint, str) else joint
+        return range(int(self.first_row[k]), int(self.first_row[k + 1]))
+
     def motion_of(self, number: int) -> int:
         """The motion of a joint or driver by its place in ``joints``; 0 for joints."""
         return max(0, number + 1 - (len(self.joints) - len(self.motions)))

@@ -12,18 +12,29 @@ it hardly matters to mechanisms that swing about once a second.
 Relative tolerances hold for angles too, so theirs are looser after many turns.
 
 Source: Eich 1993, SIAM J. Numer. Anal. 30 (projection); Baumgarte 1972, Comp. Meth. Appl. Mech. Eng. 1 (the pull).
+
+Those of scipy:
+
+``scipy-dop853``: explicit Runge-Kutta of order 8. ``scipy-radau``: Radau IIA of order 5, implicit. ``scipy-lsoda``:
+Adams and BDF methods of variable order; it finds by itself where the motion is stiff.
+
+They run in Python, and cost many times what the solver's own methods do.
+
+Source: scipy.integrate (DOP853, Radau, LSODA); Hairer, Norsett, Wanner, Solving ODEs I, II; Petzold 1983, SIAM J. Sci.
+Stat. Comput. 4 (LSODA).
 """
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
 
 from mbsd.dynamics.formulation import derivative, project, record_output
-from mbsd.dynamics.integrators.kind import Option
+from mbsd.dynamics.integrators.kind import Integrator, Option, register
 from mbsd.dynamics.reference.arrays import Dynamics, Scratch
 from mbsd.dynamics.state import (
     ACCEPTED,
@@ -220,3 +231,59 @@ def _in_a_line(dyn: Dynamics, scratch: Scratch, state: State, out: Output, end: 
     while state.count[NEXT] < len(out.t) and out.t[state.count[NEXT]] <= end:
         record_here(scratch, state, out)
     return REACHED
+
+
+class _Scipy:
+    """A solver of scipy under way."""
+
+    def __init__(self, solver: str, rates: Rates, t: float, y: np.ndarray, end: float, settings: Settings) -> None:
+        from scipy import integrate
+
+        relative, absolute = tolerances(settings)
+        self._rates, self._one_step = rates, solver != "LSODA"
+        rates.pull = None if self._one_step else float(settings.options[0])
+        limits = {"rtol": relative, "atol": absolute, "max_step": settings.longest}
+        with np.errstate(all="ignore"):
+            self._solver = getattr(integrate, solver)(rates, t, y, end, **limits)
+        self._dense: Callable[[float], np.ndarray] | None = None
+        self.t, self.y = t, y
+
+    def step(self) -> bool:
+        """See Stepper."""
+        with np.errstate(all="ignore"):  # a trial step may overflow, and is taken again
+            self._solver.step()
+        self._dense = None
+        if self._solver.status == "failed":
+            return False
+        if self._one_step:
+            self._solver.y = self._rates.projected(self._solver.t, self._solver.y)
+            self._solver.f = self._rates(self._solver.t, self._solver.y)
+        self.t, self.y = float(self._solver.t), self._solver.y
+        return True
+
+    def between(self, t: float) -> np.ndarray:
+        """See Stepper."""
+        dense = self._dense = self._dense or self._solver.dense_output()
+        return dense(t)
+
+
+def _maker(solver: str) -> Maker:
+    def make(rates: Rates, t: float, y: np.ndarray, end: float, settings: Settings) -> Stepper:
+        return _Scipy(solver, rates, t, y, end, settings)
+
+    return make
+
+
+SCIPY_DOP853, SCIPY_RADAU, SCIPY_LSODA = (
+    register(
+        Integrator(
+            f"scipy-{solver.lower()}",
+            partial(advance_with, _maker(solver)),
+            STAGES,
+            order,
+            fixed_step=False,
+            options=options,
+        )
+    )
+    for solver, order, options in (("DOP853", 8, {}), ("Radau", 5, {}), ("LSODA", 0, PULL))
+)

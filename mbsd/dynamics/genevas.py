@@ -11,24 +11,106 @@ after it with new derivatives, as at jumps of laws (prepare/stops.py).
 from __future__ import annotations
 
 import math
+from typing import Any, NamedTuple
 
+import numpy as np
+
+from mbsd.arrays.packing import Packed
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, kernel, lazy
-from mbsd.dynamics.genevas.arrays import (
-    ARM_X,
-    ARM_Y,
-    AXIS_X,
-    AXIS_Y,
-    CRANK,
-    RADIUS,
-    TO_X,
-    TO_Y,
-    WHEEL,
-)
-from mbsd.dynamics.independent.arrays import Embedding
+from mbsd.dynamics.independent.arrays import Embedding, EmbeddingScratch
 from mbsd.dynamics.independent.equations import write_alone
 from mbsd.dynamics.integrators.advance import USUAL, advance_past_jumps, copy_state
-from mbsd.dynamics.state import ACCEPTED, ERROR, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK
+from mbsd.dynamics.state import ACCEPTED, ERROR, NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK, State, output_for
+
+CRANK, WHEEL = range(2)
+"""Columns of Genevas.body."""
+ARM_X, ARM_Y, AXIS_X, AXIS_Y, TO_X, TO_Y, RADIUS = range(7)
+"""Columns of Genevas.number: the crank's marker and its x axis in the axes of its body, the wheel's marker in those of
+its own, radius of the pin (m)."""
+
+
+class Memory(NamedTuple):
+    """Arrays of Embedding and EmbeddingScratch, by their names there, from which the next poses are predicted."""
+
+    number: Any
+    base: Any
+    coordinate: Any
+    block_work: Any
+    body: Any
+    watch: Any
+
+
+class Genevas(NamedTuple):
+    """g Genevas of a run with f coordinates and nb bodies."""
+
+    body: Any
+    """(g, 2) int"""
+    number: Any
+    """(g, 7)"""
+    gap: Any
+    """(2, g) x - r (m) of where steps begin, and of where they lead."""
+    here: Any
+    """mbsd.dynamics.state.Output of one time."""
+    state: Any
+    """(2, 3 + f)"""
+    stage: Any
+    """(2, 3 + f)"""
+    before: Any
+    """mbsd.dynamics.state.State: a point to return to."""
+    kept: Memory
+    """As it was there."""
+
+
+_NOTHING = tuple(np.zeros((0,) * dimensions) for dimensions in (2, 2, 2, 1, 2, 1))
+"""In place of what steps in independent coordinates predict from."""
+
+
+def genevas_of(packed: Packed, state: State, arrays: Embedding, scratch: EmbeddingScratch) -> Genevas | None:
+    """Return the Genevas of a run in independent coordinates at its start, or None without any."""
+    rows = _rows(packed)
+    if not rows:
+        return None
+    memory = arrays.number, scratch.base, scratch.coordinate, scratch.block_work, scratch.body, scratch.watch
+    width = state.y.shape[1]
+    return _genevas(rows, 3 * len(packed.body_names), width, State(*(np.zeros_like(part) for part in state)), memory)
+
+
+def no_genevas(state: State) -> Genevas:
+    """Return empty arrays, as for runs in reference coordinates, where steps end anywhere."""
+    return _genevas([], 0, 0, State(*(np.zeros((0,) * part.ndim, part.dtype) for part in state)), _NOTHING)
+
+
+def _genevas(
+    rows: list[tuple[float, ...]], coordinates: int, width: int, before: State, memory: tuple[np.ndarray, ...]
+) -> Genevas:
+    return Genevas(
+        np.array([row[:2] for row in rows], np.int64).reshape(-1, 2),
+        np.array([row[2:] for row in rows], float).reshape(-1, RADIUS + 1),
+        np.zeros((2, len(rows))),
+        output_for(np.zeros(min(len(rows), 1)), coordinates, 0),
+        np.zeros((2, width)),
+        np.zeros((2, width)),
+        before,
+        Memory(*(np.zeros_like(part) for part in memory)),
+    )
+
+
+def _rows(packed: Packed) -> list[tuple[float, ...]]:
+    """Return the numbers of Genevas.body and Genevas.number of each."""
+    specials, system = packed.specials, packed.system
+    return [
+        (
+            *(int(system.marker_body[marker]) for marker in place[:2]),
+            *system.marker_arm[place[0]].tolist(),
+            *system.marker_axis[place[0]].tolist(),
+            *system.marker_arm[place[1]].tolist(),
+            float(joint.params["radius"]),
+        )
+        for name, joint, place in zip(specials.names, specials.joints, specials.places, strict=True)
+        if name == "geneva"
+    ]
+
 
 SHORT = 1e-3
 """Part of the way to the jump that is left, so that Newton's steps do not go beyond it."""

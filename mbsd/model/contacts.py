@@ -18,7 +18,7 @@ Contact of a point or disc with a terrain: a smooth curve through points, solid 
     s = arc + r (a - beta)          constraint `curve_rolling`; arc length and tangent angle beta at c(u)
 
 N pushes marker j to the left of the curve. Beyond its ends an open curve goes on straight. A disc touches where the
-curve is nearest to its centre, at one point; the model refuses discs that bends of the curve are too tight for.
+curve is nearest to its centre, at one point; a disc that is too large for a bend of the curve raises an error.
 
 Stops: ends of the travel of an angle or coordinate between two markers, as of a slider's guide.
 
@@ -48,7 +48,7 @@ from mbsd.model.body import Body, Marker
 from mbsd.model.entries import add_contact, frictions_given, stop_given
 from mbsd.model.joint import ContactKind, Joint, register_contact
 from mbsd.model.mechanism import Model, connections, new_name, not_negative, own_body, own_joint
-from mbsd.model.plane_curves import checked_points, disc_numbers, refuse_crossing, refuse_tight
+from mbsd.model.plane_curves import check_crossing, check_curvature, checked_points, disc_numbers
 
 
 def _line_numbers(params):
@@ -167,8 +167,8 @@ def rigid_terrain(
     what = f"{m.name}: contact '{name}'"
     params = not_negative(m, f"contact '{name}'", radius=radius) | frictions_given(m, name, friction, static_friction)
     plain = checked_points(what, points, closed)
-    refuse_crossing(what, plain, closed)
-    refuse_tight(what, plain, closed, params["radius"])
+    check_crossing(what, plain, closed)
+    check_curvature(what, plain, closed, params["radius"])
     params |= {"points": plain, "closed": bool(closed)}
     return add_contact(m, TERRAIN, name, terrain, point, restitution, params)
 

@@ -1,4 +1,4 @@
-"""Views of the gas behind a piston, with the work of each cycle, and of the oil in a hydraulic cylinder.
+"""Views of the gas behind a piston and of the oil in a hydraulic cylinder, with their work.
 
     W = int (p - p_outside) dV over a cycle        indicated work;  over the displaced volume: mean effective pressure
 

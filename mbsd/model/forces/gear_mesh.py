@@ -171,7 +171,7 @@ def gear_mesh(
             "math.radians(20)"
         )
     params |= exponent_given(m, name, exponent)
-    _refuse_wide(what, params)
+    _check_backlash(what, params)
     params |= restitution_given(m, name, damping, restitution, damping_model, least_approach)
     params["phase"] = None if phase is None else number_pair(f"{what}: phase (rad)", phase)
     params["start"] = start
@@ -184,7 +184,7 @@ def gear_mesh(
     return add_force(m, GEAR_MESH, name, i, j, params)
 
 
-def _refuse_wide(what: str, params: Mapping[str, Any]) -> None:
+def _check_backlash(what: str, params: Mapping[str, Any]) -> None:
     """Raise ModelError for a backlash that leaves no teeth."""
     least = min(with_radii(params)[key] for key in ("radius_i", "radius_j"))
     room = 0.5 * math.pi * params["module"] if params.get("teeth") is not None else least

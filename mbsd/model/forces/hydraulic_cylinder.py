@@ -133,8 +133,8 @@ def _check(model: str, force: Force, times: np.ndarray, length: np.ndarray, stat
                     f"{where}: the steps are too long for its oil. Take method='radau' or 'dop853', or a smaller step"
                 )
             raise ModelError(
-                f"{where}: oil without air would be pulled, and real oil tears there. Give air=0.005, of which bubbles "
-                "keep the pressure above zero, let oil in faster (rated_flow, orifice, valve, tank), or pull less"
+                f"{where}: it becomes negative, where real oil cavitates. Give air=0.005, whose bubbles keep the "
+                "pressure above zero, let oil in faster (rated_flow, orifice, valve, tank), or pull less"
             )
         if pressure[k] < CAVITATES:
             warn(
@@ -209,10 +209,10 @@ def hydraulic_cylinder(
 
     ``air``: part of the volume that is free air at 101325 Pa; its bubbles make the oil soft at low pressure and keep it
     above zero, and a motion in which it cavitates is warned of. Without air, a motion in which a pressure falls below
-    zero is refused. Pressures at the start are those of a steady flow, and behind a closed valve those that carry the
-    load, unless ``pressure_a`` and ``pressure_b`` are given. ``outside``: pressure around the rod. ``friction`` (N)
-    is reached at some ``slip_speed`` (m/s). Beyond both ends stops push back, as those of :meth:`gas_strut`; by default
-    the supply presses them in by a thousandth of the stroke.
+    zero raises ModelError. Pressures at the start are those of a steady flow, and behind a closed valve those that
+    carry the load, unless ``pressure_a`` and ``pressure_b`` are given. ``outside``: pressure around the rod.
+    ``friction`` (N) is reached at some ``slip_speed`` (m/s). Beyond both ends stops push back, as those of
+    :meth:`gas_strut`; by default the supply presses them in by a thousandth of the stroke.
     """
     params = amounts_given(
         m, name, rod=rod, air=air, leak=leak, tank=tank, outside=outside, friction=friction, stop_damping=stop_damping

@@ -7,7 +7,7 @@ Point on curve: marker j lies on a smooth curve fixed to marker i, or at a fixed
 The curve is a quintic spline through points in the axes of marker i. D > 0 is on its left: the centre of a roller or a
 disc of radius D that slides. The reaction on body j is a force across the curve. Where the curve crosses itself or the
 straight lines beyond its ends, a simulation goes on along the branch the point is on (mbsd/arrays/curve_branches.py),
-and a sweep that may have left it is refused.
+and a sweep that may have left it raises an error.
 
 Rolling disc: a disc of radius r about marker j rolls without slip on the x axis of marker i.
 
@@ -27,7 +27,7 @@ The disc has the radius r, and the curve is fixed to marker i.
 
 c(u) is the curve's point nearest to the disc's centre, s and beta the arc length and tangent angle there, a the disc's
 angle. The curve is a quintic spline through points in the axes of marker i, a terrain from left to right. Where it is
-bent tighter than the disc it would touch twice; the model refuses that.
+bent tighter than the disc it would touch twice; that raises an error.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ from mbsd.model.entries import join, phase_given, radii_given
 from mbsd.model.joint import Joint, JointKind, register_joint
 from mbsd.model.mechanism import Model
 from mbsd.model.plane_curves import (
+    check_curvature,
     checked_points,
     curve_numbers,
     curve_pieces,
     disc_numbers,
     farthest_step,
-    refuse_tight,
 )
 
 
@@ -148,5 +148,5 @@ def rolling_on_curve(
     """
     what = f"{m.name}: joint '{name}'"
     radii, plain = radii_given(m, name, radius=radius), checked_points(what, points, closed)
-    refuse_tight(what, plain, closed, radii["radius"])
+    check_curvature(what, plain, closed, radii["radius"])
     return join(m, ROLLING_ON_CURVE, name, curve, disc, None, points=plain, closed=bool(closed), **radii)

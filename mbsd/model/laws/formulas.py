@@ -22,7 +22,7 @@ import numpy as np
 
 from mbsd.base.codes import CYCLOIDAL, HARMONIC, POLYNOMIAL
 from mbsd.base.errors import ModelError
-from mbsd.model.laws.law import Formula, Motion, Times, refuse_non_finite, within
+from mbsd.model.laws.law import Formula, Motion, Times, check_finite, within
 from mbsd.model.laws.numbers import Compiled
 
 
@@ -56,7 +56,7 @@ class ConstantRate(Formula):
 
 def constant_rate(rate: float, start: float = 0.0) -> Motion:
     """``start + rate t``: rad and rad/s for an angle, m and m/s for a length."""
-    refuse_non_finite("constant_rate", rate=rate, start=start)
+    check_finite("constant_rate", rate=rate, start=start)
     return ConstantRate(float(rate), float(start))
 
 
@@ -102,7 +102,7 @@ class Harmonic(Formula):
 
 def harmonic(amplitude: float, rate: float, phase: float = 0.0, mean: float = 0.0) -> Motion:
     """``mean + amplitude sin(rate t + phase)``; rate in rad/s."""
-    refuse_non_finite("harmonic", amplitude=amplitude, rate=rate, phase=phase, mean=mean)
+    check_finite("harmonic", amplitude=amplitude, rate=rate, phase=phase, mean=mean)
     return Harmonic(float(amplitude), float(rate), float(phase), float(mean))
 
 
@@ -132,7 +132,7 @@ def polynomial(*coefficients: float) -> Motion:
     """``c0 + c1 t + c2 t^2 + ...``"""
     if not coefficients:
         raise ModelError("polynomial: give at least one coefficient, c0 first")
-    refuse_non_finite("polynomial", **{f"c{k}": c for k, c in enumerate(coefficients)})
+    check_finite("polynomial", **{f"c{k}": c for k, c in enumerate(coefficients)})
     return Polynomial(tuple(float(c) for c in coefficients))
 
 
@@ -173,5 +173,5 @@ class Cycloidal(Formula):
 
 def cycloidal(rise: float, duration: float, begin: float = 0.0, start: float = 0.0) -> Motion:
     """Return a rise from ``start`` by ``rise`` within ``duration`` (s) after ``begin``, else at rest."""
-    refuse_non_finite("cycloidal", rise=rise, duration=duration, begin=begin, start=start)
+    check_finite("cycloidal", rise=rise, duration=duration, begin=begin, start=start)
     return Cycloidal(float(rise), float(duration), float(begin), float(start))

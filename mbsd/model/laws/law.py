@@ -14,7 +14,7 @@ from mbsd.model.laws.numbers import Compiled
 Times = np.ndarray
 
 
-def refuse_non_finite(law: str, **numbers: float) -> None:
+def check_finite(law: str, **numbers: float) -> None:
     """Raise ModelError naming the first that is no finite number."""
     for name, value in numbers.items():
         finite_number(f"{law}: {name}", value)
@@ -61,7 +61,7 @@ class Motion:
         looks = look_times(first, last)
         return exact_pieces(self, first, last, (), looks, self(looks))
 
-    def refuse_wrong_derivatives(self, time: float) -> None:
+    def check_derivatives_at(self, time: float) -> None:
         """Raise ModelError where f' and f'' are not those of f within a second from ``time`` (s) on.
 
         Whatever else keeps the law from being made ready there is no matter of its value at ``time``.
@@ -95,7 +95,7 @@ def within(times: np.ndarray, first: float, last: float) -> np.ndarray:
 
 
 def rising_rows(law: str, fewest: int, finite: bool = True, **columns: object) -> tuple[np.ndarray, np.ndarray]:
-    """Return two ``columns`` (n,) of numbers, of which the first rises; n is ``fewest`` or more. Raises ModelError."""
+    """Return two ``columns`` (n,), of which the first rises, n >= ``fewest``. Raises ModelError."""
     (x_name, x), (y_name, y) = ((name, number_array(f"{law}: {name}", c, finite)) for name, c in columns.items())
     if x.ndim != 1 or x.shape != y.shape or len(x) < fewest:
         raise ModelError(

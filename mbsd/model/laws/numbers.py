@@ -28,9 +28,9 @@ def breaks_of(law: Compiled) -> np.ndarray:
 
 
 def hermite_coefficients(h: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Return (p, ..., 6) quintics over widths h (p,) from value and two derivatives (p, ..., 3) at both ends.
+    """Return (p, ..., 6) quintics over widths h (p,), from values and derivatives at both ends.
 
-    Coefficients go from the lowest power up.
+    ``left`` and ``right`` (p, ..., 3) are value, first and second derivative. Coefficients go from the lowest power up.
     """
     h = h.reshape(-1, *[1] * (left.ndim - 2))
     f, df, ddf = np.moveaxis(left, -1, 0)

@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number
+from mbsd.base.arguments import finite_number, value_at
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
 from mbsd.base.pickled import WithFunctions
-from mbsd.base.users_function import value_at
 from mbsd.model.laws.fitting.sampling import Sampled, look_times
 from mbsd.model.laws.formulas import polynomial
 from mbsd.model.laws.law import Motion, Times, within

@@ -12,8 +12,8 @@ from mbsd.kinematics import multipliers
 from mbsd.kinematics.prepared import prepare
 from mbsd.machines.engines.engine import engine
 from tools.models import linkages
-from tools.models.random_linkages import driven_linkage
 from tools.models.shaft_machines import loom
+from tools.random_mechanisms.linkages import driven_linkage
 
 SIZE = {"bore": 0.08, "stroke": 0.08, "rod": 0.14, "piston_mass": 0.5, "rod_mass": 0.4, "speed": 200.0}
 

@@ -17,8 +17,7 @@ from pathlib import Path
 import pytest
 
 import mbsd
-from shared.cluster.identity import sources_of
-from shared.cluster.preload import PARTS
+from shared.cluster.preload import PARTS, sources_of
 from shared.stage.paths import ROOT
 from tools.wheel.archives import build, build_with_kernels
 
@@ -317,7 +316,7 @@ from pathlib import Path
 import mbsd
 sys.path.insert(0, str(Path(mbsd.__file__).parent / "rooms"))
 from mechanisms.stages.parts.on_cluster.built import copy_program
-from shared.cluster.identity import sources_of
+from shared.cluster.preload import sources_of
 from shared.cluster.preload import PARTS
 copy_program(Path("tree"))
 assert all(sources_of(room) == sources_of(room, Path("tree").resolve()) for room in PARTS)

@@ -23,7 +23,7 @@ from mbsd.kinematics.march import kinematics_at
 from mbsd.kinematics.prepared import prepare
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import CONTACT_KINDS, KINDS
-from tools.documents.integrators.mechanisms import four_bar, pendulum
+from tools.documents.integrators import four_bar, pendulum
 
 Run = Callable[[], Any]
 FORMULATIONS = ("independent", "reference")

@@ -47,7 +47,7 @@ opened = [one for one in gc.get_objects() if isinstance(one, KernelCache) and "_
 print("folders", *{one.cache_path for one in opened})
 """
 USE = """
-import os, tempfile, warnings
+import os, sys, tempfile, warnings
 import mbsd
 heavy = {"scipy", "numba"} & set(sys.modules)
 assert not heavy, f"import mbsd loads {heavy}"

@@ -20,8 +20,7 @@ import numpy as np
 from mbsd.arrays.packing import Packed
 from mbsd.equations.joint_friction import BY_RATE, FIRST, NONE, SENSE, WAY
 from mbsd.equations.loads import Loads
-from mbsd.model.contact import ContactKind
-from mbsd.model.joint import Joint, JointKind
+from mbsd.model.joint import ContactKind, Joint, JointKind
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,9 +16,9 @@ from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.runs.run import Run
 from mbsd.dynamics.state import TIME, WORK
 from mbsd.results.solution import Solution
-from tools.models.random_rough import five_bar_with_stops, level_chain, shaken_box, striker
 from tools.models.rough import pusher
 from tools.models.sticking import stuck_five_bar, two_slider_cranks
+from tools.random_mechanisms.rough import five_bar_with_stops, level_chain, shaken_box, striker
 
 WEIGHT, STATIC, KINETIC = 10.0, (0.5, 0.7), 0.3
 HALF, BELOW = 0.1, 0.05

@@ -25,9 +25,8 @@ from mbsd.derivatives.driven.tangents import along_direction, per_scales
 from mbsd.derivatives.numbers.terms import Along, Terms
 from mbsd.derivatives.numbers.variants import SECOND, Variant, Variants
 from mbsd.dynamics.events.moment import Moment
-from mbsd.model.contact import ContactKind
 from mbsd.model.event import Happening
-from mbsd.model.joint import Joint
+from mbsd.model.joint import ContactKind, Joint
 
 GAP, RATE, SLIP, USER = "gap", "rate", "slip", "user"
 REACH = 1e-5

@@ -30,9 +30,9 @@ from mbsd.dynamics.reference.schur import Schur, elimination_sequence
 from mbsd.dynamics.reference.sliding import sliding_for
 from mbsd.dynamics.state import State
 from mbsd.dynamics.switches import RunContact
-from mbsd.equations.constraints.relative import AT, MARKER_I, MARKER_J
-from mbsd.equations.constraints.relative import ROW as RELATIVE_ROW
 from mbsd.equations.joint_friction import FIRST
+from mbsd.equations.relative.equation import AT, MARKER_I, MARKER_J
+from mbsd.equations.relative.equation import ROW as RELATIVE_ROW
 from mbsd.kinematics.limits.free_wheels import HALF, MET
 from mbsd.kinematics.pose import held_values, mobility
 from mbsd.model.body import Marker

@@ -78,9 +78,9 @@ class EmbeddingScratch(NamedTuple):
     before: Any
     """(3, 3 nb) q, v, a of a pose before an unclear one."""
     joined_body: Any
-    """(2, nb, 4) of poses beside an unclear one: place and turn, and their errors."""
+    """(3, nb, 4) of poses beside an unclear one: place and turn, their errors, and those of the pose itself."""
     joined_rate: Any
-    """(2, nb, 3 (C + 1)) the same of ``rate``."""
+    """(3, nb, 3 (C + 1)) the same of ``rate``; the last part keeps rows of ``base`` and ``rate``."""
     multipliers: Any
     """(0,)"""
     state: Any

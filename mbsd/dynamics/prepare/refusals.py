@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, NoReturn
 import numpy as np
 
 from mbsd.arrays.friction_along import friction_under
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import loads_along, pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.base.errors import MechanismError, MobilityError, ModelError, SimulationError, SingularPoseError
 from mbsd.dynamics.formulation import derivative
@@ -35,7 +34,7 @@ from mbsd.equations.assembly import residual_and_jacobian
 from mbsd.kinematics.pose.ideal_joints import with_ideal_joints
 from mbsd.model.force import Press
 from mbsd.model.mechanism import Model
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 if TYPE_CHECKING:
     from mbsd.dynamics.prepare.large import MANY_COORDINATES

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mbsd.base.codes import LAW_VALUE, LINEAR, POWER, TURN
-from mbsd.base.kept import Kept
+from mbsd.base.running import Kept
 from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY, Embedding, EmbeddingScratch
 from mbsd.dynamics.independent.block import KEPT_SIZE, block_arrays, block_work
 from mbsd.dynamics.independent.coordinates import MOST, Choice, Coordinate, choices, coordinates_along, coordinates_of
@@ -17,8 +17,8 @@ from mbsd.dynamics.independent.equations import look
 from mbsd.dynamics.independent.groups import KEPT
 from mbsd.dynamics.prepare.prepared import UNKNOWN, PreparedDynamics
 from mbsd.dynamics.state import Settings
-from mbsd.kinematics.groups.carrying.branch import FLOOR
-from mbsd.kinematics.groups.carrying.columns import AVOID, BASE, COS, INERTIA, MASS, NEAR, SPEED, THETA, TURNS
+from mbsd.kinematics.groups.carried import AVOID, BASE, COS, INERTIA, MASS, NEAR, SPEED, THETA, TURNS
+from mbsd.kinematics.groups.cases import FLOOR
 from mbsd.kinematics.groups.plan import Plan
 
 GOOD = 3.0
@@ -167,8 +167,8 @@ def embedding_scratch(ready: PreparedDynamics, made: Embedded, stages: int, q: n
         force=np.zeros(3 * bodies),
         watch=np.full(2, np.inf),
         before=np.zeros((3, 3 * bodies)),
-        joined_body=np.zeros((2, bodies, KEPT)),
-        joined_rate=np.zeros((2, bodies, 3 * columns + 3)),
+        joined_body=np.zeros((3, bodies, KEPT)),
+        joined_rate=np.zeros((3, bodies, 3 * columns + 3)),
         multipliers=np.zeros(0),
         state=np.zeros((2, 3 + count)),
         stages=np.zeros((stages, 2, 3 + count)),

@@ -11,9 +11,8 @@ from mbsd.arrays.packing import Packed
 from mbsd.base.arguments import number_array, whole_number
 from mbsd.base.errors import ModelError
 from mbsd.base.names import no_such, shown
-from mbsd.kinematics.design_sweeps import Batch, DesignSweeps, Moved, in_closed_form
-from mbsd.kinematics.doubted_designs import FINER, settle
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.design_sweeps import FINER, Batch, DesignSweeps, Moved, in_closed_form, settle
+from mbsd.kinematics.prepared import prepare
 from mbsd.model.body import at_end
 from mbsd.model.mechanism import Model, names_given
 from mbsd.numbers.names import place_in, placed_side
@@ -124,7 +123,7 @@ def _rod(m: Model, packed: Packed, name: str) -> int | None:
         return None
     if name in m.bodies:
         raise ModelError(f"{m.name}: batch: '{name}' is a body and a rod; give one of them another name")
-    row = packed.first_row[packed.joints.index(joint)]
+    row = packed.rows_of(name).start
     return int(np.flatnonzero(packed.system.distance[:, 2] == row)[0])
 
 

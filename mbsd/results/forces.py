@@ -20,10 +20,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.arrays.approaches import stretches
 from mbsd.arrays.directory import directory, slice_of
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
+from mbsd.arrays.loads import pack_loads, stretches
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import marker_axes, marker_places, relative_velocity
 from mbsd.arrays.states import own_states, widened, with_states
@@ -31,13 +30,10 @@ from mbsd.base.codes import AXIS, LAW_VALUE, LINE, LINEAR, POTENTIAL_TERMS, POWE
 from mbsd.equations.loads import tabulate_loads
 from mbsd.model.force import Element, Force, Term
 from mbsd.model.laws.curve import Curve
+from mbsd.results.fluids import gas_view, hydraulic_view
 from mbsd.results.force_view import ForceView
 from mbsd.results.friction import friction_view
-from mbsd.results.gas import gas_view
-from mbsd.results.hydraulics import hydraulic_view
-from mbsd.results.measured import measured
-from mbsd.results.moved import Moved
-from mbsd.results.surface import depths, foot_of
+from mbsd.results.measured import Moved, depths, foot_of, measured
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

@@ -19,14 +19,14 @@ from __future__ import annotations
 import math
 
 from mbsd.compiling.jit import apart, inlined, internal, kernel, lazy, merged
-from mbsd.dynamics.independent.arrays import KEPT_Q, KEPT_SIZE, LIMIT, SENSITIVITY, Q
+from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY
+from mbsd.dynamics.independent.block import KEPT_Q, KEPT_SIZE, Q
 from mbsd.dynamics.independent.groups import bridge, embed_groups
 from mbsd.dynamics.state import NEXT, TIME, WORK
 from mbsd.equations.laws import evaluate_laws
 from mbsd.equations.loads import apply_loads
-from mbsd.kinematics.groups.carrying.branch import WIDE, angle_of
-from mbsd.kinematics.groups.carrying.columns import BASE, BEND, COS, NEAR, SIN, SINE, SPEED, THETA, TURNS, VALUE, X, Y
-from mbsd.kinematics.groups.carrying.rates import SOLVED
+from mbsd.kinematics.groups.carried import BASE, BEND, COS, NEAR, SIN, SINE, SOLVED, SPEED, THETA, TURNS, VALUE, X, Y
+from mbsd.kinematics.groups.cases import WIDE, angle_of
 
 FLOOR = 1e-14
 """Part of its diagonal that elimination must leave of M_z."""

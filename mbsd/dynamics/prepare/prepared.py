@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mbsd.arrays.approaches import remembers
 from mbsd.arrays.curve_branches import CurveBranches
+from mbsd.arrays.loads import remembers
 from mbsd.arrays.packing import Packed
 from mbsd.compiling.jit import Often
 from mbsd.dynamics import state as run_state
@@ -28,7 +28,7 @@ from mbsd.equations.interactions.switching import APPROACHED
 from mbsd.equations.loads import Loads
 from mbsd.kinematics.limits.free_wheels import FreeWheels
 from mbsd.kinematics.pose.initial import Initial
-from mbsd.results.mobility import Mobility
+from mbsd.results.views import Mobility
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed

@@ -17,8 +17,7 @@ import numpy as np
 from mbsd.base.errors import ModelError, SimulationError
 from mbsd.dynamics import state as run_state
 from mbsd.dynamics.formulation import derivative
-from mbsd.dynamics.genevas.packing import genevas_of
-from mbsd.dynamics.genevas.steps import run_indexed
+from mbsd.dynamics.genevas import genevas_of, run_indexed
 from mbsd.dynamics.independent.arrays import LIMIT, SENSITIVITY
 from mbsd.dynamics.independent.equations import write_alone
 from mbsd.dynamics.integrators.kind import Integrator
@@ -40,7 +39,7 @@ from mbsd.dynamics.runs.run import AUTO, INDEPENDENT, REFERENCE, Run
 from mbsd.dynamics.runs.steps import Pace, advance
 from mbsd.dynamics.state import NEXT, PAUSED, REACHED, STARTED, STEP, TIME, WORK, Output, State, copied
 from mbsd.kinematics.groups.groups import KIND
-from mbsd.kinematics.groups.registry import BRANCH
+from mbsd.kinematics.groups.tables import BRANCH
 
 PASSING = 6
 """Steps in reference coordinates before independent ones are tried again; doubled while they do not lead away."""

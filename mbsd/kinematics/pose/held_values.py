@@ -1,4 +1,4 @@
-"""Given values of a start that are held: rows W of the given ones, after the joints, first given first held.
+"""Given values of a start that are held: rows W after the joints, first given first held.
 
     rows of J, then of what is given, are independent        such a value is held as it is
     of a place x, y the joints leave one direction u alone   u . (x, y) is held, the nearest that the body can come
@@ -9,18 +9,22 @@ world has does not matter. Velocities of a place go likewise.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
-from mbsd.kinematics.pose.mobility import independent_rows
-
+RANK_TOLERANCE = 1e-8
+"""A row that adds less than this part of itself to the others repeats them."""
+SMALL = 4000
+"""Up to so many numbers of J, its rank is kept for the next call with the same J."""
 ALIGNED = 1e-12
 """Part of u across an axis below which it is that axis."""
 
 
 def held_values(jac: np.ndarray, given: np.ndarray, places: Sequence[tuple[int, int]]) -> tuple[list[int], np.ndarray]:
-    """Return independent rows of ``jac`` (m, n), and W (h, k) for rows ``given`` (k, n), both in sizes and rad.
+    """Return independent rows of ``jac`` (m, n), and W (h, k) for ``given`` (k, n), in sizes and rad.
 
     ``places``: pairs of given rows that are x and y of one place.
     """
@@ -45,7 +49,7 @@ def half_held(chosen: Sequence[int], places: Sequence[tuple[int, int]]) -> list[
 
 
 def free_direction(before: np.ndarray, pair: np.ndarray) -> np.ndarray:
-    """Return u (..., 2), the direction in rows ``pair`` (..., 2, n) of which rows ``before`` (..., r, n) leave most."""
+    """Return u (..., 2): the direction in rows ``pair`` (..., 2, n) that ``before`` (..., r, n) leave most."""
     basis = np.linalg.qr(np.swapaxes(before, -1, -2))[0]
     left = pair - (pair @ basis) @ np.swapaxes(basis, -1, -2)
     u = np.linalg.eigh(left @ np.swapaxes(left, -1, -2))[1][..., -1]
@@ -57,3 +61,32 @@ def free_direction(before: np.ndarray, pair: np.ndarray) -> np.ndarray:
 def places_of(coordinates: Sequence[int]) -> list[tuple[int, int]]:
     """Return the pairs x, y among given coordinates, numbers in (3 nb,)."""
     return [(k, k + 1) for k, c in enumerate(coordinates) if c % 3 == 0]
+
+
+def independent_rows(jac: np.ndarray) -> list[int]:
+    """Return rows of ``jac`` (m, n) independent of those before them (Gram-Schmidt, done twice)."""
+    if jac.size > SMALL:
+        return _independent(jac)
+    return list(_kept_independent(jac.tobytes(), jac.shape))
+
+
+@lru_cache(maxsize=64)
+def _kept_independent(numbers: bytes, shape: tuple[int, int]) -> tuple[int, ...]:
+    return tuple(_independent(np.frombuffer(numbers).reshape(shape).copy()))
+
+
+def _independent(jac: np.ndarray) -> list[int]:
+    basis = np.zeros((min(jac.shape), jac.shape[1]))
+    kept: list[int] = []
+    lengths = np.sqrt(np.einsum("rc,rc->r", jac, jac))
+    for row in np.flatnonzero(lengths > 0):
+        if len(kept) == len(basis):
+            break
+        rest, before = jac[row] / lengths[row], basis[: len(kept)]
+        for _ in range(2):
+            rest = rest - (before @ rest) @ before
+        length = math.sqrt(rest @ rest)
+        if length > RANK_TOLERANCE:
+            basis[len(kept)] = rest / length
+            kept.append(int(row))
+    return kept

@@ -13,8 +13,8 @@ import numpy as np
 from mechanisms.stages.solve.motion_file import to_motion
 from mechanisms.stages.solve.skeleton_file import main_material
 from shared.contract import BodyParts, Motion, Parts
+from shared.contract.geometry import with_rods
 from shared.contract.materials import MATERIALS
-from shared.contract.spanning import with_rods
 from shared.stage.errors import UserError
 from shared.stage.face import to_run
 from shared.stage.paths import Out
@@ -51,7 +51,7 @@ _STYLED = b"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION("
 _ENTITY = re.compile(rb"#(\d+) = (.*?);\n", re.DOTALL)
 _REFERENCE = re.compile(rb"#(\d+)")
 _DRAWN = ("band", "coil", "cylinder", "spiral", "cord")
-"""Looks of what films draw between parts; see mbsd/model/looks.py."""
+"""Looks of what films draw between parts; see mbsd/model/joint.py."""
 
 
 def step(wanted: Wanted) -> tuple[bytes, list[str]]:

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 # Pulleys: wheels with a rim for a round belt, or for a chain where the joint has teeth; what the belt needs of room.
 #
 # The rim is a piece of its own and says where the film lays the belt (render/film/tubes/belts.py), which is no solid:
-# its strands keep other parts out of their layer, and the clearance knows it as a band (stages/clearance/belts.py).
+# its strands keep other parts out of their layer, and the clearance knows it as a band (stages/clearance/meshing.py).
 
 LEAST = 19.0
 """Least pitch radius of a pulley (rmm)."""

@@ -18,8 +18,9 @@ What is proven: at every moment of the motion, which between the samples of data
 shows, the meshes are apart by the ``proven`` gap of clearance.json. It is at most ``resolution`` below the gap that was
 measured, and less what the true motion may be off between two samples there (path.py). Meshes lie within
 ``parts_files.TOLERANCE`` of the solids, or the ``tolerance`` of a Solid. A belt or chain is the band that it runs in
-(meshing.py), compared with all but its own pulleys until an event releases it. Pieces of one body are not compared with each other, nor are pieces
-of two bodies, or two pieces, that parts.json says may touch by design; clearance.json names these pairs.
+(meshing.py), compared with all but its own pulleys until an event releases it. Pieces of one body are not compared with
+each other, nor are pieces of two bodies, or two pieces, that parts.json says may touch by design; clearance.json names
+these pairs.
 """
 
 from __future__ import annotations

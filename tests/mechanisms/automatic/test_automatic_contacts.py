@@ -20,6 +20,8 @@ from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from shared.shapes.facets import volume_of
 from shared.shapes.polyline import distances
 from shared.stage.errors import UserError
+from tools.hunt_parts import case
+from tools.hunt_parts.outcome import BUILT
 
 
 def _room(scale: float = 1.0, turn: float = 0.0, stiffness: float = 0.0) -> Mechanism:
@@ -43,6 +45,26 @@ def _made(m: Mechanism, duration: float = 0.5, steps: int = 300) -> tuple[Automa
     made = Automatic(m, m.simulate(duration, steps, event_rows=True))
     features = made.layout.features
     return made, [f for f in features if isinstance(f, Round)], [f for f in features if isinstance(f, Road)]
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 1e6])
+def test_an_eye_in_a_point_that_touches_is_clear_of_its_wall(stiffness: float) -> None:
+    """A stone on a sling lies in the trough of a trebuchet: the eye of its pin is larger than the stone."""
+    m = Mechanism("trebuchet", gravity=(0, -9.81))
+    arm, stone = m.bar("arm", 1.0, mass=2.0), m.body("stone", mass=0.5, inertia=1e-4)
+    m.revolute("axle", m.ground.at(0, 0.8), arm.start)
+    m.distance("sling", arm.end, stone.origin, length=0.9)
+    if stiffness:
+        m.contact("trough", m.ground.origin, stone.origin, stiffness)
+    else:
+        m.rigid_contact("trough", m.ground.origin, stone.origin, friction=0.3)
+    m.torque("weight", arm, -40.0)
+    tip = (-math.sqrt(1.0 - 0.6**2), 0.2)
+    m.start_near(arm=(0, 0.8, math.atan2(tip[1] - 0.8, tip[0])), stone=(tip[0] + math.sqrt(0.77), 0, 0))
+    solution = m.simulate(0.2, steps=40, event_rows=True)
+    assert np.ptp(solution.body("stone").x) > 0.05
+    outcome = case.parts_of(m, solution, engraved=False)
+    assert outcome.state == BUILT, outcome.detail
 
 
 @settings(max_examples=6, deadline=None)

@@ -161,5 +161,5 @@ def test_a_belt_counts_until_an_event_releases_it(released: float | None) -> Non
     if released is not None and released < 0.8:
         assert checked(motion, moving).apart
     else:
-        with pytest.raises(UserError, match="tip and belt belt: belt|belt belt: belt and post: tip"):
+        with pytest.raises(UserError, match=r"tip and belt belt: belt|belt belt: belt and post: tip"):
             checked(motion, moving)

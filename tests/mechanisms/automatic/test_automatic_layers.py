@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from mbsd import Mechanism, MechanismError, constant_rate
 from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.body_shapes import body_shape
-from mechanisms.stages.automatic.layout.items import Item, Reach, spans_meet
+from mechanisms.stages.automatic.layout.items import Item, Reach, span, spans_meet
 from mechanisms.stages.automatic.layout.plan import KINDS
 from mechanisms.stages.automatic.layout.planar import Rounded, around, convex_hull, core_gaps, disc, least_gap, placed
 from mechanisms.stages.automatic.layout.sizes import sizes, standard
@@ -102,7 +102,7 @@ def _clear(made: Automatic) -> None:
     for first, second in combinations(layout.items, 2):
         designed = first.body == second.body or first.body in second.spares or second.body in first.spares
         designed = designed or first.what in second.meshes or second.what in first.meshes
-        if designed or not spans_meet(first.reach.span(levels), second.reach.span(levels)):
+        if designed or not spans_meet(span(first.reach, levels), span(second.reach, levels)):
             continue
         a, b = clouds(first), clouds(second)
         apart = min(float(np.linalg.norm(p[:, None] - q[None], axis=2).min()) for p, q in zip(a, b, strict=True))
@@ -127,7 +127,7 @@ def test_no_layer_can_be_spared() -> None:
     rules = [(items[i].reach, items[j].reach) for i, j in conflicts]
     for code in range(4 ** len(bodies)):  # the ends of pins left out: even so there is none
         levels = {body: code // 4**k % 4 for k, body in enumerate(bodies)}
-        if not any(spans_meet(a.span(levels), b.span(levels)) for a, b in rules):
+        if not any(spans_meet(span(a, levels), span(b, levels)) for a, b in rules):
             pytest.fail(f"four layers would do: {levels}")
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from mbsd import Mechanism, constant_rate, harmonic
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.items import spans_meet
+from mechanisms.stages.automatic.layout.items import span, spans_meet
 from mechanisms.stages.automatic.pins.welds import Weld
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
 from mechanisms.stages.automatic.slides.slots import Slot
@@ -107,7 +107,7 @@ def test_a_rail_and_a_pivot_do_not_stand_on_one_place() -> None:
     made = Automatic(m, m.sweep(times=TURN))
     assert made.decided["pin D"] == 1
     assert made.levels["lever"] > made.levels["block"]
-    on_ground = {item.what: item.reach.span(made.decided) for item in made.layout.items if item.body == "ground"}
+    on_ground = {item.what: span(item.reach, made.decided) for item in made.layout.items if item.body == "ground"}
     assert not spans_meet(on_ground["the rail of rail"], on_ground["the pivot D on ground"])
 
 

@@ -8,7 +8,7 @@ from itertools import combinations, product
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mechanisms.stages.automatic.layout.items import TOP, Item, PinReach, PivotReach, Reach, spans_meet
+from mechanisms.stages.automatic.layout.items import TOP, Item, PinReach, PivotReach, Reach, span, spans_meet
 from mechanisms.stages.automatic.layout.layers import Problem, blocking, choices_of, find_layers
 from mechanisms.stages.automatic.layout.planar import disc
 
@@ -28,7 +28,7 @@ def test_a_long_chain_lies_in_three_layers() -> None:
     assert levels is not None
     assert max(levels[body] for body in bodies) == 2
     items = [*plates, *pins]
-    assert not any(spans_meet(items[i].reach.span(levels), items[j].reach.span(levels)) for i, j in conflicts)
+    assert not any(spans_meet(span(items[i].reach, levels), span(items[j].reach, levels)) for i, j in conflicts)
 
 
 @st.composite
@@ -87,14 +87,14 @@ def _rank(problem: Problem, levels: dict[str, int]) -> tuple[int, ...] | None:
         return None
     if any(levels[a] != levels[b] for a, b in problem.together):
         return None
-    if any(spans_meet(items[i].reach.span(levels), items[j].reach.span(levels)) for i, j in problem.conflicts):
+    if any(spans_meet(span(items[i].reach, levels), span(items[j].reach, levels)) for i, j in problem.conflicts):
         return None
     top = max(levels[body] for body in problem.bodies)
     length = 0
     for item in items:
-        span = item.reach.span(levels)
-        assert span is not None
-        low, high = span
+        taken = span(item.reach, levels)
+        assert taken is not None
+        low, high = taken
         if high == TOP and not isinstance(item.reach, PivotReach):
             continue
         length += ((2 * top + 1 if high == TOP else high) - low) // 2

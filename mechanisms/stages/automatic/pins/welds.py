@@ -45,7 +45,7 @@ BLOCK, ROUND = 6.5, 9.5
 
 
 @dataclass(frozen=True, eq=False)
-class Weld:
+class Weld(Feature):
     """Place and direction (rmm, rad) of the joint on two bodies; one may be ground."""
 
     name: str

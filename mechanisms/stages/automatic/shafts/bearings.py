@@ -13,7 +13,7 @@ import numpy as np
 from mechanisms.stages.automatic.layout.items import Item, Reach
 from mechanisms.stages.automatic.layout.layers import Problem, Undecided, find_layers
 from mechanisms.stages.automatic.layout.planar import Rounded, around, disc, least_gap
-from mechanisms.stages.automatic.shafts.bodies import NEAR, SAME, carries
+from mechanisms.stages.automatic.shafts.bodies import NEAR, SAME, carries, marker_on, place
 from mechanisms.stages.automatic.shafts.passing import Takes
 from shared.stage.errors import UserError
 from shared.stage.paths import shown_file
@@ -78,8 +78,6 @@ def axles(machine: Machine) -> list[Axle]:
 
 
 def _place_of(machine: Machine, joint: str, body: str) -> tuple[float, float]:
-    from mechanisms.stages.automatic.shafts.bodies import marker_on, place
-
     return place(marker_on(machine.m.joints[joint], body))
 
 
@@ -239,12 +237,12 @@ class Bearers:
         """Return pillars from ``low`` up, and bearings."""
         x, y = self.plan.shaft.at
         body, top = frozenset({self.plan.shaft.body}), self.top
-        spaces = [Takes("a pillar", "ground", disc(*place, self.radius), low, top) for place in self.places]
+        spaces = [Takes("a pillar", "ground", disc(*pillar, self.radius), low, top) for pillar in self.places]
         for journal in self.journals:
             a, b = heights_of(self.plan, journal)
             spaces.append(Takes("a bearing", "ground", disc(x, y, self.hub), a, b, body))
-            for place in self.places:
-                arm = _arm(self.plan, place, self.radius, self.tapered)
+            for pillar in self.places:
+                arm = _arm(self.plan, pillar, self.radius, self.tapered)
                 spaces.append(Takes("the arm of a bearing", "ground", arm, a, b, body))
         return spaces
 

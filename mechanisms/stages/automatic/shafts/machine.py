@@ -87,7 +87,6 @@ def piston(machine: Machine, body: str, joint: Joint, joints: list[Joint]) -> Pi
         wrist,
         aside,
         link,
-        wrists[0].name if wrists else "",
         _area(m, body),
     )
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechanisms.stages.automatic.assembly import kernel_refusals, materials
+from mechanisms.stages.automatic.layout.plan import free_name
 from mechanisms.stages.automatic.layout.planar import convex_hull
 from mechanisms.stages.automatic.shafts.bearings import bore_of
 from mechanisms.stages.automatic.shafts.bodies import KNUCKLE_PIN, flange, is_carrier, knuckle_eyes, rod_foot
@@ -87,21 +87,10 @@ def solids(
 def _named(made: dict[str, list[Solid]], tolerance: float | None) -> dict[str, list[Solid]]:
     """Return names of letters, digits and _, each once; main pieces are called like their bodies."""
     taken: set[str] = set()
-
-    def named(wish: str) -> str:
-        name = re.sub(r"\W", "_", wish, flags=re.ASCII)
-        name = name if name[:1].isalpha() else f"part_{name}"
-        free, number = name, 1
-        while free.lower() in taken:
-            number += 1
-            free = f"{name}_{number}"
-        taken.add(free.lower())
-        return free
-
-    mains = {body: named("base_plate" if body == "ground" else body) for body in made}
+    mains = {body: free_name("base_plate" if body == "ground" else body, taken) for body in made}
     return {
         body: [
-            replace(solid, name=mains[body] if k == 0 else named(solid.name), tolerance=tolerance)
+            replace(solid, name=mains[body] if k == 0 else free_name(solid.name, taken), tolerance=tolerance)
             for k, solid in enumerate(solids)
         ]
         for body, solids in made.items()

@@ -31,7 +31,7 @@ SUFFIXES = (".mp4", ".gif")
 _STAGE = (
     "animate",
     "loading/loading",
-    *(f"solve/{name}" for name in ("solving", "refinement", "masses", "skeleton_file")),
+    *(f"solve/{name}" for name in ("solving", "masses", "skeleton_file")),
 )
 SOURCES = [ROOT / "mechanisms" / "stages" / f"{name}.py" for name in _STAGE]
 

@@ -19,7 +19,7 @@ import pytest
 
 from mechanisms.stages.loading.loading import author_code
 from mechanisms.stages.parts.on_cluster import answer, built
-from mechanisms.stages.parts.on_cluster.author_files import Order, by_content, collected
+from mechanisms.stages.parts.on_cluster.built import Order, by_content, collected
 from shared.cluster.contents import content_hash
 from shared.cluster.identity import identity
 from shared.cluster.preload import OF_PARTS, PARTS

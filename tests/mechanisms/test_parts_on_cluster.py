@@ -20,7 +20,7 @@ from mbsd.dealing import hand
 from mechanisms.stages.parts import stage as parts_stage
 from mechanisms.stages.parts.on_cluster import built, dealt
 from mechanisms.stages.parts.on_cluster.answer import Made
-from mechanisms.stages.parts.on_cluster.author_files import collected
+from mechanisms.stages.parts.on_cluster.built import collected
 from shared.stage import locks
 from shared.stage.errors import UserError
 from tests.mechanisms.author_project import Project, put
@@ -117,7 +117,7 @@ def test_what_a_worker_cannot_tell_is_made_here(
 
 def test_files_of_authors_travel_and_no_others(project: Project) -> None:
     put("mechanisms/arm/__pycache__/parts.cpython-313.pyc", "")(project)
-    put("mechanisms/stages/new.py", "")(project)
+    put("mechanisms/stages/new/new.py", "")(project)
     put("mechanisms/automatic.py", "")(project)
     put("mechanisms/helper.py", "")(project)
     (project.folder / "gone.step").symlink_to("nowhere")

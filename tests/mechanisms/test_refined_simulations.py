@@ -9,7 +9,7 @@ import pytest
 
 from mbsd import Mechanism, Solution, polynomial
 from mechanisms.stages.clearance.path import paths
-from mechanisms.stages.solve import refinement, solving
+from mechanisms.stages.solve import solving
 from mechanisms.stages.solve.motion_file import to_motion
 
 SIZE, PROVEN = 0.2, 0.2
@@ -51,7 +51,7 @@ def test_a_truss_that_snaps_through_has_rows_for_the_proof() -> None:
 
 
 def test_of_too_many_steps_the_worst_are_divided(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(refinement, "MOST", 400)
+    monkeypatch.setattr(solving, "MOST_ROWS", 400)
     m = _truss()
     solution = solving.motion_of("truss", SimpleNamespace(DURATION=0.5), m, None)
     assert 380 < len(np.unique(solution.t)) <= 400

@@ -11,7 +11,7 @@ import pytest
 from mbsd import Mechanism, Solution, constant_rate
 from mechanisms.quick_return import mechanism as shaper
 from mechanisms.stages.solve import solving
-from mechanisms.stages.solve.refinement import CLOSE
+from mechanisms.stages.solve.solving import CLOSE
 
 
 def _swept(p: shaper.Params) -> Solution:

@@ -23,7 +23,7 @@ from mechanisms.stages.loading.loading import author_code, has, load, package_of
 from mechanisms.stages.loading.wishes import of_shot, scaling, wishing
 from mechanisms.stages.parts import memory
 from mechanisms.stages.parts.automatic_solids import needs_machine, needs_masses
-from mechanisms.stages.parts.memory import KeptPieces, fields_of, plain_text, traced
+from mechanisms.stages.parts.memory import KeptPieces, fields_of, only_annotates, plain_text, reported_cad_files, traced
 from shared import contract
 from shared.cluster.address import address
 from shared.contract import Parts, Provenance, write_parts
@@ -47,7 +47,7 @@ SOURCES = [
     *(_STAGES / "parts" / f"{name}.py" for name in _STAGE),
     *contract_sources(),
 ]
-_MOTION = ("solving", "refinement", "masses")
+_MOTION = ("solving", "masses")
 _AUTOMATIC = ("automatic", "loading/loading.py")
 AUTOMATIC = [
     *SOURCES,
@@ -289,7 +289,6 @@ def _more_than_values(name: str, given: Any, reads: list[str]) -> bool:
     it imports may use other names of mechanism.py.
     """
     from mechanisms.stages.loading.inputs import author_files
-    from mechanisms.stages.parts.memory import only_annotates
 
     fields, package = fields_of(given), package_of(name)
     if is_single_file(name) or any(read not in fields or plain_text(fields[read]) is None for read in reads):
@@ -303,7 +302,6 @@ def _build(name: str, given: Any, seen: _Seen) -> dict[str, list[Any]]:
     """Return the solids by body; ``seen`` gets what parts.py reads, also where it fails."""
     from mechanisms.stages.loading.inputs import loaded_inputs
     from mechanisms.stages.parts.bodies import refuse_unfit
-    from mechanisms.stages.parts.cad_reads import reported_cad_files
 
     if not has(name, "parts"):
         from mechanisms.stages.parts.automatic_solids import solids_of

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 NOISE = 1e-9
 """An effort below this part of the largest reaction is rounding."""
 PACKAGES = ("numpy", "scipy", "numba", "llvmlite")
-_MOTION = ("solving", "refinement", "masses")
+_MOTION = ("solving", "masses")
 _STAGE = ("stage", *_MOTION, "motion_file", "skeleton_file")
 SOURCES = [
     *(ROOT / "mechanisms" / "stages" / "solve" / f"{name}.py" for name in _STAGE),

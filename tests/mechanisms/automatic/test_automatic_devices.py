@@ -12,7 +12,7 @@ from mechanisms.stages.automatic.layout.layers import Problem, find_layers
 from mechanisms.stages.automatic.layout.motion import TURN, poses_of, times_of
 from mechanisms.stages.automatic.layout.planar import disc
 from mechanisms.stages.automatic.pins.pins import Pin
-from mechanisms.stages.solve.refinement import CLOSE, swept_closely
+from mechanisms.stages.solve.solving import CLOSE, swept_closely
 from tests.mechanisms.automatic.layouts import meets
 from tests.mechanisms.automatic.test_parts_of_random import KINDS, SEED
 from tools.hunt.case import drawn

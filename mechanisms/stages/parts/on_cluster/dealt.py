@@ -10,7 +10,7 @@ from mechanisms.stages.loading.inputs import name_of
 from mechanisms.stages.loading.loading import has
 from mechanisms.stages.parts.on_cluster import answer, built
 from mechanisms.stages.parts.on_cluster.answer import Made
-from mechanisms.stages.parts.on_cluster.author_files import Order, by_content, collected
+from mechanisms.stages.parts.on_cluster.built import Order, by_content, collected
 from shared.cluster.address import connected
 from shared.cluster.contents import content_hash
 from shared.cluster.deal import Deal

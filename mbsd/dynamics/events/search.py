@@ -32,7 +32,6 @@ from mbsd.dynamics.events.arrays import (
     WHERE,
     WHICH,
 )
-from mbsd.dynamics.events.bounds import LESS
 from mbsd.dynamics.events.guards import (
     at_state,
     beyond_time,
@@ -44,11 +43,13 @@ from mbsd.dynamics.events.guards import (
 from mbsd.dynamics.events.roots import MOST_ROOTS, SAMPLES, dips_before, may_dip, root_between
 from mbsd.dynamics.events.rows import gaps_of, read_gaps
 from mbsd.dynamics.events.user_search import first_event
-from mbsd.dynamics.events.users.arrays import SIDE
-from mbsd.dynamics.events.users.values import rounding_of
+from mbsd.dynamics.events.users import SIDE, rounding_of
 from mbsd.dynamics.formulation import along, derivative
 from mbsd.dynamics.integrators.root_search import narrowed, next_part
 from mbsd.dynamics.state import TIME
+
+LESS = 1e-3
+"""Part of NEAR by which a state is changed to tell a jump from a slope."""
 
 CHANCE = 15
 """Status of rows in which rounding decides whether an event happens."""

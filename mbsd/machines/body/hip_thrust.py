@@ -26,7 +26,7 @@ from mbsd.machines.body.chain import add_barbell, add_lifter, ends_given, not_be
 from mbsd.machines.body.figure import Figure
 from mbsd.machines.body.repetition import Tempo, repetition
 from mbsd.mechanism import Mechanism
-from mbsd.model.laws.polynomial import polynomial
+from mbsd.model.laws.formulas import polynomial
 
 CONTACT = 0.74
 """Assumed: the lower tips of the shoulder blades from the hip, of the way from hip to shoulder."""

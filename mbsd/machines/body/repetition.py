@@ -59,7 +59,7 @@ def repetition(bottom: float, top: float, tempo: Tempo) -> Motion:
     """The law (rad or m) of a repetition that begins at the bottom; a law that holds where both ends are the same."""
     way = top - bottom
     if way == 0.0:
-        from mbsd.model.laws.polynomial import polynomial
+        from mbsd.model.laws.formulas import polynomial
 
         return polynomial(bottom)
     return function(

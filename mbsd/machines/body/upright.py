@@ -20,7 +20,7 @@ from mbsd.machines.body.mass_properties import combined
 from mbsd.machines.body.repetition import Tempo, repetition
 from mbsd.mechanism import Mechanism
 from mbsd.model.body import Body
-from mbsd.model.laws.polynomial import polynomial
+from mbsd.model.laws.formulas import polynomial
 
 SLOWER = Tempo(up=1.5)
 """By default: the bar goes twice as far as in a hip thrust."""

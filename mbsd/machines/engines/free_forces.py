@@ -20,7 +20,7 @@ import numpy as np
 
 from mbsd.machines.engines.layout import Layout
 from mbsd.machines.engines.piston_harmonics import piston_harmonics
-from mbsd.results.vibration.crank import Turning
+from mbsd.results.orders import Turning
 
 ORDERS = (1, 2, 4, 6)
 

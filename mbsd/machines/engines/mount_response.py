@@ -24,7 +24,7 @@ from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
 from mbsd.mechanism import Mechanism
-from mbsd.model.laws.constant_rate import constant_rate
+from mbsd.model.laws.formulas import constant_rate
 
 STEPS = 256
 """Number of steps of a turn from which the orders of the forces are taken."""

@@ -14,7 +14,6 @@ import pytest
 import mechanisms.stages.automatic.kinds  # noqa: F401  (enters them)
 from mbsd import Mechanism, constant_rate
 from mbsd.model import joint
-from mbsd.model.contact import CONTACT_KINDS
 from mbsd.model.force import FORCE_KINDS
 from mechanisms.stages import shot as shot_stage
 from mechanisms.stages.automatic.automatic import Automatic, automatic
@@ -454,6 +453,6 @@ def _rows() -> tuple[set[str], set[str]]:
 def test_every_kind_is_told_as_what_it_becomes() -> None:
     made, without = _rows()
     entered = {*plan.KINDS, *plan.DRIVER_KINDS, *plan.FORCE_KINDS, *plan.CONTACT_KINDS}
-    every = {*joint.KINDS, *FORCE_KINDS, *CONTACT_KINDS}
+    every = {*joint.KINDS, *FORCE_KINDS, *joint.CONTACT_KINDS}
     assert made & every == (entered | STOPS) & every
     assert without & every == every - entered - STOPS

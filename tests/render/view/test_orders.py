@@ -7,7 +7,7 @@ import os
 import subprocess
 from pathlib import Path
 
-from mbsd.results.vibration.orders import Orders
+from mbsd.results.orders import Orders
 from render.view.bundle import PAGE, bundle, node, node_modules
 from render.view.document import document, encode
 from render.view.payload import payload

@@ -28,7 +28,7 @@ from mechanisms.stages.loading.loading import author_code
 from mechanisms.stages.parts import stage as parts_stage
 from mechanisms.stages.parts.bodies import described_body
 from mechanisms.stages.parts.on_cluster import answer, built, dealt
-from mechanisms.stages.parts.on_cluster.answer import Made
+from mechanisms.stages.parts.on_cluster.answer import WorkerParts
 from mechanisms.stages.parts.on_cluster.built import Order, by_content, collected
 from mechanisms.stages.parts.on_cluster.solids_check import refuse_wrong
 from mechanisms.stages.parts_files import binary_stl, read_triangles
@@ -124,7 +124,7 @@ def test_what_a_worker_cannot_tell_is_made_here(
     assert project.run()
     here, stamp = files(out_root / "arm"), parts_stage.Stage(parts_stage.Out("arm"), "parts", "", [])
     solids = {name.removeprefix("parts/"): content for name, content in here.items() if name.startswith("parts/")}
-    made = Made(solids.pop("parts.json"), dict.fromkeys(solids, b"other"), stamp.notes())
+    made = WorkerParts(solids.pop("parts.json"), dict.fromkeys(solids, b"other"), stamp.notes())
     put("mechanisms/arm/data/width.txt", "9.0")(project)
     monkeypatch.setenv("CLUSTER", "tcp://127.0.0.1:1")
     monkeypatch.setattr(dealt, "made_elsewhere", lambda *_: made if "disk" in change else None)
@@ -248,7 +248,7 @@ def test_a_folder_that_is_the_machine_itself_sends_its_three_files(
     assert set(collected("my_machines")) == {f"workshop:{name}.py" for name in ("mechanism", "parts", "helper")}
 
 
-def made_far(name: str, place: Path, monkeypatch: pytest.MonkeyPatch, scale: str = "") -> answer.Made:
+def made_far(name: str, place: Path, monkeypatch: pytest.MonkeyPatch, scale: str = "") -> answer.WorkerParts:
     """What a worker makes of contents alone, in a folder of its own."""
     files = collected(name)
     hashes = {path: content_hash(content) for path, content in files.items()}
@@ -264,7 +264,7 @@ def made_far(name: str, place: Path, monkeypatch: pytest.MonkeyPatch, scale: str
         patch.setenv("MBSD_OUT", str(place / "out"))
         patch.setenv("MBSD_WORKSHOP", str(place))  # a worker that was started in a folder, too
         contents = {key: place / key for key in (*hashes.values(), "order")}
-        return msgspec.msgpack.decode(built.parts(contents, "order", name), type=answer.Made)
+        return msgspec.msgpack.decode(built.parts(contents, "order", name), type=answer.WorkerParts)
 
 
 def mbsd(folder: Path, *words: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -355,27 +355,29 @@ Document = dict[str, Any]
 
 
 @pytest.fixture(scope="module")
-def made() -> Made:
+def made() -> WorkerParts:
     """A bar with a hole, as a worker makes it."""
     bar = cadquery.Workplane().box(40, 10, 5).faces(">Z").workplane().hole(4)
     files: dict[str, bytes] = {}
     body = described_body("arm", "bar", [Solid("bar", bar, "steel", 1)], files, None)
     document = Parts(mechanism="arm", provenance=Provenance(inputs="0" * 64, versions=PROGRAM), bodies={"bar": body})
-    return Made(jsonfile.encode(document), files, NOTES)
+    return WorkerParts(jsonfile.encode(document), files, NOTES)
 
 
-def bytes_of(made: Made) -> bytes:
+def bytes_of(made: WorkerParts) -> bytes:
     return msgspec.msgpack.encode(made)
 
 
-def changed(made: Made, change: Callable[[Document], object], files: dict[str, bytes] | None = None) -> Made:
+def changed(
+    made: WorkerParts, change: Callable[[Document], object], files: dict[str, bytes] | None = None
+) -> WorkerParts:
     document = msgspec.json.decode(made.document)
     change(document)
     new = msgspec.json.format(msgspec.json.encode(document), indent=1) + b"\n"
-    return Made(new, files or made.files, made.notes)
+    return WorkerParts(new, files or made.files, made.notes)
 
 
-def with_files(made: Made, **files: bytes) -> Made:
+def with_files(made: WorkerParts, **files: bytes) -> WorkerParts:
     """Other bytes under these names, whose hash the document tells."""
     new = made.files | {name.replace("_", "."): content for name, content in files.items()}
 
@@ -389,17 +391,17 @@ def piece(document: Document) -> Document:
     return document["bodies"]["bar"]["pieces"]["bar"]
 
 
-def test_right_parts_are_taken(made: Made) -> None:
+def test_right_parts_are_taken(made: WorkerParts) -> None:
     assert answer.read("arm", bytes_of(made), OWN, PROGRAM) == made
-    assert answer.read("arm", bytes_of(Made(refusal="no\x1b[2J")), OWN, PROGRAM).refusal == "no [2J"
+    assert answer.read("arm", bytes_of(WorkerParts(refusal="no\x1b[2J")), OWN, PROGRAM).refusal == "no [2J"
 
 
-FALSE: dict[str, Callable[[Made], Any]] = {
+FALSE: dict[str, Callable[[WorkerParts], Any]] = {
     "None": lambda made: None,
     "a list": lambda made: [1],
-    "no document": lambda made: Made(b"", made.files, made.notes),
-    "text": lambda made: Made(b"parts", made.files, made.notes),
-    "a document cut short": lambda made: Made(made.document[:-40], made.files, made.notes),
+    "no document": lambda made: WorkerParts(b"", made.files, made.notes),
+    "text": lambda made: WorkerParts(b"parts", made.files, made.notes),
+    "a document cut short": lambda made: WorkerParts(made.document[:-40], made.files, made.notes),
     "another mechanism": lambda made: changed(made, lambda d: d.update(mechanism="other")),
     "another version": lambda made: changed(made, lambda d: d.update(schema_version=7)),
     "other packages": lambda made: changed(made, lambda d: d["provenance"].update(versions={"cadquery": "1"})),
@@ -411,15 +413,15 @@ FALSE: dict[str, Callable[[Made], Any]] = {
         lambda d: piece(d).update(stl="x.stl"),
         {"x.stl": made.files["bar.stl"], "bar.step": made.files["bar.step"]},
     ),
-    "a file too many": lambda made: Made(made.document, made.files | {"../../x.py": b""}, made.notes),
-    "a file too few": lambda made: Made(made.document, {"bar.stl": made.files["bar.stl"]}, made.notes),
-    "another hash": lambda made: Made(made.document, made.files | {"bar.stl": b"solid"}, made.notes),
-    "no notes": lambda made: Made(made.document, made.files),
-    "notes of numbers": lambda made: Made(made.document, made.files, NOTES | {"parameters": [1]}),
-    "notes without the author's file": lambda made: Made(
+    "a file too many": lambda made: WorkerParts(made.document, made.files | {"../../x.py": b""}, made.notes),
+    "a file too few": lambda made: WorkerParts(made.document, {"bar.stl": made.files["bar.stl"]}, made.notes),
+    "another hash": lambda made: WorkerParts(made.document, made.files | {"bar.stl": b"solid"}, made.notes),
+    "no notes": lambda made: WorkerParts(made.document, made.files),
+    "notes of numbers": lambda made: WorkerParts(made.document, made.files, NOTES | {"parameters": [1]}),
+    "notes without the author's file": lambda made: WorkerParts(
         made.document, made.files, NOTES | {"inputs": Inputs().names()}
     ),
-    "sources of the whole disk": lambda made: Made(
+    "sources of the whole disk": lambda made: WorkerParts(
         made.document,
         made.files,
         NOTES | {"inputs": NOTES["inputs"] | {"sources": ["/"]}},
@@ -429,7 +431,7 @@ FALSE: dict[str, Callable[[Made], Any]] = {
 
 @pytest.mark.parametrize("kind", FALSE)
 def test_what_does_not_hold_together_is_refused(
-    made: Made, kind: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    made: WorkerParts, kind: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(answer, "_refuse_other_solids", lambda *_: pytest.fail("nothing may be written"))
     with pytest.raises(WrongAnswer, match=r"arm"):
@@ -442,7 +444,7 @@ def half(stl: bytes) -> bytes:
     return binary_stl(corners[: len(corners) // 2])
 
 
-WRONG: dict[str, Callable[[Made], Made]] = {
+WRONG: dict[str, Callable[[WorkerParts], WorkerParts]] = {
     "an STL cut in half": lambda made: with_files(made, bar_stl=made.files["bar.stl"][:2000]),
     "half of the triangles": lambda made: with_files(made, bar_stl=half(made.files["bar.stl"])),
     "a text as STL": lambda made: with_files(made, bar_stl=b"this is no mesh"),
@@ -463,23 +465,23 @@ WRONG: dict[str, Callable[[Made], Made]] = {
 }
 
 
-def written(made: Made, folder: Path) -> Path:
+def written(made: WorkerParts, folder: Path) -> Path:
     (folder / "parts.json").write_bytes(made.document)
     for name, content in made.files.items():
         (folder / name).write_bytes(content)
     return folder
 
 
-def test_right_solids_are_taken(made: Made, tmp_path: Path) -> None:
+def test_right_solids_are_taken(made: WorkerParts, tmp_path: Path) -> None:
     refuse_wrong(written(made, tmp_path))
 
 
 @pytest.mark.parametrize("kind", WRONG)
-def test_solids_that_are_not_as_told_are_refused(made: Made, kind: str, tmp_path: Path) -> None:
+def test_solids_that_are_not_as_told_are_refused(made: WorkerParts, kind: str, tmp_path: Path) -> None:
     with pytest.raises(UserError, match="bar"):
         refuse_wrong(written(WRONG[kind](made), tmp_path))
 
 
-def test_solids_are_read_by_a_process_of_their_own(made: Made) -> None:
+def test_solids_are_read_by_a_process_of_their_own(made: WorkerParts) -> None:
     with pytest.raises(WrongAnswer, match=r"the parts of arm: bar: bar: bar.stl is no whole binary STL \(2000 bytes\)"):
         answer.read("arm", bytes_of(WRONG["an STL cut in half"](made)), OWN, PROGRAM)

@@ -238,7 +238,7 @@ class Automatic:
         """Return what is to be built, with styluses as tall as the layers allow. Raises UserError if no layers are
         possible.
         """
-        return self._found[0]
+        return self._decided[0]
 
     @cached_property
     def levels(self) -> dict[str, int]:
@@ -248,7 +248,7 @@ class Automatic:
     @property
     def decided(self) -> dict[str, int]:
         """The layers, and the choices of items that have one (0 or 1)."""
-        return self._found[1]
+        return self._decided[1]
 
     @cached_property
     def heights(self) -> Heights:
@@ -331,7 +331,7 @@ class Automatic:
         return plan
 
     @cached_property
-    def _found(self) -> tuple[Layout, dict[str, int]]:
+    def _decided(self) -> tuple[Layout, dict[str, int]]:
         return decided(self._layout, self.wishes(), self._layers)
 
     def wishes(self) -> list[Sizes]:
@@ -362,7 +362,7 @@ class Automatic:
 
     def _plan_anew(self) -> None:
         """Forget what was found before a wish."""
-        for name in ("sizes", "layout", "levels", "heights", "_found", "along"):
+        for name in ("sizes", "layout", "levels", "heights", "_decided", "along"):
             self.__dict__.pop(name, None)
 
     def _known(self, body: str, ground: bool = False) -> None:

@@ -318,8 +318,8 @@ class GenevaDrive(Feature):
     def anchors(self, layout: Layout) -> Iterable[Anchor]:
         """Return eyes for the axes, and one that holds the pin."""
         eye = layout.sizes.eye
-        anchors = [Anchor(body, at[0], at[1], eye) for body, at in self._ends()]
-        return [*anchors, Anchor(self.crank, *self.pin.pin_at, eye)]
+        axes = Anchor(self.crank, *self.crank_at[:2], eye), Anchor(self.wheel, *self.wheel_at[:2], eye)
+        return [*axes, Anchor(self.crank, *self.pin.pin_at, eye)]
 
     def items(self, layout: Layout) -> Iterable[Item]:
         """Yield the wheel, the pin through it, the locking disc; and a rule: the crank, whose disc stands in the
@@ -339,9 +339,6 @@ class GenevaDrive(Feature):
     def needs(self, levels: Levels, layout: Layout) -> Iterable[Need]:
         """Return the same as for a pin in a slot."""
         return self.pin.needs_under(self, levels, layout)
-
-    def _ends(self) -> list[tuple[str, tuple[float, float, float]]]:
-        return [(self.crank, self.crank_at), (self.wheel, self.wheel_at)]
 
 
 @kind("geneva")

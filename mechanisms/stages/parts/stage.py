@@ -113,7 +113,7 @@ def _wish(name: str, scale: Scale | None = None, with_machine: bool = True) -> _
     return _Wish(by_itself, of_shot(name), scale, masses)
 
 
-class _Found(NamedTuple):
+class _Result(NamedTuple):
     """All that the stage writes."""
 
     document: Parts
@@ -122,7 +122,7 @@ class _Found(NamedTuple):
     inputs: Inputs
 
 
-def _made_here(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder) -> _Found:
+def _made_here(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder) -> _Result:
     """Run the author's code; ``recorder`` has seen what mechanism.py read. A refusal is remembered."""
     began, seen = time.monotonic(), _Seen()
     try:
@@ -156,7 +156,7 @@ def _kept_pieces(out: Out) -> KeptPieces:
     return KeptPieces(out.folder / ".pieces", key_of(sources_hash(*SOURCES), versions(*PACKAGES), densities))
 
 
-def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder, seen: _Seen) -> _Found:
+def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Recorder, seen: _Seen) -> _Result:
     from mechanisms.stages.parts.automatic_solids import follows_gravity, mount_of
     from mechanisms.stages.parts.bodies import described_body
     from shared.shapes.bodies import Bodies
@@ -191,10 +191,10 @@ def _described(out: Out, given: Any, wish: _Wish, before: set[str], recorder: Re
         may_touch=sorted(getattr(bodies, "touching", ())),
         pieces_may_touch=sorted(getattr(bodies, "pieces_touching", ())),
     )
-    return _Found(document, files, reads, inputs)
+    return _Result(document, files, reads, inputs)
 
 
-def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Found | None:
+def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Result | None:
     """Return the parts that a worker of the cluster made; None where they did not follow from what is here."""
     from mechanisms.stages.parts.on_cluster.dealt import made_elsewhere
 
@@ -211,7 +211,7 @@ def _of_cluster(out: Out, given: Any, wish: _Wish, recorder: Recorder) -> _Found
             "parts", f"{out.title}: its files read something that the worker has not, or has otherwise; it is made here"
         )
         return None
-    return _Found(document, made.files, reads, inputs)
+    return _Result(document, made.files, reads, inputs)
 
 
 def are_current(name: str) -> bool:

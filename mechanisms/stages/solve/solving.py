@@ -56,6 +56,12 @@ def build(name: str, module: Any, p: Any) -> Mechanism:
     return m
 
 
+def model_of(name: str) -> tuple[Mechanism, Any, Any]:
+    """Return the model of mechanism ``name``, the module of its mechanism.py, and its Params."""
+    module, p = loading.load(name, "mechanism"), loading.params(name)
+    return build(name, module, p), module, p
+
+
 def motion_of(name: str, module: Any, m: Mechanism, p: Any) -> Solution:
     """Return the motion of ``m`` as mechanism.py asks for it. Raises UserError; warnings of the solver become lines."""
     from mbsd import MechanismError

@@ -338,14 +338,14 @@ SUNK, WEBS = 46, 73
 
 
 @cache
-def made(number: int) -> Automatic:
+def planned(number: int) -> Automatic:
     """Of one of the hundred random mechanisms."""
     _, subject, _ = drawn(SEED + number, KINDS[number % len(KINDS)])
     return Automatic(subject.m, case.moved(subject, steps=120))
 
 
 def test_a_block_passes_over_a_pivot_that_is_sunk_into_its_guide() -> None:
-    automatic = made(SUNK)
+    automatic = planned(SUNK)
     (pivot,) = (
         pin
         for pin in automatic.layout.features
@@ -361,7 +361,7 @@ def test_a_block_passes_over_a_pivot_that_is_sunk_into_its_guide() -> None:
 
 
 def test_a_crank_of_two_webs_carries_a_rod_on_either_side() -> None:
-    automatic = made(WEBS)
+    automatic = planned(WEBS)
     assert not meets(automatic)
     ((web, body),) = automatic.layout.webs.items()
     (joining,) = (pin for pin in automatic.layout.features if isinstance(pin, Pin) and pin.webs)
@@ -387,7 +387,7 @@ def test_a_sunk_pivot_is_built_and_proven() -> None:
 
 
 def test_a_crank_of_two_webs_is_sound() -> None:
-    automatic = made(WEBS)
+    automatic = planned(WEBS)
     (body,) = automatic.layout.webs.values()
     crank = {body: automatic.solids(engraved_too=False)[body]}
     assert [solid.name for solid in crank[body]].count(body) == 1

@@ -29,7 +29,7 @@ from tools.models.guided import geneva
 LIFT = Lift.of((2.0, 0.02, "cycloidal"), (1.0, 0.02), (2.0, 0.0, "cycloidal"), (2 * math.pi - 5.0, 0.0))
 
 
-def _made(m: Mechanism, duration: float) -> Automatic:
+def _planned(m: Mechanism, duration: float) -> Automatic:
     return Automatic(m, m.sweep(duration, 300))
 
 
@@ -54,7 +54,7 @@ def _cam(made: Automatic) -> Cam:
 
 @pytest.mark.parametrize("slots", [3, 4, 6])
 def test_geneva_has_room_for_its_hubs_and_pins(slots: int) -> None:
-    made = _made(geneva(slots), 2 * math.pi)
+    made = _planned(geneva(slots), 2 * math.pi)
     assert made.levels["crank"] != made.levels["wheel"]
     drive = next(feature for feature in made.layout.features if isinstance(feature, GenevaDrive))
     sizes, shape = made.sizes, drive.shape
@@ -76,7 +76,7 @@ def test_head_of_the_pin_of_a_geneva_has_room_under_an_arm_that_carries_both(top
     m.drive_angle("turn", arm, constant_rate(0.2))
     m.drive_relative_angle("motor", arm, crank, constant_rate(1.0))
     m.start_near(wheel=5)
-    made = _made(m, 2 * math.pi)
+    made = _planned(m, 2 * math.pi)
     drive = next(feature for feature in made.layout.features if isinstance(feature, GenevaDrive))
     levels = {"crank": 0, "wheel": 1, "arm": 2} if top == "arm" else {"arm": 0, "crank": 1, "wheel": 2}
     above = [need for need in drive.needs(levels, made.layout) if need.gap == levels["wheel"]]
@@ -85,7 +85,7 @@ def test_head_of_the_pin_of_a_geneva_has_room_under_an_arm_that_carries_both(top
 
 
 def test_roller_is_short_of_the_cam_by_the_clearance_all_the_way() -> None:
-    made = _made(_follower(flat=False), 1.0)
+    made = _planned(_follower(flat=False), 1.0)
     assert made.levels["cam"] != made.levels["follower"]
     cam, scale = _cam(made), made.sizes.scale
     assert cam.roller is not None
@@ -97,7 +97,7 @@ def test_roller_is_short_of_the_cam_by_the_clearance_all_the_way() -> None:
 
 
 def test_face_is_short_of_the_cam_and_long_enough() -> None:
-    made = _made(_follower(flat=True), 1.0)
+    made = _planned(_follower(flat=True), 1.0)
     assert made.levels["cam"] != made.levels["follower"]
     cam, scale = _cam(made), made.sizes.scale
     # A translating face is touched at the speed of the lift beside its line (Norton, Design of Machinery, ch. 8).
@@ -117,7 +117,7 @@ def test_parts_on_ground_and_undercut_cams_are_refused() -> None:
     m.drive_angle("motor", frame, constant_rate(1.0, math.pi))
     m.start_near(frame=180, wheel=5)
     with pytest.raises(UserError, match="joint 'index' is a geneva with a part on ground"):
-        _ = _made(m, 1.0).levels
+        _ = _planned(m, 1.0).levels
 
 
 # Discs of cams with any closed outline, and what the CAD kernel cannot make of automatic parts.

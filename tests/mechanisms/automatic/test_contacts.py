@@ -41,7 +41,7 @@ def _room(scale: float = 1.0, turn: float = 0.0, stiffness: float = 0.0) -> Mech
     return m
 
 
-def _made(m: Mechanism, duration: float = 0.5, steps: int = 300) -> tuple[Automatic, list[Round], list[Road]]:
+def _planned(m: Mechanism, duration: float = 0.5, steps: int = 300) -> tuple[Automatic, list[Round], list[Road]]:
     made = Automatic(m, m.simulate(duration, steps, event_rows=True))
     features = made.layout.features
     return made, [f for f in features if isinstance(f, Round)], [f for f in features if isinstance(f, Road)]
@@ -70,7 +70,7 @@ def test_an_eye_in_a_point_that_touches_is_clear_of_its_wall(stiffness: float) -
 @settings(max_examples=6, deadline=None)
 @given(st.sampled_from([0.1, 1.0, 30.0]), st.floats(-math.pi, math.pi))
 def test_one_ball_and_walls_that_meet_in_a_corner(scale: float, turn: float) -> None:
-    made, (ball,), walls = _made(_room(scale, turn))
+    made, (ball,), walls = _planned(_room(scale, turn))
     assert ball.look == "ball"
     assert [wall.name for wall in walls] == ["floor", "left"]
     np.testing.assert_allclose(walls[0].path[0], walls[1].path[1], atol=1e-6)  # in the corner
@@ -83,7 +83,7 @@ def test_one_ball_and_walls_that_meet_in_a_corner(scale: float, turn: float) -> 
 
 def test_what_presses_in_a_little_is_smaller_by_as_much_else_the_two_may_touch() -> None:
     for stiffness, visible in ((3e3, True), (3e8, False)):
-        made, (ball,), (floor, _) = _made(_room(stiffness=stiffness), steps=4000)
+        made, (ball,), (floor, _) = _planned(_room(stiffness=stiffness), steps=4000)
         places = made.layout.seen("ball", ball.at, "ground")
         pressed = ball.radius - float(distances(places, floor.path).min())
         assert pressed > 0
@@ -96,7 +96,7 @@ def test_what_presses_in_a_little_is_smaller_by_as_much_else_the_two_may_touch()
 
 @pytest.mark.parametrize("stiffness", [0.0, 3000.0])
 def test_ball_and_walls_are_sound(stiffness: float) -> None:
-    made, _, walls = _made(_room(stiffness=stiffness))
+    made, _, walls = _planned(_room(stiffness=stiffness))
     plan = made.plan()
     (plate,) = plan.plates["ball"]
     shapes = [plate.shape, *(s.shape for s in plan.solids["ground"])]
@@ -119,7 +119,7 @@ def test_friction_makes_a_wheel_and_a_point_gets_a_nose() -> None:
     m.contact("buffer", m.ground.at(0.3, 0.2, math.pi / 2), sledge.at(0.05, 0), 1e4, radius=0.0)
     m.start_near(wheel=(0, 0.045, 0), sledge=(0, 0.2, 0))
     m.start_moving(wheel=(0.6, 0, 0), sledge=(0.8, 0, 0))
-    made, rounds, roads = _made(m)
+    made, rounds, roads = _planned(m)
     looks = {part.body: part.look for part in rounds}
     assert looks == {"wheel": "wheel", "sledge": "disc"}
     nose = next(part for part in rounds if part.body == "sledge")
@@ -149,7 +149,7 @@ def test_profiles_of_tyres_reach_as_far_as_the_wheel() -> None:
     m.tyre("tyre", m.ground.origin, wheel.origin, 0.3, 5e4, damping=200.0, profile=bump)
     m.start_near(wheel=(0, 0.299, 0))
     m.start_moving(wheel=(4.0, 0, -4.0 / 0.3))
-    made, (part,), (road,) = _made(m)
+    made, (part,), (road,) = _planned(m)
     places = made.layout.seen("wheel", part.at, "ground")
     assert part.look == "wheel"
     assert road.path[0, 0] < places[:, 0].min() - part.radius
@@ -167,7 +167,7 @@ def test_planks_of_a_bowl_end_where_they_meet() -> None:
         m.rigid_contact(f"plank{k}", m.ground.at(*places[-1], angle), wheel.origin, 0.03, friction=0.9)
         places.append(places[-1] + 0.15 * np.array([math.cos(angle), math.sin(angle)]))
     m.start_near(wheel=(0.06, 0.06, 0))
-    made, (part,), planks = _made(m, 1.0)
+    made, (part,), planks = _planned(m, 1.0)
     assert part.look == "wheel"
     for k in (1, 2, 3):
         corners = planks[k].path / made.sizes.of_metres(1.0)
@@ -193,7 +193,7 @@ def _valve(size: float = 1.0, roller: float = 0.012) -> Mechanism:
 @pytest.mark.parametrize(("roller", "turns"), [(0.41, False), (0.5, False), (0.62, True), (1.0, True)])
 def test_rollers_of_clockwork_are_sound(roller: float, turns: bool) -> None:
     """Clearances do not shrink below 0.16 mm: in a roller of 1 mm they left a wall that crossed itself."""
-    made, _, _ = _made(_valve(0.1, roller / 1e3 / 0.1), 0.4)
+    made, _, _ = _planned(_valve(0.1, roller / 1e3 / 0.1), 0.4)
     (piece,) = [solid for solid in made.plan().solids["valve"] if solid.name == "roller_push"]
     shape = only_solid(piece.shape, "roller")
     check_mesh(read_mesh(stl_bytes(shape)), volume_of(shape), 1, "roller")
@@ -203,11 +203,11 @@ def test_rollers_of_clockwork_are_sound(roller: float, turns: bool) -> None:
 def test_a_roller_that_a_pin_fills_is_refused() -> None:
     m = _valve(0.1, 0.0003 / 0.1)
     with pytest.raises(UserError, match=r"roller of 'push' is 0\.408 mm in diameter, and on a pin of 0\.5 mm"):
-        _made(m, 0.4)[0].plan()
+        _planned(m, 0.4)[0].plan()
 
 
 def test_a_closed_curve_that_pushes_is_a_cam_with_a_roller() -> None:
-    made, _, _ = _made(_valve(), 0.4)
+    made, _, _ = _planned(_valve(), 0.4)
     (cam,) = [f for f in made.layout.features if isinstance(f, Cam)]
     scale = made.sizes.of_metres(1.0)
     assert cam.roller == pytest.approx(0.012 * scale - cam.clear)
@@ -223,7 +223,7 @@ def test_balls_that_meet_share_a_layer_and_never_touch() -> None:
     m.rigid_discs("hit", cue.origin, ball.origin, 0.02, 0.03, restitution=0.9)
     m.start_near(cue=(-0.2, 0, 0), ball=(0, 0.01, 0))
     m.start_moving(cue=(1.0, 0, 0))
-    made, rounds, _ = _made(m, 0.4)
+    made, rounds, _ = _planned(m, 0.4)
     assert [part.look for part in rounds] == ["ball", "ball"]
     assert made.levels["cue"] == made.levels["ball"]
     apart = np.linalg.norm(made.layout.seen("cue", (0, 0), "ball"), axis=1).min()
@@ -239,7 +239,7 @@ def test_a_cradle_of_bars_with_discs_has_one_layer() -> None:
         m.start_near(**{bar.name: -120 if k == 0 else -90})
     for k in (0, 1):
         m.rigid_discs(f"hit{k}", bars[k].end, bars[k + 1].end, 0.025, 0.025, restitution=1.0)
-    made, rounds, _ = _made(m, 0.5)
+    made, rounds, _ = _planned(m, 0.5)
     assert [part.look for part in rounds] == ["disc"] * 3
     assert len({made.levels[bar.name] for bar in bars}) == 1
     assert all(solid.shape.val().isValid() for solids in made.solids(engraved_too=False).values() for solid in solids)
@@ -251,7 +251,7 @@ def test_a_box_on_two_feet_is_one_solid_without_tyres() -> None:
     for number, x in enumerate((-0.04, 0.04)):
         m.rigid_contact(f"foot{number}", m.ground.origin, box.at(x, -0.02), 0.006, friction=0.3)
     m.start_near(box=(0, 0.03, 0))
-    made, rounds, _ = _made(m)
+    made, rounds, _ = _planned(m)
     assert [part.look for part in rounds] == ["disc", "disc"]
     plate = made.solids(engraved_too=False)["box"][0]
     assert only_solid(plate.shape, "box").isValid()

@@ -220,7 +220,7 @@ type Machine = Callable[[float, float], Mechanism]
 """Of the angle by which its world is turned and the radius of its wheel."""
 
 
-def at(turn: float, x: float, y: float = 0.0) -> tuple[float, float]:
+def seen(turn: float, x: float, y: float = 0.0) -> tuple[float, float]:
     """A place in a world that is turned."""
     c, s = math.cos(turn), math.sin(turn)
     return c * x - s * y, s * x + c * y
@@ -231,14 +231,14 @@ def camshaft(turn: float, radius: float) -> Mechanism:
     m = Mechanism("camshaft")
     motor, cam, valve = m.body("motor"), m.body("cam"), m.body("valve")
     m.revolute("O", m.ground.origin, cam.origin)
-    m.revolute("M", m.ground.at(*at(turn, 0, -0.2)), motor.origin)
+    m.revolute("M", m.ground.at(*seen(turn, 0, -0.2)), motor.origin)
     m.belt("belt", motor.origin, cam.origin, 0.02, radius)
     lift = Lift.of((2 * pi / 3, 0.020, "cycloidal"), (2 * pi / 3, 0.0, "cycloidal"), (2 * pi / 3, 0.0))
     up = turn + pi / 2
-    m.prismatic("guide", m.ground.at(*at(turn, 0, 0.12), up), valve.at(0, 0.06, pi / 2))
+    m.prismatic("guide", m.ground.at(*seen(turn, 0, 0.12), up), valve.at(0, 0.06, pi / 2))
     m.cam_roller("contact", cam.origin, valve.origin, roller_cam(lift, base_radius=0.035, roller_radius=0.012))
     m.drive_angle("drive", motor, constant_rate(1.0))
-    m.start_near(valve=(*at(turn, 0, 0.047), math.degrees(turn)))
+    m.start_near(valve=(*seen(turn, 0, 0.047), math.degrees(turn)))
     return m
 
 
@@ -247,9 +247,9 @@ def geneva(turn: float, radius: float) -> Mechanism:
     m = Mechanism("geneva")
     motor, crank, wheel, out = m.body("motor"), m.body("crank"), m.body("wheel"), m.body("out")
     m.revolute("O", m.ground.origin, crank.origin)
-    m.revolute("W", m.ground.at(*at(turn, APART)), wheel.origin)
-    m.revolute("M", m.ground.at(*at(turn, -0.02 - radius)), motor.origin)
-    m.revolute("X", m.ground.at(*at(turn, APART + 0.02 + radius)), out.origin)
+    m.revolute("W", m.ground.at(*seen(turn, APART)), wheel.origin)
+    m.revolute("M", m.ground.at(*seen(turn, -0.02 - radius)), motor.origin)
+    m.revolute("X", m.ground.at(*seen(turn, APART + 0.02 + radius)), out.origin)
     m.geneva("index", crank.origin, wheel.origin, slots=4, radius=APART * sin(pi / 4))
     m.gear_pair("in", motor.origin, crank.origin, 0.02, radius)
     m.gear_pair("off", wheel.origin, out.origin, radius, 0.02)
@@ -268,7 +268,7 @@ def cardan(turn: float, radius: float) -> Mechanism:
     m.revolute("S", planet.at(radius, 0), slide.origin)
     m.prismatic("line", m.ground.at(0, 0, turn), slide.origin)
     m.drive_angle("drive", arm, constant_rate(1.0, turn))
-    m.start_near(arm=math.degrees(turn), planet=math.degrees(turn), slide=(*at(turn, 2 * radius), math.degrees(turn)))
+    m.start_near(arm=math.degrees(turn), planet=math.degrees(turn), slide=(*seen(turn, 2 * radius), math.degrees(turn)))
     return m
 
 
@@ -284,7 +284,7 @@ def toy_car(turn: float, radius: float) -> Mechanism:
         m.rolling_disc(name, m.ground.at(0, 0, turn), wheel.origin, 0.06)
     m.drive_angle("drive", rear, constant_rate(-1.0, turn))
     starts = {"frame": 0.0, "rear": 0.0, "front": 0.2, "pinion": 0.02 + radius}
-    m.start_near(**{name: (*at(turn, x, 0.06), math.degrees(turn)) for name, x in starts.items()})
+    m.start_near(**{name: (*seen(turn, x, 0.06), math.degrees(turn)) for name, x in starts.items()})
     return m
 
 
@@ -292,8 +292,8 @@ def press(turn: float, radius: float) -> Mechanism:
     """A belt and a pinion drive a gear whose crank pin lies 70 mm from its axis: beyond its teeth or within."""
     m = Mechanism("press")
     motor, pinion, gear, rod, ram = m.body("motor"), m.body("pinion"), m.body("gear"), m.bar("rod", 0.2), m.body("ram")
-    m.revolute("M", m.ground.at(*at(turn, -radius - 0.025, 0.15)), motor.origin)
-    m.revolute("A", m.ground.at(*at(turn, -radius - 0.025)), pinion.origin)
+    m.revolute("M", m.ground.at(*seen(turn, -radius - 0.025, 0.15)), motor.origin)
+    m.revolute("A", m.ground.at(*seen(turn, -radius - 0.025)), pinion.origin)
     m.revolute("B", m.ground.origin, gear.origin)
     m.belt("belt", motor.origin, pinion.origin, 0.02, 0.04)
     m.gear_pair("gears", pinion.origin, gear.origin, 0.025, radius)
@@ -302,7 +302,7 @@ def press(turn: float, radius: float) -> Mechanism:
     m.prismatic("way", m.ground.at(0, 0, turn), ram.origin)
     m.drive_angle("drive", motor, constant_rate(1.0))
     degrees = math.degrees(turn)
-    m.start_near(gear=degrees, rod=degrees, ram=(*at(turn, 0.27), degrees))
+    m.start_near(gear=degrees, rod=degrees, ram=(*seen(turn, 0.27), degrees))
     return m
 
 
@@ -311,15 +311,15 @@ def two_valves(turn: float, radius: float) -> Mechanism:
     m = Mechanism("two_valves")
     motor, cam = m.body("motor"), m.body("cam")
     m.revolute("O", m.ground.origin, cam.origin)
-    m.revolute("M", m.ground.at(*at(turn, -0.25)), motor.origin)
+    m.revolute("M", m.ground.at(*seen(turn, -0.25)), motor.origin)
     m.belt("belt", motor.origin, cam.origin, 0.02, radius)
     lift = Lift.of((2 * pi / 3, 0.020, "cycloidal"), (2 * pi / 3, 0.0, "cycloidal"), (2 * pi / 3, 0.0))
     profile = roller_cam(lift, base_radius=0.035, roller_radius=0.012)
     for name, side in (("in", turn), ("out", turn + pi)):
         valve = m.body(name)
-        m.prismatic(f"guide_{name}", m.ground.at(*at(side, 0, 0.12), side + pi / 2), valve.at(0, 0.06, pi / 2))
+        m.prismatic(f"guide_{name}", m.ground.at(*seen(side, 0, 0.12), side + pi / 2), valve.at(0, 0.06, pi / 2))
         m.cam_roller(f"contact_{name}", cam.origin, valve.origin, profile)
-        m.start_near(**{name: (*at(side, 0, 0.047), math.degrees(side))})
+        m.start_near(**{name: (*seen(side, 0, 0.047), math.degrees(side))})
     m.drive_angle("drive", motor, constant_rate(1.0))
     return m
 

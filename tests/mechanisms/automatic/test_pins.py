@@ -122,13 +122,13 @@ def loose_crank(clearance: float, **joint: Any) -> Mechanism:
     return m
 
 
-def made(m: Mechanism, duration: float = math.pi / 10) -> Automatic:
+def planned(m: Mechanism, duration: float = math.pi / 10) -> Automatic:
     return Automatic(m, m.simulate(duration, 200, event_rows=True))
 
 
 def test_a_pin_with_play_has_bushings_bored_as_much_wider() -> None:
     m = loose_crank(0.5e-3)
-    parts = made(m)
+    parts = planned(m)
     [pin] = [feature for feature in parts.layout.features if isinstance(feature, Pin) and feature.play]
     moved = -m.simulate(math.pi / 10, 200, event_rows=True).force("B").gap.min() + 0.5e-3
     assert pin.name == "B"
@@ -142,12 +142,12 @@ def test_a_pin_with_play_has_bushings_bored_as_much_wider() -> None:
 
 def test_too_much_play_and_a_shared_place_are_refused() -> None:
     with pytest.raises(UserError, match=r"clearance joint 'B' moves .* mm to a side, and bushings of"):
-        _ = made(loose_crank(4e-3)).layout
+        _ = planned(loose_crank(4e-3)).layout
     m = loose_crank(0.5e-3)
     extra = m.bar("extra", 0.1, mass=0.1)
     m.revolute("C", m.bodies["slider"].origin, extra.start)
     with pytest.raises(UserError, match="'B' and 'C' are at one place of 'slider'"):
-        _ = made(m).layout
+        _ = planned(m).layout
 
 
 def test_teeth_of_gears_with_play_have_their_backlash() -> None:
@@ -158,7 +158,7 @@ def test_teeth_of_gears_with_play_have_their_backlash() -> None:
         m.revolute("B", m.ground.at(0.09, 0), b.origin)
         m.gear_mesh("mesh", a.origin, b.origin, 1e7, teeth=(40, 20), module=3e-3, backlash=backlash)
         m.start_moving(a=5.0)
-        parts = made(m)
+        parts = planned(m)
         wheels = [feature for feature in parts.layout.features if isinstance(feature, Wheel)]
         for wheel in wheels:
             wheel.play *= parts.sizes.scale
@@ -182,10 +182,10 @@ def _loaded(*places: float, body: str = "rocker") -> Automatic:
     for k, place in enumerate(places):
         load = m.body(f"load{k}", 5.0, inertia=0.01)
         m.weld(f"fix{k}", m.bodies[body].at(place, 0.0), load.at(0.0, 0.0))
-    return _made(m)
+    return _planned(m)
 
 
-def _made(m: Mechanism) -> Automatic:
+def _planned(m: Mechanism) -> Automatic:
     return Automatic(m, m.sweep(times=np.linspace(0, 2 * np.pi, 121)))
 
 
@@ -229,7 +229,7 @@ def test_a_plate_without_room_for_bolts_is_refused() -> None:
     m.weld("fix", m.bodies["rocker"].at(0.0, 0.0), load.origin)
     for k, (x, y) in enumerate(np.ndindex(13, 13)):
         m.revolute(f"P{k}", load.at(0.02 * (x - 6), 0.02 * (y - 6)), m.body(f"k{k}", 0.1, inertia=1e-4).origin)
-    made = Automatic(m, _made(model(LENGTHS)).solution, pin=8.0)
+    made = Automatic(m, _planned(model(LENGTHS)).solution, pin=8.0)
     from mechanisms.stages.automatic.layout.layout import Layout
     from mechanisms.stages.automatic.layout.motion import times_of
     from mechanisms.stages.automatic.pins.pins import gather as pins

@@ -266,7 +266,7 @@ def test_pins_that_two_near_joints_make_thin_are_reported_with_their_names() -> 
     assert "would have pins of 25 mm" in said
 
 
-def at(scale: Scale | None, m: Mechanism | None = None, **words: object) -> Automatic:
+def scaled_parts(scale: Scale | None, m: Mechanism | None = None, **words: object) -> Automatic:
     m = m or large()
     with scaling(scale):
         made = automatic(m, solution=m.sweep(1.0, 120), **words)
@@ -277,7 +277,7 @@ def at(scale: Scale | None, m: Mechanism | None = None, **words: object) -> Auto
 @pytest.mark.parametrize("text", ["1:4", "1:8", "1:12", "2:1"])
 def test_pins_are_standard_and_can_be_printed(text: str) -> None:
     scale = scale_of(text)
-    made = at(scale)
+    made = scaled_parts(scale)
     assert scale is not None
     assert made.sizes.finished_pin in STANDARD
     assert made.sizes.finished_pin >= LEAST
@@ -291,25 +291,25 @@ def test_pins_are_standard_and_can_be_printed(text: str) -> None:
 
 def test_of_smaller_models_pins_are_thicker_in_proportion() -> None:
     """1:14 of 120 mm is 8.57 mm, of which 8.25 mm are needed."""
-    assert at(Scale(1, 14)).sizes.finished_pin == LEAST
-    assert at(Scale(1, 14)).sizes.pin > 1.2 * at(Scale(1, 4)).sizes.pin
+    assert scaled_parts(Scale(1, 14)).sizes.finished_pin == LEAST
+    assert scaled_parts(Scale(1, 14)).sizes.pin > 1.2 * scaled_parts(Scale(1, 4)).sizes.pin
 
 
 def test_links_that_are_too_short_are_named_with_the_scale_that_would_do() -> None:
     with pytest.raises(UserError, match=r"'A' and 'B' on 'crank' becomes 6 mm, .* need 8\.25 mm; SCALE=1:14 is"):
-        at(Scale(1, 20))
-    assert at(Scale(1, 14)).levels
+        scaled_parts(Scale(1, 20))
+    assert scaled_parts(Scale(1, 14)).levels
     with pytest.raises(UserError, match=r"SCALE=3:1 is the smallest"):
-        at(Scale(1, 1), four_bar(0.009, 0.003, 0.009, 0.007))
+        scaled_parts(Scale(1, 1), four_bar(0.009, 0.003, 0.009, 0.007))
 
 
 def test_without_a_scale_sizes_are_those_of_the_machine() -> None:
-    sizes = at(None).sizes
+    sizes = scaled_parts(None).sizes
     assert (sizes.ratio, sizes.finished, sizes.finished_pin) == (1.0, sizes.scale, sizes.pin)
 
 
 def test_a_printers_own_fit_counts_and_a_pin_goes_with_the_machine() -> None:
-    made = at(AT, fit=Fit(running=0.5, press=0.2), pin=20.0)
+    made = scaled_parts(AT, fit=Fit(running=0.5, press=0.2), pin=20.0)
     assert made.sizes.finished_pin == 5.0
     assert made.sizes.pivot.fit.running * made.sizes.finished == pytest.approx(0.5)
 

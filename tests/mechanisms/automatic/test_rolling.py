@@ -47,7 +47,7 @@ def _cart(curve: bool) -> Mechanism:
     return m
 
 
-def _made(m: Mechanism) -> tuple[Automatic, Round, np.ndarray]:
+def _planned(m: Mechanism) -> tuple[Automatic, Round, np.ndarray]:
     made = Automatic(m, m.sweep(1.0, 200))
     features = made.layout.features
     [wheel] = [feature for feature in features if isinstance(feature, Round)]
@@ -58,7 +58,7 @@ def _made(m: Mechanism) -> tuple[Automatic, Round, np.ndarray]:
 
 @pytest.mark.parametrize("curve", [False, True])
 def test_wheel_is_short_of_its_road_by_the_clearance(curve: bool) -> None:
-    made, wheel, path = _made(_cart(curve))
+    made, wheel, path = _planned(_cart(curve))
     assert made.levels["wheel"] != made.levels["slider"]
     centre = made.layout.seen("wheel", wheel.at, "ground")
     away = distances(centre, path)
@@ -69,7 +69,7 @@ def test_wheel_is_short_of_its_road_by_the_clearance(curve: bool) -> None:
 
 
 def test_wheel_tyre_and_road_are_sound() -> None:
-    made, wheel, path = _made(_cart(curve=True))
+    made, wheel, path = _planned(_cart(curve=True))
     plan = made.plan()
     (plate,) = plan.plates["wheel"]
     named = {solid.name: solid for solids in plan.solids.values() for solid in solids}

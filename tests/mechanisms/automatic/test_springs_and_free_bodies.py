@@ -303,7 +303,7 @@ def _planet(out: float, internal: bool, fixed: float = 0.09, radius: float = 0.0
     return m
 
 
-def _made(m: Mechanism) -> Automatic:
+def _planned(m: Mechanism) -> Automatic:
     return Automatic(m, m.sweep(times=np.linspace(0, 1, 121)))
 
 
@@ -322,7 +322,7 @@ def _made(m: Mechanism) -> Automatic:
 )
 def test_a_point_on_a_rim_gets_a_pointer_from_within(m: Mechanism) -> None:
     """An eye there broke the teeth, or met the road."""
-    made = _made(m)
+    made = _planned(m)
     assert not meets(made)
     (mark,) = [feature for feature in made.layout.features if isinstance(feature, RimMark)]
     assert mark.points

@@ -378,7 +378,7 @@ def weights(layout: Layout, heavy: bool) -> list[Feature]:
     for name in layout.bodies:
         body = layout.m.bodies[name]
         here = [a for a in taken if a.body == name]
-        centre = (layout.sizes.of_metres(body.com[0]), layout.sizes.of_metres(body.com[1]))
+        centre = _place(layout, name)
         if body.length is not None:
             ends = [(0.0, 0.0), (layout.sizes.of_metres(body.length), 0.0)]
         elif len(here) < 2 and name not in free and name not in round_bodies:

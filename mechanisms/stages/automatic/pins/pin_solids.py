@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from mechanisms.stages.automatic.layout.items import Heights, Levels
     from mechanisms.stages.automatic.layout.plan import Plan
     from mechanisms.stages.automatic.layout.sizes import Sizes
-    from shared.shapes.pivot import Pivot
 
 
 # The solids of a pin: what holds it, what runs on it, and what keeps it in place (rmm).
@@ -37,7 +36,7 @@ def moving_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> No
     holder, runners = stack[0], stack[1:]
     x, y = joint.places[holder]
     low = heights.top(holder)
-    boss = boss_height(heights.bottom(runners[0]) - low, pivot, pivot.flange_room)
+    boss = boss_height(heights.bottom(runners[0]) - pivot.flange_room - fit.axial - pivot.washer_room - low)
     plan.eye(holder, x, y, holding_eye(sizes, above=boss))
     plan.add(holder, pivot.washer_at(f"washer_{joint.name}", x, y, low + boss + fit.seat))
     run(joint, runners, holder, plan, heights)
@@ -56,7 +55,7 @@ def hanging_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> N
     holder, runners = stack[-1], stack[:-1]
     x, y = joint.places[holder]
     high = heights.bottom(holder)
-    boss = boss_height(high - heights.top(runners[-1]), pivot, pivot.flange_room)
+    boss = boss_height(high - pivot.washer_room - fit.axial - pivot.flange_room - heights.top(runners[-1]))
     plan.eye(holder, x, y, holding_eye(sizes, below=boss))
     plan.add(holder, pivot.washer_at(f"washer_{name}_high", x, y, high - boss - pivot.washer_room))
     run(joint, runners, holder, plan, heights)
@@ -213,8 +212,9 @@ def crank_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> Non
     low, *runners, high = stack
     x, y = joint.places[low]
     top, under = heights.top(low), heights.bottom(high)
+    room = pivot.flange_room + fit.axial + pivot.washer_room
     gaps = heights.bottom(runners[0]) - top, under - heights.top(runners[-1])
-    above, below = (boss_height(gap, pivot, pivot.flange_room) for gap in gaps)
+    above, below = (boss_height(gap - room) for gap in gaps)
     plan.eye(low, x, y, holding_eye(sizes, above=above))
     plan.eye(high, x, y, holding_eye(sizes, below=below))
     run(joint, runners, low, plan, heights)
@@ -227,10 +227,9 @@ def crank_pin(joint: Pin, stack: list[str], plan: Plan, heights: Heights) -> Non
     )
 
 
-def boss_height(gap: float, pivot: Pivot, flange: float = 0.0) -> float:
-    """Return how high a boss is in a gap that leaves room for a washer and, with its ``flange``, for what turns."""
-    height = gap - flange - pivot.fit.axial - pivot.washer_room
-    return height if height > 0.05 else 0.0
+def boss_height(room: float) -> float:
+    """Return how high a boss is that fills so much room: none where it would be thinner than 0.05 rmm."""
+    return room if room > 0.05 else 0.0
 
 
 def holding_eye(sizes: Sizes, above: float = 0.0, below: float = 0.0) -> Eye:

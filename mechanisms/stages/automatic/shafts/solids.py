@@ -227,18 +227,15 @@ def _link(own: Along, link: Link, material: str, is_wished: bool) -> list[Solid]
 def _cuts(own: Along, link: Link, eyes: Sequence[tuple[float, float, Eye]]) -> tuple[Cut, ...]:
     """Return where a link is split: at crank pins, where all else of it lies on one side."""
     cuts = list[Cut]()
+    reach = max((math.hypot(a.x - b.x, a.y - b.y) for a in link.eyes for b in link.eyes), default=0.0)
     for k, on in enumerate(link.eyes):
         if on.on not in own.machine.shafts:
             continue
         x, y, eye = eyes[k]
         towards = splits_at(link, x, y)
         if towards is not None:
-            cuts.append(((x, y), towards, _reach(link) + 2 * eye.radius))
+            cuts.append(((x, y), towards, reach + 2 * eye.radius))
     return tuple(cuts)
-
-
-def _reach(link: Link) -> float:
-    return max(math.hypot(a.x - b.x, a.y - b.y) for a in link.eyes for b in link.eyes)
 
 
 def _eyes(own: Along, link: Link) -> list[tuple[float, float, Eye]]:

@@ -239,7 +239,8 @@ def _laid(line: list[Slide], layout: Layout) -> list[Slide]:
     taken: list[tuple[float, float]] = []
     beside = _rail_distance(layout)
     for host, *guests in rails:
-        low, high = _joined([_span(slide, line[0]) for slide in (host, *guests)])
+        lows, highs = zip(*(_span(slide, line[0]) for slide in (host, *guests)), strict=True)
+        low, high = min(lows), max(highs)
         if host.rail == "ground":
             for first, last in taken * len(taken):  # a longer rail may come to another one
                 if low - beside < last and first < high + beside:
@@ -279,10 +280,6 @@ def _span(slide: Slide, line: Slide) -> tuple[float, float]:
     x, y, angle = line.rail_at
     places = (np.array(slide.rail_ends()) - (x, y)) @ np.array([math.cos(angle), math.sin(angle)])
     return float(places.min()), float(places.max())
-
-
-def _joined(spans: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    return min(low for low, _ in spans), max(high for _, high in spans)
 
 
 def _with_ends(slide: Slide, line: Slide, low: float, high: float) -> Slide:

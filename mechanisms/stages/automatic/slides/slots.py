@@ -377,8 +377,9 @@ def _pin(through: list[InSlot], large: bool, depth: float | None, plan: Plan, he
         plan.add("ground", pivot.washer_at(f"washer_{first.name}", x, y, height + fit.seat))
         start = 0.5
     else:
-        rise = boss_height(min(low for low, _ in above) - heights.top(body), pivot) if above else 0.0
-        drop = boss_height(heights.bottom(body) - max(high for _, high in under), pivot) if under else 0.0
+        over = min((low for low, _ in above), default=-math.inf) - heights.top(body)
+        below = heights.bottom(body) - max((high for _, high in under), default=math.inf)
+        rise, drop = (boss_height(gap - fit.axial - pivot.washer_room) for gap in (over, below))
         plan.eye(body, x, y, holding_eye(sizes, rise, drop))
         if above:
             plan.add(body, pivot.washer_at(f"washer_{first.name}", x, y, heights.top(body) + rise + fit.seat))

@@ -21,7 +21,7 @@ import msgspec
 from mbsd.dependencies.imported import content_of, named_modules
 from mechanisms.stages.loading.inputs import WORKSHOP, name_of, path_of
 from mechanisms.stages.loading.loading import package_of
-from mechanisms.stages.parts.on_cluster.answer import Made
+from mechanisms.stages.parts.on_cluster.answer import WorkerParts
 from shared.cluster.contents import content_hash
 from shared.cluster.identity import sources_of
 from shared.cluster.preload import PARTS
@@ -46,8 +46,8 @@ def parts(files: Mapping[str, Path], common: str, name: str) -> bytes:
     """Return the parts of the mechanism ``name`` from the contents ``files``, of which ``common`` is the
     :class:`Order`.
 
-    They are :class:`Made` as MessagePack. Raises UserError where this worker, rather than the mechanism, is at fault:
-    its sources have changed since it was started, its disk is full, or the system ended the stage.
+    They are :class:`WorkerParts` as MessagePack. Raises UserError where this worker, rather than the mechanism, is at
+    fault: its sources have changed since it was started, its disk is full, or the system ended the stage.
     """
     order = msgspec.json.decode(files[common].read_bytes(), type=Order)
     place = out_root() / ".cluster" / "parts"
@@ -101,7 +101,7 @@ def _write_file(tree: Path, path: str, content: bytes, own: Path | None = None) 
     write_bytes(target, content)
 
 
-def _stage(tree: Path, order: Order) -> Made:
+def _stage(tree: Path, order: Order) -> WorkerParts:
     name, results = order.name, tree / RESULTS
     changed = {
         "PYTHONPATH": str(tree),
@@ -124,13 +124,13 @@ def _stage(tree: Path, order: Order) -> Made:
         said = lines[-1].removeprefix("error: ")
         if ran.returncode != 1 or shutil.disk_usage(tree).free < LEAST or "memory ran out" in said:
             raise UserError(f"{name}: its parts could not be made here: {said} (exit code {ran.returncode})")
-        return Made(refusal=said)
+        return WorkerParts(refusal=said)
     scaled = scale_of(order.scale)
     folder = results / name / (scaled.slug if scaled else "")
     stamp = msgspec.json.decode((folder / ".stamps" / "parts.json").read_bytes())
     solids = {Path(output).name: (folder / output).read_bytes() for output in stamp["outputs"]}
     document = solids.pop("parts.json")
-    return Made(document, solids, stamp["notes"])
+    return WorkerParts(document, solids, stamp["notes"])
 
 
 def _remove_leftovers(place: Path) -> None:

@@ -45,7 +45,7 @@ def pendulum() -> Mechanism:
     return m
 
 
-def made(m: Mechanism, solution: Solution, kind: Kind | None = None, pin: float | None = PIN) -> Bodies:
+def stood(m: Mechanism, solution: Solution, kind: Kind | None = None, pin: float | None = PIN) -> Bodies:
     with wishing(kind):
         return Automatic(m, solution, pin).solids(engraved_too=False).on_stand()
 
@@ -73,7 +73,7 @@ def heights(bodies: Bodies, solution: Solution, up: tuple[float, float]) -> floa
 def standing() -> tuple[Mechanism, Solution, Bodies]:
     m = crank_rocker()
     solution = m.sweep(steps=STEPS)
-    return m, solution, made(m, solution)
+    return m, solution, stood(m, solution)
 
 
 def test_the_foot_is_below_all_that_moves_and_no_lower_than_it_needs(
@@ -126,14 +126,14 @@ def tipping(bodies: Bodies, solution: Solution, up: tuple[float, float]) -> floa
 @pytest.mark.parametrize("m", [crank_rocker(), pendulum(), engine(V_TWO)], ids=lambda m: m.name)
 def test_no_stand_tips_before_ten_degrees(m: Mechanism) -> None:
     solution = m.sweep(duration=1.0, steps=STEPS)
-    assert tipping(made(m, solution, pin=None), solution, (0.0, 1.0)) > math.radians(9.9)
+    assert tipping(stood(m, solution, pin=None), solution, (0.0, 1.0)) > math.radians(9.9)
 
 
 @pytest.mark.parametrize("turn", [0.4, math.pi / 2, 2.5])
 def test_in_a_turned_world_it_is_the_same_stand(standing: tuple[Mechanism, Solution, Bodies], turn: float) -> None:
     _, _, plain = standing
     m = crank_rocker(turn)
-    bodies = made(m, m.sweep(steps=STEPS))
+    bodies = stood(m, m.sweep(steps=STEPS))
     assert bodies.mount is not None
     assert bodies.mount[1] == pytest.approx((-math.sin(turn), math.cos(turn), 0.0))
     for name in ("stand_column", "stand_foot", "base_plate"):
@@ -146,7 +146,7 @@ def test_in_a_turned_world_it_is_the_same_stand(standing: tuple[Mechanism, Solut
 @pytest.mark.parametrize("kind", ["desk", "wall"])
 def test_what_moves_weighs_the_same_however_it_stands(standing: tuple[Mechanism, Solution, Bodies], kind: Kind) -> None:
     m, solution, bodies = standing
-    other = made(m, solution, kind)
+    other = stood(m, solution, kind)
     assert other.mount is not None
     assert other.mount[0] == kind
     names = {solid.name for solid in other["ground"]}
@@ -183,7 +183,7 @@ def vehicle(gravity: float = -9.81) -> Mechanism:
 
 def test_a_wheel_on_its_road_stands_on_the_ground_without_a_plate() -> None:
     m = vehicle()
-    bodies = made(m, m.sweep(duration=1.0, steps=STEPS))
+    bodies = stood(m, m.sweep(duration=1.0, steps=STEPS))
     assert bodies.mount == ("ground", (0.0, 1.0, 0.0))
     names = {solid.name for solid in bodies["ground"]}
     assert "ground_slab" in names

@@ -60,7 +60,7 @@ def _newton() -> None:
 
     from mbsd import Mechanism, constant_rate
     from mbsd.kinematics.march import march_along
-    from mbsd.kinematics.prepare import prepare
+    from mbsd.kinematics.prepared import prepare
 
     m = Mechanism("slide")
     slider = m.body("slider")

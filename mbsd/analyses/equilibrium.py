@@ -15,14 +15,14 @@ import numpy as np
 
 from mbsd.analyses.balance import FLAT, NoneFound, descend, look, newton
 from mbsd.analyses.statics import STEP, Independent, Statics, independent_coordinates, pose_step, statics
-from mbsd.arrays.driver_laws import refuse_bad_laws
+from mbsd.arrays.laws import refuse_bad_laws
 from mbsd.arrays.packing import pack
 from mbsd.arrays.reactions import wrenches
-from mbsd.arrays.start_state import held, started_at
+from mbsd.arrays.starts import held, started_at
 from mbsd.base.errors import ModelError, SingularPoseError
 from mbsd.base.names import Suggesting
 from mbsd.equations.assembly import tabulate
-from mbsd.kinematics.limits.closed_contacts import refuse_resting
+from mbsd.kinematics.limits.contacts import refuse_resting
 from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.pose.mobility import joint_mobility
 from mbsd.model.mechanism import Model

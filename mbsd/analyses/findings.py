@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsd.arrays.force_phases import relative_poses
 from mbsd.arrays.packing import Packed, pack
+from mbsd.arrays.starts import relative_poses
 from mbsd.base.errors import MechanismError
 from mbsd.base.names import Suggesting
 from mbsd.dynamics.prepare.large import mobility

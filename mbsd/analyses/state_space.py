@@ -31,7 +31,7 @@ from mbsd.dynamics.formulation import derivative
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from mbsd.dynamics.prepare.prepared import PreparedDynamics
 from mbsd.dynamics.reference.arrays import scratch_for
-from mbsd.kinematics.limits.closed_contacts import refuse_closed
+from mbsd.kinematics.limits.contacts import refuse_closed
 from mbsd.model.mechanism import Model
 from mbsd.results.friction import friction_view
 

@@ -24,8 +24,7 @@ import numpy as np
 
 from mbsd.arrays.inertias import coupled, weight_of
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import loads_along, pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.reactions import generalised
 from mbsd.base.names import Suggesting

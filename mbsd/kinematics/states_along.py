@@ -11,8 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from mbsd.arrays.law_jumps import jump_times
-from mbsd.arrays.laws import compiled_laws, law_values
+from mbsd.arrays.laws import compiled_laws, jump_times, law_values
 from mbsd.arrays.loads import pack_loads
 from mbsd.arrays.packing import Packed
 from mbsd.arrays.states import columns_of, ones_of, with_states
@@ -46,7 +45,7 @@ def states_along(packed: Packed, t: np.ndarray, q: np.ndarray, v: np.ndarray, a:
 
 
 def _start(packed: Packed, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(n,) SI."""
+    """Return (n,) SI."""
     out: list[float] = []
     for force, (i, j) in zip(packed.forces, packed.force_markers, strict=True):
         if force.kind.states is not None:
@@ -60,7 +59,7 @@ def _start(packed: Packed, laws: Laws, t: np.ndarray, q: np.ndarray, v: np.ndarr
 
 
 def _stretches(packed: Packed, laws: Laws, t: np.ndarray) -> list[tuple[float, float]]:
-    """From jump to jump of the laws (s)."""
+    """Return from jump to jump of the laws (s)."""
     start, end = float(t[0]), float(t[-1])
     if not end > start:
         return []

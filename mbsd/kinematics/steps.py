@@ -51,7 +51,7 @@ def divisions(packed: Packed, times: np.ndarray) -> int:
 
 
 def _strides_taken(times: np.ndarray, drives: np.ndarray, stride: np.ndarray) -> np.ndarray:
-    """(T - 1,) strides that the furthest law goes in each step, by its values or by its rates."""
+    """Return (T - 1,) strides that the furthest law goes in each step, by its values or by its rates."""
     value, rate = drives[:, 1:, 0], np.abs(drives[:, 1:, 1])
     by_rate = np.diff(times)[:, None] * np.maximum(rate[1:], rate[:-1])
     return (np.maximum(np.abs(np.diff(value, axis=0)), by_rate) / stride[1:]).max(axis=1, initial=0.0)
@@ -133,7 +133,7 @@ class Steps:
         return at
 
     def _without_end(self, index: int) -> str:
-        """Why a sweep is given up whose steps are divided over and over; the one in hand ends at ``index``."""
+        """Return the error text of a sweep whose steps are divided without end; the last ends at ``index``."""
         packed, start, end = self.packed, self.times[index - 1], self.times[index]
         way = np.abs(np.diff(self.drives[index - 1 : index + 1, 1:, 0], axis=0))[0] / self.stride[1:]
         k = int(np.argmax(way))

@@ -179,7 +179,7 @@ class ForceKind(ByName):
     """(T,) potential energy (J) of its interactions along poses (T, 3 nb), if it follows from these alone."""
     surface: Callable[[Force], list[float]] | None = None
     """Numbers of the surface of marker i that a disc about marker j, of its ``radius``, touches, as
-    mbsd/equations/interactions/surface.py reads them."""
+    mbsd/equations/interactions/law.py reads them."""
     depth_potential: Callable[[Force, np.ndarray], np.ndarray] | None = None
     """(T,) potential energy (J) of such a contact at depths (T,) of the disc in the surface (m)."""
     journal: Callable[[Force], tuple[float, float]] | None = None

@@ -44,7 +44,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 @dataclass(frozen=True)
 class Special:
-    """A constraint F(x, y, a) of the relative pose, one row; see mbsd/equations/constraints/relative.py."""
+    """A constraint F(x, y, a) of the relative pose, one row; see mbsd/equations/relative/equation.py."""
 
     equation: str
     """File in mbsd/equations/relative."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from mbsd.base.arguments import number_array
 from mbsd.base.errors import ModelError
-from mbsd.base.kept import Kept
+from mbsd.base.running import Kept
 from mbsd.model.laws.curve import Curve
 
 FINE, MOST_CHORDS = 4, 4000

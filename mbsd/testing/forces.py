@@ -11,8 +11,7 @@ import numpy as np
 
 from mbsd.arrays.friction_along import normals_along
 from mbsd.arrays.laws import compiled_laws
-from mbsd.arrays.loads import pack_loads
-from mbsd.arrays.loads_along import loads_along
+from mbsd.arrays.loads import loads_along, pack_loads
 from mbsd.arrays.packing import Packed, pack
 from mbsd.arrays.states import ones_of, widened, with_states
 from mbsd.base.codes import POTENTIAL_TERMS, PUSH

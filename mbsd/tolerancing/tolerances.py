@@ -17,9 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from mbsd.base.arguments import checked, finite_number, whole_number
+from mbsd.base.arguments import checked, finite_number, users_progress, whole_number
 from mbsd.base.errors import ModelError
-from mbsd.base.users_function import users_progress
 from mbsd.model.mechanism import Model
 from mbsd.model.output_times import refuse_beyond_memory
 from mbsd.tolerancing.dimensions.dimension import Dimension

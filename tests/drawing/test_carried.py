@@ -16,7 +16,8 @@ from mbsd.drawing.carriers import Frames
 from mbsd.drawing.pose import tracks_of
 from mbsd.drawing.view.carried import Moving, drawn_at, moving
 from mbsd.drawing.view.curves import resampled
-from tools.models import guided, linkages, random_linkages
+from tools.models import guided, linkages
+from tools.random_mechanisms import linkages as random_linkages
 
 SLACK = 0.02
 """How far two curves may be apart that count as one, in units of the symbols."""

@@ -15,7 +15,7 @@ from mbsd.dynamics.runs.embedding import embedded_at_start
 from mbsd.kinematics.groups.blocks import BLOCK
 from mbsd.kinematics.groups.groups import KIND
 from tests.dynamics.test_embedding import agree, both
-from tools.models.random_machines import RandomMachine
+from tools.random_mechanisms.shafts import RandomMachine
 
 PARTS = sorted(RandomMachine.KINDS)
 

@@ -10,8 +10,8 @@ import pytest
 
 from mbsd import Mechanism, polynomial
 from mbsd.results.solution import Solution
-from tools.models.random_rough import five_bar_with_stops, level_chain, shaken_box, striker
 from tools.models.rough import pusher
+from tools.random_mechanisms.rough import five_bar_with_stops, level_chain, shaken_box, striker
 
 WEIGHT, STATIC, KINETIC = 10.0, (0.5, 0.7), 0.3
 HALF, BELOW = 0.1, 0.05

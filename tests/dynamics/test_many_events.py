@@ -20,8 +20,7 @@ from mbsd.dynamics.simulate import request_for
 from mbsd.measures import final, first, largest, samples, smallest
 from tests.dynamics.many_models import air
 from tools.models.guided import free_geneva, loose_gears
-from tools.models.releases import sling
-from tools.models.repeated_joints import cranks
+from tools.models.releases import cranks, sling
 from tools.models.rough_contacts import ball as rough_ball
 from tools.models.rough_contacts import belt, rod
 from tools.models.sticking import (

@@ -11,12 +11,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from mbsd import AssemblyError, Marker, Mechanism, MechanismError, constant_rate, function
-from mbsd.kinematics.groups.carrying.columns import SIGN
+from mbsd.kinematics.groups.carried import SIGN
 from mbsd.kinematics.groups.groups import FIRST, K1, K2, NUMBERS
-from mbsd.kinematics.groups.registry import KINDS, NAMES
+from mbsd.kinematics.groups.tables import KINDS, NAMES
 from mbsd.kinematics.march import march_along
-from mbsd.kinematics.prepare import prepare
-from mbsd.kinematics.prepared import Prepared
+from mbsd.kinematics.prepared import Prepared, prepare
 from tools.models.assur_models import MODELS, crank, four_bar
 
 
@@ -210,7 +209,7 @@ def test_three_bodies_that_only_together_are_rigid_are_solved_by_newton() -> Non
 @pytest.mark.parametrize("name", ["driven carried", "yoke", "driven slide", "rod driven"])
 def test_a_law_that_jumps_is_refused_by_both_routes(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The check of laws before the march is left out: it finds this jump first."""
-    monkeypatch.setattr("mbsd.kinematics.prepare.refuse_bad_laws", lambda *_: None)
+    monkeypatch.setattr("mbsd.kinematics.prepared.refuse_bad_laws", lambda *_: None)
     m = MODELS[name]()
     driver = next(iter(m.drivers.values()))
     law = driver.motion

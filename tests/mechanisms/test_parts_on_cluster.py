@@ -33,12 +33,13 @@ from mechanisms.stages.parts.on_cluster.built import Order, by_content, collecte
 from mechanisms.stages.parts.on_cluster.solids_check import refuse_wrong
 from mechanisms.stages.parts_files import binary_stl, read_triangles
 from shared.cluster import preload
-from shared.cluster.contents import content_hash
-from shared.cluster.identity import identity
+from shared.cluster.deal import content_hash
+from shared.cluster.preload import identity
 from shared.contract import Parts, Provenance
 from shared.shapes.solid import Solid
-from shared.stage import jsonfile, locks, paths
+from shared.stage import jsonfile, paths
 from shared.stage.errors import UserError
+from shared.stage.files import is_abandoned
 from shared.stage.paths import ROOT
 from tests.mechanisms.author_project import Project, put
 from tests.mechanisms.test_inputs_of_parts import MECHANISM, PARTS
@@ -113,7 +114,7 @@ def test_a_killed_worker_loses_no_parts_and_changes_none(
     assert files(out_root / "arm") == far
     assert len(far) == 6
     left = list((tmp_path / "workers" / ".cluster" / "parts").iterdir())
-    assert all(locks.is_abandoned(path / built.LOCK) for path in left)
+    assert all(is_abandoned(path / built.LOCK) for path in left)
     assert len(left) <= 1
 
 

@@ -17,8 +17,7 @@ from pathlib import Path
 import pytest
 
 import mbsd
-from shared.cluster.identity import sources_of
-from shared.cluster.preload import PARTS
+from shared.cluster.preload import PARTS, sources_of
 from shared.stage.paths import ROOT
 from tools.wheel.archives import build, build_with_kernels
 
@@ -250,8 +249,8 @@ def test_without_its_kernels_the_wheel_compiles_into_the_users_folder(tmp_path: 
     (tmp_path / "shipped" / "made_for.json").write_text('{"numba": "0.1"}')
     code = (
         "import sys; from pathlib import Path; sys.path.insert(0, '.')\n"
-        "from mbsd.compiling import kernel_cache, shipped_kernels\n"
-        "kernel_cache.SHIPPED = Path('shipped'); shipped_kernels.MADE_FOR = Path('shipped/made_for.json')\n"
+        "from mbsd.compiling import kernel_cache, kernel_files\n"
+        "kernel_cache.SHIPPED = Path('shipped'); kernel_files.MADE_FOR = Path('shipped/made_for.json')\n"
         "import kernels; print(kernels.value(1.0), sum(kernels.value.stats.cache_hits.values()))"
     )
     kept = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(tmp_path / "kept"), "PYTHONDONTWRITEBYTECODE": "1"}
@@ -317,7 +316,7 @@ from pathlib import Path
 import mbsd
 sys.path.insert(0, str(Path(mbsd.__file__).parent / "rooms"))
 from mechanisms.stages.parts.on_cluster.built import copy_program
-from shared.cluster.identity import sources_of
+from shared.cluster.preload import sources_of
 from shared.cluster.preload import PARTS
 copy_program(Path("tree"))
 assert all(sources_of(room) == sources_of(room, Path("tree").resolve()) for room in PARTS)

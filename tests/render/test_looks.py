@@ -16,7 +16,7 @@ from render.blender.worker.picture import drawn
 from render.looks import LOOKS, Family, chosen
 from render.presets import PRESETS
 from render.view.solid import looks_of
-from shared.contract.mount import Kind, mounted
+from shared.contract.parts import Kind, mounted
 from shared.contract.shot import LookName
 from shared.stage.paths import ROOT, mechanism_names
 

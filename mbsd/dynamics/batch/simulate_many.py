@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mbsd.base.arguments import whole_number
+from mbsd.base.arguments import described, refuse_other_arguments, users_progress, whole_number
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import Suggesting, no_such, shown
 from mbsd.base.running import cores
-from mbsd.base.users_function import described, refuse_other_arguments, users_progress
 from mbsd.base.warning import quiet
 from mbsd.dynamics.batch.designs import Designs
 from mbsd.dynamics.batch.loop import Measures, Work, all_outputs, plan_of

@@ -16,15 +16,14 @@ from itertools import islice
 import numpy as np
 
 from mbsd.arrays.packing import Packed
-from mbsd.kinematics.groups.block_tables import Tables, fixed_bodies, hanging, tables_of
 from mbsd.kinematics.groups.blocks import BLOCK
-from mbsd.kinematics.groups.groups import SLIDE
+from mbsd.kinematics.groups.groups import SLIDE, Link
 from mbsd.kinematics.groups.kinds.slide import ANGLE, G_X, S1_X, SA_X
 from mbsd.kinematics.groups.kinds.train import train
-from mbsd.kinematics.groups.links import Link
+from mbsd.kinematics.groups.parts import Tables, fixed_bodies, hanging, tables_of
 from mbsd.kinematics.groups.plan import Plan, link_kind, links_of_joints
 from mbsd.kinematics.groups.trains import Trains
-from mbsd.kinematics.sample_jacobians import sample_jacobians
+from mbsd.kinematics.prepared import sample_jacobians
 
 MOST = 6
 """More coordinates than this are solved faster by multipliers."""

@@ -52,7 +52,7 @@ CONTACT_OWN = ("radius", "stiffness", "exponent", "damping", "friction", "slip_s
 
 
 def surface(force: Force) -> list[float]:
-    """Numbers of the surface, as mbsd/equations/interactions/surface.py reads them."""
+    """Numbers of the surface, as mbsd/equations/interactions/law.py reads them."""
     profile = force.laws.get("profile")
     if not isinstance(profile, Curve):
         return [0.0] * 13  # a curve of no pieces

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mbsd.base.arguments import finite_number
+from mbsd.base.arguments import finite_number, value_at
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
 from mbsd.base.pickled import WithFunctions
-from mbsd.base.users_function import value_at
 from mbsd.model.laws.law import Motion, Times
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import pytest
 from mbsd import ModelError, four_stroke
 from mbsd.machines.engines.bank_angles import FAMILIES, bank_angles, gas_torque
 from mbsd.machines.engines.engine import engine
-from tools.documents.engines.bank_angles import ANGLES, LAYOUTS, layout_table
+from tools.documents.bank_angles import ANGLES, LAYOUTS, layout_table
 from tools.documents.pages import between
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs/engines.md").read_text()

@@ -10,8 +10,8 @@ import pandas as pd
 import pytest
 
 from mbsd import study
-from tools.documents.engines.run_up import BEGIN, DAMPING_RATIO, END, GRID, RATES, build, measure, picture, table
 from tools.documents.pages import between, replaced
+from tools.documents.run_up import BEGIN, DAMPING_RATIO, END, GRID, RATES, build, measure, picture, table
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs/engines.md").read_text()
 

@@ -33,9 +33,8 @@ from mechanisms.stages.solve.masses import bare_solution
 from mechanisms.stages.solve.solving import CLOSE, swept_closely
 from shared.contract import read_parts
 from shared.contract.shot import Shot, read_shot
-from shared.shapes.fit import Fit
 from shared.shapes.solid import Solid
-from shared.shapes.standards import CIRCLIPS, SHIM_OUTER, screw_length, screw_name
+from shared.shapes.standards import CIRCLIPS, SHIM_OUTER, Fit, screw_length, screw_name
 from shared.stage.errors import UserError
 from shared.stage.paths import ROOT, Out
 from tests.mechanisms.author_project import Project

@@ -24,8 +24,8 @@ from mechanisms.stages.parts_files import read_mesh, stl_bytes
 from mechanisms.stages.solve.motion_file import to_motion
 from shared.shapes.bodies import Bodies
 from shared.shapes.facets import volume_of
-from shared.shapes.fit import Fit
 from shared.shapes.link import Eye
+from shared.shapes.standards import Fit
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from shared.stage.scale import Scale, scale_of

@@ -20,7 +20,7 @@ from mechanisms.stages.automatic.rolling.roads import Road, along, with_shared_r
 from mechanisms.stages.automatic.rolling.rounds import Round
 from mechanisms.stages.automatic.rolling.tracks import Track, circle, turns_left
 from mechanisms.stages.automatic.rolling.tracks import closed_normals as normals
-from shared.shapes.polyline import distances
+from shared.shapes.outline import distances
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
 from tests.shared.shape_checks import checked

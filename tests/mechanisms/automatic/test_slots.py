@@ -19,9 +19,8 @@ from mechanisms.stages.automatic.rolling.roads import Road, along, banded, with_
 from mechanisms.stages.automatic.rolling.rounds import Round
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
 from mechanisms.stages.automatic.slides.slots import Slot
-from shared.shapes.band import band, loop, sharpest
 from shared.shapes.build import extruded
-from shared.shapes.polyline import distances
+from shared.shapes.outline import band, distances, loop, sharpest
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
 from tools.hunt_parts.case import parts_of

@@ -16,7 +16,7 @@ from mechanisms.stages.automatic.pins.free_bodies import BASE, TIP, WALL, FreeBo
 from mechanisms.stages.automatic.pins.springs import Stretching, Stud
 from mechanisms.stages.parts.meshes import mass_of
 from shared.contract.materials import MATERIALS
-from shared.shapes.stud import Collar, ball_stud
+from shared.shapes.screw import Collar, ball_stud
 from tests.mechanisms.automatic.layouts import meets
 from tools.hunt_parts.case import parts_of
 from tools.hunt_parts.outcome import BUILT

@@ -22,8 +22,8 @@ from mechanisms.stages.clearance.search import Sweep
 from mechanisms.stages.clearance.turn import RESOLUTION, _bounds, _box_gap, turn_gap
 from mechanisms.stages.parts_files import TOLERANCE, read_triangles, stl_bytes
 from shared.contract import Motion
-from shared.shapes.fit import Fit
 from shared.shapes.pin import pin
+from shared.shapes.standards import Fit
 from shared.stage.errors import UserError
 from tests.mechanisms.clearance.clearance_pieces import box, checked, disc, four_bar_pieces, lifted, parts_of, prism
 from tests.mechanisms.clearance.test_clearance_between import cam_motion, motion_of

@@ -29,7 +29,7 @@ from render.magnitudes import crank_of
 from render.plots.pages.spectra import spectrum
 from render.plots.quantities import quantity
 from shared.contract import Motion, mounted
-from shared.contract.belt_path import BeltPath
+from shared.contract.geometry import BeltPath
 from shared.contract.shot import Shot
 from shared.stage.paths import mechanism_names
 from tests.drawing.test_carried import check

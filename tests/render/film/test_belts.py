@@ -17,7 +17,7 @@ from mechanisms.stages.solve.motion_file import to_motion
 from render.film.poses import Moment, Poses
 from render.film.tubes.belts import Belt, belts
 from shared.contract import Held
-from shared.contract.belt_path import BeltPath
+from shared.contract.geometry import BeltPath
 from shared.stage.errors import UserError
 from tests.shared.shape_checks import checked
 from tools.models.outlines import inside

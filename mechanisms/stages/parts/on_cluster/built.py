@@ -22,10 +22,9 @@ from mbsd.dependencies.imported import content_of, named_modules
 from mechanisms.stages.loading.inputs import WORKSHOP, name_of, path_of
 from mechanisms.stages.loading.loading import package_of
 from mechanisms.stages.parts.on_cluster.answer import WorkerParts
-from shared.cluster.contents import content_hash
-from shared.cluster.identity import sources_of
-from shared.cluster.preload import PARTS
-from shared.stage import lineage, locks, paths
+from shared.cluster.deal import content_hash
+from shared.cluster.preload import PARTS, sources_of
+from shared.stage import files, paths, signals
 from shared.stage.errors import UserError
 from shared.stage.files import write_bytes
 from shared.stage.paths import ROOT, SOLVER, out_root
@@ -70,7 +69,7 @@ def _scratch(place: Path) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="made-", dir=place, ignore_cleanup_errors=True) as folder:
         new = Path(folder) / "new"
         with new.open("wb") as lock:
-            locks.try_lock(lock.fileno())
+            files.try_lock(lock.fileno())
             new.rename(Path(folder) / LOCK)
             yield Path(folder) / "tree"
 
@@ -109,7 +108,7 @@ def _stage(tree: Path, order: Order) -> WorkerParts:
         "NUMBA_CACHE_DIR": os.environ.get("NUMBA_CACHE_DIR") or str(SOLVER / "__pycache__"),
         "CLUSTER": "",
         paths.WORKSHOP: str(own_folder(tree, order.folder) or ""),
-        lineage.VARIABLE: str(os.getpid()),
+        signals.VARIABLE: str(os.getpid()),
     }
     scale = ["--scale", order.scale] if order.scale else []
     command = [sys.executable, "-m", "mechanisms", "parts", name, *scale]
@@ -139,7 +138,7 @@ def _remove_leftovers(place: Path) -> None:
         with suppress(OSError):
             lock = left / LOCK
             old = time.time() - left.stat().st_mtime > BEGUN
-            if locks.is_abandoned(lock) if lock.exists() else old:
+            if files.is_abandoned(lock) if lock.exists() else old:
                 shutil.rmtree(left, ignore_errors=True)
 
 

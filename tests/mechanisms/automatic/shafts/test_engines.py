@@ -27,7 +27,7 @@ from shared.shapes.solid import Solid
 from shared.shapes.units import mm
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.shafts.proofs import box, plan, proven
-from tools.models.machines_along import INLINE_TWO, THROW, engine
+from tools.models.shaft_machines import INLINE_TWO, THROW, engine
 
 # Engines by hand: a shaft, pistons in liners, each at its place, and nothing touches.
 
@@ -327,7 +327,7 @@ def test_knuckle_pins_that_are_too_near_are_refused() -> None:
 
 def test_rods_on_rods_in_planes_of_their_own_keep_their_axles() -> None:
     """A rocker on a leg beside it, as before."""
-    from tools.models.machines_along import legs
+    from tools.models.shaft_machines import legs
 
     own = along_of_knuckles(legs())
     assert len(own.axles) == 4, "three knees, and one axle for all hips"

@@ -18,9 +18,8 @@ from mechanisms.stages.automatic.automatic import Automatic
 from mechanisms.stages.automatic.shafts.along import Along
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.shafts.proofs import checked, proven
-from tools.models import machines_along, shaft_machines
-from tools.models import machines_along as models
-from tools.models.machines_along import SINGLE, engine, legs, press
+from tools.models import shaft_machines
+from tools.models.shaft_machines import SINGLE, engine, legs, press
 
 # Links that the model gives no place get one by the search for layers, those with one keep it.
 
@@ -248,7 +247,7 @@ def test_engines_with_several_valves_pass(layout: str, shafts: int) -> None:
 
 def test_a_follower_over_no_cylinder_is_told() -> None:
     lift = Lift.of((2.0, 0.004, "cycloidal"), (2.0, 0.0, "cycloidal"), (2 * math.pi - 4.0, 0.0))
-    m = models.engine(models.SINGLE)
+    m = shaft_machines.engine(shaft_machines.SINGLE)
     cam, pushed = m.body("cam"), m.body("pushed", z=0.02)
     m.revolute("axis", m.ground.at(0.3, 0), cam.origin)
     m.prismatic("guide", m.ground.at(0.3, 0, math.pi / 2, z=0.02), pushed.origin)
@@ -308,7 +307,7 @@ def test_gears_of_a_train_stand_tooth_in_space() -> None:
 )
 @pytest.mark.slow
 def test_machines_with_a_shaft_are_built_and_nothing_touches(name: str, moved: set[str]) -> None:
-    _, bodies = checked(getattr(models, name)())
+    _, bodies = checked(getattr(shaft_machines, name)())
     assert moved < set(bodies)
     assert all(solids and solids[0].name == body for body, solids in bodies.items() if body != "ground")
 
@@ -351,7 +350,7 @@ def test_a_wheel_among_the_throws_is_told() -> None:
 
 
 def test_a_wheel_that_is_too_small_for_its_shaft_is_told() -> None:
-    m = machines_along.engine(machines_along.SINGLE)
+    m = shaft_machines.engine(shaft_machines.SINGLE)
     beside = m.body("beside")
     m.revolute("axis", m.ground.at(0.2, 0), beside.origin)
     m.belt("belt", m.bodies["crank"].at(0, 0, z=0.12), beside.at(0, 0, z=0.12), radius_i=0.01, radius_j=0.02)

@@ -34,7 +34,7 @@ from mbsd.kinematics.pose.close import assemble
 from mbsd.kinematics.prepared import Prepared
 from mbsd.kinematics.steps import divisions
 from mbsd.model.mechanism import Model
-from mbsd.model.output_times import refuse_beyond_memory
+from mbsd.model.output_times import check_memory
 
 CHUNK = 64
 """Designs that a thread takes at once."""
@@ -122,7 +122,7 @@ class DesignSweeps:
         """Sweep designs whose numbers differ from the mechanism's own by ``values`` (n, moved) (m)."""
         m, grid, traces = self.m, self.grid, len(self.bodies)
         count, turned = len(values), len(self.turned)
-        refuse_beyond_memory(
+        check_memory(
             f"{m.name}: {count} designs at {len(grid)} times",
             count * (len(grid) * (2 * traces + turned) + self.groups.number.size),
             "Take fewer designs or steps at once",

@@ -12,9 +12,9 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from mbsd.base.arguments import described
 from mbsd.base.errors import ModelError
 from mbsd.base.names import shown
-from mbsd.base.users_function import described
 from mbsd.dependencies.inputs import Inputs
 from mbsd.dependencies.installed import is_installed
 from mbsd.dependencies.recorder import Recorder

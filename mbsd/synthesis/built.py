@@ -6,9 +6,9 @@ import inspect
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from mbsd.base.arguments import described, named_parameters
 from mbsd.base.errors import MechanismError, ModelError
 from mbsd.base.names import shown
-from mbsd.base.users_function import described, named_parameters
 from mbsd.model.mechanism import Model
 
 

@@ -17,8 +17,7 @@ from mbsd.base.errors import MechanismError
 from mbsd.kinematics.batch import parameters
 from mbsd.kinematics.design_sweeps import DesignSweeps, Moved, in_closed_form
 from mbsd.kinematics.march import kinematics_at
-from mbsd.kinematics.prepare import prepare
-from mbsd.kinematics.prepared import Prepared
+from mbsd.kinematics.prepared import Prepared, prepare
 from mbsd.model.mechanism import Model
 from mbsd.numbers.names import Number, changed
 from mbsd.synthesis.built import built

@@ -11,7 +11,7 @@ import pytest
 from mbsd import Mechanism, SingularPoseError, constant_rate, cycloidal, function, harmonic, table
 from mbsd.base.errors import BranchError, LimitError, MechanismError, ModelError
 from mbsd.kinematics.march import March, march_along
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import prepare
 from tools.models.guided import geneva
 from tools.random_mechanisms.linkages import driven_linkage
 

@@ -14,8 +14,7 @@ import mbsd.kinematics.groups.parts
 from mbsd import Mechanism, MechanismError, constant_rate
 from mbsd.kinematics.groups.plan import describe
 from mbsd.kinematics.march import march_along
-from mbsd.kinematics.prepare import prepare
-from mbsd.kinematics.prepared import Prepared
+from mbsd.kinematics.prepared import Prepared, prepare
 from tools.models.assur_models import crank
 from tools.random_mechanisms.shafts import RandomMachine
 

@@ -9,7 +9,7 @@ import pytest
 
 from mbsd import Mechanism, SingularPoseError, four_stroke
 from mbsd.kinematics import multipliers
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import prepare
 from mbsd.machines.engines.engine import engine
 from tools.models import linkages
 from tools.models.shaft_machines import loom

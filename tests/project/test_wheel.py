@@ -223,8 +223,8 @@ def test_without_its_kernels_the_wheel_compiles_into_the_users_folder(tmp_path: 
     (tmp_path / "shipped" / "made_for.json").write_text('{"numba": "0.1"}')
     code = (
         "import sys; from pathlib import Path; sys.path.insert(0, '.')\n"
-        "from mbsd.compiling import kernel_cache, shipped_kernels\n"
-        "kernel_cache.SHIPPED = Path('shipped'); shipped_kernels.MADE_FOR = Path('shipped/made_for.json')\n"
+        "from mbsd.compiling import kernel_cache, kernel_files\n"
+        "kernel_cache.SHIPPED = Path('shipped'); kernel_files.MADE_FOR = Path('shipped/made_for.json')\n"
         "import kernels; print(kernels.value(1.0), sum(kernels.value.stats.cache_hits.values()))"
     )
     kept = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(tmp_path / "kept"), "PYTHONDONTWRITEBYTECODE": "1"}

@@ -9,7 +9,7 @@ import zlib
 
 import numpy as np
 
-from mbsd.arrays.start_state import started_at
+from mbsd.arrays.starts import started_at
 from mbsd.dynamics.prepare.prepare import prepare_dynamics
 from tools.hunt.agreement import Growth
 from tools.hunt.checks import closed, driven_problems, finite

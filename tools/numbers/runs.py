@@ -20,7 +20,7 @@ from benchmarks.dynamics.cases import case
 from mbsd import Mechanism, constant_rate, harmonic
 from mbsd.dynamics.integrators.kind import INTEGRATORS
 from mbsd.kinematics.march import kinematics_at
-from mbsd.kinematics.prepare import prepare
+from mbsd.kinematics.prepared import prepare
 from mbsd.model.force import FORCE_KINDS
 from mbsd.model.joint import CONTACT_KINDS, KINDS
 from tools.documents.integrators import four_bar, pendulum

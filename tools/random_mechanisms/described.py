@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from mbsd import Mechanism, Solution
-from mbsd.arrays.start_state import started_at
+from mbsd.arrays.starts import started_at
 from mbsd.model.body import Body, Marker
 from mbsd.model.force import Force
 from mbsd.model.joint import Joint

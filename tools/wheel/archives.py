@@ -83,7 +83,7 @@ def _settle(sdist: Path) -> None:
 
 def _described(python: Path, sources: Path) -> str:
     """Return what code compiled by this Python depends on, as JSON."""
-    code = "import json; from mbsd.compiling.shipped_kernels import here; print(json.dumps(here(), indent=1))"
+    code = "import json; from mbsd.compiling.kernel_files import here; print(json.dumps(here(), indent=1))"
     environment = os.environ | {"PYTHONPATH": str(sources)}
     return subprocess.run([str(python), "-c", code], env=environment, check=True, capture_output=True, text=True).stdout
 

@@ -87,7 +87,7 @@ def _warn_of_time(name: str, time: float, first: float, last: float) -> None:
 
 
 def _csv(wanted: Wanted) -> Written:
-    from mbsd.base.csv_text import frame_csv
+    from mbsd.base.files import frame_csv
 
     return frame_csv(wanted.solution.to_frame()).encode(), []
 

@@ -1,6 +1,7 @@
 """Rigid contacts, stops and limits in analyses without contact forces: sweeps, statics and others.
 
-Only a simulation knows the forces of contacts. Elsewhere a motion or pose that needs them is refused here, by name.
+Only a simulation knows the forces of contacts. Elsewhere a motion or pose that needs them ends in an error that names
+the contact. Gaps are residuals of rows of J that a second packing has for contacts and for limits of joints.
 """
 
 from __future__ import annotations
@@ -10,12 +11,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mbsd.arrays.packing import Packed, pack
 from mbsd.base.errors import EquilibriumError, LimitError, ModelError
+from mbsd.kinematics.limits.joints import coordinate, limits_of
+from mbsd.kinematics.pose.phases import take_decided
+from mbsd.model.contacts import ANGLE_STOP, COORDINATE_STOP
+from mbsd.model.joint import Joint
+from mbsd.model.mechanism import Model
 
 if TYPE_CHECKING:
     from mbsd.arrays.packing import Packed
     from mbsd.model.mechanism import Model
     from mbsd.results.solution import Solution
+
 
 INSIDE = 1e-9
 """In sizes and rad: bodies that are so far inside each other still only touch."""
@@ -37,7 +45,7 @@ def gaps(m: Model, packed: Packed, q: np.ndarray, limits: bool) -> list[Gap]:
     One-way clutches are closed.
     """
     from mbsd.equations.assembly import tabulate
-    from mbsd.kinematics.limits.contact_rows import all_contacts, with_contacts
+    from mbsd.kinematics.limits.contacts import all_contacts, with_contacts
 
     contacts = all_contacts(m, packed, q[0]) if limits else list(m.contacts.values())
     if not contacts:
@@ -106,3 +114,32 @@ def refuse_pushing(m: Model, motion: Solution) -> None:
                 f"{m.name}: contact '{name}' pushes at t = {motion.t[int(np.argmax(closed))]:.6g} s of this "
                 "motion. Efforts are found for motions without contact alone; cut the motion there."
             )
+
+
+def all_contacts(m: Model, packed: Packed, q: np.ndarray) -> list[Joint]:
+    """Return the contacts, and stops without rebound at joint limits; q (3 nb,) at the start.
+
+    Angles are counted from the whole turn that is nearest to the limits at the start.
+    """
+    out = list(m.contacts.values())
+    for limit in limits_of(packed):
+        joint = m.joints[limit.name]
+        turns = 0.0
+        if limit.angular:
+            i, j = packed.system.marker_body[[limit.marker_i, limit.marker_j]]
+            turns = q[3 * j + 2] - q[3 * i + 2] + limit.offset - coordinate(packed, limit, q[None])[0]
+        kind = ANGLE_STOP if limit.angular else COORDINATE_STOP
+        for end, at in (("lower", limit.lower), ("upper", limit.upper)):
+            if np.isfinite(at):
+                params = {"at": at + turns, "upper": end == "upper"}
+                out.append(Joint(kind, f"{joint.name} {end}", joint.i, joint.j, params))
+    return out
+
+
+def with_contacts(m: Model, packed: Packed, contacts: list[Joint]) -> Packed:
+    """Return the mechanism with rows for contacts after all others, and the phases of its start."""
+    out = pack(m, contacts)
+    out.motions = packed.motions
+    take_decided(out, packed)
+    out.specials.callbacks += packed.specials.callbacks  # some of these numbers are their addresses
+    return out

@@ -7,6 +7,13 @@
 A driven motion is the case of one coordinate, the time, whose speed is 1. The class of the first argument of a kernel
 decides which of the functions here it calls when it is compiled (mbsd/compiling/alternatives.py), so the number of
 columns of the first two is known then, and nothing is left of what they do not need.
+
+Branches: of its two poses a group takes the one to which the motion since the last pose leads.
+
+    theta = theta_0 + sum B_j (z_j - z_0j) + c tau^2 / 2         tau: time since then
+
+Only groups that are near to where both poses meet ask; the others keep theirs. Where the prediction does not tell
+clearly the evaluation is doubted, and the step is taken again with another length.
 """
 
 from __future__ import annotations
@@ -17,9 +24,25 @@ from typing import Any, NamedTuple
 
 from mbsd.compiling.alternatives import alternatives
 from mbsd.compiling.jit import inlined, internal, lazy, merged
-from mbsd.kinematics.groups.carrying.branch import doubted, predicted
-from mbsd.kinematics.groups.carrying.columns import AVOID, CHANGE, NEAR, SIGN, SINE, SPEED, VALUE
-from mbsd.kinematics.groups.carrying.rates import DOUBTED, MEETING, OPEN, SOLVED
+from mbsd.kinematics.groups.carried import (
+    AVOID,
+    BASE,
+    BEND,
+    CHANGE,
+    COS,
+    DOUBTED,
+    MEETING,
+    NEAR,
+    OPEN,
+    SIGN,
+    SIN,
+    SINE,
+    SOLVED,
+    SPEED,
+    THETA,
+    TURNS,
+    VALUE,
+)
 
 FLAT = 1e-12
 """Squared sine at which branches meet: lengths that agree to this part count as equal."""
@@ -34,7 +57,7 @@ class PoseAlone(NamedTuple):
     """(g, 8) and ``number`` (g, 21): tables.py."""
     number: Any
     body: Any
-    """(nb, 7) columns in columns.py."""
+    """(nb, 7) columns in carried.py."""
     rate: Any
     """Never read."""
     driven: Any
@@ -69,7 +92,7 @@ class PerCoordinate(NamedTuple):
 
 
 def formula(function: Callable[..., Any]) -> Any:
-    """The kernel of a kind that few mechanisms hold: compiled when one first does.
+    """Return the kernel of a kind that few mechanisms hold: compiled when one first does.
 
     The loop over designs takes its code in, for there a call costs as much as the pose.
     """
@@ -217,3 +240,40 @@ def _rate_of_law(case, law, order):
 
 law_rate = alternatives({PoseAlone: _no_rate, AlongLaws: _rate_of_law, PerCoordinate: _rate_of_law})
 """First or second rate of a law; zero for law 0."""
+
+
+FLOOR = 1e-6
+"""Squared sine of the angle between a group's two links below which no tolerance is met by its closed form."""
+WIDE = 0.36
+"""Squared sine above which a group keeps its branch through a step."""
+MISSED = 0.5
+"""Part of the way between the poses by which the prediction may miss."""
+
+
+@internal
+def predicted(base, coordinate, b):
+    """Return angle of body b (rad)."""
+    columns = coordinate.shape[0] - 1
+    since = coordinate[columns, VALUE]
+    theta = base[b, THETA] + 0.5 * base[b, BEND] * since * since
+    for j in range(columns):
+        theta += base[b, TURNS + j] * (coordinate[j, VALUE] - coordinate[j, BASE])
+    return theta
+
+
+@internal
+def doubted(side, reach):
+    """Return True if the predicted distance from the meeting of both poses is far from ``reach`` >= 0."""
+    return not abs(abs(side) - reach) <= MISSED * reach
+
+
+@internal
+def angle_of(body, base, coordinate, b):
+    """Return angle of body b (rad), all its turns counted."""
+    guess = predicted(base, coordinate, b)
+    angle = math.atan2(body[b, SIN], body[b, COS])
+    turns = (guess - angle) / (2.0 * math.pi) + 0.5
+    whole = int(turns)
+    if whole > turns:
+        whole -= 1  # a floor in place, which math.floor calls from afar
+    return angle + 2.0 * math.pi * whole

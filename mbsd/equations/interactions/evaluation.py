@@ -1,4 +1,4 @@
-"""The compiled evaluation of interactions: the relative state in, force and torque out.
+"""Compiled evaluation of interactions: the relative state in, force and torque out.
 
 d  = p_j - p_i;   u unit axis of marker i, n = u_perp;   x = u . d,  y = n . d,  a = theta_j - theta_i + offset
 x' = u . d' + omega_i y,   y' = n . d' - omega_i x,   a' = omega_j - omega_i
@@ -8,8 +8,8 @@ A state s of a force is the velocity of a body of its own along the x axis of gr
     double f(const long *interaction, long n, double *given, double *state, double *out, double *switches, double t,
              const double *q, const double *v, const double *cos_sin, double *load)
 
-It stands at an address and takes arrays by their first numbers, because handing over arrays as such takes longer than
-all its work.
+Kernels call it by its address and give each array by its first number: handing over arrays as such takes longer than
+all its work. So it is compiled only where a model has interactions.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ from __future__ import annotations
 import math
 
 from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
 
-from mbsd.compiling.jit import at_address
+from mbsd.compiling.jit import COMPILED, at_address, inlined
 from mbsd.equations.interactions.law import (
     APPROACH,
     CRANK,
@@ -52,6 +54,7 @@ from mbsd.equations.interactions.switching import (
     VALUE,
     WIDTH,
 )
+from mbsd.equations.laws import law_at
 from mbsd.equations.relative.equation import OWN, POINTER, A, X, Y, evaluate_from
 
 GEOMETRY = 7
@@ -137,3 +140,51 @@ def apply(interaction, n, given, state, out, switches, t, q, v, cos_sin, load):
         for s in range(interaction[row + 8]):
             load[holding + 3 * s] += out[RATE + s]
     return power
+
+
+def address() -> int:
+    """Return where the evaluation is; compiles it at first."""
+    return apply.address if COMPILED else 0
+
+
+if COMPILED:
+
+    @intrinsic
+    def _call(typing, address, count, t, arrays):  # pyright: ignore[reportUnusedParameter, reportRedeclaration]
+        """Call it with a tuple of contiguous arrays, in the order of ``apply``."""
+
+        def code(context, builder, signature, arguments):
+            where, number, time, values = arguments
+            data = []
+            for index, kind in enumerate(signature.args[3]):
+                array = context.make_array(kind)(context, builder, builder.extract_value(values, index))
+                data.append(array.data)
+            given = [data[0], number, *data[1:5], time, *data[5:]]
+            double = cgutils.ir.DoubleType()
+            function = cgutils.ir.FunctionType(double, [value.type for value in given])
+            return builder.call(builder.inttoptr(where, function.as_pointer()), given)
+
+        return types.float64(types.int64, types.int64, types.float64, arrays), code
+
+else:
+
+    def _call(address, count, t, arrays):
+        """Call it with a tuple of contiguous arrays, in the order of ``apply``."""
+        flat = [part.reshape(-1) for part in arrays]
+        return apply(flat[0], count, *flat[1:5], t, *flat[5:])
+
+
+@inlined
+def apply_interactions(interaction, given, state, exchange, switch, laws, law, t, q, v, cos_sin, load):
+    """Add the generalised forces of all interactions to load (3 nb,); cos_sin (nb, 2) turns the bodies.
+
+    The first five and ``law`` are those of Loads. Returns their power (W).
+    """
+    count = interaction.shape[0]
+    for k in range(count):
+        if interaction[k, 2] > 0:
+            law_at(laws, interaction[k, 2], t, law)
+            switch[k + 1, LAW_HERE] = law[0]
+            switch[k + 1, LAW_RATE_HERE] = law[1]
+    arrays = (interaction, given, state, exchange[1], switch, q, v, cos_sin, load)
+    return _call(interaction[0, 5], count, t, arrays)

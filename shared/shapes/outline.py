@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import cadquery as cq
 import numpy as np
@@ -220,6 +221,12 @@ def simplified(path: np.ndarray, tolerance: float) -> np.ndarray:
 
 
 # A band of even width round a smooth curve, with round ends: the outline of a curved slot (mm).
+#
+# Where a wall of a tool meets a plate's face, the kernel's cut approximates the edge, and spends no more on a long wall
+# than on a short one: along eight stretches of 0.8 m the edge left its spline by 0.8 mm, in runs of 120 places by 2 um.
+
+LONGEST, RUN = 240, 120
+"""Places that one edge of a spline goes through at most, and those of a longer spline, which has several edges."""
 
 
 def band(path: np.ndarray, half: float) -> cq.Wire:
@@ -238,12 +245,12 @@ def band(path: np.ndarray, half: float) -> cq.Wire:
     for at, way in ((-1, 1.0), (0, -1.0)):
         along = np.array([normal[at, 1], -normal[at, 0]])
         ends.append(path[at] + way * half * along)
-    sides = [cq.Edge.makeSpline([_vector(p) for p in side]) for side in (right, left[::-1])]
+    sides = [_spline(side) for side in (right, left[::-1])]
     caps = [
         cq.Edge.makeThreePointArc(_vector(right[-1]), _vector(ends[0]), _vector(left[-1])),
         cq.Edge.makeThreePointArc(_vector(left[0]), _vector(ends[1]), _vector(right[0])),
     ]
-    return cq.Wire.assembleEdges([sides[0], caps[0], sides[1], caps[1]])
+    return cq.Wire.assembleEdges([*sides[0], caps[0], *sides[1], caps[1]])
 
 
 def loop(path: np.ndarray, beyond: float) -> cq.Wire:
@@ -258,8 +265,20 @@ def loop(path: np.ndarray, beyond: float) -> cq.Wire:
     moved = path + beyond * outward
     if ((np.diff(moved, axis=0) * np.diff(path, axis=0)).sum(axis=1) <= 0).any():
         raise ValueError(f"a groove does not follow a curve at {abs(beyond):.3g} mm that bends as sharply")
-    edge = cq.Edge.makeSpline([_vector(p) for p in moved[:-1]], periodic=True)
-    return cq.Wire.assembleEdges([edge])
+    return cq.Wire.assembleEdges(_spline(moved[:-1], periodic=True))
+
+
+def _spline(places: np.ndarray, periodic: bool = False) -> list[cq.Edge]:
+    """Return the spline through ``places`` (n, 2) as one edge, or if it is long as several."""
+    whole = cq.Edge.makeSpline([_vector(place) for place in places], periodic=periodic)
+    if len(places) <= LONGEST:
+        return [whole]
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+
+    curve = whole._geomAdaptor().BSpline()
+    numbers = np.linspace(1, curve.NbKnots(), math.ceil(len(places) / RUN) + 1).astype(int)
+    ends = [curve.Knot(int(number)) for number in numbers]
+    return [cq.Edge(BRepBuilderAPI_MakeEdge(curve, first, last).Edge()) for first, last in pairwise(ends)]
 
 
 def normals(path: np.ndarray) -> np.ndarray:

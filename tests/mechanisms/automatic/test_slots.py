@@ -8,10 +8,11 @@ import cadquery as cq
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
+from scipy.spatial import KDTree
 
 from mbsd import Mechanism, Solution, constant_rate, harmonic
 from mechanisms.stages.automatic.automatic import Automatic
-from mechanisms.stages.automatic.layout.curves import continued, followed
+from mechanisms.stages.automatic.layout.curves import continued, evenly, followed
 from mechanisms.stages.automatic.layout.items import span, spans_meet
 from mechanisms.stages.automatic.pins.welds import Weld
 from mechanisms.stages.automatic.rolling import roads
@@ -20,7 +21,7 @@ from mechanisms.stages.automatic.rolling.rounds import Round
 from mechanisms.stages.automatic.slides.curved_slots import CurvedSlot
 from mechanisms.stages.automatic.slides.slots import Slot
 from shared.shapes.build import extruded
-from shared.shapes.outline import band, distances, loop, sharpest
+from shared.shapes.outline import band, distances, loop, rounded_rectangle, sharpest
 from shared.stage.errors import UserError
 from tests.mechanisms.automatic.layouts import meets
 from tools.hunt_parts.case import parts_of
@@ -149,6 +150,42 @@ def test_bands_follow_arcs() -> None:
     assert sharpest(circle) == pytest.approx(50.0, rel=5e-3)
     with pytest.raises(ValueError, match="bends as sharply"):
         band(arc, 55.0)
+
+
+def test_long_slots_keep_their_walls_when_they_are_cut() -> None:
+    """The kernel's cut approximates the edges of walls; those of one long wall strayed by more than the clearance."""
+    turn, up = np.linspace(0.0, math.pi, 60)[1:-1], np.linspace(0.0, 800.0, 400)
+    legs = []
+    for x in (0.0, 64.0, 128.0, 192.0):
+        over = np.stack([x + 16.0 * (1.0 - np.cos(turn)), 800.0 + 16.0 * np.sin(turn)], axis=1)
+        under = np.stack([x + 32.0 + 16.0 * (1.0 - np.cos(turn)), -16.0 * np.sin(turn)], axis=1)
+        there, back = (np.stack([np.full(400, at), way], axis=1) for at, way in ((x, up), (x + 32.0, up[::-1])))
+        legs += [there, over, back, under]
+    slot = band(evenly(np.vstack(legs[:-1]), 960), 6.6)
+    plate = extruded(rounded_rectangle(-50.0, -50.0, 280.0, 850.0, 5.0), 7.0).cut(extruded(slot, 9.0, -1.0)).val()
+    edges = [edge for edge in plate.Edges() if edge.geomType() == "BSPLINE" and edge.BoundingBox().zmax < 0.01]
+    exact = _places([edge for edge in slot.Edges() if edge.geomType() == "BSPLINE"], 40_000)
+    cut = _places(edges, 4_000)
+    _, near = KDTree(exact).query(cut)
+    away = [distances(place[None], exact[max(k - 1, 0) : k + 2])[0] for place, k in zip(cut, near, strict=True)]
+    assert max(away) < 0.01
+
+
+def _places(edges: list[cq.Edge], count: int) -> np.ndarray:
+    places = []
+    for curve in (edge._geomAdaptor() for edge in edges):
+        parameters = np.linspace(curve.FirstParameter(), curve.LastParameter(), count // len(edges))
+        places += [(p.X(), p.Y()) for p in map(curve.Value, parameters.tolist())]
+    return np.array(places)
+
+
+def test_a_long_spline_is_the_same_curve_in_several_edges() -> None:
+    angles = np.linspace(0.0, 2 * math.pi, 601)
+    ring = 500.0 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    around, along = loop(ring, 6.0), band(ring[:-30], 6.0)
+    assert (len(around.Edges()), len(along.Edges())) == (5, 12)
+    assert around.Length() == pytest.approx(2 * math.pi * 506.0, rel=1e-6)
+    assert extruded(along, 1.0).val().isValid()
 
 
 @pytest.mark.parametrize(("scale", "turn"), [(0.1, 0.3), (30.0, -2.0)])

@@ -60,7 +60,7 @@ class FreeTangents:
     def __init__(self, terms: Terms, stretch: Stretch, every: list[Variants]) -> None:
         self.terms, self.along, self.rows, self.every = terms, stretch.along, stretch.rows, every
         self.dependent, self.asked, self.compact = stretch.dependent, stretch.asked, stretch.compact
-        self.nodes, self.solved = stretch.nodes, stretch.solved
+        self.nodes, self.solved, self.own = stretch.nodes, stretch.solved, stretch.own
         packed = terms.packed
         refuse_large(terms, len(self.along.t))
         self.scale = packed.column_scale()
@@ -122,6 +122,7 @@ class _Piece:
         at = slice(first, first + len(inverse))
         self.terms, self.every, self.rows, self.dependent = whole.terms, whole.every, whole.rows, whole.dependent
         self.along, self.basis = whole.along.take(at), basis
+        self.own = None if whole.own is None else whole.own.each(lambda part: part[:, at])
         self.compact = whole.compact[at]
         asked = whole.asked[at].copy()
         asked[0] &= first == 0
@@ -206,7 +207,7 @@ class _Piece:
         return Tangents(*parts)
 
     def _node_by_node(self, begun: np.ndarray | None, at: np.ndarray) -> Made:
-        """By the kernel, some nodes at once, so that what is known of them stays near the processor."""
+        """Differentiate by the kernel, some nodes at once, so that what is known of them stays in the cache."""
         parts: list[Made] = []
         along, per_scale, first = self.along, per_scales(self.terms, self.along), None
         drives = self.terms.packed.drives(along.t)
@@ -227,7 +228,11 @@ class _Piece:
         return Made(*(np.concatenate(part, axis=0 if k < 2 else 1) for k, part in enumerate(joined_parts)))
 
     def _in_arrays(self, begun: np.ndarray, at: np.ndarray) -> Made:
-        """The same in numpy, for friction in joints and contacts that slide as well."""
+        """Differentiate all nodes at once in numpy, for friction in joints and contacts that slide as well.
+
+        There accelerations depend on multipliers in return, so that each node is one dense system of both. The kernel
+        solves for accelerations first and multipliers then, and is several times as fast; so both routes stay.
+        """
         f, numbers, count = self.f, len(self.every), len(self.along.t)
         own = self._own(slice(None))
         position, some = self._opened(own, self._first(begun, own))
@@ -256,6 +261,8 @@ class _Piece:
 
     def _own(self, at: slice) -> Left:
         """How the equations change with the numbers at some nodes of the held motion."""
+        if self.own is not None:
+            return self.own.each(lambda part: part[:, at])
         return by_numbers(self.terms, self.along.take(at), self.every, self.compact[at])
 
     def _first(self, begun: np.ndarray, own: Left) -> np.ndarray:
